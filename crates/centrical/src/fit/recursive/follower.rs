@@ -1,0 +1,207 @@
+//! Following a session while the centrifuge turns.
+//!
+//! The linear model is off by some 20 ug, which a test of plateaus known to a few ug would take for a fault. So
+//! a follower keeps a point of linearisation, and a new plateau moves it: all plateaus so far and the new one are
+//! linearised there, the earlier ones filtered, and the new one tested and taken up. The point is the estimate
+//! with every unknown held about zero by [`NULL_HOLD`] typical magnitudes, so that what is not
+//! determined yet stays where units are. The hold places the point; no estimate, uncertainty or test knows of it.
+
+use nalgebra::{DVector, Matrix3};
+
+use super::filtered;
+use super::innovation::{Innovation, Unexplained};
+use crate::design::{Design, Observation};
+use crate::error::FitError;
+use crate::fit::{Equations, HALVING_LIMIT, NULL_HOLD, Structure, check, chi_squared, residuals};
+use crate::measurement::{Linearisation, MeasurementModel};
+
+/// A point is close enough when the last step was below this many standard uncertainties: what the step after it would
+/// change is of the square of it.
+const CLOSE: f64 = 1e-3;
+
+/// Steps towards a point, halved until they descend. They converge quadratically from the point before; a plateau that is
+/// far off may not let them, and is found out by the test wherever the point is.
+const STEP_LIMIT: usize = 10;
+
+/// A session followed plateau by plateau on the exact model, in whatever order they come.
+#[derive(Debug, Clone)]
+pub struct Follower<'m> {
+    model: &'m MeasurementModel,
+    speed_uncertainty: f64,
+    taken: Vec<Observation>,
+    point: DVector<f64>,
+}
+
+/// What is known after some plateaus.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Progress {
+    /// Rank so far, decided on `H` as in a fit.
+    pub rank: usize,
+    /// Estimate and standard uncertainty of each unknown, SI; `None` while it is not determined.
+    pub estimates: Vec<Option<(f64, f64)>>,
+}
+
+impl<'m> Follower<'m> {
+    /// Before the first plateau. `speed_uncertainty` is the relative standard uncertainty of a plateau's speed.
+    pub fn new(model: &'m MeasurementModel, speed_uncertainty: f64) -> Self {
+        let point = DVector::zeros(model.parameters().len());
+        Self { model, speed_uncertainty, taken: Vec::new(), point }
+    }
+
+    /// Where a follower stood that had taken up some plateaus and reached [`Follower::point`]; it goes on as if it had never
+    /// stopped. A point of another length is taken for zeros.
+    ///
+    /// # Errors
+    /// [`FitError`] when an observation cannot be one.
+    pub fn resume(
+        model: &'m MeasurementModel,
+        speed_uncertainty: f64,
+        taken: Vec<Observation>,
+        point: &[f64],
+    ) -> Result<Self, FitError> {
+        let mut follower = Self::new(model, speed_uncertainty);
+        if !taken.is_empty() {
+            check(model, &taken)?;
+        }
+        follower.taken = taken;
+        follower.point.iter_mut().zip(point).for_each(|(to, from)| *to = *from);
+        Ok(follower)
+    }
+
+    /// Plateaus taken up, in the order in which they came.
+    pub fn taken(&self) -> &[Observation] {
+        &self.taken
+    }
+
+    /// Point of linearisation, SI.
+    pub fn point(&self) -> &[f64] {
+        self.point.as_slice()
+    }
+
+    /// Tests a plateau against those taken up, without taking it up: by how much it raises the least sum of squares
+    /// at the point where it would be taken up, and the rank.
+    ///
+    /// As in a fit, rank is decided on `H`, and what `H` does not see is held by [`NULL_HOLD`] typical magnitudes: the exact
+    /// model has second-order traces of it, which would pass for something new in every plateau.
+    ///
+    /// # Errors
+    /// [`FitError`] when the observation cannot be one.
+    pub fn test(&self, observation: &Observation) -> Result<Innovation, FitError> {
+        let mut with = self.clone();
+        with.take(observation.clone())?;
+        let after = with.unexplained()?;
+        with.taken.pop();
+        let before = with.unexplained()?;
+        Ok(before.innovation(&after))
+    }
+
+    /// Takes a plateau up and moves the point.
+    ///
+    /// # Errors
+    /// [`FitError`] when the observation cannot be one.
+    pub fn take(&mut self, observation: Observation) -> Result<(), FitError> {
+        check(self.model, std::slice::from_ref(&observation))?;
+        self.taken.push(observation);
+        let typical = DVector::from_iterator(self.point.len(), self.model.parameters().iter().map(|p| p.typical));
+        for _ in 0..STEP_LIMIT {
+            let linearisations = self.linearised();
+            let design = self.design_of(&linearisations)?;
+            let step = self.held(&design, &typical).solve();
+            if step.whitened_length < CLOSE {
+                self.point += &step.dx;
+                break;
+            }
+            let Some(point) = self.descend(&step.dx, &linearisations, &typical)? else { break };
+            self.point = point;
+        }
+        Ok(())
+    }
+
+    /// The point one step on, halved until the sum of squares falls; none if it does not: the point stays where it is.
+    fn descend(
+        &self,
+        dx: &DVector<f64>,
+        linearisations: &[Linearisation],
+        typical: &DVector<f64>,
+    ) -> Result<Option<DVector<f64>>, FitError> {
+        let objective = |x: &DVector<f64>| -> Result<f64, FitError> {
+            let residuals = residuals(self.model, &self.taken, x);
+            let priors = self.model.priors();
+            let data = chi_squared(priors, &self.taken, linearisations, self.speed_uncertainty, &residuals, x)?;
+            Ok(data + (x.component_div(typical) / NULL_HOLD).norm_squared())
+        };
+        let here = objective(&self.point)?;
+        for halvings in 0..HALVING_LIMIT {
+            let x = &self.point + dx * 0.5_f64.powi(halvings.cast_signed());
+            if objective(&x)? <= here {
+                return Ok(Some(x));
+            }
+        }
+        Ok(None)
+    }
+
+    /// What the plateaus taken up say.
+    ///
+    /// # Errors
+    /// [`FitError::Empty`] before the first.
+    pub fn progress(&self) -> Result<Progress, FitError> {
+        let structure = Structure::by(filtered, self.model, &self.taken, self.speed_uncertainty)?;
+        let step = structure.equations(&self.design()?, &self.point, 1.0 / NULL_HOLD).solve();
+        let covariance = step.covariance();
+        let known = |j: usize| (self.point[j] + step.dx[j], covariance[(j, j)].sqrt());
+        let estimates =
+            (0..self.point.len()).map(|j| structure.observability.is_estimable(j).then(|| known(j))).collect();
+        Ok(Progress { rank: structure.observability.rank(), estimates })
+    }
+
+    /// What they are expected to say with one plateau more, whose mean will have `covariance` [m^2/s^4].
+    ///
+    /// # Errors
+    /// [`FitError`] when there can be no such plateau.
+    pub fn expected(&self, set_point: usize, covariance: Matrix3<f64>) -> Result<Progress, FitError> {
+        let set_points = &self.model.experiment().set_points;
+        let unknown = FitError::Unknown { set_point, count: set_points.len() };
+        let mean = self.model.reading(set_points.get(set_point).ok_or(unknown)?, self.point());
+        let mut with = self.clone();
+        with.taken.push(Observation { set_point, mean, covariance });
+        with.progress()
+    }
+
+    /// Least sum of squares of the plateaus taken up, linearised at the point, and their rank.
+    fn unexplained(&self) -> Result<Unexplained, FitError> {
+        if self.taken.is_empty() {
+            return Ok(Unexplained { squared: 0.0, rank: self.model.priors().len() });
+        }
+        let structure = Structure::by(filtered, self.model, &self.taken, self.speed_uncertainty)?;
+        let design = self.design()?;
+        let Equations { rows, mut misfit, .. } = structure.equations(&design, &self.point, 1.0 / NULL_HOLD);
+        let unknowns = rows.ncols();
+        rows.qr().q_tr_mul(&mut misfit);
+        let left = misfit.rows_range(unknowns..).norm_squared();
+        Ok(Unexplained { squared: left + design.rest.powi(2), rank: structure.observability.rank() })
+    }
+
+    fn linearised(&self) -> Vec<Linearisation> {
+        let set_points = &self.model.experiment().set_points;
+        self.taken.iter().map(|o| self.model.linearise(&set_points[o.set_point], self.point())).collect()
+    }
+
+    fn design(&self) -> Result<Design, FitError> {
+        self.design_of(&self.linearised())
+    }
+
+    fn design_of(&self, linearisations: &[Linearisation]) -> Result<Design, FitError> {
+        filtered(self.point(), self.model, &self.taken, linearisations, self.speed_uncertainty)
+    }
+
+    /// The equations with every unknown held about zero, in typical units.
+    fn held<'t>(&self, design: &Design, typical: &'t DVector<f64>) -> Equations<'t> {
+        let (n, p) = design.rows.shape();
+        let mut rows = design.rows.clone().resize_vertically(n + p, 0.0);
+        rows.column_iter_mut().zip(typical.iter()).for_each(|(mut column, typical)| column *= *typical);
+        rows.rows_mut(n, p).fill_diagonal(1.0 / NULL_HOLD);
+        let mut misfit = design.misfit.clone().resize_vertically(n + p, 0.0);
+        misfit.rows_mut(n, p).copy_from(&(self.point.component_div(typical) / -NULL_HOLD));
+        Equations { rows, misfit, typical }
+    }
+}

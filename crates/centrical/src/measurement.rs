@@ -1,0 +1,95 @@
+//! The measurement model: what the unit reads on a plateau, as a function of the unknowns `X`.
+//!
+//! Two forms, kept apart on purpose so that each checks the other:
+//! - [`MeasurementModel::linearise`], the exact model: exact rotations, every proof mass at its own point,
+//!   mean over a revolution or at rest, with its analytic Jacobian (`measurement/exact.rs`);
+//! - [`linear`], the source's small-parameter model `Z = H X + r` [K5.3].
+//!
+//! `H` is the Jacobian of the exact model at `X = 0` (test `h_is_the_jacobian_at_zero`).
+
+mod exact;
+pub mod linear;
+
+use nalgebra::Vector3;
+
+pub use exact::ArmMotion;
+pub(crate) use exact::Carried;
+
+use crate::error_model::ErrorModel;
+use crate::experiment::Experiment;
+use crate::parameter::{Extension, Parameters};
+use crate::prior::{self, Prior, PriorError};
+
+/// An experiment, the unit's error model, and the unknowns that follow from the two.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasurementModel {
+    experiment: Experiment,
+    error_model: ErrorModel,
+    extensions: Vec<Extension>,
+    parameters: Parameters,
+    priors: Vec<Prior>,
+}
+
+/// Reading of a plateau and its first derivatives at some `X`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linearisation {
+    /// Mean reading `f'` [m/s^2].
+    pub reading: Vector3<f64>,
+    /// `d f' / d ln Omega` [m/s^2]: the direction in which a relative speed error acts. Zero at rest.
+    pub speed: Vector3<f64>,
+    /// Non-zero columns of the Jacobian: (index of the parameter, `d f' / d x`), each index once.
+    pub columns: Vec<(usize, Vector3<f64>)>,
+}
+
+impl MeasurementModel {
+    /// Model of `experiment` with the unknowns of [K5.4] and `extensions`.
+    pub fn new(experiment: Experiment, error_model: ErrorModel, extensions: &[Extension]) -> Self {
+        let parameters = Parameters::new(&experiment, &error_model, extensions);
+        Self { experiment, error_model, extensions: extensions.to_vec(), parameters, priors: Vec::new() }
+    }
+
+    /// The same unit, extensions and priors in another experiment. A prior on a parameter that the other experiment
+    /// does not have falls away.
+    #[must_use]
+    pub fn in_experiment(&self, experiment: Experiment) -> Self {
+        let mut other = Self::new(experiment, self.error_model.clone(), &self.extensions);
+        let renamed = |prior: &Prior| {
+            let parameter = other.parameters.find(&self.parameters[prior.parameter].name)?;
+            Some(Prior { parameter, ..*prior })
+        };
+        other.priors = self.priors.iter().filter_map(renamed).collect();
+        other
+    }
+
+    /// The model with a prior of `standard_uncertainty` [the unit of the parameter] about zero on every parameter that
+    /// `name` selects (see [`Parameters::select`]).
+    ///
+    /// # Errors
+    /// [`PriorError`] when there is no such parameter, when the selected ones differ in unit, when one of them has a
+    /// prior already, or when the uncertainty is not a positive number.
+    pub fn with_prior(mut self, name: &str, standard_uncertainty: f64) -> Result<Self, PriorError> {
+        let priors = prior::select(&self.parameters, &self.priors, name, standard_uncertainty)?;
+        self.priors.extend(priors);
+        Ok(self)
+    }
+
+    /// What is known beforehand.
+    pub fn experiment(&self) -> &Experiment {
+        &self.experiment
+    }
+
+    /// The unit's error model.
+    pub fn error_model(&self) -> &ErrorModel {
+        &self.error_model
+    }
+
+    /// The unknowns.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// What is known of the unknowns beforehand.
+    pub fn priors(&self) -> &[Prior] {
+        &self.priors
+    }
+}

@@ -1,0 +1,229 @@
+//! Additions to an experiment: what could be measured, or known, besides.
+
+use std::collections::BTreeSet;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::Study;
+use crate::design::Weight;
+use crate::error::FitError;
+use crate::experiment::{Experiment, Mounting, PairRelation, SetPoint};
+use crate::position::Position;
+
+/// One addition to an experiment.
+///
+/// The order of the variants is the order of cost, cheapest first: plateaus more in a mounting that is made
+/// anyway (minutes), a dimension measured on the bench, mountings more (an hour each), a new attitude (a fixture),
+/// and last a fixture that holds the unit differently in its pairs, for which every mounting is made anew.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Addition {
+    /// A plateau at rest at one more angle.
+    Rest {
+        /// Mountings in which it is read.
+        mountings: Vec<usize>,
+        /// `alpha_3` [rad].
+        angle: f64,
+    },
+    /// A plateau at one more speed.
+    Speed {
+        /// Mountings in which it is read.
+        mountings: Vec<usize>,
+        /// Angular speed [rad/s].
+        omega: f64,
+    },
+    /// Prior knowledge of one parameter.
+    Prior {
+        /// Name of the parameter.
+        parameter: String,
+        /// Standard uncertainty, in its unit.
+        standard_uncertainty: f64,
+    },
+    /// A mounting at one more radius, with the schedule of the position's fullest mounting.
+    Radius {
+        /// Positions that are mounted there, by index.
+        positions: Vec<usize>,
+        /// `R0_1` [m].
+        radius: f64,
+    },
+    /// One more position, a pair of its own, at every radius of the experiment with its fullest schedule.
+    Position(Position),
+    /// A fixture with another relation of `dR` in a pair: for the mountings that are there.
+    Relation(PairRelation),
+}
+
+impl Addition {
+    /// The study of the experiment with the addition. New plateaus are as noisy as the experiment's median one.
+    ///
+    /// # Errors
+    /// As [`Study::at_zero`].
+    pub fn apply(&self, study: &Study) -> Result<Study, FitError> {
+        let mut draft = Draft::of(study);
+        let mut model = None;
+        match self {
+            Self::Rest { mountings, angle } => {
+                draft.add(mountings.iter().map(|&mounting| SetPoint { mounting, omega: 0.0, angle: *angle }));
+            }
+            Self::Speed { mountings, omega } => {
+                draft.add(mountings.iter().map(|&mounting| SetPoint { mounting, omega: *omega, angle: 0.0 }));
+            }
+            Self::Prior { parameter, standard_uncertainty } => {
+                // A prior that cannot be one adds nothing.
+                model = study.model().clone().with_prior(parameter, *standard_uncertainty).ok();
+            }
+            Self::Radius { positions, radius } => {
+                for &k in positions {
+                    draft.mount(k, *radius);
+                }
+            }
+            Self::Position(position) => {
+                draft.experiment.positions.push(position.clone());
+                let radii: BTreeSet<u64> = study.model().experiment().mountings.iter().map(radius_key).collect();
+                let k = draft.experiment.positions.len() - 1;
+                for key in radii {
+                    draft.mount(k, f64::from_bits(key));
+                }
+            }
+            Self::Relation(relation) => draft.experiment.pair_relation = *relation,
+        }
+        let (experiment, weights) = draft.finish();
+        let model = model.unwrap_or_else(|| study.model().in_experiment(experiment));
+        Study::at_zero(model, weights, study.speed_uncertainty())
+    }
+
+    /// Rank of its kind in the order of cost, and the number of plateaus, mountings or fixtures it takes.
+    pub fn cost(&self) -> (u8, usize) {
+        match self {
+            Self::Rest { mountings, .. } => (0, mountings.len()),
+            Self::Speed { mountings, .. } => (1, mountings.len()),
+            Self::Prior { .. } => (2, 1),
+            Self::Radius { positions, .. } => (3, positions.len()),
+            Self::Position(_) => (4, 1),
+            Self::Relation(_) => (5, 1),
+        }
+    }
+
+    /// The addition in words.
+    pub fn text(&self, study: &Study) -> String {
+        let experiment = study.model().experiment();
+        match self {
+            Self::Rest { mountings, angle } => {
+                format!("rest at {:.0} deg in {}", angle.to_degrees(), mountings_text(mountings, experiment))
+            }
+            Self::Speed { mountings, omega } => {
+                let rpm = omega.abs() * 60.0 / std::f64::consts::TAU;
+                format!("a speed of {rpm:.1} rpm in {}", mountings_text(mountings, experiment))
+            }
+            Self::Prior { parameter, standard_uncertainty } => {
+                let unit = study.model().parameters().iter().find(|p| p.name == *parameter).map_or("", |p| &p.unit);
+                format!("{parameter} measured by other means to {standard_uncertainty:.1e} {unit}")
+            }
+            Self::Radius { positions, radius } => {
+                format!("a radius of {radius:.4} m in {}", positions_text(positions, experiment))
+            }
+            Self::Position(position) => format!("{}, with a schedule as in the others", attitude_text(position)),
+            Self::Relation(PairRelation::Common) => {
+                "a fixture that keeps the shift with the seat on the arm when the unit is turned (pair relation \
+                 \"common\")"
+                    .to_owned()
+            }
+            Self::Relation(PairRelation::Opposite) => {
+                "a fixture that keeps the shift with the unit when it is turned (pair relation \"opposite\")".to_owned()
+            }
+            Self::Relation(PairRelation::Free) => "unrelated shifts in a pair (pair relation \"free\")".to_owned(),
+        }
+    }
+}
+
+/// An experiment and its weights while something is added.
+struct Draft {
+    experiment: Experiment,
+    /// Set points with their covariance, if they are read at all.
+    plateaus: Vec<(SetPoint, Option<Matrix3<f64>>)>,
+    usual: Matrix3<f64>,
+}
+
+impl Draft {
+    fn of(study: &Study) -> Self {
+        let experiment = study.model().experiment().clone();
+        let mut plateaus: Vec<_> = experiment.set_points.iter().map(|s| (*s, None)).collect();
+        for weight in study.weights() {
+            plateaus[weight.set_point].1 = Some(weight.covariance);
+        }
+        let mut covariances: Vec<Matrix3<f64>> = study.weights().iter().map(|w| w.covariance).collect();
+        covariances.sort_by(|a, b| a.trace().total_cmp(&b.trace()));
+        let usual = covariances.get(covariances.len() / 2).copied().unwrap_or_else(Matrix3::identity);
+        Self { experiment, plateaus, usual }
+    }
+
+    fn add(&mut self, set_points: impl Iterator<Item = SetPoint>) {
+        self.plateaus.extend(set_points.map(|set_point| (set_point, Some(self.usual))));
+    }
+
+    /// A mounting of position `k` at `radius` with the fullest schedule of the position, or of any.
+    fn mount(&mut self, k: usize, radius: f64) {
+        let mountings = &self.experiment.mountings;
+        let length = |m: &usize| self.plateaus.iter().filter(|(s, _)| s.mounting == *m).count();
+        let own = (0..mountings.len()).rev().filter(|&m| mountings[m].position == k).max_by_key(length);
+        let Some(model) = own.or_else(|| (0..mountings.len()).rev().max_by_key(length)) else { return };
+        let arm_y = Vector3::new(radius, mountings[model].arm_y.y, mountings[model].arm_y.z);
+        let mounting = mountings.len();
+        let schedule: Vec<SetPoint> = self.plateaus.iter().map(|(s, _)| *s).filter(|s| s.mounting == model).collect();
+        self.experiment.mountings.push(Mounting { position: k, arm_y });
+        self.add(schedule.into_iter().map(|s| SetPoint { mounting, ..s }));
+    }
+
+    /// Set points in the order of mountings, and the weights of those that are read.
+    fn finish(mut self) -> (Experiment, Vec<Weight>) {
+        self.plateaus.sort_by_key(|(set_point, _)| set_point.mounting);
+        self.experiment.set_points = self.plateaus.iter().map(|(set_point, _)| *set_point).collect();
+        let read = self.plateaus.iter().enumerate();
+        let weights = read.filter_map(|(n, (_, c))| c.map(|covariance| Weight { set_point: n, covariance })).collect();
+        (self.experiment, weights)
+    }
+}
+
+/// A radius of zero or more as a key that sorts as it does.
+fn radius_key(mounting: &Mounting) -> u64 {
+    mounting.arm_y.x.abs().to_bits()
+}
+
+fn mountings_text(mountings: &[usize], experiment: &Experiment) -> String {
+    match mountings {
+        [m] => {
+            let Mounting { position, arm_y } = &experiment.mountings[*m];
+            format!("mounting {} (position {}, {:.4} m)", m + 1, experiment.positions[*position].id, arm_y.x)
+        }
+        _ if mountings.len() == experiment.mountings.len() => "every mounting".to_owned(),
+        _ => format!("mountings {}", listed(mountings.iter().map(|m| (m + 1).to_string()))),
+    }
+}
+
+/// `position 1`, `positions 1, 2`, `every position`.
+pub(super) fn positions_text(positions: &[usize], experiment: &Experiment) -> String {
+    let ids = positions.iter().map(|&k| experiment.positions[k].id.clone());
+    match positions {
+        [_] => format!("position {}", listed(ids)),
+        _ if positions.len() == experiment.positions.len() => "every position".to_owned(),
+        _ => format!("positions {}", listed(ids)),
+    }
+}
+
+fn listed(items: impl Iterator<Item = String>) -> String {
+    items.collect::<Vec<_>>().join(", ")
+}
+
+/// Where the first two instrument axes point in arm axes, which says where the third does.
+fn attitude_text(position: &Position) -> String {
+    const NAMES: [[&str; 2]; 3] = [["outward", "inward"], ["along the motion", "against the motion"], ["up", "down"]];
+    let along = |i: usize| {
+        let row = position.p_zy.row(i);
+        let axis = (0..3).find(|&j| (row[j].abs() - 1.0).abs() < 1e-9)?;
+        Some(format!("axis {} {}", i + 1, NAMES[axis][usize::from(row[axis] < 0.0)]))
+    };
+    let oblique = |i: usize| {
+        let row = position.p_zy.row(i).map(|c| (c * 1e3).round() / 1e3 + 0.0);
+        format!("axis {} along ({}, {}, {}) in arm axes", i + 1, row[0], row[1], row[2])
+    };
+    let axes: Vec<String> = (0..2).map(|i| along(i).unwrap_or_else(|| oblique(i))).collect();
+    format!("a position with {}", axes.join(", "))
+}

@@ -1,0 +1,73 @@
+//! Groups of parameters that the data hardly tell apart.
+
+use nalgebra::DMatrix;
+
+use super::Observability;
+
+/// Correlation from which two estimates count as one: the standard uncertainty of each is then seven times
+/// (`1 / sqrt(1 - 0.99^2)`) what it would be if the other were known.
+pub const STRONG_CORRELATION: f64 = 0.99;
+
+/// Two collinear parameters belong to one group when they share half of their variance.
+const SHARED_VARIANCE: f64 = 0.5;
+
+/// Parameters each of which is nearly a combination of the others: its column has a multiple correlation of at
+/// least [`STRONG_CORRELATION`] with all other columns, so its standard uncertainty is at least seven times what it
+/// would be with the others known. A pair with a correlation of 0.99 is such a group; so are three or more
+/// parameters of which no two are correlated that much.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CorrelatedGroup {
+    /// Indices of the parameters.
+    pub parameters: Vec<usize>,
+    /// Multiple correlation of each with all other parameters.
+    pub multiple_correlations: Vec<f64>,
+    /// The pairs with a correlation of estimates of at least [`STRONG_CORRELATION`] in magnitude.
+    pub pairs: Vec<(usize, usize, f64)>,
+}
+
+/// Connected components, by shared variance, of the collinear parameters.
+pub(super) fn groups(observability: &Observability) -> Vec<CorrelatedGroup> {
+    let root = observability.root();
+    let covariance = &root * root.transpose();
+    let mut left: Vec<usize> = (0..observability.columns())
+        .filter(|&j| observability.is_estimable(j) && multiple(&covariance, j) >= STRONG_CORRELATION)
+        .collect();
+    let mut groups = Vec::new();
+    while !left.is_empty() {
+        let mut members = vec![left.remove(0)];
+        let mut next = 0;
+        while let Some(&member) = members.get(next) {
+            let shares = |j: &mut usize| pair(&covariance, member, *j).powi(2) >= SHARED_VARIANCE;
+            members.extend(left.extract_if(.., shares));
+            next += 1;
+        }
+        members.sort_unstable();
+        groups.push(group(&covariance, members));
+    }
+    groups.retain(|group| group.parameters.len() > 1);
+    groups
+}
+
+fn group(covariance: &DMatrix<f64>, parameters: Vec<usize>) -> CorrelatedGroup {
+    let mut pairs = Vec::new();
+    for (n, &i) in parameters.iter().enumerate() {
+        for &j in &parameters[n + 1..] {
+            let correlation = pair(covariance, i, j);
+            if correlation.abs() >= STRONG_CORRELATION {
+                pairs.push((i, j, correlation));
+            }
+        }
+    }
+    let multiple_correlations = parameters.iter().map(|&j| multiple(covariance, j)).collect();
+    CorrelatedGroup { parameters, multiple_correlations, pairs }
+}
+
+/// Correlation of the estimates `i` and `j`.
+fn pair(covariance: &DMatrix<f64>, i: usize, j: usize) -> f64 {
+    covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt()
+}
+
+/// Multiple correlation `sqrt(1 - 1 / C_jj)` of column `j`, of unit length, with all other columns.
+fn multiple(covariance: &DMatrix<f64>, j: usize) -> f64 {
+    (1.0 - covariance[(j, j)].recip()).max(0.0).sqrt()
+}

@@ -1,0 +1,145 @@
+//! A design under study: a session, a plan or the normalised experiment, with the weights of its plateaus.
+
+use crate::design::{Weight, whitened_rows};
+use crate::error::FitError;
+use crate::measurement::{Linearisation, MeasurementModel};
+use crate::prior::{self, PriorUse};
+
+use super::{Combination, Observability};
+
+/// What a design can see, with all that is needed to say why, and what would help.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    model: MeasurementModel,
+    weights: Vec<Weight>,
+    speed_uncertainty: f64,
+    linearisations: Vec<Linearisation>,
+    observability: Observability,
+    of_data: Option<Observability>,
+}
+
+impl Study {
+    /// Studies the source's design `H` [K5.3], at `X = 0`, where the structure of the experiment is exact: what is
+    /// lost there is lost for good, though second-order traces of it may show elsewhere.
+    ///
+    /// `speed_uncertainty` is the relative standard uncertainty of a plateau's speed. Priors are those of the model.
+    ///
+    /// # Errors
+    /// [`FitError`] when a weight names no plateau or is no covariance, or when numbers overflow.
+    pub fn at_zero(model: MeasurementModel, weights: Vec<Weight>, speed_uncertainty: f64) -> Result<Self, FitError> {
+        check(&model, &weights)?;
+        let set_points = &model.experiment().set_points;
+        let linearisations = weights.iter().map(|w| model.linearise_at_zero(&set_points[w.set_point])).collect();
+        Self::of(model, weights, speed_uncertainty, linearisations)
+    }
+
+    /// Studies the exact model's design at the unknowns `x`.
+    ///
+    /// # Errors
+    /// As [`Study::at_zero`].
+    pub fn at(
+        model: MeasurementModel,
+        weights: Vec<Weight>,
+        speed_uncertainty: f64,
+        x: &[f64],
+    ) -> Result<Self, FitError> {
+        check(&model, &weights)?;
+        let set_points = &model.experiment().set_points;
+        let linearisations = weights.iter().map(|w| model.linearise(&set_points[w.set_point], x)).collect();
+        Self::of(model, weights, speed_uncertainty, linearisations)
+    }
+
+    fn of(
+        model: MeasurementModel,
+        weights: Vec<Weight>,
+        speed_uncertainty: f64,
+        linearisations: Vec<Linearisation>,
+    ) -> Result<Self, FitError> {
+        let columns = model.parameters().len();
+        let mut rows = whitened_rows(&weights, &linearisations, speed_uncertainty, columns)?;
+        if rows.iter().any(|entry| !entry.is_finite()) {
+            return Err(FitError::Overflow);
+        }
+        let priors = model.priors();
+        let of_data = (!priors.is_empty()).then(|| Observability::of(&rows));
+        if !priors.is_empty() {
+            let n = rows.nrows();
+            rows = rows.resize_vertically(n + priors.len(), 0.0);
+            rows.rows_mut(n, priors.len()).copy_from(&prior::rows(priors, columns));
+        }
+        let observability = Observability::of(&rows);
+        Ok(Self { model, weights, speed_uncertainty, linearisations, observability, of_data })
+    }
+
+    /// The model under study.
+    pub fn model(&self) -> &MeasurementModel {
+        &self.model
+    }
+
+    /// What is known of its plateaus.
+    pub fn weights(&self) -> &[Weight] {
+        &self.weights
+    }
+
+    /// Relative standard uncertainty of a plateau's speed.
+    pub fn speed_uncertainty(&self) -> f64 {
+        self.speed_uncertainty
+    }
+
+    /// The plateaus' linearisations, in the order of the weights.
+    pub fn linearisations(&self) -> &[Linearisation] {
+        &self.linearisations
+    }
+
+    /// What is seen, priors included.
+    pub fn observability(&self) -> &Observability {
+        &self.observability
+    }
+
+    /// What the data see without the priors.
+    pub fn of_data(&self) -> &Observability {
+        self.of_data.as_ref().unwrap_or(&self.observability)
+    }
+
+    /// Standard uncertainty to be expected of parameter `j`, in its unit, if it is determined.
+    pub fn standard_uncertainty(&self, j: usize) -> Option<f64> {
+        self.observability.standard_uncertainty(&Combination::new([(j, 1.0)]))
+    }
+
+    /// Whether parameter `j` is determined only thanks to the priors.
+    pub fn rests_on_prior(&self, j: usize) -> bool {
+        self.observability.is_estimable(j) && !self.of_data().is_estimable(j)
+    }
+
+    /// Part of the variance of parameter `j` that comes from the priors, 0 to 1; `None` if it is not determined.
+    pub fn prior_share(&self, j: usize) -> Option<f64> {
+        let share = || prior::share(self.model.priors(), j, |i, j| self.observability.covariance(i, j));
+        self.observability.is_estimable(j).then(share)
+    }
+
+    /// What the data add to each prior.
+    pub fn prior_uses(&self) -> Vec<PriorUse> {
+        prior::uses(self.model.priors(), |i, j| self.observability.covariance(i, j))
+    }
+
+    /// Indices of the instrument's parameters that are lost.
+    pub fn lost_of_instrument(&self) -> Vec<usize> {
+        let parameters = self.model.parameters().iter().enumerate();
+        let lost = parameters.filter(|(j, p)| p.is_of_instrument() && !self.observability.is_estimable(*j));
+        lost.map(|(j, _)| j).collect()
+    }
+}
+
+fn check(model: &MeasurementModel, weights: &[Weight]) -> Result<(), FitError> {
+    let count = model.experiment().set_points.len();
+    for weight in weights {
+        let set_point = weight.set_point;
+        if set_point >= count {
+            return Err(FitError::Unknown { set_point, count });
+        }
+        if !weight.covariance.iter().all(|v| v.is_finite()) {
+            return Err(FitError::NotFinite { set_point });
+        }
+    }
+    if weights.is_empty() { Err(FitError::Empty) } else { Ok(()) }
+}

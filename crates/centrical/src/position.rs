@@ -1,0 +1,44 @@
+//! Mounting positions: nominal attitudes of the unit on the arm. Positions are data: any rotation
+//! matrix, any number of them; the source's six are a preset.
+
+use nalgebra::Matrix3;
+
+/// One nominal attitude of the unit on the arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Position {
+    /// Name used in parameter names: `delta_1[id]`.
+    pub id: String,
+    /// `P_k`: takes arm axes to instrument axes; its rows say where the instrument axes point in the arm frame.
+    pub p_zy: Matrix3<f64>,
+    /// Name of the pair of positions that share `dR`, turned from each other by 180 deg about the vertical.
+    pub pair: String,
+}
+
+/// Which way newtonometer 1 points in positions 3 and 4, which the source's text leaves open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ThirdPosition {
+    /// `P_3 = [[0,0,1],[1,0,0],[0,1,0]]`: instrument axis 1 up.
+    AxisOneUp,
+    /// `P_3 = [[0,0,-1],[1,0,0],[0,-1,0]]`: instrument axis 1 down.
+    AxisOneDown,
+}
+
+/// The source's six positions "1" to "6" in the pairs A, B, C.
+///
+/// `P_1`, `P_2` are printed; `P_6` follows from the printed `z^(6)`; the second of each pair is the first
+/// turned by 180 deg about the vertical, `P_2k = P_2k-1 diag(-1, -1, 1)`.
+pub fn kozlov_2017(third: ThirdPosition) -> Vec<Position> {
+    let half_turn = Matrix3::from_diagonal(&nalgebra::Vector3::new(-1.0, -1.0, 1.0));
+    let p_1 = Matrix3::identity();
+    let p_3 = match third {
+        ThirdPosition::AxisOneUp => Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0),
+        ThirdPosition::AxisOneDown => Matrix3::new(0.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0),
+    };
+    let p_6 = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0);
+    let turns = [p_1, p_1 * half_turn, p_3, p_3 * half_turn, p_6 * half_turn, p_6];
+    let pairs = ["A", "A", "B", "B", "C", "C"];
+    (1..)
+        .zip(turns.into_iter().zip(pairs))
+        .map(|(k, (p_zy, pair))| Position { id: k.to_string(), p_zy, pair: pair.to_owned() })
+        .collect()
+}

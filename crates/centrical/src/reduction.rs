@@ -1,0 +1,147 @@
+//! Reduction of continuous records to plateau means.
+//!
+//! A record is one stream per mounting: plateaus of constant speed, the ramps between them, and settling after
+//! each ramp. Every scheduled plateau is found in the record itself, and its reading is estimated by
+//!
+//! `f'(t) = mean + a exp(-(t - t_0) / tau) + c cos(Omega (t - t_0)) + s sin(Omega (t - t_0)) + noise`,
+//!
+//! the second term being what is left of the settling and the next two the once-per-revolution term (tilt of
+//! the axis of rotation); at rest only the mean is there. The noise is coloured, and one plateau is too short to tell
+//! its colour: it is pooled over all plateaus of the session ([`NoiseModel`]), and then gives every mean its
+//! covariance.
+//!
+//! Two passes, so that a record need never be worked on as a whole: the first sees block levels only
+//! and finds the windows; the second takes the samples of one window at a time.
+
+mod alignment;
+mod blocks;
+mod cells;
+mod clock;
+mod error;
+mod evidence;
+mod noise;
+mod path;
+mod plateau_fit;
+mod regression;
+mod rounding;
+mod settling;
+mod shape;
+mod stuck;
+mod window;
+
+use nalgebra::{Matrix3, Vector3};
+
+pub use clock::{ClockOffset, SpeedTrace};
+pub use error::{ReductionError, Stretch};
+pub use noise::NoiseModel;
+
+use blocks::Blocks;
+use plateau_fit::PlateauFit;
+use settling::TimeStep;
+use window::Window;
+
+/// One mounting's continuous record, instrument axes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Record {
+    /// Time on the unit's clock [s], not decreasing.
+    pub t: Vec<f64>,
+    /// Readings of newtonometers 1, 2, 3 [m/s^2]; a reading that is not a number is a missing one.
+    pub f_z: [Vec<f64>; 3],
+}
+
+/// One plateau of a mounting's schedule.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScheduledPlateau {
+    /// Set point of the speed [rad/s]; 0 at rest.
+    pub omega: f64,
+    /// Nominal reading [K5.1], instrument axes [m/s^2].
+    pub nominal_z: Vector3<f64>,
+}
+
+/// A mounting whose plateaus are found and averaged, before the noise of the session is known.
+#[derive(Debug, Clone)]
+pub struct ReducedMounting {
+    plateaus: Vec<PlateauFit>,
+    /// Speed of each plateau by the telemetry [rad/s].
+    speeds: Vec<Option<f64>>,
+    settling_time: Option<f64>,
+    clock_offset: Option<ClockOffset>,
+}
+
+/// The mean reading of one plateau.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlateauMean {
+    /// From, to, the record's clock [s].
+    pub window: [f64; 2],
+    /// Samples used.
+    pub samples: usize,
+    /// Samples of the window left out: spikes, missing and stuck readings.
+    pub rejected: usize,
+    /// Mean reading, instrument axes [m/s^2].
+    pub mean: Vector3<f64>,
+    /// Covariance of the mean [m^2/s^4].
+    pub covariance: Matrix3<f64>,
+    /// Once-per-revolution term: column 0 in phase with the start of the window, column 1 a quarter turn later [m/s^2].
+    pub once_per_revolution: [Vector3<f64>; 2],
+    /// Slope of the reading over the window [m/s^3]. It does not enter the mean.
+    pub drift: Vector3<f64>,
+    /// Standard uncertainty of the slope [m/s^3].
+    pub drift_uncertainty: Vector3<f64>,
+    /// Median speed by the telemetry [rad/s], the clocks brought together.
+    pub measured_speed: Option<f64>,
+    /// What was left of the settling at the start of the window [m/s^2].
+    pub settling: Vector3<f64>,
+}
+
+/// Finds and averages the scheduled plateaus of one mounting.
+///
+/// The record and the schedule alone tell where the plateaus are. Telemetry adds the offset of its clock and the
+/// measured speeds.
+///
+/// # Errors
+/// [`ReductionError`] if the record is not one (lengths, times), or a scheduled plateau is not in it.
+pub fn reduce(
+    record: &Record,
+    telemetry: Option<&SpeedTrace>,
+    schedule: &[ScheduledPlateau],
+) -> Result<ReducedMounting, ReductionError> {
+    let blocks = Blocks::summarise(record)?;
+    let cores = alignment::align(&blocks, schedule)?;
+    let clock_offset = telemetry.and_then(|telemetry| clock::offset(&blocks, schedule, &cores, telemetry));
+    let windows = window::refine(&blocks, schedule, &cores)?;
+    let plateaus = windows
+        .plateaus
+        .iter()
+        .enumerate()
+        .map(|(index, window)| PlateauFit::new(record, index, window, &blocks))
+        .collect::<Result<_, _>>()?;
+    let speed = |window: &Window| clock::median_speed(telemetry?, clock_offset.as_ref()?, window.span);
+    let speeds = windows.plateaus.iter().map(speed).collect();
+    Ok(ReducedMounting { plateaus, speeds, settling_time: windows.settling_time, clock_offset })
+}
+
+impl ReducedMounting {
+    /// Time constant of the settling after a ramp [s]; none if no settling was seen.
+    pub fn settling_time(&self) -> Option<f64> {
+        self.settling_time
+    }
+
+    /// The centrifuge's clock against the unit's; none without telemetry, or if no ramp is in both.
+    pub fn clock_offset(&self) -> Option<ClockOffset> {
+        self.clock_offset
+    }
+
+    /// The plateau means in the order of the schedule, with their covariances under the session's noise.
+    pub fn means(&self, noise: &NoiseModel) -> Vec<PlateauMean> {
+        let step = TimeStep::estimate(&self.plateaus, noise);
+        // Rounding shows its own spread, not the noise's, where the noise is less than a digit: the quietest plateau
+        // tells.
+        let variances = self.plateaus.iter().map(PlateauFit::variance);
+        let quietest = variances.reduce(|a, b| a.inf(&b)).unwrap_or_default();
+        let mean = |(plateau, speed): (&PlateauFit, &Option<f64>)| PlateauMean {
+            measured_speed: *speed,
+            ..plateau.mean(noise, &step, &quietest)
+        };
+        self.plateaus.iter().zip(&self.speeds).map(mean).collect()
+    }
+}

@@ -1,0 +1,59 @@
+//! Which blocks of a record belong to which scheduled plateau: by order, level and steadiness.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::blocks::{Blocks, median};
+use super::evidence::{Candidate, Evidence};
+use super::path::best_path;
+use super::{ReductionError, ScheduledPlateau, Stretch};
+
+/// More rounds than it takes.
+const ROUNDS: usize = 8;
+
+/// The core of each scheduled plateau, in blocks.
+pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
+    let evidence = Evidence::new(blocks);
+    let candidates: Vec<Candidate> = schedule.iter().map(|plateau| evidence.of(plateau)).collect();
+    let between = evidence.in_transition();
+    let on: Vec<Vec<f64>> = candidates.iter().map(|candidate| candidate.density(evidence.noise())).collect();
+    let mut cores = best_path(&on, &between);
+    if let Some(index) = missing(&cores) {
+        let ScheduledPlateau { omega, nominal_z } = schedule[index];
+        let stretches = evidence.steady_stretches().into_iter();
+        let seen = stretches.map(|range| stretch(blocks, range, &cores, &candidates)).collect();
+        return Err(ReductionError::PlateauNotFound { index, count: schedule.len(), omega, level_z: nominal_z, seen });
+    }
+    // Now that it is known where the plateaus are, the changes on each tell their own noise, far below that of a
+    // sample; and so again, until nothing of the ramps is left in it.
+    for _ in 0..ROUNDS {
+        let own = candidates.iter().zip(&cores);
+        let on: Vec<Vec<f64>> =
+            own.map(|(candidate, core)| candidate.density(&candidate.noise_of_change(core))).collect();
+        let next = best_path(&on, &between);
+        if next == cores || missing(&next).is_some() {
+            break;
+        }
+        cores = next;
+    }
+    Ok(cores)
+}
+
+/// A plateau that was passed over, or got what a ramp has at its turn.
+fn missing(cores: &[Range<usize>]) -> Option<usize> {
+    cores.iter().position(|core| core.len() < 3)
+}
+
+/// A steady stretch, and what it was taken for.
+fn stretch(blocks: &Blocks, range: Range<usize>, cores: &[Range<usize>], candidates: &[Candidate]) -> Stretch {
+    let half = 0.5 * blocks.width;
+    let middle = usize::midpoint(range.start, range.end);
+    let level = |axis: usize| median(&mut blocks.f_z[range.clone()].iter().map(|f| f[axis]).collect::<Vec<f64>>());
+    Stretch {
+        window: [blocks.t[range.start] - half, blocks.t[range.end - 1] + half],
+        level_z: Vector3::from_fn(|axis, _| level(axis)),
+        plateau: cores.iter().position(|core| core.contains(&middle)),
+        resembles: (0..cores.len()).filter(|k| candidates[*k].has_level(middle)).collect(),
+    }
+}

@@ -1,0 +1,83 @@
+//! A window's residuals and design condensed to equal cells of time: all that the slow part of the noise needs.
+
+use nalgebra::Vector3;
+
+use super::regression::{Regression, dot};
+
+/// Cells in a window.
+pub(super) const CELLS: usize = 128;
+
+/// Sums over the good samples of each cell.
+#[derive(Debug, Clone)]
+pub(super) struct Cells {
+    /// Width of a cell [s].
+    pub width: f64,
+    /// Sampling interval [s].
+    pub interval: f64,
+    counts: Vec<f64>,
+    /// Sums of the residuals [m/s^2].
+    residuals: Vec<Vector3<f64>>,
+    /// Sums of each orthonormal column of the design; the last is the mean's: `mean = sum_i q_i y_i / mean_scale`.
+    q: Vec<Vec<f64>>,
+    mean_scale: f64,
+}
+
+/// A linear functional of a window's samples: its weights summed by cell, and the sum of their squares by sample.
+#[derive(Debug, Clone)]
+pub(super) struct Weights {
+    pub by_cell: Vec<f64>,
+    pub squares: f64,
+}
+
+impl Cells {
+    /// Cells without samples yet.
+    pub fn empty(regression: &Regression, width: f64, interval: f64) -> Self {
+        let columns = regression.q.len();
+        Self {
+            width,
+            interval,
+            counts: vec![0.0; CELLS],
+            residuals: vec![Vector3::zeros(); CELLS],
+            q: vec![vec![0.0; CELLS]; columns],
+            mean_scale: regression.r[columns - 1][columns - 1],
+        }
+    }
+
+    /// Adds a good sample.
+    pub fn add(&mut self, cell: usize, residual: &Vector3<f64>, row: impl Iterator<Item = f64>) {
+        self.counts[cell] += 1.0;
+        self.residuals[cell] += residual;
+        for (sums, q) in self.q.iter_mut().zip(row) {
+            sums[cell] += q;
+        }
+    }
+
+    /// How the mean weighs the samples.
+    pub fn mean_weights(&self) -> Weights {
+        let q = &self.q[self.q.len() - 1];
+        let squares = 1.0 / (self.mean_scale * self.mean_scale);
+        Weights { by_cell: q.iter().map(|q| q / self.mean_scale).collect(), squares }
+    }
+
+    /// The part of a slow function of time, one value a cell, that the fit leaves to the residuals: as weights, and its
+    /// product with the readings.
+    pub fn contrast(&self, function: &[f64]) -> (Weights, Vector3<f64>) {
+        let fitted: Vec<f64> = self.q.iter().map(|q| dot(q, function)).collect();
+        let mut by_cell: Vec<f64> = function.iter().zip(&self.counts).map(|(v, n)| v * n).collect();
+        let squares = dot(&by_cell, function) - dot(&fitted, &fitted);
+        for (q, fitted) in self.q.iter().zip(&fitted) {
+            by_cell.iter_mut().zip(q).for_each(|(w, q)| *w -= q * fitted);
+        }
+        let product = function.iter().zip(&self.residuals).map(|(v, r)| r * *v).sum();
+        (Weights { by_cell, squares }, product)
+    }
+
+    /// The slope of the readings [m/s^3], with the weights that give it.
+    pub fn slope(&self) -> (Weights, Vector3<f64>) {
+        let middle = 0.5 * CELLS as f64;
+        let time: Vec<f64> = (0..CELLS).map(|cell| (cell as f64 + 0.5 - middle) * self.width).collect();
+        let (weights, product) = self.contrast(&time);
+        let by_cell = weights.by_cell.iter().map(|w| w / weights.squares).collect();
+        (Weights { by_cell, squares: 1.0 / weights.squares }, product / weights.squares)
+    }
+}

@@ -1,0 +1,142 @@
+//! What can be wrong with a record, in the user's words.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+use thiserror::Error;
+
+/// Why a record could not be reduced.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ReductionError {
+    /// Columns of different lengths.
+    #[error("columns of different lengths: {times} times, {readings:?} readings")]
+    UnequalColumns {
+        /// Number of times.
+        times: usize,
+        /// Number of readings per axis.
+        readings: [usize; 3],
+    },
+    /// Too few samples to find anything in.
+    #[error("record too short: found {found} readable samples, expected at least {expected}")]
+    TooShort {
+        /// Samples found.
+        found: usize,
+        /// Fewest that make sense.
+        expected: usize,
+    },
+    /// A time that is not a number or earlier than the one before it.
+    #[error("sample {sample}: found time {found} s after {before} s, expected times that do not decrease")]
+    Time {
+        /// Sample, counted from 1.
+        sample: usize,
+        /// Its time [s].
+        found: f64,
+        /// The time before it [s].
+        before: f64,
+    },
+    /// A scheduled plateau is not in the record.
+    #[error(
+        "plateau {} of {count} not found: looked for {} in the order of the schedule; seen: {}",
+        index + 1, Sought { omega: *omega, level: level_z }, Seen(seen)
+    )]
+    PlateauNotFound {
+        /// Index of the plateau in the schedule.
+        index: usize,
+        /// Plateaus in the schedule.
+        count: usize,
+        /// Its speed [rad/s].
+        omega: f64,
+        /// Its nominal reading [m/s^2].
+        level_z: Vector3<f64>,
+        /// The stationary stretches of the record.
+        seen: Vec<Stretch>,
+    },
+    /// A plateau is too short to be averaged.
+    #[error(
+        "plateau {} found from {:.3} s to {:.3} s, expected more than {least:.3} s of steady reading there",
+        index + 1, window[0], window[1]
+    )]
+    PlateauTooShort {
+        /// Index of the plateau in the schedule.
+        index: usize,
+        /// Where it was found [s].
+        window: [f64; 2],
+        /// Shortest that can be averaged [s].
+        least: f64,
+    },
+    /// No steady reading to average, though the medians of blocks are steady.
+    #[error(
+        "plateau {} from {:.3} s to {:.3} s: found {good} of {samples} samples near any one reading",
+        index + 1, window[0], window[1]
+    )]
+    Unsteady {
+        /// Index of the plateau in the schedule.
+        index: usize,
+        /// Where it was found [s].
+        window: [f64; 2],
+        /// Samples there.
+        samples: usize,
+        /// Samples that were not taken for spikes last.
+        good: usize,
+    },
+    /// Sampling and rotation in step: a constant and the once-per-revolution term look the same.
+    #[error(
+        "plateau {}: {omega} rad/s sampled every {interval} s shows the same phase of the revolution each time; \
+         its mean cannot be told from the once-per-revolution term", index + 1
+    )]
+    RevolutionAliased {
+        /// Index of the plateau in the schedule.
+        index: usize,
+        /// Its speed [rad/s].
+        omega: f64,
+        /// Sampling interval [s].
+        interval: f64,
+    },
+}
+
+/// A stationary stretch of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stretch {
+    /// From, to [s].
+    pub window: [f64; 2],
+    /// Median reading [m/s^2].
+    pub level_z: Vector3<f64>,
+    /// The scheduled plateau it was taken for.
+    pub plateau: Option<usize>,
+    /// The scheduled plateaus whose level it has, in whatever order.
+    pub resembles: Vec<usize>,
+}
+
+struct Sought<'a> {
+    omega: f64,
+    level: &'a Vector3<f64>,
+}
+
+struct Seen<'a>(&'a [Stretch]);
+
+impl fmt::Display for Sought<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let l = self.level;
+        write!(out, "{:.3} rad/s, about ({:.2}, {:.2}, {:.2}) m/s^2,", self.omega, l.x, l.y, l.z)
+    }
+}
+
+impl fmt::Display for Seen<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_empty() {
+            return write!(out, "no steady stretch at all");
+        }
+        for (i, stretch) in self.0.iter().enumerate() {
+            let [from, to] = stretch.window;
+            let l = stretch.level_z;
+            let separator = if i == 0 { "" } else { "; " };
+            write!(out, "{separator}{from:.1} to {to:.1} s at ({:.2}, {:.2}, {:.2})", l.x, l.y, l.z)?;
+            match (stretch.plateau, stretch.resembles.as_slice()) {
+                (Some(plateau), _) => write!(out, ", plateau {}", plateau + 1)?,
+                (None, []) => write!(out, ", no level of the schedule")?,
+                (None, [like, ..]) => write!(out, ", as plateau {} should read, repeated or out of order", like + 1)?,
+            }
+        }
+        Ok(())
+    }
+}

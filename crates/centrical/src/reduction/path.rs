@@ -1,0 +1,120 @@
+//! The most probable path of a record through its schedule, by dynamic programming (Viterbi 1967).
+//!
+//! A path begins in a transition or in a plateau; from block to block it stays, or goes from a plateau to the
+//! transition after it, or from a transition to the next plateau, or passes plateaus over at the odds that they are
+//! missing.
+
+use std::ops::Range;
+
+/// Odds of a plateau that is in the schedule and not in the record.
+const MISSING: f64 = 1e-6;
+
+/// Blocks of each plateau on the best path; none for a plateau passed over.
+///
+/// `on[k][i]` and `between[i]` are logarithms of the probability densities of block `i` on plateau `k`, and in any
+/// transition.
+pub(super) fn best_path(on: &[Vec<f64>], between: &[f64]) -> Vec<Range<usize>> {
+    let plateaus = on.len();
+    let odds = MISSING.ln();
+    // State 2k is the transition before plateau k, state 2k + 1 the plateau k.
+    let states = 2 * plateaus + 1;
+    let mut score: Vec<f64> = (0..states).map(|state| (state / 2) as f64 * odds).collect();
+    let mut came_from: Vec<Vec<u32>> = Vec::with_capacity(between.len());
+    for i in 0..between.len() {
+        let mut from: Vec<u32> = (0..).take(states).collect();
+        if i > 0 {
+            advance(&mut score, &mut from, odds);
+        }
+        for (k, on) in on.iter().enumerate() {
+            score[2 * k] += between[i];
+            score[2 * k + 1] += on[i];
+        }
+        score[states - 1] += between[i];
+        came_from.push(from);
+    }
+    // The record may end anywhere: plateaus still to come are passed over.
+    let total = |state: &usize| score[*state] + ((states - 1 - state) / 2) as f64 * odds;
+    let last = (0..states).max_by(|a, b| total(a).total_cmp(&total(b))).unwrap_or(0);
+    trace(&came_from, last, plateaus)
+}
+
+/// One block on: the best predecessor of every state.
+fn advance(score: &mut [f64], from: &mut [u32], odds: f64) {
+    // The best transition so far, plateaus between it and here passed over; and the plateau just before, as it was.
+    let (mut transition, mut transition_score) = (0, f64::NEG_INFINITY);
+    let mut plateau_before = f64::NEG_INFINITY;
+    for state in 0..score.len() {
+        let own = score[state];
+        if state % 2 == 0 {
+            transition_score += odds;
+            if own >= transition_score {
+                (transition, transition_score) = (from[state], own);
+            }
+            if plateau_before > own {
+                score[state] = plateau_before;
+                from[state] -= 1;
+            }
+        } else {
+            if transition_score > own {
+                score[state] = transition_score;
+                from[state] = transition;
+            }
+            plateau_before = own;
+        }
+    }
+}
+
+fn trace(came_from: &[Vec<u32>], last: usize, plateaus: usize) -> Vec<Range<usize>> {
+    let mut found = vec![0..0; plateaus];
+    let mut state = last;
+    for (i, from) in came_from.iter().enumerate().rev() {
+        if state % 2 == 1 {
+            let range = &mut found[state / 2];
+            range.start = i;
+            range.end = range.end.max(i + 1);
+        }
+        state = from[state] as usize;
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::best_path;
+
+    /// Densities of a record that shows plateau `seen[i]` at block `i`, or a transition.
+    fn path(seen: &[Option<usize>], plateaus: usize) -> Vec<std::ops::Range<usize>> {
+        let on: Vec<Vec<f64>> = (0..plateaus)
+            .map(|k| seen.iter().map(|seen| if *seen == Some(k) { 20.0 } else { -5.0 }).collect())
+            .collect();
+        best_path(&on, &vec![0.0; seen.len()])
+    }
+
+    #[test]
+    fn plateaus_in_order_are_found() {
+        let seen = [Some(0), Some(0), None, Some(1), Some(1), Some(1), None, Some(2)];
+        assert_eq!(path(&seen, 3), [0..2, 3..6, 7..8]);
+    }
+
+    #[test]
+    fn a_missing_plateau_is_passed_over() {
+        let seen = [Some(0), Some(0), None, Some(2), Some(2)];
+        assert_eq!(path(&seen, 3), [0..2, 0..0, 3..5]);
+    }
+
+    #[test]
+    fn missing_plateaus_at_both_ends_are_passed_over() {
+        assert_eq!(path(&[None, Some(1), Some(1), None], 3), [0..0, 1..3, 0..0]);
+    }
+
+    #[test]
+    fn of_two_plateaus_out_of_order_the_longer_is_taken() {
+        let seen = [Some(1), Some(1), Some(1), None, Some(0), Some(0)];
+        assert_eq!(path(&seen, 2), [0..0, 0..3]);
+    }
+
+    #[test]
+    fn a_disturbed_block_does_not_end_a_plateau() {
+        assert_eq!(path(&[Some(0), None, Some(0), Some(0), None], 1).first(), Some(&(0..4)));
+    }
+}

@@ -1,0 +1,338 @@
+//! The window of each plateau, and the settling after its ramp.
+//!
+//! Block levels are fitted by a constant, the once-per-revolution term and, while spinning, the exponential end
+//! of the settling. A window is the longest stretch about the middle of a plateau that this fit describes to within the
+//! noise: the settling is left out until it is exponential, and what remains of it is fitted. Its time constant is a
+//! property of the drive, common to the mounting.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::blocks::{Blocks, MAD, cut, median, whole};
+use super::regression::{Regression, dot};
+use super::shape::{Settling, Shape};
+use super::{ReductionError, ScheduledPlateau};
+
+/// The windows of one mounting.
+#[derive(Debug, Clone)]
+pub(super) struct Windows {
+    /// In the order of the schedule.
+    pub plateaus: Vec<Window>,
+    /// Time constant of the settling, common to the mounting [s].
+    pub settling_time: Option<f64>,
+}
+
+/// The part of the record that a mean is taken over.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Window {
+    /// From, to [s].
+    pub span: [f64; 2],
+    /// What is fitted in it.
+    pub shape: Shape,
+}
+
+/// Finds the windows about the cores.
+pub(super) fn refine(
+    blocks: &Blocks,
+    schedule: &[ScheduledPlateau],
+    cores: &[Range<usize>],
+) -> Result<Windows, ReductionError> {
+    let mut search =
+        Search { blocks, schedule, cores, ranges: cores.to_vec(), settling_time: None, bends: vec![0.0; cores.len()] };
+    search.check()?;
+    search.grow();
+    if !search.best_settling().is_some_and(|settling| settling.seen) {
+        search.settling_time = None;
+        search.take((0..cores.len()).map(|k| search.range(k)).collect());
+    }
+    Ok(search.windows())
+}
+
+/// Rounds of growth: the gain after some is a block at most.
+const ROUNDS: usize = 6;
+
+struct Search<'a> {
+    blocks: &'a Blocks,
+    schedule: &'a [ScheduledPlateau],
+    cores: &'a [Range<usize>],
+    ranges: Vec<Range<usize>>,
+    settling_time: Option<f64>,
+    /// Of each plateau, the part of the settling's law that goes with the square, at the start of its range.
+    bends: Vec<f64>,
+}
+
+impl Search<'_> {
+    /// Refuses plateaus of less than a revolution, or of less than twice as many blocks as coefficients.
+    fn check(&self) -> Result<(), ReductionError> {
+        for (index, core) in self.cores.iter().enumerate() {
+            let omega = self.schedule[index].omega;
+            let revolution = if omega == 0.0 { 0.0 } else { TAU / omega.abs() / self.blocks.width };
+            let least = 8.max(whole(revolution.ceil()));
+            if core.len() < least {
+                let window = [self.blocks.t[core.start], self.blocks.t[core.end - 1]];
+                return Err(ReductionError::PlateauTooShort { index, window, least: least as f64 * self.blocks.width });
+            }
+        }
+        Ok(())
+    }
+
+    /// Longer windows tell the time constant better, and a better one allows longer windows. The cores hold hardly any
+    /// settling; what they hint at is tried, and judged once the windows have grown by it.
+    fn grow(&mut self) {
+        for _ in 0..ROUNDS {
+            self.settling_time = self.best_settling().map(|settling| settling.time);
+            self.bends = (0..self.cores.len()).map(|k| self.bend(k)).collect();
+            let ranges: Vec<Range<usize>> = (0..self.cores.len()).map(|k| self.range(k)).collect();
+            if ranges == self.ranges {
+                break;
+            }
+            self.take(ranges);
+        }
+    }
+
+    /// The time constant that explains most of the residuals of the spinning plateaus together. It is seen if it
+    /// explains more than its coefficients would of noise (Schwarz's criterion).
+    fn best_settling(&self) -> Option<Guess> {
+        let spinning: Vec<usize> = (0..self.ranges.len()).filter(|k| self.schedule[*k].omega != 0.0).collect();
+        let steady = spinning.iter().map(|k| {
+            let fit = BlockFit::new(self.blocks, self.ranges[*k].clone(), self.schedule[*k].omega, None)?;
+            Some((Steady::new(fit), self.bends[*k]))
+        });
+        let steady = steady.collect::<Option<Vec<_>>>()?;
+        let shortest = spinning.iter().map(|k| self.cores[*k].len()).min()? as f64 * self.blocks.width;
+        // Longer than a quarter of the plateau it is drift; shorter than a block it is over before it is seen.
+        let (low, high) = (self.blocks.width.ln(), (0.25 * shortest).ln().max(self.blocks.width.ln()));
+        let explained = |ln_tau: f64| -> f64 {
+            steady.iter().map(|(fit, bend)| fit.explained_by(Settling { time: ln_tau.exp(), bend: *bend })).sum()
+        };
+        let ln_tau = maximum(low, high, explained);
+        let blocks: usize = self.ranges.iter().map(Range::len).sum();
+        let coefficients = 3 * spinning.len() + 1;
+        // Slow noise looks like settling to block residuals: what it explains of them counts so much less.
+        let colour = steady.iter().map(|(fit, _)| fit.colour).sum::<f64>() / steady.len() as f64;
+        let chance = colour.max(1.0) * coefficients as f64 * (blocks as f64).ln();
+        Some(Guess { time: ln_tau.exp(), seen: explained(ln_tau) > chance })
+    }
+
+    fn settling_of(&self, plateau: usize) -> Option<f64> {
+        self.settling_time.filter(|_| self.schedule[plateau].omega != 0.0)
+    }
+
+    /// A fit of a plateau's blocks, settling included.
+    fn fit(&self, k: usize, range: Range<usize>) -> Option<BlockFit> {
+        let settling = self.settling_of(k).map(|time| {
+            let delay = self.blocks.t[range.start] - self.blocks.t[self.ranges[k].start];
+            Settling { time, bend: self.bends[k] }.after(delay)
+        });
+        BlockFit::new(self.blocks, range, self.schedule[k].omega, settling)
+    }
+
+    /// Takes other ranges; the bends go with their starts.
+    fn take(&mut self, ranges: Vec<Range<usize>>) {
+        let fits: Vec<Option<Settling>> =
+            (0..ranges.len()).map(|k| self.fit(k, ranges[k].clone()).and_then(|fit| fit.shape.settling)).collect();
+        self.bends = fits.iter().map(|settling| settling.map_or(0.0, |settling| settling.bend)).collect();
+        self.ranges = ranges;
+    }
+
+    /// The bend of a plateau's settling at the start of its range: a quarter of the force's relative error there.
+    fn bend(&self, k: usize) -> f64 {
+        let nominal_z = self.schedule[k].nominal_z;
+        let settling = self.fit(k, self.ranges[k].clone()).map_or(Vector3::zeros(), |fit| fit.settling());
+        0.25 * settling.dot(&nominal_z) / nominal_z.norm_squared()
+    }
+
+    /// The blocks of a plateau: the longest range about the middle of its core that its fit describes,
+    /// no further than the neighbours' cores. The noise is that of the core, slow noise included; the margins of the
+    /// core may hold the slow start of a ramp.
+    fn range(&self, k: usize) -> Range<usize> {
+        let core = &self.cores[k];
+        let from = if k == 0 { 0 } else { self.cores[k - 1].end };
+        let to = self.cores.get(k + 1).map_or(self.blocks.len(), |next| next.start);
+        let Some(of_core) = self.fit(k, core.clone()) else { return core.clone() };
+        let (scale, cut) = (of_core.scale(), cut(self.blocks.len()));
+        let fits = |range: Range<usize>| self.fit(k, range).is_some_and(|fit| fit.longest_run_off(&scale, cut) < 2);
+        let quarter = core.len() / 4;
+        let (first, last) = (core.start + quarter, core.end - quarter);
+        let end = last + furthest(to - last, |more| fits(first..last + more));
+        let start = first - furthest(first - from, |more| fits(first - more..end));
+        // A block off alone is a disturbance inside, and the begin of a ramp at an edge.
+        let fit = self.fit(k, start..end);
+        let off = |i: usize| fit.as_ref().is_some_and(|fit| fit.is_off(i, &scale, cut));
+        start + usize::from(off(0))..end - usize::from(off(end - start - 1))
+    }
+
+    /// The windows, with a margin: the block at an edge may hold the onset of the ramp below the noise, and what does
+    /// not follow the law of the settling is given another time constant to fade.
+    fn windows(&self) -> Windows {
+        let half = 0.5 * self.blocks.width;
+        let window = |k: usize| {
+            let range = &self.ranges[k];
+            let wait = self.blocks.width + self.settling_of(k).unwrap_or(0.0);
+            let from = self.blocks.t[range.start] - half + wait;
+            let to = self.blocks.t[range.end - 1] + half - self.blocks.width;
+            let fit = self.fit(k, range.clone());
+            let settling = fit.and_then(|fit| fit.shape.settling).map(|settling| settling.after(wait - half));
+            Window { span: [from, to], shape: Shape { start: from, omega: self.schedule[k].omega, settling } }
+        };
+        Windows { plateaus: (0..self.ranges.len()).map(window).collect(), settling_time: self.settling_time }
+    }
+}
+
+/// A time constant of the settling [s], and whether there is settling at all.
+#[derive(Clone, Copy)]
+struct Guess {
+    time: f64,
+    seen: bool,
+}
+
+/// The greatest of `0..=most` that is accepted, by steps halved on refusal. Passes are repeated while they gain: chance
+/// may refuse a value below the limit, and hardly its neighbours too.
+fn furthest(most: usize, accepted: impl Fn(usize) -> bool) -> usize {
+    let mut reached = 0;
+    loop {
+        let before = reached;
+        let mut step = most - reached;
+        while step > 0 {
+            if accepted(reached + step) {
+                reached += step;
+                step = step.min(most - reached);
+            } else {
+                step /= 2;
+            }
+        }
+        if reached == before {
+            return reached;
+        }
+    }
+}
+
+/// A plateau's block levels fitted without settling.
+struct Steady {
+    /// Time from the first block [s].
+    since: Vec<f64>,
+    regression: Regression,
+    /// Residuals per axis in units of their spread.
+    residuals: [Vec<f64>; 3],
+    /// Variance of means of many blocks over what it would be if the blocks were independent.
+    colour: f64,
+}
+
+impl Steady {
+    fn new(fit: BlockFit) -> Self {
+        // The spread is that of the later half, where the settling is over.
+        let later = &fit.residuals[fit.residuals.len() / 2..];
+        let middle = Vector3::from_fn(|axis, _| median(&mut later.iter().map(|r| r[axis]).collect::<Vec<f64>>()));
+        let about: Vec<Vector3<f64>> = later.iter().map(|r| r - middle).collect();
+        let scale = spread(&about, &fit.floor);
+        let residuals = [0, 1, 2].map(|axis| fit.residuals.iter().map(|r| r[axis] / scale[axis]).collect());
+        let scaled: Vec<Vector3<f64>> = about.iter().map(|r| r.component_div(&scale)).collect();
+        Self { since: fit.since, regression: fit.regression, residuals, colour: colour(&scaled) }
+    }
+
+    /// How much of the residuals' square sum a settling takes away.
+    fn explained_by(&self, settling: Settling) -> f64 {
+        let mut column: Vec<f64> = self.since.iter().map(|since| settling.value(*since)).collect();
+        for q in &self.regression.q {
+            let projection = dot(q, &column);
+            column.iter_mut().zip(q).for_each(|(c, q)| *c -= projection * q);
+        }
+        let square = dot(&column, &column);
+        self.residuals.iter().map(|residuals| dot(&column, residuals).powi(2) / square).sum()
+    }
+}
+
+/// Variance of the means of quarters, over that of independent residuals of unit variance; mean of the axes.
+fn colour(residuals: &[Vector3<f64>]) -> f64 {
+    let quarter = residuals.len().div_ceil(4).max(1);
+    let sums: Vec<Vector3<f64>> = residuals.chunks_exact(quarter).map(|part| part.iter().sum()).collect();
+    let middle = sums.iter().sum::<Vector3<f64>>() / sums.len().max(1) as f64;
+    let squares: f64 = sums.iter().map(|sum| (sum - middle).norm_squared()).sum();
+    squares / (3 * quarter * sums.len().saturating_sub(1).max(1)) as f64
+}
+
+/// A plateau fitted through its block levels.
+struct BlockFit {
+    /// Time from the first block [s].
+    since: Vec<f64>,
+    shape: Shape,
+    regression: Regression,
+    coefficients: Vec<Vector3<f64>>,
+    residuals: Vec<Vector3<f64>>,
+    /// Smallest spread that the sampling allows [m/s^2].
+    floor: Vector3<f64>,
+}
+
+impl BlockFit {
+    fn new(blocks: &Blocks, range: Range<usize>, omega: f64, settling: Option<Settling>) -> Option<Self> {
+        let (t, levels) = (&blocks.t[range.clone()], &blocks.f_z[range]);
+        let omega = if turns_seen(omega, blocks.width, t.len()) { omega } else { 0.0 };
+        let shape = Shape { start: t[0], omega, settling };
+        let regression = Regression::new(shape.columns(t))?;
+        let coefficients = regression.solve(levels);
+        let residuals = regression.residuals(levels);
+        // Rounded readings may leave no spread at all.
+        let floor = blocks.sample_noise * (blocks.interval / blocks.width).sqrt() + blocks.digit / MAD;
+        let since = t.iter().map(|time| time - t[0]).collect();
+        Some(Self { since, shape, regression, coefficients, residuals, floor })
+    }
+
+    /// Standard deviation of a block about the fit, robust [m/s^2].
+    fn scale(&self) -> Vector3<f64> {
+        spread(&self.residuals, &self.floor)
+    }
+
+    /// Settling at the start [m/s^2].
+    fn settling(&self) -> Vector3<f64> {
+        self.shape.settling.map_or(Vector3::zeros(), |_| self.coefficients[self.coefficients.len() - 2])
+    }
+
+    /// Whether a block is off the fit by more than noise of the given scale.
+    fn is_off(&self, i: usize, scale: &Vector3<f64>, cut: f64) -> bool {
+        let left = 1.0 - self.regression.leverage(i);
+        self.residuals[i].component_div(scale).amax() > cut * left.max(0.0).sqrt()
+    }
+
+    /// Most neighbouring blocks that are off.
+    fn longest_run_off(&self, scale: &Vector3<f64>, cut: f64) -> usize {
+        let off: Vec<bool> = (0..self.residuals.len()).map(|i| self.is_off(i, scale, cut)).collect();
+        off.chunk_by(bool::eq).filter(|run| run[0]).map(<[bool]>::len).max().unwrap_or(0)
+    }
+}
+
+/// Whether blocks of this width show at least two turns in `n`, directly or by aliasing. Otherwise they have
+/// averaged whole turns, and the term is neither there nor to be told from a constant.
+fn turns_seen(omega: f64, width: f64, n: usize) -> bool {
+    let turns = omega * width / TAU;
+    (turns - turns.round()).abs() * n as f64 > 2.0
+}
+
+/// Robust standard deviation about zero, not below the floor.
+fn spread(residuals: &[Vector3<f64>], floor: &Vector3<f64>) -> Vector3<f64> {
+    let of = |axis: usize| MAD * median(&mut residuals.iter().map(|r| r[axis].abs()).collect::<Vec<f64>>());
+    Vector3::from_fn(|axis, _| of(axis).max(floor[axis]))
+}
+
+/// Where `f` is greatest between `low` and `high`: the best of a grid, then golden section about it until a parabola
+/// fits.
+fn maximum(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    const GRID: usize = 8;
+    let golden = 0.5 * (5_f64.sqrt() - 1.0);
+    let at = |i: usize| low + (high - low) * i as f64 / GRID as f64;
+    let best = (0..=GRID).map(|i| (i, f(at(i)))).max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |best| best.0);
+    let (mut a, mut b) = (at(best.saturating_sub(1)), at((best + 1).min(GRID)));
+    // The settling may be 1e5 of the noise, so its time constant counts to 1e-5: the vertex of a parabola through
+    // points 1e-2 apart is right to about 1e-4, through points 1e-3 apart to 1e-6.
+    while b - a > 1e-2 {
+        let (c, d) = (b - golden * (b - a), a + golden * (b - a));
+        if f(c) > f(d) { b = d } else { a = c }
+    }
+    let vertex = |x: f64, step: f64| {
+        let (left, middle, right) = (f(x - step), f(x), f(x + step));
+        let curvature = left - 2.0 * middle + right;
+        if curvature < 0.0 { x + (0.5 * step * (left - right) / curvature).clamp(-step, step) } else { x }
+    };
+    vertex(vertex(0.5 * (a + b), 5e-3), 5e-4).clamp(low, high)
+}

@@ -1,0 +1,115 @@
+//! Simulation of records: what the unit and the centrifuge deliver, sample by sample.
+//!
+//! `reading(t) = quantised( saturated( f'(angle, Omega, dOmega/dt) + noise(t) + spike ) )` with `f'` of
+//! [`MeasurementModel::reading_at`], so that the mean over whole revolutions of a perfect sensor's record is the
+//! plateau model's reading (test `mean_of_a_record_is_the_reading`). Ramps, settling, speed errors and durations are
+//! the centrifuge's ([`Machine`]), noise is the unit's ([`Sensor`]), what is lost or spoilt on the way is the
+//! recorder's ([`Recorder`]), and the telemetry has a clock of its own ([`Tachometer`]).
+//!
+//! Everything follows from the seed: each imperfection of each mounting draws from a generator of its own, so
+//! nothing depends on the number of threads, and switching one imperfection on leaves the others as they were.
+//! `Default` is perfect equipment: an imperfection that is not named is not there.
+
+mod draw;
+mod motion;
+mod noise;
+mod record;
+mod response;
+mod settings;
+mod telemetry;
+
+pub use record::Records;
+pub use settings::{Coloured, Gaps, Machine, Recorder, Sensor, Settings, SimulationError, Spikes, Tachometer};
+pub use telemetry::Telemetry;
+
+use crate::experiment::SetPoint;
+use crate::measurement::MeasurementModel;
+use crate::parameter::Parameters;
+use draw::Draw;
+use motion::Motion;
+
+/// A session as it would be recorded: a pure function of model, truth, settings and seed.
+#[derive(Debug, Clone, Copy)]
+pub struct Simulation<'a> {
+    model: &'a MeasurementModel,
+    truth: &'a [f64],
+    settings: &'a Settings,
+    seed: u64,
+}
+
+/// One mounting of a simulated session.
+#[derive(Debug, Clone)]
+pub struct SimulatedMounting<'a> {
+    simulation: Simulation<'a>,
+    mounting: usize,
+    motion: Motion,
+}
+
+/// One plateau as it truly was.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TruePlateau {
+    /// Beginning and end, between ramps, the unit's clock [s].
+    pub window: [f64; 2],
+    /// Speed once settled [rad/s].
+    pub omega: f64,
+}
+
+impl<'a> Simulation<'a> {
+    /// A session of `model`'s experiment with the unknowns at `truth` (in the order of the model's parameters).
+    ///
+    /// # Errors
+    /// [`SimulationError`] when `truth` is not one of this model, or a setting makes no sense.
+    pub fn new(
+        model: &'a MeasurementModel,
+        truth: &'a [f64],
+        settings: &'a Settings,
+        seed: u64,
+    ) -> Result<Self, SimulationError> {
+        settings.check()?;
+        let parameters = model.parameters();
+        if truth.len() != parameters.len() {
+            return Err(SimulationError::TruthLength { found: truth.len(), expected: parameters.len() });
+        }
+        if let Some(j) = truth.iter().position(|value| !value.is_finite()) {
+            return Err(SimulationError::Truth { name: parameters[j].name.clone(), found: truth[j] });
+        }
+        Ok(Self { model, truth, settings, seed })
+    }
+
+    /// One mounting, by its index in the experiment.
+    pub fn mounting(&self, mounting: usize) -> SimulatedMounting<'a> {
+        let set_points = &self.model.experiment().set_points;
+        let schedule: Vec<SetPoint> = set_points.iter().filter(|s| s.mounting == mounting).copied().collect();
+        let random = Draw::Motion.stream(self.seed, mounting);
+        let motion = Motion::new(&schedule, &self.settings.machine, random);
+        SimulatedMounting { simulation: *self, mounting, motion }
+    }
+}
+
+impl SimulatedMounting<'_> {
+    /// The plateaus in the order of the schedule.
+    pub fn plateaus(&self) -> Vec<TruePlateau> {
+        self.motion.plateaus()
+    }
+
+    /// Length of the record [s].
+    pub fn duration(&self) -> f64 {
+        self.motion.duration()
+    }
+
+    /// The record, a stretch of it at a time.
+    pub fn records(&self) -> Records<'_> {
+        Records::new(self)
+    }
+
+    /// The centrifuge's telemetry.
+    pub fn telemetry(&self) -> Telemetry {
+        Telemetry::new(&self.motion, &self.simulation.settings.tachometer, self.simulation.seed, self.mounting)
+    }
+}
+
+/// Unknowns drawn from a normal law of `size` times the typical magnitude of each.
+pub fn draw_truth(parameters: &Parameters, size: f64, seed: u64) -> Vec<f64> {
+    let mut random = Draw::Truth.stream(seed, 0);
+    parameters.iter().map(|p| size * p.typical * random.normal()).collect()
+}

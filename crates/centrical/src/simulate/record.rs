@@ -1,0 +1,165 @@
+//! The record of one mounting: the physics, the noise, and what the recorder makes of them.
+
+use nalgebra::Vector3;
+
+use super::SimulatedMounting;
+use super::draw::{Arrivals, Draw};
+use super::noise::{Noise, Sampling};
+use super::response::Response;
+use crate::measurement::{ArmMotion, Carried, MeasurementModel};
+use crate::reduction::Record;
+
+/// Samples in a stretch: a few hundred kilobytes.
+const STRETCH: u64 = 8192;
+
+/// The record of one mounting, a stretch at a time, in memory that does not grow with the record.
+#[derive(Debug, Clone)]
+pub struct Records<'a> {
+    mounting: &'a SimulatedMounting<'a>,
+    physics: Physics<'a>,
+    noise: [Noise; 3],
+    transmission: Transmission,
+    /// Next sample and number of samples.
+    next: u64,
+    count: u64,
+}
+
+impl<'a> Records<'a> {
+    pub(super) fn new(mounting: &'a SimulatedMounting<'a>) -> Self {
+        let simulation = &mounting.simulation;
+        let settings = simulation.settings;
+        let (duration, rate) = (mounting.duration(), settings.recorder.rate);
+        let sampling = Sampling { seed: simulation.seed, mounting: mounting.mounting, interval: 1.0 / rate, duration };
+        // Lengths are finite and not negative, and a cast to an integer saturates.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let count = (duration * rate) as u64 + 1;
+        Self {
+            mounting,
+            physics: Physics::new(simulation.model, simulation.truth, mounting.mounting),
+            noise: [0, 1, 2].map(|axis| Noise::new(&settings.sensor, &sampling, axis)),
+            transmission: Transmission::new(mounting),
+            next: 0,
+            count,
+        }
+    }
+
+    /// Sample `n`: its time [s] and the sensor's output before transmission [m/s^2].
+    fn sample(&mut self, n: u64) -> (f64, Vector3<f64>) {
+        let t = n as f64 / self.mounting.simulation.settings.recorder.rate;
+        let mut f = self.physics.reading(&self.mounting.motion.at(t));
+        for (f, noise) in f.iter_mut().zip(&mut self.noise) {
+            *f += noise.at(n);
+        }
+        (t, f)
+    }
+}
+
+impl Iterator for Records<'_> {
+    type Item = Record;
+
+    fn next(&mut self) -> Option<Record> {
+        let end = self.count.min(self.next + STRETCH);
+        if self.next == end {
+            return None;
+        }
+        let mut record = Record::default();
+        for n in self.next..end {
+            let (t, f) = self.sample(n);
+            self.transmission.pass(n, t, f, &mut record);
+        }
+        self.next = end;
+        Some(record)
+    }
+}
+
+/// The unit on the arm, and its response.
+#[derive(Debug, Clone)]
+struct Physics<'a> {
+    model: &'a MeasurementModel,
+    truth: &'a [f64],
+    mounting: usize,
+    response: Response,
+    /// The unit on the arm at any speed, unless speed deforms it.
+    rigid: Option<Carried>,
+}
+
+impl<'a> Physics<'a> {
+    fn new(model: &'a MeasurementModel, truth: &'a [f64], mounting: usize) -> Self {
+        let response = Response::new(model.error_model(), model.parameters().coefficients(truth));
+        let rigid = (!model.deforms()).then(|| model.carried(mounting, truth, 0.0));
+        Self { model, truth, mounting, response, rigid }
+    }
+
+    #[inline]
+    fn reading(&self, motion: &ArmMotion) -> Vector3<f64> {
+        let f = match &self.rigid {
+            Some(carried) => carried.specific_force(motion),
+            None => self.model.carried(self.mounting, self.truth, motion.speed).specific_force(motion),
+        };
+        self.response.reading(&f)
+    }
+}
+
+/// From the sensor's output to the rows of the record.
+#[derive(Debug, Clone)]
+struct Transmission {
+    spikes: Arrivals,
+    spike_size: f64,
+    gaps: Arrivals,
+    /// Probability that a gap ends with a sample.
+    gap_end: f64,
+    /// First sample after the present gap.
+    resumes: u64,
+    repeats: Arrivals,
+    quantum: f64,
+    range: f64,
+}
+
+impl Transmission {
+    fn new(mounting: &SimulatedMounting) -> Self {
+        let simulation = &mounting.simulation;
+        let random = |draw: Draw| draw.stream(simulation.seed, mounting.mounting);
+        let (recorder, sensor) = (&simulation.settings.recorder, &simulation.settings.sensor);
+        Self {
+            spikes: Arrivals::new(random(Draw::Spikes), recorder.spikes.probability),
+            spike_size: recorder.spikes.size,
+            gaps: Arrivals::new(random(Draw::Gaps), recorder.gaps.probability),
+            gap_end: 1.0 / recorder.gaps.length,
+            resumes: 0,
+            repeats: Arrivals::new(random(Draw::Repeats), recorder.repeats),
+            quantum: sensor.quantum,
+            range: sensor.range.unwrap_or(f64::INFINITY),
+        }
+    }
+
+    /// Adds sample `n` to the record as none, one or two rows.
+    #[inline]
+    fn pass(&mut self, n: u64, t: f64, mut f: Vector3<f64>, record: &mut Record) {
+        if let Some(random) = self.spikes.at(n) {
+            let third = random.uniform();
+            let axis = usize::from(third > 1.0 / 3.0) + usize::from(third > 2.0 / 3.0);
+            f[axis] += self.spike_size * random.normal();
+        }
+        if let Some(random) = self.gaps.at(n) {
+            let longer = if self.gap_end < 1.0 { random.failures(self.gap_end) } else { 0 };
+            self.resumes = self.resumes.max(n.saturating_add(1).saturating_add(longer));
+        }
+        let rows = if self.repeats.at(n).is_some() { 2 } else { 1 };
+        if n < self.resumes {
+            return;
+        }
+        for _ in 0..rows {
+            record.t.push(t);
+            for (column, f) in record.f_z.iter_mut().zip(&f) {
+                column.push(self.output(*f));
+            }
+        }
+    }
+
+    /// Saturated and quantised.
+    #[inline]
+    fn output(&self, f: f64) -> f64 {
+        let f = f.clamp(-self.range, self.range);
+        if self.quantum > 0.0 { (f / self.quantum).round() * self.quantum } else { f }
+    }
+}

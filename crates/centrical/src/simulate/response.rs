@@ -1,0 +1,54 @@
+//! The error model prepared for many samples: what depends on one `f_j` alone is summed by Horner's scheme.
+
+use nalgebra::Vector3;
+
+use crate::error_model::{ErrorModel, Monomial};
+
+/// Highest power gathered into the polynomials.
+const DEGREE: usize = 3;
+
+/// `f'_i = sum_j p_ij(f_j) + other terms`.
+#[derive(Debug, Clone)]
+pub(super) struct Response {
+    /// Coefficients of `p_ij` from power 0 up; the identity `f_i` is in `p_ii`.
+    polynomials: [[[f64; DEGREE + 1]; 3]; 3],
+    /// (Newtonometer, coefficient, monomial).
+    others: Vec<(usize, f64, Monomial)>,
+}
+
+impl Response {
+    pub fn new(error_model: &ErrorModel, coefficients: &[f64]) -> Self {
+        let mut polynomials = [[[0.0; DEGREE + 1]; 3]; 3];
+        for i in 0..3 {
+            polynomials[i][i][1] = 1.0;
+        }
+        let mut others = Vec::new();
+        for (term, &c) in error_model.terms.iter().zip(coefficients) {
+            match power_of_one(&term.monomial) {
+                Some((j, power)) => polynomials[term.axis][j][power] += c,
+                None => others.push((term.axis, c, term.monomial)),
+            }
+        }
+        Self { polynomials, others }
+    }
+
+    /// Reading `f'` [m/s^2] of the ideal specific force `f` [m/s^2].
+    #[inline]
+    pub fn reading(&self, f: &Vector3<f64>) -> Vector3<f64> {
+        let horner = |p: &[f64; DEGREE + 1], x: f64| p.iter().rev().fold(0.0, |sum, c| sum * x + c);
+        let along = |i: usize| (0..3).map(|j| horner(&self.polynomials[i][j], f[j])).sum::<f64>();
+        let mut reading = Vector3::new(along(0), along(1), along(2));
+        for (axis, c, monomial) in &self.others {
+            reading[*axis] += c * monomial.value(f);
+        }
+        reading
+    }
+}
+
+/// The axis and power of a plain power of one `f_j` up to [`DEGREE`].
+fn power_of_one(monomial: &Monomial) -> Option<(usize, usize)> {
+    let axis = (0..3).find(|&j| monomial.powers[j] > 0).unwrap_or(0);
+    let power = usize::from(monomial.powers[axis]);
+    let alone = usize::from(monomial.degree()) == power && monomial.sign_of.is_none();
+    (alone && power <= DEGREE).then_some((axis, power))
+}

@@ -1,0 +1,37 @@
+//! The centrifuge's own report of its speed, by its own clock.
+
+use super::draw::Draw;
+use super::motion::Motion;
+use super::settings::Tachometer;
+
+/// The telemetry of one mounting.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Telemetry {
+    /// Time by the centrifuge's clock [s]: `clock_offset + (1 + clock_drift) t`, `t` on the unit's clock.
+    pub t: Vec<f64>,
+    /// Angular speed [rad/s].
+    pub omega: Vec<f64>,
+    /// The centrifuge's clock less the unit's as the record begins [s].
+    pub clock_offset: f64,
+    /// Rate of the centrifuge's clock against the unit's, less 1.
+    pub clock_drift: f64,
+}
+
+impl Telemetry {
+    pub(super) fn new(motion: &Motion, tachometer: &Tachometer, seed: u64, mounting: usize) -> Self {
+        let mut clock = Draw::Clock.stream(seed, mounting);
+        let mut random = Draw::Tachometer.stream(seed, mounting);
+        let clock_offset = tachometer.clock_offset * (2.0 * clock.uniform() - 1.0);
+        let clock_drift = tachometer.clock_drift * clock.normal();
+        let mut telemetry = Self { clock_offset, clock_drift, ..Self::default() };
+        let times = (0_u64..).map(|n| n as f64 / tachometer.rate).take_while(|t| *t <= motion.duration());
+        for t in times {
+            let noise = if tachometer.noise > 0.0 { tachometer.noise * random.normal() } else { 0.0 };
+            let omega = motion.believed_speed(t) + noise;
+            let quantum = tachometer.quantum;
+            telemetry.t.push(clock_offset + (1.0 + clock_drift) * t);
+            telemetry.omega.push(if quantum > 0.0 { (omega / quantum).round() * quantum } else { omega });
+        }
+        telemetry
+    }
+}

@@ -1,0 +1,32 @@
+//! How far a calibration can be trusted.
+//!
+//! - [`Budget`]: what each source of uncertainty leaves in each parameter (GUM, JCGM 100:2008);
+//! - [`monte_carlo`]: the whole calibration repeated on drawn readings and drawn type B errors, to check the budget;
+//! - [`Validity`], [`without_outliers`], [`patterns`]: whether the residuals are those of a true model;
+//! - [`select`]: which of several models the data speak for;
+//! - [`Compensated`]: the uncertainty of a compensated reading;
+//! - [`compare`]: two calibrations of one unit.
+//!
+//! Type A is what the data show: the noise of the plateau means. Type B is what they cannot show and the laboratory
+//! states ([`TypeB`]): quantities that the fit takes as exact, gravity or a radius, enter as *consider parameters*: not
+//! estimated, their doubt carried through the gain of the fit.
+
+mod budget;
+mod comparison;
+mod compensated;
+mod coverage;
+mod monte_carlo;
+mod pattern;
+mod selection;
+mod source;
+mod validity;
+
+pub use budget::{Budget, Contribution, Improvement};
+pub use comparison::{Comparison, Difference, Estimates, compare};
+pub use compensated::{Compensated, CurvePoint};
+pub use coverage::{Degrees, chi_squared_tail, coverage_factor, effective_degrees_of_freedom};
+pub use monte_carlo::{Method, MonteCarlo, ParameterStatistics, Settings, WeightedSquare, monte_carlo};
+pub use pattern::{Pattern, Trend, patterns};
+pub use selection::{Candidate, NestedTest, Rival, Selection, TermVerdict, rivals_of, select};
+pub use source::{Source, TypeB};
+pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity, f_tail, without_outliers};

@@ -1,0 +1,78 @@
+//! Two calibrations of one unit: differences over their uncertainties, drift, and a test of all of them together.
+//!
+//! The two are taken as independent. What they share, the same gravity or the same radii, cancels in the difference, whose
+//! uncertainty is then stated too large and never too small.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::coverage::chi_squared_tail;
+
+/// The estimates of one calibration that are determined.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimates {
+    /// Names of the parameters.
+    pub names: Vec<String>,
+    /// Values, SI.
+    pub values: Vec<f64>,
+    /// Combined covariance, SI.
+    pub covariance: DMatrix<f64>,
+}
+
+/// Calibration B less calibration A.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// Parameters that both determine, in the order of A.
+    pub differences: Vec<Difference>,
+    /// `d^T (C_A + C_B)^-1 d` of all of them; `None` if the sum is not positive definite.
+    pub chi_squared: Option<f64>,
+    /// Probability of so large a `chi_squared` if nothing has changed.
+    pub probability: Option<f64>,
+}
+
+/// One parameter in both.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    /// Name.
+    pub name: String,
+    /// B less A [its unit].
+    pub difference: f64,
+    /// Standard uncertainty of the difference [its unit].
+    pub standard_uncertainty: f64,
+    /// `E_n = d / sqrt(U_A^2 + U_B^2)` with expanded uncertainties, `k = 2` (ISO/IEC 17043): beyond 1 in size the two
+    /// disagree.
+    pub e_n: f64,
+}
+
+/// Coverage factor of the expanded uncertainties in `E_n` (ISO 13528, 9.7).
+const COVERAGE_FACTOR: f64 = 2.0;
+
+/// Compares the parameters that `a` and `b` both determine.
+pub fn compare(a: &Estimates, b: &Estimates) -> Comparison {
+    let place_in_b = |name: &String| b.names.iter().position(|other| other == name);
+    let shared: Vec<(usize, usize)> =
+        a.names.iter().enumerate().filter_map(|(i, name)| Some((i, place_in_b(name)?))).collect();
+    let covariance = DMatrix::from_fn(shared.len(), shared.len(), |m, n| {
+        let ((i, k), (j, l)) = (shared[m], shared[n]);
+        a.covariance[(i, j)] + b.covariance[(k, l)]
+    });
+    let differences: Vec<Difference> = shared
+        .iter()
+        .enumerate()
+        .map(|(n, &(i, k))| {
+            let (difference, standard_uncertainty) = (b.values[k] - a.values[i], covariance[(n, n)].sqrt());
+            let e_n = difference / (COVERAGE_FACTOR * standard_uncertainty);
+            Difference { name: a.names[i].clone(), difference, standard_uncertainty, e_n }
+        })
+        .collect();
+    let chi_squared = weighted_square(differences.iter().map(|d| d.difference), &covariance);
+    let probability = chi_squared.map(|chi_squared| chi_squared_tail(chi_squared, shared.len()));
+    Comparison { differences, chi_squared, probability }
+}
+
+/// `e^T C^-1 e`, by the Cholesky factor of the correlation matrix; `None` if `C` is no covariance.
+pub(super) fn weighted_square(errors: impl Iterator<Item = f64>, covariance: &DMatrix<f64>) -> Option<f64> {
+    let u = covariance.diagonal().map(f64::sqrt);
+    let correlation = DMatrix::from_fn(u.len(), u.len(), |i, j| covariance[(i, j)] / (u[i] * u[j]));
+    let scaled = DVector::from_iterator(u.len(), errors.zip(u.iter()).map(|(e, u)| e / u));
+    Some(correlation.cholesky()?.l_dirty().solve_lower_triangular(&scaled)?.norm_squared())
+}

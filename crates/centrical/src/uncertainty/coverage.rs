@@ -1,0 +1,44 @@
+//! From standard to expanded uncertainty: degrees of freedom and coverage factors (GUM, annex G).
+
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::function::gamma::gamma_ur;
+
+/// Degrees of freedom of a standard uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Degrees {
+    /// The uncertainty itself is taken as exact.
+    Infinite,
+    /// So many.
+    Finite(f64),
+}
+
+/// Welch-Satterthwaite: `nu_eff = u_c^4 / sum u_i^4 / nu_i` over independent contributions `u_i` (GUM, G.2b).
+///
+/// Contributions are pairs of standard uncertainty and degrees of freedom. Valid for one output quantity whose inputs
+/// are independent and about normal; there is no such number for several parameters jointly.
+pub fn effective_degrees_of_freedom(contributions: &[(f64, Degrees)]) -> Degrees {
+    let variance: f64 = contributions.iter().map(|(u, _)| u * u).sum();
+    let doubt: f64 = contributions
+        .iter()
+        .map(|(u, degrees)| match degrees {
+            Degrees::Infinite => 0.0,
+            Degrees::Finite(nu) => u.powi(4) / nu,
+        })
+        .sum();
+    if doubt > 0.0 { Degrees::Finite(variance * variance / doubt) } else { Degrees::Infinite }
+}
+
+/// Coverage factor `k = t_p(nu)`: the interval of `k` standard uncertainties on both sides covers with probability
+/// `coverage`, in (0, 1) (GUM, G.3.2 and table G.2). Degrees are used as they are, not truncated to an integer.
+pub fn coverage_factor(coverage: f64, degrees: Degrees) -> f64 {
+    let upper = 0.5 + 0.5 * coverage;
+    match degrees {
+        Degrees::Finite(nu) => StudentsT::new(0.0, 1.0, nu).map_or(f64::NAN, |t| t.inverse_cdf(upper)),
+        Degrees::Infinite => Normal::standard().inverse_cdf(upper),
+    }
+}
+
+/// Probability that chi^2 with `nu` degrees of freedom exceeds `chi_squared`; 1 without any degree.
+pub fn chi_squared_tail(chi_squared: f64, nu: usize) -> f64 {
+    if nu == 0 { 1.0 } else { gamma_ur(0.5 * nu as f64, 0.5 * chi_squared.max(0.0)) }
+}

@@ -1,0 +1,331 @@
+//! Monte Carlo: the whole calibration repeated on drawn readings, to see whether its uncertainties are true.
+//!
+//! Each run draws the noise of the means, the speeds of the plateaus, every type B influence and, for unknowns with a
+//! prior, their true values from it; lets the exact model make the readings, and fits them as if nothing were off. Run `n` uses stream `n` of the seed, and runs are gathered
+//! in their order, so the outcome does not depend on the number of threads.
+
+use nalgebra::{DMatrix, Matrix3};
+use rayon::prelude::*;
+
+use super::budget::Budget;
+use super::comparison::weighted_square;
+use super::coverage::{Degrees, chi_squared_tail, coverage_factor};
+use super::source::{Influence, TypeB, influences};
+use crate::design::Observation;
+use crate::error::FitError;
+use crate::fit::{self, Fit, Structure, Termination};
+use crate::measurement::MeasurementModel;
+use crate::random::Random;
+
+/// What to draw, and how often.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Calibrations.
+    pub runs: usize,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Probability that the intervals are to cover, in (0, 1).
+    pub coverage: f64,
+    /// The fit that is repeated.
+    pub method: Method,
+    /// Type B uncertainties to draw.
+    pub stated: TypeB,
+}
+
+/// The fit that is repeated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// [`fit::exact`].
+    Exact,
+    /// [`fit::linear`], on readings of the exact model.
+    Linear,
+}
+
+/// What the runs show.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MonteCarlo {
+    /// Runs that converged: all figures are of these.
+    pub runs: usize,
+    /// Runs that did not.
+    pub failures: usize,
+    /// By parameter; `None` for those that the data do not determine.
+    pub parameters: Vec<Option<ParameterStatistics>>,
+    /// `e^T C^-1 e` of the determined parameters with the covariance stated in each run.
+    pub weighted_square: WeightedSquare,
+    /// Sum of squared whitened residuals of each fit.
+    pub chi_squared: WeightedSquare,
+}
+
+/// One parameter over all runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParameterStatistics {
+    /// Mean error of the estimate [its unit].
+    pub bias: f64,
+    /// Standard deviation of the error about its mean [its unit].
+    pub standard_deviation: f64,
+    /// Combined standard uncertainty of the budget [its unit].
+    pub stated: f64,
+    /// Part of the runs whose interval covers the truth.
+    pub coverage: f64,
+}
+
+/// A quadratic form over all runs, beside the chi^2 distribution it should have.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeightedSquare {
+    /// Degrees of freedom it should have: its expected mean.
+    pub degrees_of_freedom: usize,
+    /// Mean over the runs.
+    pub mean: f64,
+    /// Standard deviation over the runs; `sqrt(2 nu)` is expected.
+    pub standard_deviation: f64,
+    /// All values, rising.
+    pub sorted: Vec<f64>,
+}
+
+/// Runs handed to the threads at a time: enough to keep any number busy, few enough for a smooth progress bar.
+const BATCH: usize = 256;
+
+/// Repeats the calibration of `model` with unknowns `truth` and the weights of `observations` (their means are not
+/// used). `done` is told how many runs a batch brought.
+///
+/// # Errors
+/// [`FitError`] when an observation cannot be one.
+pub fn monte_carlo(
+    model: &MeasurementModel,
+    truth: &[f64],
+    observations: &[Observation],
+    speed_uncertainty: f64,
+    settings: &Settings,
+    done: &dyn Fn(usize),
+) -> Result<MonteCarlo, FitError> {
+    let laboratory = Laboratory::new(model, truth, observations, speed_uncertainty, settings)?;
+    let mut tally = Tally::new(&laboratory);
+    for first in (0..settings.runs).step_by(BATCH) {
+        let batch = first..settings.runs.min(first + BATCH);
+        let count = batch.len();
+        let runs: Vec<Option<Run>> = batch.into_par_iter().map(|n| laboratory.run(n)).collect::<Result<_, _>>()?;
+        for run in &runs {
+            tally.add(run.as_ref());
+        }
+        done(count);
+    }
+    Ok(tally.into_monte_carlo(&laboratory))
+}
+
+/// Everything that does not change from run to run.
+struct Laboratory<'a> {
+    model: &'a MeasurementModel,
+    truth: &'a [f64],
+    observations: &'a [Observation],
+    noise_factors: Vec<Matrix3<f64>>,
+    influences: Vec<Influence>,
+    structure: Structure,
+    /// Indices of the parameters that the data determine.
+    determined: Vec<usize>,
+    budget: Budget,
+    /// Combined covariance of type B, of the determined parameters.
+    type_b: DMatrix<f64>,
+    speed_uncertainty: f64,
+    coverage_factor: f64,
+    settings: &'a Settings,
+}
+
+/// One calibration.
+struct Run {
+    /// Estimate less truth, by determined parameter.
+    errors: Vec<f64>,
+    /// Combined standard uncertainties stated in this run.
+    stated: Vec<f64>,
+    weighted_square: f64,
+    chi_squared: f64,
+    degrees_of_freedom: usize,
+}
+
+impl<'a> Laboratory<'a> {
+    fn new(
+        model: &'a MeasurementModel,
+        truth: &'a [f64],
+        observations: &'a [Observation],
+        speed_uncertainty: f64,
+        settings: &'a Settings,
+    ) -> Result<Self, FitError> {
+        let structure = Structure::of(model, observations, speed_uncertainty)?;
+        let perfect = readings_of(model, truth, observations);
+        let fit = fit::exact_with(&structure, model, &perfect, speed_uncertainty)?;
+        let budget = Budget::new(&fit, model, observations, speed_uncertainty, &settings.stated)?;
+        let determined: Vec<usize> = (0..truth.len()).filter(|&j| fit.value(j).is_some()).collect();
+        let beyond_weights = budget.contributions().iter().filter(|c| !c.source.is_weighed());
+        let type_b = beyond_weights.fold(DMatrix::zeros(truth.len(), truth.len()), |sum, c| sum + c.covariance());
+        let noise_factors = observations.iter().map(Observation::noise_factor).collect::<Result<_, _>>()?;
+        Ok(Self {
+            model,
+            truth,
+            observations,
+            noise_factors,
+            influences: influences(model.experiment(), &settings.stated, speed_uncertainty),
+            structure,
+            type_b: type_b.select_rows(&determined).select_columns(&determined),
+            determined,
+            budget,
+            speed_uncertainty,
+            coverage_factor: coverage_factor(settings.coverage, Degrees::Infinite),
+            settings,
+        })
+    }
+
+    /// Run number `n`; `None` if its fit did not converge.
+    fn run(&self, n: usize) -> Result<Option<Run>, FitError> {
+        let mut random = Random::stream(self.settings.seed, n as u64);
+        let truth = self.draw_truth(&mut random);
+        let drawn = self.draw(&truth, &mut random);
+        let method = match self.settings.method {
+            Method::Exact => fit::exact_with,
+            Method::Linear => fit::linear_with,
+        };
+        let fit = method(&self.structure, self.model, &drawn, self.speed_uncertainty)?;
+        Ok(self.judge(&fit, &truth))
+    }
+
+    /// The unknowns, those with a prior drawn from it.
+    fn draw_truth(&self, random: &mut Random) -> Vec<f64> {
+        let mut truth = self.truth.to_vec();
+        for prior in self.model.priors() {
+            truth[prior.parameter] = prior.standard_uncertainty * random.normal();
+        }
+        truth
+    }
+
+    /// Readings with everything drawn.
+    fn draw(&self, truth: &[f64], random: &mut Random) -> Vec<Observation> {
+        let mut experiment = self.model.experiment().clone();
+        for influence in &self.influences {
+            influence.apply(&mut experiment, random.normal());
+        }
+        let mut drawn = readings_of(&self.model.in_experiment(experiment), truth, self.observations);
+        for (observation, factor) in drawn.iter_mut().zip(&self.noise_factors) {
+            let noise = nalgebra::Vector3::from_fn(|_, _| random.normal());
+            observation.mean += factor * noise;
+            if self.settings.stated.resolution > 0.0 {
+                let half_step = 0.5 * self.settings.stated.resolution;
+                observation.mean += nalgebra::Vector3::from_fn(|_, _| half_step * random.symmetric());
+            }
+        }
+        drawn
+    }
+
+    fn judge(&self, fit: &Fit, truth: &[f64]) -> Option<Run> {
+        let errors: Vec<f64> = self.determined.iter().map(|&j| fit.state()[j] - truth[j]).collect();
+        let mut covariance = self.type_b.clone();
+        for (a, &i) in self.determined.iter().enumerate() {
+            for (b, &j) in self.determined.iter().enumerate() {
+                covariance[(a, b)] += fit.covariance(i, j)?;
+            }
+        }
+        let converged = matches!(fit.termination, Termination::Converged | Termination::Linear);
+        let run = Run {
+            weighted_square: weighted_square(errors.iter().copied(), &covariance)?,
+            stated: covariance.diagonal().iter().map(|v| v.sqrt()).collect(),
+            errors,
+            chi_squared: fit.chi_squared,
+            degrees_of_freedom: fit.degrees_of_freedom,
+        };
+        converged.then_some(run)
+    }
+}
+
+/// The observations with the means that `model` gives at `x`.
+fn readings_of(model: &MeasurementModel, x: &[f64], observations: &[Observation]) -> Vec<Observation> {
+    let set_points = &model.experiment().set_points;
+    let reading = |o: &Observation| Observation { mean: model.reading(&set_points[o.set_point], x), ..o.clone() };
+    observations.iter().map(reading).collect()
+}
+
+/// Sums over the runs, in their order.
+struct Tally {
+    runs: usize,
+    failures: usize,
+    mean: Vec<f64>,
+    squares: Vec<f64>,
+    covered: Vec<usize>,
+    weighted_squares: Vec<f64>,
+    chi_squares: Vec<f64>,
+    degrees_of_freedom: usize,
+    coverage_factor: f64,
+}
+
+impl Tally {
+    fn new(laboratory: &Laboratory) -> Self {
+        let count = laboratory.determined.len();
+        Self {
+            coverage_factor: laboratory.coverage_factor,
+            runs: 0,
+            failures: 0,
+            mean: vec![0.0; count],
+            squares: vec![0.0; count],
+            covered: vec![0; count],
+            weighted_squares: Vec::new(),
+            chi_squares: Vec::new(),
+            degrees_of_freedom: 0,
+        }
+    }
+    /// Welford's recursion, which does not cancel.
+    fn add(&mut self, run: Option<&Run>) {
+        let Some(run) = run else {
+            self.failures += 1;
+            return;
+        };
+        self.runs += 1;
+        for (a, error) in run.errors.iter().enumerate() {
+            let before = error - self.mean[a];
+            self.mean[a] += before / self.runs as f64;
+            self.squares[a] += before * (error - self.mean[a]);
+            self.covered[a] += usize::from(error.abs() <= self.coverage_factor * run.stated[a]);
+        }
+        self.weighted_squares.push(run.weighted_square);
+        self.chi_squares.push(run.chi_squared);
+        self.degrees_of_freedom = run.degrees_of_freedom;
+    }
+
+    fn into_monte_carlo(self, laboratory: &Laboratory) -> MonteCarlo {
+        let mut parameters = vec![None; laboratory.truth.len()];
+        for (a, &j) in laboratory.determined.iter().enumerate() {
+            parameters[j] = laboratory.budget.standard_uncertainty(j).map(|stated| ParameterStatistics {
+                bias: self.mean[a],
+                standard_deviation: (self.squares[a] / (self.runs.max(2) - 1) as f64).sqrt(),
+                stated,
+                coverage: self.covered[a] as f64 / self.runs.max(1) as f64,
+            });
+        }
+        MonteCarlo {
+            runs: self.runs,
+            failures: self.failures,
+            parameters,
+            weighted_square: WeightedSquare::of(self.weighted_squares, laboratory.determined.len()),
+            chi_squared: WeightedSquare::of(self.chi_squares, self.degrees_of_freedom),
+        }
+    }
+}
+
+impl WeightedSquare {
+    fn of(mut values: Vec<f64>, degrees_of_freedom: usize) -> Self {
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+        values.sort_by(f64::total_cmp);
+        Self { degrees_of_freedom, mean, standard_deviation: (squares / (count - 1.0)).sqrt(), sorted: values }
+    }
+
+    /// Part of the runs at or below `value`.
+    pub fn part_below(&self, value: f64) -> f64 {
+        self.sorted.partition_point(|v| *v <= value) as f64 / self.sorted.len() as f64
+    }
+
+    /// Largest distance of the distribution of the runs from that of chi^2 (Kolmogorov): beyond `1.36/sqrt(runs)` by
+    /// chance once in twenty.
+    pub fn distance_from_chi_squared(&self) -> f64 {
+        let count = self.sorted.len() as f64;
+        let below = self.sorted.iter().map(|v| 1.0 - chi_squared_tail(*v, self.degrees_of_freedom));
+        let distance = |(n, p): (usize, f64)| (p - n as f64 / count).abs().max((p - (n + 1) as f64 / count).abs());
+        below.enumerate().map(distance).fold(0.0, f64::max)
+    }
+}

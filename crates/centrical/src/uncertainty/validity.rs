@@ -1,0 +1,218 @@
+//! Whether a fit can be believed: chi^2, residuals and leverage of every plateau, outliers, and hold-out by mounting.
+//!
+//! Let `e` be the whitened residuals and `H = Q Q^T` the hat matrix; then `cov e = E - H`. For a block of readings, three
+//! of a plateau or all of a mounting, `(E - H_bb)^-1 e_b` is what the others would predict less what was read, and
+//!
+//! `T = e_b^T (E - H_bb)^-1 e_b`
+//!
+//! is the fall of chi^2 when the block is left out: chi^2 of as many degrees of freedom as the block has redundant
+//! readings. Divided by what is left of chi^2 it is an F statistic that does not depend on the scale of the weights.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
+use statrs::function::beta::beta_reg;
+
+use super::coverage::chi_squared_tail;
+use crate::design::Observation;
+use crate::error::FitError;
+use crate::fit::{self, Fit, Gain};
+use crate::measurement::MeasurementModel;
+
+/// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
+const REDUNDANT: f64 = 1e-8;
+
+/// The checks of a fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Validity {
+    /// Probability that chi^2 is as large by chance.
+    pub probability: f64,
+    /// By observation.
+    pub plateaus: Vec<PlateauCheck>,
+    /// By mounting that has observations.
+    pub mountings: Vec<MountingCheck>,
+}
+
+/// The check of one plateau.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlateauCheck {
+    /// Index of its set point.
+    pub set_point: usize,
+    /// Residuals over their standard deviations, by newtonometer; zero where nothing is redundant.
+    pub standardised: Vector3<f64>,
+    /// Part of its three readings that the fit follows, 0 to 1.
+    pub leverage: f64,
+    /// How well the others predict it.
+    pub prediction: Prediction,
+}
+
+/// The check of one mounting: predicted from all others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MountingCheck {
+    /// Index of the mounting.
+    pub mounting: usize,
+    /// How well the others predict it.
+    pub prediction: Prediction,
+}
+
+/// A block of readings against its prediction from all other readings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prediction {
+    /// Fall of chi^2 without the block.
+    pub statistic: f64,
+    /// Readings of the block that the others predict at all.
+    pub degrees_of_freedom: usize,
+    /// `-2 ln` of the density of the prediction at what was read, less that constant which all models share: sum over
+    /// the readings of squared difference over variance plus `ln` of the variance, in units of the noise. The lower the
+    /// better: predictions that are wrong cost, and those that say little.
+    pub score: f64,
+    /// Probability of so large a statistic by chance (F test); 1 when nothing is redundant.
+    pub probability: f64,
+}
+
+/// A fit without outlying plateaus.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cleaned {
+    /// The fit of what is left.
+    pub fit: Fit,
+    /// The observations left.
+    pub observations: Vec<Observation>,
+    /// Set points left out, the most outlying first, each with its probability at the time.
+    pub left_out: Vec<(usize, f64)>,
+}
+
+impl Validity {
+    /// Checks `fit`, which was made of `observations` of `model` with `speed_uncertainty`.
+    ///
+    /// # Errors
+    /// [`FitError`] when an observation cannot be one.
+    pub fn of(
+        fit: &Fit,
+        model: &MeasurementModel,
+        observations: &[Observation],
+        speed_uncertainty: f64,
+    ) -> Result<Self, FitError> {
+        let blocks = Blocks::of(fit, model, observations, speed_uncertainty)?;
+        let set_points = &model.experiment().set_points;
+        let mounting_of = |n: usize| set_points[observations[n].set_point].mounting;
+        let mountings = (0..model.experiment().mountings.len()).filter_map(|mounting| {
+            let members: Vec<usize> = (0..observations.len()).filter(|&n| mounting_of(n) == mounting).collect();
+            (!members.is_empty()).then(|| MountingCheck { mounting, prediction: blocks.predict(&members) })
+        });
+        Ok(Self {
+            probability: chi_squared_tail(fit.chi_squared, fit.degrees_of_freedom),
+            plateaus: (0..observations.len()).map(|n| blocks.plateau(n, observations[n].set_point)).collect(),
+            mountings: mountings.collect(),
+        })
+    }
+
+    /// The plateau that stands out most, if it does so at the family-wise error `alpha` over all plateaus (Bonferroni):
+    /// its place among the observations.
+    pub fn outlier(&self, alpha: f64) -> Option<usize> {
+        let each = alpha / self.plateaus.len() as f64;
+        let place = |a: &usize, b: &usize| {
+            let p = |n: usize| self.plateaus[n].prediction.probability;
+            p(*a).total_cmp(&p(*b))
+        };
+        (0..self.plateaus.len()).min_by(place).filter(|&n| self.plateaus[n].prediction.probability < each)
+    }
+
+    /// Mean [`Prediction::score`] per reading when each mounting is predicted from all others: 1 and a little more for a
+    /// true model, more for one that lacks a term or has too many.
+    pub fn hold_out_score(&self) -> f64 {
+        let sum: f64 = self.mountings.iter().map(|m| m.prediction.score).sum();
+        sum / (3.0 * self.plateaus.len() as f64)
+    }
+}
+
+/// Fits, leaves out the plateau that stands out most at the family-wise error `alpha`, and fits again, until none does.
+/// Never more than a tenth of the plateaus: beyond that it is not plateaus that are wrong.
+///
+/// # Errors
+/// [`FitError`] when an observation cannot be one.
+pub fn without_outliers(
+    model: &MeasurementModel,
+    observations: &[Observation],
+    speed_uncertainty: f64,
+    alpha: f64,
+) -> Result<Cleaned, FitError> {
+    let mut observations = observations.to_vec();
+    let mut left_out = Vec::new();
+    let most = observations.len() / 10;
+    loop {
+        let fit = fit::exact(model, &observations, speed_uncertainty)?;
+        let validity = Validity::of(&fit, model, &observations, speed_uncertainty)?;
+        match validity.outlier(alpha).filter(|_| left_out.len() < most) {
+            Some(n) => {
+                left_out.push((observations[n].set_point, validity.plateaus[n].prediction.probability));
+                observations.remove(n);
+            }
+            None => return Ok(Cleaned { fit, observations, left_out }),
+        }
+    }
+}
+
+/// Probability of an F statistic of at least `f` with `m` and `n` degrees of freedom; 1 without degrees of freedom.
+pub fn f_tail(f: f64, m: usize, n: usize) -> f64 {
+    if m == 0 || n == 0 || f.is_nan() || f <= 0.0 {
+        return 1.0;
+    }
+    let (m, n) = (m as f64, n as f64);
+    if f.is_infinite() { 0.0 } else { beta_reg(0.5 * n, 0.5 * m, n / (n + m * f)) }
+}
+
+/// Whitened residuals and the hat matrix.
+struct Blocks {
+    residuals: DVector<f64>,
+    hat: DMatrix<f64>,
+    chi_squared: f64,
+    degrees_of_freedom: usize,
+}
+
+impl Blocks {
+    fn of(
+        fit: &Fit,
+        model: &MeasurementModel,
+        observations: &[Observation],
+        speed_uncertainty: f64,
+    ) -> Result<Self, FitError> {
+        let gain = Gain::of(fit, model, observations, speed_uncertainty)?;
+        Ok(Self {
+            residuals: gain.whitened_residuals(),
+            hat: gain.hat(),
+            chi_squared: fit.chi_squared,
+            degrees_of_freedom: fit.degrees_of_freedom,
+        })
+    }
+
+    fn plateau(&self, n: usize, set_point: usize) -> PlateauCheck {
+        let standardised = Vector3::from_fn(|i, _| {
+            let free = 1.0 - self.hat[(3 * n + i, 3 * n + i)];
+            if free > REDUNDANT { self.residuals[3 * n + i] / free.sqrt() } else { 0.0 }
+        });
+        let leverage = (0..3).map(|i| self.hat[(3 * n + i, 3 * n + i)]).sum::<f64>() / 3.0;
+        PlateauCheck { set_point, standardised, leverage, prediction: self.predict(&[n]) }
+    }
+
+    /// The readings of the observations `members` from all others, along the principal directions of `E - H_bb`; those
+    /// in which nothing is redundant are left out.
+    fn predict(&self, members: &[usize]) -> Prediction {
+        let rows: Vec<usize> = members.iter().flat_map(|n| 3 * n..3 * n + 3).collect();
+        let free =
+            DMatrix::from_fn(rows.len(), rows.len(), |a, b| f64::from(u8::from(a == b)) - self.hat[(rows[a], rows[b])]);
+        let residuals = DVector::from_fn(rows.len(), |a, _| self.residuals[rows[a]]);
+        let eigen = SymmetricEigen::new(free);
+        let components = eigen.eigenvectors.transpose() * residuals;
+        let (mut statistic, mut score, mut degrees_of_freedom) = (0.0, 0.0, 0);
+        for (component, share) in components.iter().zip(eigen.eigenvalues.iter()) {
+            if *share > REDUNDANT {
+                statistic += component * component / share;
+                degrees_of_freedom += 1;
+            }
+            // Not predicted at all costs as much as predicted ten thousand times worse than read.
+            score -= share.max(REDUNDANT).ln();
+        }
+        score += statistic;
+        let left = self.degrees_of_freedom.saturating_sub(degrees_of_freedom);
+        let f = (statistic / degrees_of_freedom as f64) / ((self.chi_squared - statistic).max(0.0) / left as f64);
+        Prediction { statistic, degrees_of_freedom, score, probability: f_tail(f, degrees_of_freedom, left) }
+    }
+}

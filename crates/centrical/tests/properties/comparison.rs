@@ -1,0 +1,96 @@
+use centrical::uncertainty::{Compensated, Estimates, compare};
+use centrical::{ErrorModel, fit};
+use nalgebra::{DMatrix, Vector3};
+
+use crate::common::{Random, truth};
+use crate::validity::{session, source_model};
+
+const SPEED: f64 = 1e-5;
+const INSTRUMENT: std::ops::Range<usize> = 28..49;
+
+fn calibrate(x: &[f64], random: &mut Random) -> Estimates {
+    let model = source_model();
+    let fit = fit::exact(&model, &session(&model, x, random), SPEED).unwrap();
+    let covariance = DMatrix::from_fn(21, 21, |i, j| fit.covariance(28 + i, 28 + j).unwrap());
+    let names = INSTRUMENT.map(|j| model.parameters()[j].name.clone()).collect();
+    Estimates { names, values: INSTRUMENT.map(|j| fit.value(j).unwrap()).collect(), covariance }
+}
+
+/// Calibrations of an unchanged unit agree as often as they say: joint chi^2 has mean 21, and `|E_n| > 1` is as seldom as
+/// two standard uncertainties; a bias that has moved by eight is found, by its own `E_n` and by the joint test.
+#[test]
+fn unchanged_units_agree_and_changes_show() {
+    const PAIRS: usize = 40;
+    let (model, mut random) = (source_model(), Random::new(31));
+    let x = truth(&model, 1.0, &mut random);
+    let (mut sum, mut beyond) = (0.0, 0);
+    for _ in 0..PAIRS {
+        let comparison = compare(&calibrate(&x, &mut random), &calibrate(&x, &mut random));
+        assert_eq!(comparison.differences.len(), 21);
+        sum += comparison.chi_squared.unwrap();
+        beyond += comparison.differences.iter().filter(|d| d.e_n.abs() > 1.0).count();
+    }
+    // Four standard deviations of chance; correlated parameters widen the second by no more than their number.
+    let mean = sum / PAIRS as f64;
+    assert!((mean - 21.0).abs() < 4.0 * (42.0 / PAIRS as f64).sqrt(), "{mean}");
+    assert!(beyond < 90, "{beyond} of 840, 38 expected");
+
+    let before = calibrate(&x, &mut random);
+    let mut moved = x.clone();
+    moved[28] += 8.0 * (2.0 * before.covariance[(0, 0)]).sqrt();
+    let comparison = compare(&before, &calibrate(&moved, &mut random));
+    assert!(comparison.differences[0].e_n > 1.0);
+    assert!(comparison.probability.unwrap() < 1e-4);
+}
+
+/// What one calibration lacks is not compared.
+#[test]
+fn only_what_both_have_is_compared() {
+    let of = |names: &[&str], values: &[f64]| Estimates {
+        names: names.iter().map(|n| (*n).to_owned()).collect(),
+        values: values.to_vec(),
+        covariance: DMatrix::identity(names.len(), names.len()),
+    };
+    let comparison = compare(&of(&["a", "b", "c"], &[1.0, 2.0, 3.0]), &of(&["c", "a"], &[5.0, 1.0]));
+    let found: Vec<(&str, f64)> = comparison.differences.iter().map(|d| (d.name.as_str(), d.difference)).collect();
+    assert_eq!(found, [("a", 0.0), ("c", 2.0)]);
+    assert!((comparison.differences[1].e_n - 0.5 * 2.0_f64.sqrt()).abs() < 1e-15);
+    assert!((comparison.chi_squared.unwrap() - 2.0).abs() < 1e-12);
+}
+
+/// The uncertainty of a compensated reading against the scatter of readings compensated with drawn coefficients.
+#[test]
+fn compensated_readings_scatter_as_stated() {
+    const DRAWS: usize = 4000;
+    let (model, mut random) = (source_model(), Random::new(33));
+    let x = truth(&model, 1.0, &mut random);
+    let calibration = calibrate(&x, &mut random);
+    let error_model = ErrorModel::kozlov_2017();
+    let compensated =
+        Compensated::new(error_model.clone(), calibration.values.clone(), calibration.covariance.clone()).unwrap();
+    let factor = calibration.covariance.clone().cholesky().unwrap().l();
+    for f in [Vector3::new(0.0, 0.0, 9.8), Vector3::new(900.0, -300.0, 500.0), Vector3::new(-1900.0, 50.0, 100.0)] {
+        let reading = error_model.reading(&calibration.values, &f);
+        let mut squares = Vector3::zeros();
+        for _ in 0..DRAWS {
+            let step = &factor * nalgebra::DVector::from_fn(21, |_, _| random.normal());
+            let drawn: Vec<f64> = calibration.values.iter().zip(step.iter()).map(|(c, d)| c + d).collect();
+            let mut solved = f;
+            for _ in 0..3 {
+                let gain = error_model.gain(&drawn, &solved);
+                solved -= gain.lu().solve(&(error_model.reading(&drawn, &solved) - reading)).unwrap();
+            }
+            squares += (solved - f).map(|e| e * e);
+        }
+        let stated = compensated.covariance(&f).unwrap();
+        for i in 0..3 {
+            let ratio = (squares[i] / DRAWS as f64 / stated[(i, i)]).sqrt();
+            // Four standard deviations of chance.
+            assert!((ratio - 1.0).abs() < 4.0 / (2.0 * DRAWS as f64).sqrt(), "axis {i} at {f:?}: {ratio}");
+        }
+    }
+    let curve = compensated.curve(&Vector3::x(), 2000.0, 41);
+    assert_eq!((curve.len(), curve[20].force), (41, 0.0));
+    let bias = calibration.covariance[(0, 0)].sqrt();
+    assert!((curve[20].along / bias - 1.0).abs() < 0.01, "without force only the bias is left");
+}

@@ -1,0 +1,27 @@
+//! Identities that must hold for any input: Jacobians against differences, round trips, invariance, estimates
+//! against their own uncertainty.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod combination;
+mod comparison;
+mod coverage;
+mod fit;
+mod frame;
+mod invariance;
+mod measurement;
+mod noise;
+mod noise_source;
+mod observability;
+mod prior;
+mod recursive;
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
+mod reduction;
+mod selection;
+mod simulate;
+mod simulated_noise;
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
+mod stream;
+mod uncertainty;
+mod validity;

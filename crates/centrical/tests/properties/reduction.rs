@@ -1,0 +1,360 @@
+//! Reduction of simulated records: plateaus found where they are, means right to their own uncertainty, and plain
+//! words where a plateau is not there.
+
+use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, reduce};
+use nalgebra::Vector3;
+
+use crate::stream::{Random, Stream};
+
+/// Streams of every kind: sampling rates, ramps, lengths, settling, colours, dirt.
+fn kinds() -> Vec<(&'static str, Stream)> {
+    let base = Stream::default();
+    let lengths = |length: f64| vec![length; 6];
+    vec![
+        ("clean", base.clone()),
+        ("rough", base.clone().rough()),
+        ("no settling", Stream { settling: (0.0, 0.4), ..base.clone() }),
+        ("strong settling", Stream { settling: (5e-3, 0.4), ..base.clone() }.rough()),
+        ("slow settling", Stream { settling: (1e-3, 2.0), lengths: lengths(30.0), ..base.clone() }.rough()),
+        ("fast colour", Stream { colour: (2e-3, 0.1), ..base.clone() }.rough()),
+        ("colour", Stream { colour: (1e-3, 0.5), rate: 250.0, ..base.clone() }.rough()),
+        ("strong colour", Stream { colour: (5e-3, 0.5), ..base.clone() }.rough()),
+        ("slow colour", Stream { colour: (2e-3, 2.0), rate: 50.0, lengths: lengths(120.0), ..base.clone() }.rough()),
+        ("short plateaus", Stream { ramp: 1.0, rate: 50.0, lengths: lengths(5.0), ..base.clone() }.rough()),
+        ("2 kHz", Stream { ramp: 1.0, rate: 2000.0, lengths: lengths(5.0), ..base.clone() }.rough()),
+        ("slow ramps", Stream { ramp: 30.0, rate: 200.0, lengths: lengths(60.0), ..base.clone() }.rough()),
+        ("poor unit", Stream { unit_error: 1e-2, ..base.clone() }.rough()),
+        ("slow speeds", Stream { omegas: vec![0.0, 3.0, 6.0, 9.0, 4.5, 0.0], lengths: lengths(20.0), ..base.clone() }),
+        ("below twice the revolution", Stream { rate: 13.0, lengths: lengths(30.0), ..base }.rough()),
+    ]
+}
+
+const MOUNTINGS: u64 = 12;
+
+/// A session of a kind: its streams, reduced.
+fn session(stream: &Stream, seed: u64) -> Vec<(Stream, ReducedMounting)> {
+    let streams = (0..MOUNTINGS).map(|mounting| Stream { seed: 1000 * seed + mounting, ..stream.clone() });
+    streams.map(|stream| (reduced(&stream), stream)).map(|(reduced, stream)| (stream, reduced)).collect()
+}
+
+fn reduced(stream: &Stream) -> ReducedMounting {
+    match reduce(&stream.record(), None, &stream.schedule()) {
+        Ok(reduced) => reduced,
+        Err(error) => panic!("{stream:?}: {error}"),
+    }
+}
+
+fn pooled(session: &[(Stream, ReducedMounting)]) -> NoiseModel {
+    NoiseModel::pool(session.iter().map(|(_, reduced)| reduced))
+}
+
+fn means(session: &[(Stream, ReducedMounting)]) -> Vec<(&Stream, usize, PlateauMean)> {
+    let noise = pooled(session);
+    let of = |reduced: &ReducedMounting| reduced.means(&noise).into_iter().enumerate().collect();
+    let all: Vec<Vec<(usize, PlateauMean)>> = session.iter().map(|(_, reduced)| of(reduced)).collect();
+    session.iter().zip(all).flat_map(|((s, _), means)| means.into_iter().map(move |(k, mean)| (s, k, mean))).collect()
+}
+
+/// Squared error over its covariance: 3 on average.
+fn chi_squared(stream: &Stream, plateau: usize, mean: &PlateauMean) -> f64 {
+    let error = mean.mean - stream.truth(plateau);
+    let factor = mean.covariance.cholesky().expect("a covariance is positive definite");
+    error.dot(&factor.solve(&error))
+}
+
+/// Every plateau in its place: no further out than one block of the first pass (0.1 s or 8 samples), and most of
+/// it used: what a ramp of any length leaves, less settling, its margin and the block at each end.
+#[test]
+fn plateaus_are_found_in_every_kind_of_stream() {
+    for (name, stream) in kinds() {
+        let session = session(&stream, 1);
+        let block = 0.1_f64.max(8.0 / stream.rate);
+        let wait = if stream.settling.0 > 0.0 { 6.0 * stream.settling.1 } else { 0.0 };
+        let mut used = Vec::new();
+        for (stream, k, mean) in means(&session) {
+            let [start, end] = stream.windows()[k];
+            let [from, to] = mean.window;
+            assert!(
+                from >= start - block && to <= end + block,
+                "{name}: plateau {k} at {start} to {end}: {from} to {to}"
+            );
+            let least = if stream.omegas[k] == 0.0 { end - start } else { end - start - wait };
+            used.push((to - from) / (least - 4.0 * block));
+        }
+        used.sort_by(f64::total_cmp);
+        assert!(used[used.len() / 20] > 0.9, "{name}: uses {:.2} of what it could", used[used.len() / 20]);
+    }
+}
+
+/// Three sessions of 12 mountings and 6 plateaus: 648 degrees of freedom, so chi^2 per degree scatters by 0.055; the
+/// pooled density of coloured noise is known to about 0.08 a session, 0.05 for three. Bounds: three times both.
+#[test]
+fn means_are_right_to_their_own_uncertainty() {
+    for (name, stream) in kinds() {
+        let mut sum = 0.0;
+        let mut count = 0.0;
+        for seed in 10..13 {
+            for (stream, k, mean) in means(&session(&stream, seed)) {
+                sum += chi_squared(stream, k, &mean);
+                count += 3.0;
+            }
+        }
+        let ratio: f64 = sum / count;
+        println!("{name}: {ratio:.3}");
+        assert!((ratio - 1.0).abs() < 0.22, "{name}: chi^2 per degree of freedom {ratio:.3}");
+    }
+}
+
+/// Spikes are left out: with and without them the means differ by less than a tenth of their standard error on average.
+#[test]
+fn spikes_do_not_move_means() {
+    let clean = session(&Stream::default(), 20);
+    let noise = pooled(&clean);
+    let mut squares = Vec::new();
+    for (stream, k, mean) in means(&clean).into_iter().filter(|(_, k, _)| *k == 0) {
+        let mut record = stream.record();
+        let mut random = Random(stream.seed);
+        for i in 0..record.t.len() {
+            if random.uniform() < 2e-3 {
+                record.f_z[(3.0 * random.uniform()) as usize][i] += 30.0 + 100.0 * random.uniform();
+            }
+        }
+        let spiked = reduce(&record, None, &stream.schedule()).expect("spikes hide no plateau").means(&noise);
+        // Samples that are left out move the mean as well: by the root of their share of its standard error.
+        let moved = (spiked[k].mean - mean.mean).component_div(&mean.covariance.diagonal().map(f64::sqrt));
+        squares.push(moved.norm_squared() / 3.0);
+    }
+    let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    assert!(rms < 0.1, "{rms}");
+}
+
+/// The correlation of slow noise between the axes is that of the means.
+#[test]
+fn axes_correlate_as_their_noise_does() {
+    let stream = Stream { colour: (4e-3, 0.3), correlation: 0.6, ..Stream::default() };
+    for (_, _, mean) in means(&session(&stream, 30)) {
+        let c = mean.covariance;
+        let correlation = c[(0, 1)] / (c[(0, 0)] * c[(1, 1)]).sqrt();
+        assert!((correlation - 0.6).abs() < 0.1, "{correlation}");
+    }
+}
+
+/// White noise stays white: the density is the variance of a sample times the sampling interval. Some 2000 contrasts
+/// an axis scatter it by 3 %; four times that.
+#[test]
+fn density_of_white_noise_is_variance_by_interval() {
+    let session = session(&Stream::default(), 40);
+    let noise = pooled(&session);
+    for f in [0.0, 0.1, 1.0] {
+        let density = noise.density(f);
+        for axis in 0..3 {
+            assert!((density[(axis, axis)] / 4e-8 - 1.0).abs() < 0.12, "{density}");
+        }
+    }
+}
+
+/// Slopes are reported with an honest uncertainty: 216 slopes without a slope, mean square 1 +- 0.096, and noise
+/// colour.
+#[test]
+fn drift_of_a_steady_plateau_is_within_its_uncertainty() {
+    let session = session(&Stream { colour: (1e-3, 0.3), ..Stream::default() }, 50);
+    let ratios: Vec<f64> = means(&session)
+        .iter()
+        .map(|(_, _, m)| m.drift.component_div(&m.drift_uncertainty).norm_squared() / 3.0)
+        .collect();
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    assert!((mean - 1.0).abs() < 0.35, "{mean}");
+}
+
+/// The once-per-revolution term has the amplitude it was given, on each axis.
+#[test]
+fn tilt_is_seen_while_spinning() {
+    for (stream, k, mean) in means(&session(&Stream::default().rough(), 60)) {
+        let [cos, sin] = mean.once_per_revolution;
+        let amplitude = Vector3::from_fn(|axis, _| cos[axis].hypot(sin[axis]));
+        let expected =
+            if stream.omegas[k] == 0.0 { Vector3::zeros() } else { stream.tilt * Vector3::new(1.0, 1.0, 0.3) };
+        // Standard deviation of an amplitude: sigma sqrt(2 / n), 1e-4 here.
+        assert!((amplitude - expected).amax() < 5e-4, "plateau {k}: {amplitude}");
+    }
+}
+
+#[test]
+fn the_clock_offset_comes_from_the_ramps() {
+    for offset in [-1.7, 0.0, 0.3, 25.0] {
+        let stream = Stream::default().rough();
+        let telemetry = stream.telemetry(offset);
+        let reduced = reduce(&stream.record(), Some(&telemetry), &stream.schedule()).expect("plateaus are there");
+        let found = reduced.clock_offset().expect("ramps are in both");
+        assert_eq!(found.ramps, 5);
+        // A twentieth of a block.
+        assert!((found.seconds - offset).abs() < 5e-3, "{found:?}");
+        for (mean, omega) in reduced.means(&NoiseModel::pool([&reduced])).iter().zip(&stream.omegas) {
+            let speed = mean.measured_speed.expect("telemetry covers the record");
+            assert!((speed - omega).abs() < 1e-4 * omega + 1e-9, "{speed} {omega}");
+        }
+    }
+}
+
+#[test]
+fn the_same_record_gives_the_same_bits() {
+    let stream = Stream { colour: (1e-3, 0.5), ..Stream::default() }.rough();
+    let twice = [0, 1].map(|_| {
+        let reduced = reduced(&stream);
+        reduced.means(&NoiseModel::pool([&reduced]))
+    });
+    assert_eq!(twice[0], twice[1]);
+}
+
+/// Two plateaus at rest with a short turn between them, which nobody scheduled.
+#[test]
+fn two_rests_with_a_turn_between_are_two() {
+    let run = Stream {
+        omegas: vec![0.0, 0.7, 0.0, 20.0, 0.0],
+        lengths: vec![10.0, 1.0, 10.0, 10.0, 10.0],
+        ..Stream::default()
+    };
+    let mut schedule = run.schedule();
+    schedule.remove(1);
+    let reduced = reduce(&run.record(), None, &schedule).expect("all four are there");
+    let means = reduced.means(&NoiseModel::pool([&reduced]));
+    for (mean, k) in means.iter().zip([0, 2, 3, 4]) {
+        let [start, end] = run.windows()[k];
+        assert!(mean.window[0] >= start - 0.1 && mean.window[1] <= end + 0.1, "{:?} {start} {end}", mean.window);
+        assert!(mean.window[1] - mean.window[0] > 0.7 * (end - start));
+    }
+}
+
+/// A plateau begun, broken off after 2 s and run again: the whole one is taken.
+#[test]
+fn of_a_plateau_run_twice_the_longer_is_taken() {
+    let run = Stream {
+        omegas: vec![0.0, 20.0, 0.0, 20.0, 40.0, 0.0],
+        lengths: vec![10.0, 2.0, 1.0, 10.0, 10.0, 10.0],
+        ..Stream::default()
+    }
+    .rough();
+    let all = run.schedule();
+    let schedule = [all[0], all[3], all[4], all[5]];
+    let reduced = reduce(&run.record(), None, &schedule).expect("all four are there");
+    let means = reduced.means(&NoiseModel::pool([&reduced]));
+    let [start, end] = run.windows()[3];
+    assert!(means[1].window[0] >= start && means[1].window[1] <= end, "{:?}", means[1].window);
+}
+
+#[test]
+fn a_missing_plateau_is_named_with_what_was_seen() {
+    let run = Stream::default().rough();
+    let mut schedule = run.schedule();
+    let missing = Stream { omegas: vec![36.0], lengths: vec![10.0], ..run.clone() }.schedule()[0];
+    schedule.insert(3, missing);
+    let error = reduce(&run.record(), None, &schedule).expect_err("it is not there");
+    let ReductionError::PlateauNotFound { index, count, omega, ref seen, .. } = error else { panic!("{error}") };
+    assert_eq!((index, count, omega), (3, 7, 36.0));
+    let taken: Vec<Option<usize>> = seen.iter().map(|stretch| stretch.plateau).collect();
+    assert_eq!(taken, [0, 1, 2, 4, 5, 6].map(Some));
+    assert!(error.to_string().starts_with("plateau 4 of 7 not found: looked for 36.000 rad/s"), "{error}");
+}
+
+#[test]
+fn a_record_that_ends_early_lacks_its_last_plateau() {
+    let run = Stream::default();
+    let whole = run.record();
+    let end = run.windows()[4][1];
+    let kept = whole.t.partition_point(|t| *t < end);
+    let record = Record { t: whole.t[..kept].to_vec(), f_z: whole.f_z.map(|f| f[..kept].to_vec()) };
+    let error = reduce(&record, None, &run.schedule()).expect_err("the last is not there");
+    assert!(matches!(error, ReductionError::PlateauNotFound { index: 5, .. }), "{error}");
+}
+
+#[test]
+fn plateaus_out_of_order_are_recognised() {
+    let run = Stream::default();
+    let mut schedule = run.schedule();
+    schedule.swap(1, 3);
+    let error = reduce(&run.record(), None, &schedule).expect_err("the order is another");
+    let ReductionError::PlateauNotFound { ref seen, .. } = error else { panic!("{error}") };
+    assert!(seen.iter().any(|stretch| stretch.plateau.is_none() && !stretch.resembles.is_empty()), "{error}");
+    assert!(error.to_string().contains("repeated or out of order"), "{error}");
+}
+
+#[test]
+fn a_constant_record_has_no_plateaus() {
+    let t: Vec<f64> = (0..5000).map(|i| f64::from(i) / 100.0).collect();
+    for values in [[0.0, 0.0, 0.0], [0.1, -0.2, 9.81]] {
+        let record = Record { f_z: values.map(|value| vec![value; t.len()]), t: t.clone() };
+        let error = reduce(&record, None, &Stream::default().schedule()).expect_err("nothing moves");
+        assert!(matches!(error, ReductionError::PlateauNotFound { .. }), "{error}");
+    }
+}
+
+#[test]
+fn noise_alone_has_no_plateaus() {
+    let run = Stream { omegas: vec![0.0], lengths: vec![60.0], ..Stream::default() };
+    let error = reduce(&run.record(), None, &Stream::default().schedule()).expect_err("nothing spins");
+    assert!(matches!(error, ReductionError::PlateauNotFound { .. }), "{error}");
+}
+
+#[test]
+fn a_reading_stuck_for_a_while_is_left_out() {
+    let run = Stream::default();
+    let mut record = run.record();
+    let [start, _] = run.windows()[2];
+    let from = record.t.partition_point(|t| *t < start + 5.0);
+    let held = record.f_z[1][from];
+    record.f_z[1][from..from + 100].fill(held);
+    let reduced = reduce(&record, None, &run.schedule()).expect("the rest of it is there");
+    let means = reduced.means(&NoiseModel::pool([&reduced]));
+    assert!(means[2].rejected >= 100);
+    assert!(chi_squared(&run, 2, &means[2]) < 20.0);
+}
+
+#[test]
+fn a_plateau_read_by_a_stuck_sensor_is_refused() {
+    let run = Stream::default();
+    let mut record = run.record();
+    let [start, end] = run.windows()[2];
+    for i in 0..record.t.len() {
+        if record.t[i] > start && record.t[i] < end {
+            record.f_z[1][i] = -0.7;
+        }
+    }
+    let error = reduce(&record, None, &run.schedule()).expect_err("one axis says nothing");
+    assert!(matches!(error, ReductionError::Unsteady { index: 2, good: 0, .. }), "{error}");
+}
+
+/// Sampled once a revolution, the once-per-revolution term is a constant.
+#[test]
+fn sampling_in_step_with_the_rotation_is_refused() {
+    let turns = std::f64::consts::TAU;
+    let run = Stream {
+        omegas: vec![0.0, 5.0 * turns, 0.0],
+        lengths: vec![60.0; 3],
+        ramp: 20.0,
+        rate: 5.0,
+        ..Stream::default()
+    };
+    let error = reduce(&run.record(), None, &run.schedule()).expect_err("no telling them apart");
+    assert!(matches!(error, ReductionError::RevolutionAliased { index: 1, .. }), "{error}");
+}
+
+#[test]
+fn what_is_no_record_is_refused() {
+    let run = Stream::default();
+    let (record, schedule) = (run.record(), run.schedule());
+    let refused = |record: &Record| reduce(record, None, &schedule).expect_err("no record");
+    let empty = Record::default();
+    assert!(matches!(refused(&empty), ReductionError::TooShort { found: 0, .. }));
+    let mut ragged = record.clone();
+    ragged.f_z[2].pop();
+    assert!(matches!(refused(&ragged), ReductionError::UnequalColumns { .. }));
+    let mut back = record.clone();
+    back.t[100] = 0.5;
+    assert!(matches!(refused(&back), ReductionError::Time { sample: 101, .. }));
+    let mut nan = record.clone();
+    nan.t[7] = f64::NAN;
+    assert!(matches!(refused(&nan), ReductionError::Time { sample: 8, .. }));
+    let mut blind = record;
+    blind.f_z[0].fill(f64::NAN);
+    assert!(matches!(refused(&blind), ReductionError::TooShort { found: 0, .. }));
+}

@@ -1,0 +1,90 @@
+use centrical::uncertainty::{Candidate, rivals_of, select};
+use centrical::{ErrorModel, MeasurementModel, Monomial, Term, fit};
+use rayon::prelude::*;
+
+use crate::common::{Random, observations, truth};
+use crate::validity::{session, source_model};
+
+const SPEED: f64 = 1e-5;
+const SESSIONS: u64 = 100;
+
+/// The source's model with `extra`.
+fn with(extra: &[Term]) -> MeasurementModel {
+    let mut error_model = ErrorModel::kozlov_2017();
+    error_model.terms.extend_from_slice(extra);
+    MeasurementModel::new(source_model().experiment().clone(), error_model, &[])
+}
+
+fn cross() -> Term {
+    Term { name: "K_2[f1*f2]".to_owned(), group: "cross-coupling", axis: 1, monomial: Monomial::product(0, 1) }
+}
+
+/// A term of five standard uncertainties is kept at least 95 times in 100, an absent one rejected at least 95 times: by
+/// the model recommended and by the verdict on the term; a term of the preset (`G2_22`) as well as a further one.
+#[test]
+fn five_sigma_is_kept_and_nothing_is_rejected() {
+    let (plain, rich) = (source_model(), with(&[cross()]));
+    let mut lean_terms = ErrorModel::kozlov_2017();
+    lean_terms.terms.retain(|t| t.name != "G2_22");
+    let lean = MeasurementModel::new(plain.experiment().clone(), lean_terms, &[]);
+    for (smaller, larger, term) in [(&plain, &rich, "K_2[f1*f2]"), (&lean, &plain, "G2_22")] {
+        let j = larger.parameters().find(term).unwrap();
+        let size = {
+            let x = truth(larger, 0.0, &mut Random::new(1));
+            let fit = fit::exact(larger, &observations(larger, &x), SPEED).unwrap();
+            5.0 * fit.standard_uncertainty(j).unwrap()
+        };
+        for present in [true, false] {
+            let right: Vec<(bool, bool)> = (0..SESSIONS)
+                .into_par_iter()
+                .map(|seed| {
+                    let mut random = Random::new(1000 + seed);
+                    let mut x = truth(larger, 1.0, &mut random);
+                    x[j] = if present { size } else { 0.0 };
+                    let data = session(larger, &x, &mut random);
+                    let candidates =
+                        [smaller, larger].map(|model| Candidate { name: String::new(), model: model.clone() });
+                    let selection = select(&candidates, &data, SPEED).unwrap();
+                    let verdict = selection.terms.iter().find(|t| t.name == term).unwrap();
+                    ((selection.recommended == 1) == present, verdict.kept == present)
+                })
+                .collect();
+            let recommended = right.iter().filter(|r| r.0).count();
+            let judged = right.iter().filter(|r| r.1).count();
+            assert!(recommended >= 95 && judged >= 95, "{term}, present {present}: {recommended}, {judged} of 100");
+        }
+    }
+}
+
+/// The usual rivals of a session of the source's unit: the source's model is recommended, the poorer ones are far off,
+/// and the richer ones bring nothing.
+#[test]
+fn the_true_model_is_recommended() {
+    let (model, mut random) = (source_model(), Random::new(21));
+    let data = session(&model, &truth(&model, 1.0, &mut random), &mut random);
+    let selection = select(&rivals_of(&model), &data, SPEED).unwrap();
+    let names: Vec<&str> = selection.rivals.iter().map(|r| r.name.as_str()).collect();
+    assert_eq!(names.len(), 7, "{names:?}");
+    assert_eq!(names[selection.recommended], "as stated");
+    let best = &selection.rivals[selection.recommended];
+    for rival in &selection.rivals {
+        assert!(rival.hold_out_score >= best.hold_out_score - 0.05, "{}: {}", rival.name, rival.hold_out_score);
+        if rival.unknowns < best.unknowns {
+            assert!(rival.hold_out_score > 2.0 * best.hold_out_score, "{}: {}", rival.name, rival.hold_out_score);
+        }
+        if rival.unknowns > best.unknowns {
+            let test = rival.against.unwrap();
+            assert_eq!(names[test.nested], "as stated");
+            assert!(test.probability > 1e-3, "{}: {test:?}", rival.name);
+        }
+    }
+    assert!(best.against.unwrap().probability < 1e-12);
+}
+
+/// A session with no rival at all is refused.
+#[test]
+fn no_candidate_is_an_error() {
+    let model = source_model();
+    let data = observations(&model, &truth(&model, 1.0, &mut Random::new(3)));
+    assert!(select(&[], &data, SPEED).is_err());
+}

@@ -1,0 +1,206 @@
+use centrical::position::ThirdPosition::AxisOneUp;
+use centrical::uncertainty::{Budget, Degrees, Method, MonteCarlo, Settings, Source, TypeB, monte_carlo};
+use centrical::{Fit, MeasurementModel, Observation, PairRelation, fit};
+
+use crate::common::{Random, experiment, kozlov, observations, truth};
+
+const SPEED: f64 = 1e-5;
+
+/// What a good laboratory states.
+pub const STATED: TypeB = TypeB {
+    gravity: 1e-6,
+    latitude: 1e-5,
+    radius: 20e-6,
+    radius_difference: Some(3e-6),
+    speed_scale: 1e-6,
+    rest_angle: 5e-5,
+    proof_masses: 20e-6,
+    attitude: 2e-5,
+    resolution: 1e-5,
+    doubt: 0.0,
+};
+
+pub struct Case {
+    pub model: MeasurementModel,
+    pub truth: Vec<f64>,
+    pub observations: Vec<Observation>,
+}
+
+impl Case {
+    pub fn new(relation: PairRelation) -> Self {
+        let model = kozlov(experiment(AxisOneUp, relation, &[1.0, 0.5]));
+        let truth = truth(&model, 1.0, &mut Random::new(1));
+        let observations = observations(&model, &truth);
+        Self { model, truth, observations }
+    }
+
+    fn fit(&self) -> Fit {
+        fit::exact(&self.model, &self.observations, SPEED).unwrap()
+    }
+
+    fn budget(&self, stated: &TypeB) -> Budget {
+        Budget::new(&self.fit(), &self.model, &self.observations, SPEED, stated).unwrap()
+    }
+
+    pub fn monte_carlo(&self, runs: usize, stated: TypeB, method: Method) -> MonteCarlo {
+        let settings = Settings { runs, seed: 1, coverage: 0.95, method, stated };
+        monte_carlo(&self.model, &self.truth, &self.observations, SPEED, &settings, &|_| {}).unwrap()
+    }
+}
+
+/// With nothing stated the budget is the covariance of the fit, split into noise and speed.
+#[test]
+fn budget_of_the_weights_is_the_covariance_of_the_fit() {
+    for (relation, determined) in [(PairRelation::Common, 49), (PairRelation::Opposite, 43)] {
+        let case = Case::new(relation);
+        let (fit, budget) = (case.fit(), case.budget(&TypeB::default()));
+        assert_eq!(budget.contributions().len(), 2);
+        let pairs: Vec<(usize, usize)> = (0..49).flat_map(|i| (0..49).map(move |j| (i, j))).collect();
+        let compared = pairs.iter().filter(|&&(i, j)| {
+            let (Some(own), Some(fitted)) = (budget.covariance(i, j), fit.covariance(i, j)) else {
+                assert_eq!(budget.covariance(i, j), fit.covariance(i, j));
+                return false;
+            };
+            let scale = fit.standard_uncertainty(i).unwrap() * fit.standard_uncertainty(j).unwrap();
+            // The speed's effect is a difference over one standard uncertainty here, a derivative there.
+            assert!((own - fitted).abs() < 1e-6 * scale, "{i} {j}: {own:e} {fitted:e}");
+            true
+        });
+        assert_eq!(compared.count(), determined * determined);
+    }
+}
+
+/// A contribution is what really happens to the estimates: the plateaus of an experiment that is off by one standard
+/// uncertainty are fitted as if it were not.
+#[test]
+fn contributions_are_what_a_refit_shows() {
+    let case = Case::new(PairRelation::Common);
+    let shift = |change: &dyn Fn(&mut centrical::Experiment, f64)| -> Vec<f64> {
+        let estimate = |sign: f64| {
+            let mut experiment = case.model.experiment().clone();
+            change(&mut experiment, sign);
+            let readings = observations(&case.model.in_experiment(experiment), &case.truth);
+            fit::exact(&case.model, &readings, SPEED).unwrap().state().to_vec()
+        };
+        estimate(1.0).iter().zip(estimate(-1.0)).map(|(up, down)| 0.5 * (up - down)).collect()
+    };
+    let gravity = |e: &mut centrical::Experiment, sign: f64| e.site.gravity += sign * STATED.gravity;
+    let scale = |e: &mut centrical::Experiment, sign: f64| {
+        e.set_points.iter_mut().for_each(|s| s.omega *= 1.0 + sign * STATED.speed_scale);
+    };
+    let common = (STATED.radius.powi(2) - 0.5 * STATED.radius_difference.unwrap().powi(2)).sqrt();
+    let radius = |e: &mut centrical::Experiment, sign: f64| {
+        e.mountings.iter_mut().for_each(|m| m.arm_y.x += sign * common);
+    };
+    let cases: [(Source, Vec<f64>); 3] =
+        [(Source::Gravity, shift(&gravity)), (Source::SpeedScale, shift(&scale)), (Source::Radius, shift(&radius))];
+    let budget = case.budget(&STATED);
+    for (source, shifts) in cases {
+        let contribution = budget.contributions().iter().find(|c| c.source == source).unwrap();
+        for (j, shift) in shifts.iter().enumerate() {
+            let (stated, u) = (contribution.standard_uncertainty(j), budget.standard_uncertainty(j).unwrap());
+            assert!((stated - shift.abs()).abs() < 1e-4 * u, "{source:?} {j}: {stated:e} {shift:e} of {u:e}");
+        }
+    }
+}
+
+/// What the radii leave is judged by what is stated of them: a radius error common to all seats is a shift of `dR_1`
+/// and of nothing else, a difference is not.
+#[test]
+fn radii_are_common_and_different() {
+    let case = Case::new(PairRelation::Common);
+    let budget = case.budget(&STATED);
+    let of = |source| budget.contributions().iter().find(|c| c.source == source).unwrap();
+    for (j, parameter) in case.model.parameters().iter().enumerate() {
+        let (common, u) = (of(Source::Radius).standard_uncertainty(j), budget.standard_uncertainty(j).unwrap());
+        if parameter.name.starts_with("dR_1") {
+            assert!((common / STATED.radius - 1.0).abs() < 0.02, "{}", parameter.name);
+        } else {
+            assert!(common < 1e-6 * u, "{}: {common:e} of {u:e}", parameter.name);
+        }
+    }
+    let scale = case.model.parameters().find("G2_33").unwrap();
+    assert!(
+        of(Source::RadiusDifference).standard_uncertainty(scale) > 0.1 * budget.standard_uncertainty(scale).unwrap()
+    );
+}
+
+/// What an improvement promises is what the budget without the source says.
+#[test]
+fn improvements_are_kept() {
+    let case = Case::new(PairRelation::Common);
+    let budget = case.budget(&STATED);
+    let instrument: Vec<usize> = (28..49).collect();
+    let improvements = budget.improvements(&instrument);
+    assert!(improvements.windows(2).all(|w| w[0].share >= w[1].share));
+    let total: f64 = improvements.iter().map(|i| i.share).sum();
+    assert!((total - 1.0).abs() < 1e-9, "{total}");
+    let without = case.budget(&TypeB { radius_difference: Some(0.0), ..STATED });
+    let promised = improvements.iter().find(|i| i.source == Source::RadiusDifference).unwrap();
+    let ratio = |j| without.standard_uncertainty(j).unwrap() / budget.standard_uncertainty(j).unwrap();
+    assert!((ratio(promised.most) - promised.most_factor).abs() < 1e-6);
+    let mean = instrument.iter().map(|&j| ratio(j)).sum::<f64>() / 21.0;
+    assert!((mean - promised.mean_factor).abs() < 1e-6, "{mean} {}", promised.mean_factor);
+}
+
+/// Degrees of freedom: infinite when everything is taken as exact; those of the fit when the residuals scale type A
+/// and nothing is stated; from the doubt of type B otherwise.
+#[test]
+fn degrees_of_freedom_follow_what_is_known() {
+    let case = Case::new(PairRelation::Common);
+    let mut noisy = case.observations.clone();
+    let mut random = Random::new(5);
+    for o in &mut noisy {
+        o.mean += nalgebra::Vector3::from_fn(|_, _| 1e-4 * random.normal());
+    }
+    let fit = fit::exact(&case.model, &noisy, SPEED).unwrap();
+    let budget = |stated: &TypeB| Budget::new(&fit, &case.model, &noisy, SPEED, stated).unwrap();
+    assert_eq!(budget(&STATED).degrees_of_freedom(30), Some(Degrees::Infinite));
+    let scaled = budget(&TypeB::default()).scaled_by_residuals(&fit);
+    let Some(Degrees::Finite(nu)) = scaled.degrees_of_freedom(30) else { panic!("finite") };
+    assert!((nu - 275.0).abs() < 1e-9, "{nu}");
+    let ratio = scaled.standard_uncertainty(30).unwrap() / budget(&TypeB::default()).standard_uncertainty(30).unwrap();
+    assert!((ratio - fit.reduced_chi_squared().unwrap().sqrt()).abs() < 1e-12);
+    // delta_1[5] is nearly all attitude, so nearly 8 degrees of freedom at a doubt of a quarter.
+    let turn = case.model.parameters().find("delta_1[5]").unwrap();
+    let doubtful = budget(&TypeB { doubt: 0.25, ..STATED });
+    let Some(Degrees::Finite(nu)) = doubtful.degrees_of_freedom(turn) else { panic!("finite") };
+    assert!((8.0..8.02).contains(&nu), "{nu}");
+}
+
+/// The outcome is the same to the bit for any number of threads, and another for another seed.
+#[test]
+fn monte_carlo_does_not_depend_on_threads() {
+    let case = Case::new(PairRelation::Opposite);
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| case.monte_carlo(300, STATED, Method::Exact))
+    };
+    let one = on(1);
+    assert_eq!(one.runs, 300);
+    assert_eq!(one.parameters.iter().flatten().count(), 43);
+    assert_eq!(one, on(3));
+    let settings = Settings { runs: 300, seed: 2, coverage: 0.95, method: Method::Exact, stated: STATED };
+    let other = monte_carlo(&case.model, &case.truth, &case.observations, SPEED, &settings, &|_| {}).unwrap();
+    assert_ne!(one, other);
+}
+
+/// Priors are a contribution of their own, with which the budget is the covariance of the fit again; and where the true
+/// values come from the prior, the intervals cover them.
+#[test]
+fn priors_are_part_of_the_budget() {
+    let mut case = Case::new(PairRelation::Opposite);
+    case.model = case.model.clone().with_prior("drho", 1e-4).unwrap();
+    let (fit, budget) = (case.fit(), case.budget(&TypeB::default()));
+    assert!(budget.contributions().iter().any(|c| c.source == Source::Priors));
+    for j in 0..49 {
+        let ratio = budget.standard_uncertainty(j).unwrap() / fit.standard_uncertainty(j).unwrap();
+        assert!((ratio - 1.0).abs() < 1e-6, "{j}: {ratio}");
+    }
+    let monte_carlo = case.monte_carlo(300, TypeB::default(), Method::Exact);
+    for p in monte_carlo.parameters.iter().flatten() {
+        // Five standard deviations of chance.
+        assert!((p.standard_deviation / p.stated - 1.0).abs() < 5.0 / 600.0_f64.sqrt(), "{p:?}");
+        assert!((p.coverage - 0.95).abs() < 5.0 * (0.95 * 0.05 / 300.0_f64).sqrt(), "{p:?}");
+    }
+}

@@ -1,0 +1,14 @@
+//! Numbers that others have published or computed independently: the source's printed formulas, and the ranks of the
+//! model notes.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod conditions;
+mod gum;
+mod nbs14;
+mod normalised;
+mod printed;
+mod rank_table;
+mod square_root;
+mod strd;
