@@ -1,0 +1,63 @@
+//! How long one waits for the compensation of a record in memory.
+
+use centrical_compensate::{Compensation, Term};
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+
+/// Ten minutes at 10 kHz.
+const READINGS: usize = 6_000_000;
+
+fn main() {
+    divan::main();
+}
+
+/// The source's model with coefficients of ordinary size: 1e-3, 1e-5 /g, 1e-7 /g^2.
+fn kozlov() -> Vec<Term> {
+    let mut terms = Vec::new();
+    for i in 0..3 {
+        terms.push(Term::power(i, i, 0, 0.05));
+        terms.extend((0..=i).map(|j| Term::power(i, j, 1, 1e-3)));
+        terms.extend((0..3).map(|j| Term::power(i, j, 2, 1e-6)));
+        terms.push(Term::power(i, i, 3, 1e-9));
+    }
+    terms
+}
+
+/// The same and a product of components: no fast form.
+fn with_products() -> Vec<Term> {
+    let mut terms = kozlov();
+    terms.push(Term { axis: 0, powers: [1, 1, 0], sign_of: None, coefficient: 1e-6 });
+    terms
+}
+
+/// Readings over 200 g.
+fn readings() -> [Vec<f64>; 3] {
+    [3999, 4001, 4003].map(|period| (0..READINGS).map(|k| (k % period) as f64 - 2000.0).map(|f| 0.97 * f).collect())
+}
+
+fn in_place(f: &mut [Vec<f64>; 3]) -> [&mut [f64]; 3] {
+    f.each_mut().map(Vec::as_mut_slice)
+}
+
+#[divan::bench(sample_count = 20, args = [kozlov as fn() -> Vec<Term>, with_products])]
+fn one_thread(bencher: Bencher, terms: fn() -> Vec<Term>) {
+    let terms = terms();
+    let compensation = Compensation::new(&terms, 2000.0).unwrap();
+    let bencher = bencher.counter(ItemsCount::new(READINGS)).with_inputs(readings);
+    bencher.bench_local_refs(|f| compensation.apply_all(in_place(f)).unwrap());
+}
+
+#[divan::bench(sample_count = 20)]
+fn all_threads(bencher: Bencher) {
+    let terms = kozlov();
+    let compensation = Compensation::new(&terms, 2000.0).unwrap();
+    let bencher = bencher.counter(ItemsCount::new(READINGS)).with_inputs(readings);
+    bencher.bench_local_refs(|f| compensation.apply_all_parallel(in_place(f)).unwrap());
+}
+
+/// What the memory alone allows: every number read, and written.
+#[divan::bench(sample_count = 20)]
+fn reference_scaling_in_place(bencher: Bencher) {
+    let bencher = bencher.counter(ItemsCount::new(READINGS)).with_inputs(readings);
+    bencher.bench_local_refs(|f| f.iter_mut().flatten().for_each(|f| *f *= black_box(1.000_001)));
+}

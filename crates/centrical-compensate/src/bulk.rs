@@ -1,0 +1,105 @@
+//! Many readings at once: in place, an array per axis, in vectors and on all cores where there is `std`.
+
+use crate::compensation::Compensation;
+use crate::error::UnequalLengths;
+
+/// Readings of a bulk that no specific force within the range gives; they are NaN on all axes afterwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Outside {
+    /// How many.
+    pub count: usize,
+    /// Index of the first.
+    pub first: Option<usize>,
+}
+
+/// Readings worked on together: long enough for any vectors, short enough to stay in the first-level cache.
+const LANES: usize = 64;
+
+impl Compensation<'_> {
+    /// Takes readings `f'` [m/s^2], an array per axis, to specific forces [m/s^2] in place. Each becomes what
+    /// [`Compensation::apply`] makes of it; where that is an error, NaN on all axes, and it is counted.
+    ///
+    /// # Errors
+    /// [`UnequalLengths`] when the arrays are not of one length; nothing is touched then.
+    pub fn apply_all(&self, f: [&mut [f64]; 3]) -> Result<Outside, UnequalLengths> {
+        check(&f)?;
+        Ok(self.sweep(f))
+    }
+
+    /// [`Compensation::apply_all`] on all threads of the current rayon pool. The same bytes for any number of them.
+    ///
+    /// # Errors
+    /// As [`Compensation::apply_all`].
+    #[cfg(feature = "std")]
+    pub fn apply_all_parallel(&self, f: [&mut [f64]; 3]) -> Result<Outside, UnequalLengths> {
+        use rayon::prelude::*;
+        /// Readings in a task: 384 KiB, some tenths of a millisecond.
+        const TASK: usize = 16 * 1024;
+        check(&f)?;
+        let [f1, f2, f3] = f.map(|f| f.par_chunks_mut(TASK));
+        let outside =
+            f1.zip(f2).zip(f3).enumerate().map(|(n, ((f1, f2), f3))| self.sweep([f1, f2, f3]).after(n * TASK));
+        Ok(outside.reduce(Outside::default, Outside::and))
+    }
+
+    /// With the widest vectors of the machine. They add and multiply as single numbers do, and nothing is fused.
+    #[cfg(feature = "std")]
+    fn sweep(&self, f: [&mut [f64]; 3]) -> Outside {
+        struct Sweep<'a, 't>(&'a Compensation<'t>, [&'a mut [f64]; 3]);
+        impl pulp::WithSimd for Sweep<'_, '_> {
+            type Output = Outside;
+
+            #[inline(always)]
+            fn with_simd<S: pulp::Simd>(self, _: S) -> Outside {
+                self.0.sweep_blocks(self.1)
+            }
+        }
+        pulp::Arch::new().dispatch(Sweep(self, f))
+    }
+
+    #[cfg(not(feature = "std"))]
+    fn sweep(&self, f: [&mut [f64]; 3]) -> Outside {
+        self.sweep_blocks(f)
+    }
+
+    #[inline(always)]
+    fn sweep_blocks(&self, f: [&mut [f64]; 3]) -> Outside {
+        let mut outside = Outside::default();
+        let [f1, f2, f3] = f.map(|f| f.chunks_mut(LANES));
+        for (n, ((f1, f2), f3)) in f1.zip(f2).zip(f3).enumerate() {
+            let mut lanes = [[0.0; LANES]; 3];
+            let length = f1.len();
+            for (lane, f) in lanes.iter_mut().zip([&*f1, &*f2, &*f3]) {
+                lane[..length].copy_from_slice(f);
+            }
+            self.invert(&mut lanes);
+            for (lane, f) in lanes.iter().zip([f1, f2, f3]) {
+                f.copy_from_slice(&lane[..length]);
+            }
+            outside = outside.and(Outside::of(&lanes[0][..length]).after(n * LANES));
+        }
+        outside
+    }
+}
+
+impl Outside {
+    fn of(f: &[f64]) -> Self {
+        let count = f.iter().filter(|f| f.is_nan()).count();
+        Self { count, first: if count > 0 { f.iter().position(|f| f.is_nan()) } else { None } }
+    }
+
+    /// The same, of readings that come after `earlier` others.
+    fn after(self, earlier: usize) -> Self {
+        Self { first: self.first.map(|first| first + earlier), ..self }
+    }
+
+    /// These and later ones.
+    fn and(self, later: Self) -> Self {
+        Self { count: self.count + later.count, first: self.first.or(later.first) }
+    }
+}
+
+fn check(f: &[&mut [f64]; 3]) -> Result<(), UnequalLengths> {
+    let lengths = [f[0].len(), f[1].len(), f[2].len()];
+    if lengths[0] == lengths[1] && lengths[1] == lengths[2] { Ok(()) } else { Err(UnequalLengths { lengths }) }
+}

@@ -1,0 +1,78 @@
+//! Why readings cannot be compensated.
+
+use thiserror::Error;
+
+use crate::certificate::GAIN_CHANGE_LIMIT;
+
+/// Why an error model has no certain inverse over a range.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum NotInvertible {
+    /// A term acts on, or takes the sign of, an axis that is not there.
+    #[error("term {term}: found axis {axis}, expected 0, 1 or 2")]
+    Axis {
+        /// Index of the term.
+        term: usize,
+        /// The axis.
+        axis: usize,
+    },
+    /// A coefficient is no number.
+    #[error("term {term}: found coefficient {coefficient}, expected a finite number")]
+    Coefficient {
+        /// Index of the term.
+        term: usize,
+        /// The coefficient.
+        coefficient: f64,
+    },
+    /// A term takes the sign of a component without being zero where the component is: the reading jumps there.
+    #[error(
+        "term {term}: found the sign of f{} without a power of it, expected a term without a jump",
+        axis + 1
+    )]
+    Jump {
+        /// Index of the term.
+        term: usize,
+        /// The component.
+        axis: usize,
+    },
+    /// The range is none.
+    #[error("range: found {range} m/s^2, expected a positive finite number")]
+    Range {
+        /// The range [m/s^2].
+        range: f64,
+    },
+    /// The gain at zero is singular: the unit does not see some direction.
+    #[error("the gain at zero is singular: the readings do not show all three components")]
+    Singular,
+    /// The non-linear terms are too strong for the range.
+    #[error(
+        "over twice the range the gain changes by up to {gain_change:.3} of the gain at zero, expected at most \
+         {GAIN_CHANGE_LIMIT:.3}: the inverse is certain over {factor:.3} of this range"
+    )]
+    TooNonlinear {
+        /// Bound on the change of gain.
+        gain_change: f64,
+        /// Part of the range over which the inverse is certain.
+        factor: f64,
+    },
+}
+
+/// A reading that no specific force within the range gives.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error(
+    "reading ({}, {}, {}) m/s^2: expected that of a specific force within {range} m/s^2 on each axis",
+    reading[0], reading[1], reading[2]
+)]
+pub struct OutOfRange {
+    /// The reading [m/s^2].
+    pub reading: [f64; 3],
+    /// The range [m/s^2].
+    pub range: f64,
+}
+
+/// Readings of the three axes that do not belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("found {}, {} and {} readings on axes 1, 2, 3, expected as many on each", lengths[0], lengths[1], lengths[2])]
+pub struct UnequalLengths {
+    /// Readings on each axis.
+    pub lengths: [usize; 3],
+}

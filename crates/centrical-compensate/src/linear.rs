@@ -1,0 +1,66 @@
+//! The affine part of the error model and its inverse, and the algebra of three dimensions.
+
+use crate::term::Term;
+
+/// `f' = A f + b`: the reading without its non-linear terms, and `C = A^-1`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Linear {
+    /// `b` [m/s^2].
+    pub bias: [f64; 3],
+    /// `A`, by rows.
+    pub gain: [[f64; 3]; 3],
+    /// `C`, by rows.
+    pub inverse: [[f64; 3]; 3],
+}
+
+impl Linear {
+    /// The affine part of the model with `terms`; none if its gain has no finite inverse.
+    pub(crate) fn of(terms: &[Term]) -> Option<Self> {
+        let mut bias = [0.0; 3];
+        let mut gain = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        for term in terms.iter().filter(|term| is_affine(term)) {
+            match term.powers.iter().position(|p| *p == 1) {
+                Some(j) => gain[term.axis][j] += term.coefficient,
+                None => bias[term.axis] += term.coefficient,
+            }
+        }
+        let [a, b, c] = gain;
+        // The columns of the inverse are the cross products of the rows over the determinant.
+        let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
+        let determinant = dot(a, bc);
+        let inverse = [0, 1, 2].map(|i| [bc[i] / determinant, ca[i] / determinant, ab[i] / determinant]);
+        inverse.as_flattened().iter().all(|c| c.is_finite()).then_some(Self { bias, gain, inverse })
+    }
+
+    /// `C (f' - b)`.
+    #[inline(always)]
+    pub(crate) fn invert(&self, reading: [f64; 3]) -> [f64; 3] {
+        let d = [reading[0] - self.bias[0], reading[1] - self.bias[1], reading[2] - self.bias[2]];
+        [dot(self.inverse[0], d), dot(self.inverse[1], d), dot(self.inverse[2], d)]
+    }
+}
+
+/// Whether a term is constant or linear, without a kink.
+pub(crate) fn is_affine(term: &Term) -> bool {
+    term.degree() <= 1 && term.sign_of.is_none()
+}
+
+/// Solves `g x = d` by Cramer's rule, `g` given by columns. Backward stable enough for a Newton step, whose own
+/// error the next step removes, and without a branch, so that it goes into vectors.
+#[inline(always)]
+pub(crate) fn solve(g: [[f64; 3]; 3], d: [f64; 3]) -> [f64; 3] {
+    let [a, b, c] = g;
+    let bc = cross(b, c);
+    let scale = 1.0 / dot(a, bc);
+    [dot(d, bc) * scale, dot(d, cross(c, a)) * scale, dot(d, cross(a, b)) * scale]
+}
+
+#[inline(always)]
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

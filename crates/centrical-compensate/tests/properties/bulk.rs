@@ -1,0 +1,90 @@
+use centrical_compensate::{Compensation, Outside, UnequalLengths, reading};
+use proptest::prelude::*;
+
+use crate::models::{Model, everything, kozlov};
+
+/// Readings of the model, some of them from beyond its range and one that is no number, by axes.
+fn readings(model: &Model, count: usize) -> [Vec<f64>; 3] {
+    let mut columns = [const { Vec::new() }; 3];
+    for k in 0..count {
+        // A low-discrepancy walk through 1.01 times the range.
+        let u = [0.618_034, 0.414_214, 0.732_051].map(|step: f64| 1.01 * (2.0 * (k as f64 * step).fract() - 1.0));
+        let mut read = reading(&model.terms, model.at(u));
+        if k == 70 {
+            read[1] = f64::NAN;
+        }
+        for (column, f) in columns.iter_mut().zip(read) {
+            column.push(f);
+        }
+    }
+    columns
+}
+
+fn slices(f: &mut [Vec<f64>; 3]) -> [&mut [f64]; 3] {
+    f.each_mut().map(Vec::as_mut_slice)
+}
+
+/// What single readings become, and which of them have no answer.
+fn one_by_one(compensation: &Compensation, f: &[Vec<f64>; 3]) -> ([Vec<f64>; 3], Outside) {
+    let mut answer = f.clone();
+    let mut outside = Outside::default();
+    for k in 0..f[0].len() {
+        let one = compensation.apply([f[0][k], f[1][k], f[2][k]]).unwrap_or_else(|_| {
+            outside = Outside { count: outside.count + 1, first: outside.first.or(Some(k)) };
+            [f64::NAN; 3]
+        });
+        for (column, f) in answer.iter_mut().zip(one) {
+            column[k] = f;
+        }
+    }
+    (answer, outside)
+}
+
+fn bits(f: &[Vec<f64>; 3]) -> Vec<u64> {
+    f.iter().flatten().map(|f| f.to_bits()).collect()
+}
+
+/// Many readings become, to the bit, what each becomes alone: in any vectors, by any number of threads.
+fn bulk_is_each_alone(model: &Model, count: usize) -> Result<(), TestCaseError> {
+    let compensation = Compensation::new(&model.terms, model.range).unwrap();
+    let f = readings(model, count);
+    let (expected, outside) = one_by_one(&compensation, &f);
+    let mut swept = f.clone();
+    prop_assert_eq!(compensation.apply_all(slices(&mut swept)), Ok(outside));
+    prop_assert!(bits(&swept) == bits(&expected));
+    #[cfg(feature = "std")]
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut swept = f.clone();
+        prop_assert_eq!(pool.install(|| compensation.apply_all_parallel(slices(&mut swept))), Ok(outside));
+        prop_assert!(bits(&swept) == bits(&expected), "{threads} threads");
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    #[test]
+    fn fast_form(model in kozlov(), count in 0..300_usize) {
+        bulk_is_each_alone(&model, count)?;
+    }
+
+    #[test]
+    fn any_form(model in everything(), count in 0..300_usize) {
+        bulk_is_each_alone(&model, count)?;
+    }
+
+    /// More than one task of the parallel form, and a last one that is cut short.
+    #[test]
+    fn several_tasks(model in kozlov(), count in 40_000..60_000_usize) {
+        bulk_is_each_alone(&model, count)?;
+    }
+}
+
+#[test]
+fn unequal_lengths_are_refused() {
+    let compensation = Compensation::new(&[], 1.0).unwrap();
+    let mut f = [vec![0.5; 4], vec![0.5; 3], vec![0.5; 4]];
+    assert_eq!(compensation.apply_all(slices(&mut f)), Err(UnequalLengths { lengths: [4, 3, 4] }));
+}

@@ -1,0 +1,6 @@
+//! Identities that must hold for any coefficients: round trips, uniqueness, bulk against single readings.
+
+mod bulk;
+mod certificate;
+mod models;
+mod round_trip;
