@@ -1,0 +1,66 @@
+//! Session folders and records in, calibration results out.
+//!
+//! Inputs are of any make: nothing in a file can make this crate panic, hang or fill the memory. What is
+//! wrong with a file is an [`Error`] with the file, the place, what was found and what was expected.
+//!
+//! # Formats of records and telemetry
+//! | format | columns |
+//! |---|---|
+//! | text, also in gzip or Zstandard: any delimiter, decimal commas, comments | by name, or by number without a header |
+//! | Parquet (uncompressed, snappy, gzip, lz4, zstd) | by name or number |
+//! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number |
+//! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
+//! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
+//!
+//! The format is told by the first bytes. Time is a number in a unit, a count of samples at a rate, or (text and
+//! Parquet) a stamp. It never decreases; it may stand still.
+
+mod calibration;
+mod compensate;
+mod error;
+mod input;
+mod laboratory;
+mod observation;
+mod overview;
+mod plateaus;
+mod quantity;
+mod record;
+mod record_writer;
+mod reduce;
+mod result;
+mod session;
+mod simulate;
+mod table;
+mod watch;
+mod write;
+
+pub use calibration::{Method, PlateauName, Problem, calibrate, calibrate_without};
+pub use compensate::{Compensated, FirstOutside, compensate_record};
+pub use error::{Error, Place};
+pub use input::Input;
+pub use laboratory::{
+    Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
+    LaboratoryTable, Limit, MethodTable, Person, Standard,
+};
+pub use observation::{
+    CombinationReport, ConditionReport, Design, GroupReport, LostCombination, OBSERVATION_SCHEMA, ObservationReport,
+    ObservedParameter, PairReport, RemedyReport, SightReport, StepReport,
+};
+pub use overview::RecordOverview;
+pub use plateaus::{PlateauMean, read_plateaus, write_plateaus};
+pub use quantity::{Dimension, NotThatQuantity, Quantity};
+pub use record::{Column, Columns, Record, RecordBlock, Scale, Telemetry};
+pub use record_writer::RecordWriter;
+pub use reduce::{MountingFindings, Reduced, ReducedPlateau};
+pub use result::{
+    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, ModelSummary, MountingSummary,
+    NoErrorModel, ObservabilitySummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program,
+    SCHEMA, SessionSummary, StabilityCurve, TermSummary,
+};
+pub use session::{MountingFiles, Noise, Plan, PlateauTable, Session};
+pub use simulate::{TableFormat, Truth, simulate_session};
+pub use table::ColumnName;
+pub use watch::{
+    HistoryEntry, HistoryEstimate, InnovationSummary, Watch, WatchState, WatchedPlateau, append_history, keep_history,
+};
+pub use write::{create_folder, write_whole};

@@ -1,0 +1,174 @@
+//! From a session's files to plateau means: the part of the work that is proportional to the data.
+
+use std::path::Path;
+
+use centrical::reduction::{
+    ClockOffset, NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, SpeedTrace, reduce,
+};
+use centrical::{Observation, linear};
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+
+use crate::error::Error;
+use crate::input::Input;
+use crate::overview::RecordOverview;
+use crate::plateaus::PlateauMean as TabledPlateau;
+use crate::session::Session;
+
+/// A session's plateau means, and the files they come from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reduced {
+    /// One for each of the experiment's set points, in the same order.
+    pub plateaus: Vec<ReducedPlateau>,
+    /// What each mounting's record tells beside; empty for a session that came already averaged.
+    pub mountings: Vec<MountingFindings>,
+    /// Indices of plateaus that are not to be fitted.
+    pub held_out: Vec<usize>,
+    /// What each mounting's record looks like; empty for a session that came already averaged.
+    pub records: Vec<RecordOverview>,
+    /// The session's files.
+    pub inputs: Vec<Input>,
+}
+
+/// What a mounting's record tells beside its means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MountingFindings {
+    /// Time constant of the settling after a ramp [s]; none if no settling was seen.
+    pub settling_time: Option<f64>,
+    /// The centrifuge's clock against the unit's; none without telemetry, or if no ramp is in both.
+    pub clock_offset: Option<ClockOffset>,
+}
+
+/// The mean reading of a plateau and what it was made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReducedPlateau {
+    /// First and last instant used, the record's clock [s]; none for a plateau that came already averaged.
+    pub window: Option<[f64; 2]>,
+    /// Samples used.
+    pub samples: u64,
+    /// Samples of the window left out.
+    pub rejected: u64,
+    /// Mean reading [m/s^2].
+    pub mean: Vector3<f64>,
+    /// Its covariance [m^2/s^4].
+    pub covariance: Matrix3<f64>,
+    /// Amplitude of the once-per-revolution term [m/s^2]; none at rest and for a plateau that came already averaged.
+    pub once_per_revolution: Option<Vector3<f64>>,
+    /// Median speed by the telemetry [rad/s].
+    pub measured_speed: Option<f64>,
+}
+
+impl Reduced {
+    /// Reads and reduces the records of a session, or takes its plateau table. `done` is told the index of each
+    /// mounting as it is finished, from any thread; the outcome does not depend on their number.
+    ///
+    /// # Errors
+    /// [`Error`] naming the file, the place, what was found and what was expected.
+    pub fn of(session: &Session, done: &(dyn Fn(usize) + Sync)) -> Result<Self, Error> {
+        let mut reduced = match &session.plateaus {
+            Some(table) => Self::of_table(&table.rows),
+            None => from_records(session, done)?,
+        };
+        let folder = session.file.parent().unwrap_or(Path::new(""));
+        let inputs = session.files().into_par_iter().map(|file| Input::of(folder, file));
+        reduced.inputs = inputs.collect::<Result<_, _>>()?;
+        Ok(reduced)
+    }
+
+    /// Plateaus that came already averaged.
+    fn of_table(rows: &[TabledPlateau]) -> Self {
+        Self {
+            plateaus: rows.iter().map(ReducedPlateau::from).collect(),
+            mountings: Vec::new(),
+            records: Vec::new(),
+            held_out: Vec::new(),
+            inputs: Vec::new(),
+        }
+    }
+
+    /// The means as data of a fit, those held out left out.
+    pub fn observations(&self) -> Vec<Observation> {
+        let observation = |(set_point, plateau): (usize, &ReducedPlateau)| Observation {
+            set_point,
+            mean: plateau.mean,
+            covariance: plateau.covariance,
+        };
+        let fitted = self.plateaus.iter().enumerate().filter(|(set_point, _)| !self.held_out.contains(set_point));
+        fitted.map(observation).collect()
+    }
+}
+
+/// Every mounting by itself, then the noise of all of them together, then the covariances.
+fn from_records(session: &Session, done: &(dyn Fn(usize) + Sync)) -> Result<Reduced, Error> {
+    let mountings = 0..session.experiment.mountings.len();
+    let mountings: Vec<(ReducedMounting, RecordOverview)> = mountings
+        .into_par_iter()
+        .map(|mounting| {
+            let reduced = one_mounting(session, mounting);
+            done(mounting);
+            reduced
+        })
+        .collect::<Result<_, _>>()?;
+    let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) = mountings.into_iter().unzip();
+    let noise = NoiseModel::pool(&reduced);
+    let means = reduced.iter().flat_map(|mounting| mounting.means(&noise));
+    let findings =
+        |m: &ReducedMounting| MountingFindings { settling_time: m.settling_time(), clock_offset: m.clock_offset() };
+    Ok(Reduced {
+        plateaus: means.map(ReducedPlateau::from).collect(),
+        mountings: reduced.iter().map(findings).collect(),
+        records,
+        held_out: Vec::new(),
+        inputs: Vec::new(),
+    })
+}
+
+fn one_mounting(session: &Session, mounting: usize) -> Result<(ReducedMounting, RecordOverview), Error> {
+    let experiment = &session.experiment;
+    let schedule: Vec<ScheduledPlateau> = (experiment.set_points.iter())
+        .filter(|set_point| set_point.mounting == mounting)
+        .map(|set_point| ScheduledPlateau { omega: set_point.omega, nominal_z: linear::nominal(experiment, set_point) })
+        .collect();
+    let crate::Record { t, f } = session.record(mounting)?;
+    let record = Record { t, f_z: f };
+    let telemetry = session.telemetry(mounting)?.map(|crate::Telemetry { t, omega }| SpeedTrace { t, omega });
+    let reduced = reduce(&record, telemetry.as_ref(), &schedule).map_err(|source| Error::Reduction {
+        file: session.mountings[mounting].record.clone().unwrap_or_default(),
+        mounting: mounting + 1,
+        source,
+    })?;
+    Ok((reduced, RecordOverview::of(mounting + 1, &record.t, &record.f_z)))
+}
+
+impl From<PlateauMean> for ReducedPlateau {
+    fn from(plateau: PlateauMean) -> Self {
+        Self {
+            window: Some(plateau.window),
+            samples: plateau.samples as u64,
+            rejected: plateau.rejected as u64,
+            mean: plateau.mean,
+            covariance: plateau.covariance,
+            once_per_revolution: amplitude(&plateau.once_per_revolution),
+            measured_speed: plateau.measured_speed,
+        }
+    }
+}
+
+/// Amplitude of a harmonic from its two quadratures; none where there is no harmonic.
+fn amplitude([cosine, sine]: &[Vector3<f64>; 2]) -> Option<Vector3<f64>> {
+    Some(cosine.zip_map(sine, f64::hypot)).filter(|amplitude| *amplitude != Vector3::zeros())
+}
+
+impl From<&TabledPlateau> for ReducedPlateau {
+    fn from(row: &TabledPlateau) -> Self {
+        Self {
+            window: None,
+            samples: row.samples,
+            rejected: 0,
+            mean: row.mean,
+            covariance: row.covariance,
+            once_per_revolution: None,
+            measured_speed: None,
+        }
+    }
+}

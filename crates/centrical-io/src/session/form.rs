@@ -1,0 +1,385 @@
+//! The tables of `experiment.toml` as they are written. Every key is known here: one that is not is an error.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde::de::{self, DeserializeOwned, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
+
+use crate::error::{Error, Place};
+use crate::quantity::Quantity;
+use crate::table::ColumnName;
+
+/// The whole file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Form {
+    /// Path of a table of plateaus already averaged.
+    pub plateaus: Option<String>,
+    /// What is planned, where nothing is measured yet.
+    pub plan: Option<PlanTable>,
+    #[serde(default)]
+    pub session: SessionTable,
+    pub site: SiteTable,
+    pub unit: UnitTable,
+    pub centrifuge: CentrifugeTable,
+    pub model: ModelTable,
+    #[serde(default)]
+    pub uncertainty: UncertaintyTable,
+    #[serde(default)]
+    pub columns: ColumnsTable,
+    #[serde(default)]
+    pub position: Vec<PositionTable>,
+    #[serde(default)]
+    pub mounting: Vec<MountingTable>,
+    /// Standard uncertainties of parameters and groups, by name.
+    #[serde(default)]
+    pub prior: BTreeMap<String, Quantity>,
+}
+
+/// The noise that a plan reckons with.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct PlanTable {
+    pub noise: Option<Quantity>,
+    pub floor: Option<Quantity>,
+    pub duration: Option<Quantity>,
+}
+
+/// A plan of a preset experiment: the whole file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PresetForm {
+    #[serde(default)]
+    pub session: SessionTable,
+    pub plan: PresetTable,
+    #[serde(default)]
+    pub centrifuge: PresetCentrifugeTable,
+    pub model: ModelTable,
+    #[serde(default)]
+    pub prior: BTreeMap<String, Quantity>,
+}
+
+/// A preset experiment. Lengths in units of R* but `arm`, which is R*.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PresetTable {
+    pub preset: String,
+    pub axis_1: Option<String>,
+    pub radii: Option<Vec<f64>>,
+    pub levels: Option<Vec<f64>>,
+    pub rest_angles: Option<Vec<Quantity>>,
+    pub proof_masses: Option<[[f64; 3]; 3]>,
+    pub arm: Option<Quantity>,
+    pub gravity: Option<Quantity>,
+    pub noise: Option<Quantity>,
+    pub floor: Option<Quantity>,
+    pub duration: Option<Quantity>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PresetCentrifugeTable {
+    pub speed_uncertainty: Option<Quantity>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct SessionTable {
+    pub title: String,
+    #[serde(deserialize_with = "date_as_text")]
+    pub date: String,
+    pub text: String,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SiteTable {
+    pub gravity: Quantity,
+    pub latitude: Option<Quantity>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct UnitTable {
+    #[serde(default)]
+    pub model: String,
+    #[serde(default)]
+    pub serial: String,
+    pub output_unit: String,
+    pub counts: Option<CountsTable>,
+    pub proof_masses: [[Quantity; 3]; 3],
+    pub reference: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CountsTable {
+    /// Counts per m/s^2.
+    pub scale: [f64; 3],
+    /// Counts at no specific force.
+    pub bias: [f64; 3],
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CentrifugeTable {
+    pub speed_uncertainty: Quantity,
+    pub rotation: String,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct UncertaintyTable {
+    pub gravity: Option<Quantity>,
+    pub latitude: Option<Quantity>,
+    pub radius: Option<Quantity>,
+    pub radius_difference: Option<Quantity>,
+    pub speed_scale: Option<Quantity>,
+    pub plateau_speed: Option<Quantity>,
+    pub rest_angle: Option<Quantity>,
+    pub proof_masses: Option<Quantity>,
+    pub attitude: Option<Quantity>,
+    pub resolution: Option<Quantity>,
+    pub doubt: Option<Quantity>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelTable {
+    pub error_model: TermList,
+    pub pair_relation: String,
+    #[serde(default)]
+    pub extensions: Vec<String>,
+}
+
+/// A preset's name, or a list of terms.
+#[derive(Debug)]
+pub(super) struct TermList(pub Vec<TermEntry>);
+
+/// A preset's or a coefficient's name, or a term in full.
+#[derive(Debug)]
+pub(super) enum TermEntry {
+    Named(String),
+    Written(TermTable),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TermTable {
+    pub axis: usize,
+    pub term: String,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ColumnsTable {
+    pub time: Option<ColumnEntry>,
+    pub f: Option<[ColumnEntry; 3]>,
+    pub speed: Option<ColumnEntry>,
+    pub speed_unit: Option<String>,
+}
+
+/// A column by name or number, or in full.
+#[derive(Debug)]
+pub(super) struct ColumnEntry(pub ColumnTable);
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ColumnTable {
+    pub column: Option<ColumnLabel>,
+    pub unit: Option<String>,
+    /// Samples per second, where the column counts samples.
+    pub rate: Option<Quantity>,
+}
+
+/// A column by its name or by its number from 1.
+#[derive(Debug)]
+pub(super) struct ColumnLabel(pub ColumnName);
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PositionTable {
+    #[serde(deserialize_with = "name_or_number")]
+    pub id: String,
+    pub axes: Option<String>,
+    pub matrix: Option<[[f64; 3]; 3]>,
+    pub pair: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MountingTable {
+    #[serde(deserialize_with = "name_or_number")]
+    pub position: String,
+    pub arm: [Quantity; 3],
+    pub record: Option<String>,
+    pub telemetry: Option<String>,
+    #[serde(default)]
+    pub plateaus: Vec<PlateauEntry>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PlateauEntry {
+    pub speed: Quantity,
+    pub angle: Option<Quantity>,
+    pub duration: Option<Quantity>,
+}
+
+/// Reads a form from the text of `file`.
+pub(crate) fn parse<T: DeserializeOwned>(file: &Path, text: &str) -> Result<T, Error> {
+    toml::from_str(text).map_err(|error| Error::Form {
+        file: file.to_owned(),
+        place: error.span().map_or(Place::Whole, |span| Place::of_byte(text, span.start)),
+        message: error.message().trim().replace('\n', ", "),
+    })
+}
+
+/// A date as TOML has it, or any text.
+fn date_as_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    struct DateVisitor;
+    impl<'de> Visitor<'de> for DateVisitor {
+        type Value = String;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a date such as 2026-10-05 or a string")
+        }
+
+        fn visit_str<E: de::Error>(self, text: &str) -> Result<String, E> {
+            Ok(text.to_owned())
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<String, A::Error> {
+            let date = toml::value::Datetime::deserialize(de::value::MapAccessDeserializer::new(map))?;
+            Ok(date.to_string())
+        }
+    }
+    deserializer.deserialize_any(DateVisitor)
+}
+
+/// A name: `"1"`, or `1` for short.
+fn name_or_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    struct NameVisitor;
+    impl Visitor<'_> for NameVisitor {
+        type Value = String;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a name such as \"1\"")
+        }
+
+        fn visit_str<E: de::Error>(self, text: &str) -> Result<String, E> {
+            Ok(text.to_owned())
+        }
+
+        fn visit_i64<E: de::Error>(self, number: i64) -> Result<String, E> {
+            Ok(number.to_string())
+        }
+    }
+    deserializer.deserialize_any(NameVisitor)
+}
+
+impl<'de> Deserialize<'de> for ColumnLabel {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct LabelVisitor;
+        impl Visitor<'_> for LabelVisitor {
+            type Value = ColumnLabel;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the name of a column, or its number from 1")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<ColumnLabel, E> {
+                Ok(ColumnLabel(ColumnName::Name(name.to_owned())))
+            }
+
+            fn visit_i64<E: de::Error>(self, number: i64) -> Result<ColumnLabel, E> {
+                let number = usize::try_from(number).ok().filter(|n| *n > 0);
+                let number = number.ok_or_else(|| E::custom("the number of a column is counted from 1"))?;
+                Ok(ColumnLabel(ColumnName::Number(number)))
+            }
+        }
+        deserializer.deserialize_any(LabelVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for ColumnEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct EntryVisitor;
+        impl<'de> Visitor<'de> for EntryVisitor {
+            type Value = ColumnEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the name of a column, its number from 1, or { column = \"f1\", unit = \"mg\" }")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<ColumnEntry, E> {
+                ColumnLabel::deserialize(name.into_deserializer()).map(ColumnEntry::from)
+            }
+
+            fn visit_i64<E: de::Error>(self, number: i64) -> Result<ColumnEntry, E> {
+                ColumnLabel::deserialize(number.into_deserializer()).map(ColumnEntry::from)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ColumnEntry, A::Error> {
+                ColumnTable::deserialize(de::value::MapAccessDeserializer::new(map)).map(ColumnEntry)
+            }
+        }
+        deserializer.deserialize_any(EntryVisitor)
+    }
+}
+
+impl From<ColumnLabel> for ColumnEntry {
+    fn from(label: ColumnLabel) -> Self {
+        Self(ColumnTable { column: Some(label), ..ColumnTable::default() })
+    }
+}
+
+impl<'de> Deserialize<'de> for TermList {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ListVisitor;
+        impl<'de> Visitor<'de> for ListVisitor {
+            type Value = TermList;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"kozlov-2017\" or a list of terms such as { axis = 1, term = \"f1*f2\" }")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<TermList, E> {
+                Ok(TermList(vec![TermEntry::Named(name.to_owned())]))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<TermList, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = list.next_element()? {
+                    entries.push(entry);
+                }
+                Ok(TermList(entries))
+            }
+        }
+        deserializer.deserialize_any(ListVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for TermEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct EntryVisitor;
+        impl<'de> Visitor<'de> for EntryVisitor {
+            type Value = TermEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"kozlov-2017\", the name of one of its terms, or { axis = 1, term = \"f1*f2\" }")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<TermEntry, E> {
+                Ok(TermEntry::Named(name.to_owned()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<TermEntry, A::Error> {
+                TermTable::deserialize(de::value::MapAccessDeserializer::new(map)).map(TermEntry::Written)
+            }
+        }
+        deserializer.deserialize_any(EntryVisitor)
+    }
+}

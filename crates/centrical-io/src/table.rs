@@ -1,0 +1,296 @@
+//! Tables of numbers, whatever the format: chosen columns, row by row, in blocks of bounded size.
+//!
+//! The format is told by the first bytes of the file, not by its name.
+
+mod arrays;
+mod columnar;
+#[cfg(feature = "hdf5")]
+mod hdf5;
+mod mat;
+mod npy;
+mod parquet;
+mod stamp;
+mod text;
+
+use std::fmt;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use flate2::read::MultiGzDecoder;
+
+use crate::error::{Error, Place};
+
+/// Rows in a block: long enough that the cost of a block vanishes, short enough for the cache.
+const BLOCK: usize = 16 * 1024;
+
+/// Numbers above this have no place in a record: their squares, summed, would leave `f64`.
+const LARGEST: f64 = 1e100;
+
+/// Rows per byte of a packed file: the noise of a sensor takes a bit a row and more, however it is packed.
+const ROWS_PER_BYTE: u64 = 8;
+
+/// Rows that may be packed into nothing: 32 MB of four columns.
+const ROWS_OF_NOTHING: u64 = 1_000_000;
+
+/// How a column is found in a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ColumnName {
+    /// By its name in the header.
+    Name(String),
+    /// By its number from 1, for files without a header.
+    Number(usize),
+    /// It is not in the file: the number of the row, from 0.
+    Row,
+}
+
+/// A column to read.
+#[derive(Debug, Clone)]
+pub(crate) struct Field {
+    /// How it is found.
+    pub name: ColumnName,
+    /// What its values are, for messages: "a number in m/s^2".
+    pub expected: String,
+    /// What is asked of its values beside being numbers.
+    pub rule: Rule,
+}
+
+/// What is asked of the values of a column beside being numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Rule {
+    /// Nothing.
+    Any,
+    /// They never decrease; repeated values are allowed. With `stamps`, a stamp such as `2026-10-05T10:00:00.25`
+    /// stands for its seconds since 1970.
+    Ascending {
+        /// Whether stamps are allowed beside numbers.
+        stamps: bool,
+    },
+    /// A value may be missing, and is NaN then.
+    OrMissing,
+}
+
+impl Rule {
+    fn ascends(self) -> bool {
+        matches!(self, Self::Ascending { .. })
+    }
+}
+
+/// Reads `fields` of the table in `file` and hands them to `visit` in blocks: one slice of equal length per field.
+///
+/// Memory stays bounded however long the table is.
+pub(crate) fn read(
+    file: &Path,
+    fields: &[Field],
+    expected: &str,
+    visit: &mut dyn FnMut(&mut [Vec<f64>]),
+) -> Result<(), Error> {
+    read_extent(file, Extent::Whole, fields, expected, visit)
+}
+
+/// How much of a file there is to read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// All of it.
+    Whole,
+    /// Someone is still writing: of a text the lines that are ended, the last one may have come in part. Other formats
+    /// are whole or cannot be read.
+    Growing,
+}
+
+/// [`read`] of what there is.
+pub(crate) fn read_extent(
+    file: &Path,
+    extent: Extent,
+    fields: &[Field],
+    expected: &str,
+    visit: &mut dyn FnMut(&mut [Vec<f64>]),
+) -> Result<(), Error> {
+    let mut input = open(file, expected)?;
+    let bytes = input.metadata().map_err(|e| Error::reading(file, e, expected))?.len();
+    let mut rows = Rows::new(fields, bytes, visit);
+    let magic = first_bytes(&mut input).map_err(|e| Error::reading(file, e, expected))?;
+    if magic.is_empty() {
+        return Err(Error::content(file, Place::Whole, "an empty file", expected));
+    }
+    let format = Format::of(&magic);
+    match format {
+        Format::Text if extent == Extent::Growing => {
+            let ended = ended_lines(&mut input, bytes).map_err(|e| Error::reading(file, e, expected))?;
+            text::read(file, &mut input.take(ended), &mut rows)?;
+        }
+        Format::Text => text::read(file, &mut input, &mut rows)?,
+        Format::Gzip => text::read(file, &mut MultiGzDecoder::new(input), &mut rows)?,
+        Format::Zstd => {
+            let mut unpacked = zstd::Decoder::new(input).map_err(|e| Error::reading(file, e, expected))?;
+            text::read(file, &mut unpacked, &mut rows)?;
+        }
+        Format::Parquet => parquet::read(file, input, &mut rows)?,
+        Format::Npy => npy::read(file, &input, &mut rows)?,
+        Format::Npz => npy::read_archive(file, input, &mut rows)?,
+        Format::Mat => mat::read(file, &input, &mut rows)?,
+        #[cfg(feature = "hdf5")]
+        Format::Hdf5 | Format::MatHdf5 => hdf5::read(file, format == Format::MatHdf5, &mut rows)?,
+        #[cfg(not(feature = "hdf5"))]
+        Format::Hdf5 | Format::MatHdf5 => {
+            let expected = "another format (this program was built without the feature hdf5)";
+            return Err(Error::content(file, Place::Whole, "HDF5", expected));
+        }
+    }
+    rows.flush();
+    let found = match rows.count {
+        0 => "a table without rows".to_owned(),
+        _ if rows.is_too_long() => format!("a file of {bytes} bytes that unpacks to more than {} rows", rows.most),
+        _ => return Ok(()),
+    };
+    Err(Error::content(file, Place::Whole, found, expected))
+}
+
+/// The formats, told by their first bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Text,
+    /// Text in gzip.
+    Gzip,
+    /// Text in Zstandard.
+    Zstd,
+    Parquet,
+    /// An array of NumPy.
+    Npy,
+    /// An archive of such arrays.
+    Npz,
+    /// MATLAB, version 5.
+    Mat,
+    Hdf5,
+    /// MATLAB, version 7.3: HDF5 after a header of its own.
+    MatHdf5,
+}
+
+impl Format {
+    fn of(magic: &[u8]) -> Self {
+        const MAGIC: [(&[u8], Format); 8] = [
+            (b"\x1f\x8b", Format::Gzip),
+            (b"\x28\xb5\x2f\xfd", Format::Zstd),
+            (b"PAR1", Format::Parquet),
+            (b"\x93NUMPY", Format::Npy),
+            (b"PK\x03\x04", Format::Npz),
+            (b"MATLAB 5", Format::Mat),
+            (b"\x89HDF\r\n\x1a\n", Format::Hdf5),
+            (b"MATLAB 7", Format::MatHdf5),
+        ];
+        MAGIC.into_iter().find(|(start, _)| magic.starts_with(start)).map_or(Self::Text, |(_, format)| format)
+    }
+}
+
+/// A call of a library whose panics on damaged files are errors: of tens of thousands of damaged Parquet files some
+/// made the decoders of bytes by stream and of dictionaries index out of bounds. Nothing half done is used again.
+fn caught<T, E>(call: impl FnOnce() -> Result<T, E>) -> Result<T, Option<E>> {
+    catch_unwind(AssertUnwindSafe(call)).map_or(Err(None), |result| result.map_err(Some))
+}
+
+/// Opens a regular file: a pipe or a device could keep the reader for ever.
+fn open(file: &Path, expected: &str) -> Result<File, Error> {
+    let kind = std::fs::metadata(file).map_err(|e| Error::reading(file, e, expected))?.file_type();
+    if !kind.is_file() {
+        let found = if kind.is_dir() { "a folder" } else { "something that is no regular file" };
+        return Err(Error::content(file, Place::Whole, found, expected));
+    }
+    File::open(file).map_err(|e| Error::reading(file, e, expected))
+}
+
+/// The first bytes, up to 8, leaving the file at its start.
+fn first_bytes(input: &mut File) -> std::io::Result<Vec<u8>> {
+    let mut magic = Vec::new();
+    input.take(8).read_to_end(&mut magic)?;
+    input.rewind()?;
+    Ok(magic)
+}
+
+/// Length of the lines that are ended among the first `bytes`, leaving the file at its start.
+fn ended_lines(input: &mut File, bytes: u64) -> std::io::Result<u64> {
+    const PIECE: u64 = 1 << 16;
+    let mut end = bytes;
+    let mut piece = Vec::new();
+    while end > 0 {
+        let start = end.saturating_sub(PIECE);
+        input.seek(SeekFrom::Start(start))?;
+        piece.clear();
+        input.take(end - start).read_to_end(&mut piece)?;
+        if let Some(last) = memchr::memrchr(b'\n', &piece) {
+            input.rewind()?;
+            return Ok(start + last as u64 + 1);
+        }
+        end = start;
+    }
+    input.rewind()?;
+    Ok(0)
+}
+
+/// Rows on their way from a parser to the visitor.
+struct Rows<'a> {
+    fields: &'a [Field],
+    block: Vec<Vec<f64>>,
+    /// Last value of every field, to see that time does not run backwards.
+    last: Vec<f64>,
+    count: u64,
+    /// Rows that the file can hold.
+    most: u64,
+    visit: &'a mut dyn FnMut(&mut [Vec<f64>]),
+}
+
+/// A value that runs backwards: which field, and what was found.
+struct Backwards {
+    field: usize,
+    found: String,
+}
+
+impl<'a> Rows<'a> {
+    fn new(fields: &'a [Field], bytes: u64, visit: &'a mut dyn FnMut(&mut [Vec<f64>])) -> Self {
+        let block = vec![Vec::with_capacity(BLOCK); fields.len()];
+        let most = ROWS_OF_NOTHING + ROWS_PER_BYTE * bytes;
+        Self { fields, block, last: vec![f64::NEG_INFINITY; fields.len()], count: 0, most, visit }
+    }
+
+    /// Adds one row, in the order of the fields.
+    fn push(&mut self, row: &[f64]) -> Result<(), Backwards> {
+        for (field, (column, value)) in self.block.iter_mut().zip(row).enumerate() {
+            if *value < self.last[field] && self.fields[field].rule.ascends() {
+                return Err(Backwards { field, found: format!("{value} after {}", self.last[field]) });
+            }
+            self.last[field] = *value;
+            column.push(*value);
+        }
+        if self.block[0].len() == BLOCK {
+            self.flush();
+        }
+        Ok(())
+    }
+
+    /// Whether more rows came than the file can hold: a packed file can claim any number of them.
+    fn is_too_long(&self) -> bool {
+        self.count > self.most
+    }
+
+    /// Hands the rows gathered so far to the visitor.
+    fn flush(&mut self) {
+        if !self.block[0].is_empty() {
+            self.count += self.block[0].len() as u64;
+            (self.visit)(&mut self.block);
+            self.block.iter_mut().for_each(Vec::clear);
+        }
+    }
+}
+
+/// What an ascending column should be.
+const ASCENDING: &str = "a time that does not run backwards";
+
+impl fmt::Display for ColumnName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name(name) => f.write_str(name),
+            Self::Number(number) => write!(f, "column {number}"),
+            Self::Row => f.write_str("row"),
+        }
+    }
+}

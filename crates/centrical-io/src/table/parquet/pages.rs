@@ -1,0 +1,118 @@
+//! Pages of a Parquet column, of sizes that their file can hold.
+//!
+//! Every size in a Parquet file is a claim. The library believes the size of an uncompressed page and the length
+//! of a dictionary, and would set aside gigabytes for a damaged file of a few kilobytes: both are checked here.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::sync::Arc;
+
+use bytes::Bytes;
+use parquet::column::page::{Page, PageMetadata, PageReader};
+use parquet::errors::{ParquetError, Result};
+use parquet::file::metadata::RowGroupMetaData;
+use parquet::file::reader::{ChunkReader, Length};
+use parquet::file::serialized_reader::SerializedPageReader;
+
+/// Largest page that may come out of nothing [bytes]; writers make pages of 1 MiB.
+const LARGEST_PAGE: i64 = 64 << 20;
+
+/// Compression that a page may claim above that: noise of a sensor compresses by less than ten.
+const LARGEST_RATIO: i64 = 256;
+
+/// A file of which only pages are read, every read starting at the header of a page.
+pub(super) struct Source(pub File);
+
+impl Length for Source {
+    fn len(&self) -> u64 {
+        self.0.len()
+    }
+}
+
+impl ChunkReader for Source {
+    type T = BufReader<File>;
+
+    fn get_read(&self, start: u64) -> Result<Self::T> {
+        let mut read = self.0.get_read(start)?;
+        match page_sizes(read.fill_buf()?) {
+            Some((plain, packed)) if plain <= LARGEST_PAGE.saturating_add(LARGEST_RATIO * packed.max(0)) => Ok(read),
+            Some((plain, packed)) => Err(general(format!("a page of {packed} bytes that claims to hold {plain}"))),
+            None => Err(general("no header of a page where one should be".to_owned())),
+        }
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
+        self.0.get_bytes(start, length)
+    }
+}
+
+/// Uncompressed and compressed size, fields 2 and 3 of a page header: Thrift compact protocol, where each field
+/// is the byte 0x15 (next field, 32-bit integer) and a zigzag number in groups of seven bits.
+fn page_sizes(header: &[u8]) -> Option<(i64, i64)> {
+    let mut bytes = header.iter().copied();
+    let mut field = || {
+        let mut zigzag = 0;
+        (bytes.next()? == 0x15).then_some(())?;
+        for shift in (0..35).step_by(7) {
+            let byte = bytes.next()?;
+            zigzag |= i64::from(byte & 0x7f) << shift;
+            if byte < 0x80 {
+                return Some((zigzag >> 1) ^ -(zigzag & 1));
+            }
+        }
+        None
+    };
+    let _type = field()?;
+    Some((field()?, field()?))
+}
+
+/// Pages of one column of one row group.
+pub(super) struct Checked(SerializedPageReader<Source>);
+
+impl Checked {
+    /// The pages of `column` in `group`.
+    pub fn new(source: &Arc<Source>, group: &RowGroupMetaData, column: usize) -> Result<Self> {
+        let column = group.column(column);
+        let start = column.dictionary_page_offset().unwrap_or_else(|| column.data_page_offset());
+        let end = start.checked_add(column.compressed_size());
+        let length = i64::try_from(source.len()).unwrap_or(i64::MAX);
+        if start < 0 || column.compressed_size() < 0 || end.is_none_or(|end| end > length) {
+            return Err(general(format!("a column from byte {start} to {end:?} of {length}")));
+        }
+        let rows = usize::try_from(group.num_rows()).map_err(|_| general("a negative number of rows".to_owned()))?;
+        Ok(Self(SerializedPageReader::new(Arc::clone(source), column, rows, None)?))
+    }
+}
+
+impl PageReader for Checked {
+    fn get_next_page(&mut self) -> Result<Option<Page>> {
+        let page = self.0.get_next_page()?;
+        match &page {
+            // Values of a dictionary take four bytes or more.
+            Some(Page::DictionaryPage { buf, num_values, .. }) if *num_values as usize > buf.len() / 4 => {
+                Err(general(format!("a dictionary of {} bytes that claims {num_values} values", buf.len())))
+            }
+            _ => Ok(page),
+        }
+    }
+
+    fn peek_next_page(&mut self) -> Result<Option<PageMetadata>> {
+        Err(general("pages are read in order".to_owned()))
+    }
+
+    fn skip_next_page(&mut self) -> Result<()> {
+        Err(general("pages are read in order".to_owned()))
+    }
+}
+
+impl Iterator for Checked {
+    type Item = Result<Page>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.get_next_page().transpose()
+    }
+}
+
+fn general(message: String) -> ParquetError {
+    ParquetError::General(message)
+}

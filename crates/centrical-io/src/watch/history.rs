@@ -1,0 +1,102 @@
+//! `watch-history.jsonl`: one line for each plateau that has come, with all that was known after it; what plots of
+//! convergence are made from.
+
+use std::fs::{self, OpenOptions};
+use std::io::Write;
+use std::path::Path;
+
+use centrical::MeasurementModel;
+use centrical::fit::recursive::{Innovation, Progress};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::write::write_whole;
+
+/// What was known after a plateau.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HistoryEntry {
+    /// Number of the plateau among those that have come, from 1.
+    pub plateau: usize,
+    /// Index of the plateau in the schedule of all mountings, from 0.
+    pub set_point: usize,
+    /// Its test against the plateaus before it.
+    pub innovation: InnovationSummary,
+    /// Whether it does not fit.
+    pub alarm: bool,
+    /// Whether it was held out.
+    pub held_out: bool,
+    /// Rank so far.
+    pub rank: usize,
+    /// The unknowns in the order of results; null while they are not determined.
+    pub estimates: Vec<HistoryEstimate>,
+}
+
+/// An unknown after a plateau.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HistoryEstimate {
+    /// Name.
+    pub name: String,
+    /// Estimate, SI.
+    pub value: Option<f64>,
+    /// Its standard uncertainty, SI.
+    pub standard_uncertainty: Option<f64>,
+}
+
+/// The test of a plateau.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct InnovationSummary {
+    /// Normalised innovation squared.
+    pub squared: f64,
+    /// Combinations of the three readings that could be predicted.
+    pub degrees_of_freedom: usize,
+    /// Chance of one as large if the plateau fits.
+    pub probability: f64,
+}
+
+impl From<Innovation> for InnovationSummary {
+    fn from(innovation: Innovation) -> Self {
+        Self {
+            squared: innovation.squared,
+            degrees_of_freedom: innovation.degrees_of_freedom,
+            probability: innovation.probability(),
+        }
+    }
+}
+
+impl HistoryEstimate {
+    /// The unknowns of `model` by name.
+    pub fn all(model: &MeasurementModel, progress: &Progress) -> Vec<Self> {
+        let estimate = |(parameter, known): (&centrical::Parameter, &Option<(f64, f64)>)| Self {
+            name: parameter.name.clone(),
+            value: known.map(|(value, _)| value),
+            standard_uncertainty: known.map(|(_, uncertainty)| uncertainty),
+        };
+        model.parameters().iter().zip(&progress.estimates).map(estimate).collect()
+    }
+}
+
+/// Adds a line to the history.
+///
+/// # Errors
+/// [`Error::Io`] when the file does not take it.
+pub fn append_history(file: &Path, entry: &HistoryEntry) -> Result<(), Error> {
+    // Plain structs: serialisation has nothing to fail on.
+    let mut line = serde_json::to_string(entry).unwrap_or_default();
+    line.push('\n');
+    let mut open = OpenOptions::new();
+    let written = open.create(true).append(true).open(file).and_then(|mut file| file.write_all(line.as_bytes()));
+    written.map_err(|error| Error::writing(file, error))
+}
+
+/// Keeps the first lines of the history and drops what a broken run may have written after them.
+///
+/// # Errors
+/// [`Error::Io`] when the file can be neither read nor written.
+pub fn keep_history(file: &Path, lines: usize) -> Result<(), Error> {
+    if !file.exists() {
+        return Ok(());
+    }
+    let text = fs::read_to_string(file).map_err(|error| Error::reading(file, error, "the history of a watch"))?;
+    let kept: String = text.split_inclusive('\n').take(lines).collect();
+    if kept == text { Ok(()) } else { write_whole(file, kept.as_bytes()) }
+}

@@ -1,0 +1,142 @@
+"""Writes the records in this folder, the same 300 rows in every format, with the programs laboratories use.
+
+    pip install h5py numpy pyarrow scipy && python generate.py
+
+`record.csv` is the reference: every other file holds the same numbers to the last bit (or, where the name says
+float32 or counts, what that type makes of them). The numbers are drawn from a fixed seed.
+"""
+
+import datetime
+import gzip
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import scipy.io
+
+HERE = Path(__file__).parent
+
+
+def rows():
+    """t [s], f1, f2, f3 [m/s^2]: noise of 5 mm/s^2 on a plateau, multiples of 1/8192 so that float32 holds them."""
+    generator = np.random.default_rng(20261005)
+    t = np.arange(300) / 128.0 - 0.5
+    t[100:] += 0.25  # a gap
+    t[200] = t[199]  # a repeated stamp
+    f = np.array([-98.0, 0.125, 9.8125]) + 0.005 * generator.standard_normal((300, 3))
+    return t, np.round(f * 8192) / 8192
+
+
+def main():
+    t, f = rows()
+    write_text(t, f)
+    write_parquet(t, f)
+    write_arrays(t, f)
+    write_hdf5(t, f)
+
+
+def write_text(t, f):
+    matrix = np.column_stack([t, f])
+    numbers = [[repr(float(v)) for v in row] for row in matrix]
+    lines = [",".join(row) for row in numbers]
+    text = "\n".join(["t,f1,f2,f3"] + lines) + "\n"
+    (HERE / "record.csv").write_text(text)
+    (HERE / "record.csv.gz").write_bytes(gzip.compress(text.encode(), mtime=0))
+    (HERE / "record.csv.zst").write_bytes(pa.Codec("zstd").compress(text.encode(), asbytes=True))
+    comma = [";".join(row).replace(".", ",") for row in numbers]
+    (HERE / "comma.csv").write_text("\r\n".join(["\ufeff\"t\";\"f1\";\"f2\";\"f3\""] + comma) + "\r\n")
+    tabs = ["\t".join(row).replace(".", ",") for row in numbers]
+    (HERE / "headerless.tsv").write_text("\n".join(tabs) + "\n")
+    np.savetxt(HERE / "headerless.txt", matrix, fmt="%25.17e")
+    np.savetxt(HERE / "savetxt.txt", matrix, fmt="%.17g", header="rows of a session\nt f1 f2 f3")
+    extra = [f'{i};"a;""b""";{row[3]};{row[1]};\'x\';{row[0]};{row[2]}' for i, row in enumerate(numbers)]
+    (HERE / "extra.csv").write_text("\n".join(["# x", "", "n;text;f3;f1;u;t;f2"] + extra) + "\n\n\n")
+    counter = [f"{round(v * 128)},{','.join(row[1:])}" for v, row in zip(t, numbers)]
+    (HERE / "counter.csv").write_text("\n".join(["n,f1,f2,f3"] + counter) + "\n")
+    start = datetime.datetime(2026, 10, 5, 10, 0, 0)
+    stamps = [(start + datetime.timedelta(seconds=float(v))).isoformat(timespec="microseconds") for v in t]
+    stamped = [",".join([stamp] + row[1:]) for stamp, row in zip(stamps, numbers)]
+    (HERE / "stamps.csv").write_text("\n".join(["t,f1,f2,f3"] + stamped) + "\n")
+    columns = {"t": pa.array(np.array(stamps, "datetime64[us]")), **{f"f{i + 1}": f[:, i] for i in range(3)}}
+    pq.write_table(pa.table(columns), HERE / "stamps.parquet")
+
+
+def write_arrays(t, f):
+    matrix = np.column_stack([t, f])
+    named = {"t": t, "f1": f[:, 0], "f2": f[:, 1], "f3": f[:, 2]}
+    np.save(HERE / "rows.npy", matrix)
+    np.save(HERE / "columns.npy", np.asfortranarray(matrix))
+    np.save(HERE / "big_endian.npy", matrix.astype(">f4"))
+    kinds = [("note", "<U3"), ("t", "<f8"), ("flag", "?"), ("f2", "<f4"), ("f1", ">f8"), ("f3", "<f8")]
+    record = np.zeros(300, kinds)
+    for name, values in named.items():
+        record[name] = values
+    np.save(HERE / "record.npy", record)
+    np.savez(HERE / "plain.npz", **named, other=np.array(["text"]))
+    np.savez_compressed(HERE / "packed.npz", **named)
+    np.savez_compressed(HERE / "matrix.npz", matrix)
+    counts = {name: np.round(f[:, i] * 8192).astype(kind) for i, (name, kind) in enumerate([("f1", "<i4"), ("f2", "<i2"), ("f3", ">u4")])}
+    np.savez_compressed(HERE / "counts.npz", t=t, **counts)
+    save_matlab("plain.mat", {"note": "text", **named, "z": 1 + 2j, "cell": np.array([1, "a"], object)})
+    save_matlab("packed.mat", named, do_compression=True, oned_as="column")
+    save_matlab("matrix.mat", {"data": matrix}, do_compression=True)
+    save_matlab("counts.mat", {"t": t, "f1": counts["f1"], "f2": counts["f2"], "f3": counts["f3"].astype("<u4")})
+
+
+def save_matlab(name, variables, **options):
+    scipy.io.savemat(HERE / name, variables, **options)
+    with open(HERE / name, "r+b") as file:
+        file.write(b"MATLAB 5.0 MAT-file".ljust(116))  # without the time of writing
+
+
+def write_hdf5(t, f):
+    matrix = np.column_stack([t, f])
+    with h5py.File(HERE / "named.h5", "w") as file:
+        for name, values in {"t": t, "f1": f[:, 0], "f2": f[:, 1], "f3": f[:, 2]}.items():
+            chunks = dict(chunks=(64,), compression="gzip", shuffle=True) if name != "f2" else {}
+            file.create_dataset(name, data=values, **chunks)
+    with h5py.File(HERE / "matrix.h5", "w") as file:
+        file["data"] = matrix
+    with h5py.File(HERE / "counts.h5", "w") as file:
+        file["t"] = t.astype(np.float32)
+        for i in range(3):
+            file[f"f{i + 1}"] = np.round(f[:, i] * 8192).astype(np.int32)
+    # MATLAB 7.3 is not at hand: its form (a user block of 512 bytes, vectors as 1 x N) is documented.
+    with h5py.File(HERE / "matlab73.mat", "w", userblock_size=512) as file:
+        for name, values in {"t": t, "f1": f[:, 0], "f2": f[:, 1], "f3": f[:, 2]}.items():
+            file.create_dataset(name, data=values[np.newaxis, :], chunks=(1, 300), compression="gzip")
+    header = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM"
+    with open(HERE / "matlab73.mat", "r+b") as file:
+        file.write(header)
+
+
+def write_parquet(t, f):
+    table = pa.table({"t": t, "f1": f[:, 0], "f2": f[:, 1], "f3": f[:, 2]})
+    required = pa.schema([pa.field(name, pa.float64(), nullable=False) for name in table.column_names])
+    others = {"note": pa.array(["x"] * 300), "lists": pa.array([[1.0, 2.0]] * 300), "code": pa.array(range(300))}
+    wide = pa.table({**others, "f3": f[:, 2], "f1": f[:, 0], "t": t, "f2": f[:, 1]})
+    counts = pa.table({"t": pa.array(t, pa.float32()), **{f"f{i + 1}": pa.array((f[:, i] * 8192).astype(np.int32)) for i in range(3)}})
+    long = pa.table({"t": t, **{f"f{i + 1}": pa.array((f[:, i] * 8192).astype(np.int64)) for i in range(3)}})
+    pq.write_table(table, HERE / "snappy.parquet", compression="snappy")
+    pq.write_table(table, HERE / "zstd.parquet", compression="zstd", row_group_size=97)
+    pq.write_table(table, HERE / "gzip.parquet", compression="gzip", data_page_version="2.0")
+    pq.write_table(table, HERE / "lz4.parquet", compression="lz4", data_page_size=512, write_batch_size=16)
+    pq.write_table(table.cast(required), HERE / "required.parquet", compression="none", use_dictionary=False)
+    pq.write_table(table, HERE / "split.parquet", use_dictionary=False, use_byte_stream_split=True)
+    pq.write_table(wide, HERE / "wide.parquet")
+    pq.write_table(counts, HERE / "counts_int32.parquet")
+    pq.write_table(long, HERE / "counts_int64.parquet", use_dictionary=False, column_encoding={"f1": "DELTA_BINARY_PACKED", "f2": "PLAIN", "f3": "DELTA_BINARY_PACKED"})
+    holes = table.set_column(2, "f2", pa.array([None if i == 7 else float(v) for i, v in enumerate(f[:, 1])]))
+    pq.write_table(holes, HERE / "null.parquet")
+    text = table.set_column(2, "f2", pa.array([str(v) for v in f[:, 1]]))
+    pq.write_table(text, HERE / "text.parquet")
+    nan = table.set_column(3, "f3", pa.array(np.where(np.arange(300) == 250, np.nan, f[:, 2])))
+    pq.write_table(nan, HERE / "nan.parquet", row_group_size=100)
+    back = table.set_column(0, "t", pa.array(np.where(np.arange(300) == 150, -9.0, t)))
+    pq.write_table(back, HERE / "backwards.parquet", row_group_size=150)
+
+
+if __name__ == "__main__":
+    main()

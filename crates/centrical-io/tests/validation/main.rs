@@ -1,0 +1,3 @@
+//! Records written by other programs: `../data/generate.py` says which, and wrote them.
+
+mod formats;
