@@ -1,0 +1,79 @@
+//! The error model as statements of a language: `error_2 += c[4] * f_1`, a line for each term and derivative.
+
+use super::{NamedTerm, harmless};
+
+/// How a language writes what the error model is made of. Indices count from 0.
+pub(super) trait Language {
+    /// What begins a line of comment.
+    fn comment(&self) -> &'static str;
+
+    /// Distance from 1 to the next number of the precision.
+    fn epsilon(&self) -> f64 {
+        f64::EPSILON
+    }
+
+    /// A number that reads back as it is.
+    fn number(&self, value: f64) -> String {
+        format!("{value:e}")
+    }
+
+    /// A line of the table of coefficients.
+    fn table_line(&self, number: &str, remark: &str) -> String;
+
+    /// Coefficient `k`.
+    fn coefficient(&self, k: usize) -> String;
+
+    /// Component `j` of the specific force.
+    fn component(&self, j: usize) -> String;
+
+    /// -1 where component `j` is negative, else 1.
+    fn sign(&self, j: usize) -> String;
+
+    /// Between factors.
+    fn times(&self) -> &'static str {
+        " * "
+    }
+
+    /// Adds `value` to component `i` of the error.
+    fn add_to_error(&self, i: usize, value: &str, remark: &str) -> String;
+
+    /// Adds `value` to the derivative of reading `i` by component `j`.
+    fn add_to_gain(&self, i: usize, j: usize, value: &str) -> String;
+}
+
+/// The table of coefficients.
+pub(super) fn coefficients(language: &dyn Language, terms: &[NamedTerm]) -> String {
+    if terms.is_empty() {
+        // No language minds a number that nobody uses; C minds a table without any.
+        return language.table_line(&language.number(0.0), "no terms");
+    }
+    let line = |t: &NamedTerm| language.table_line(&language.number(t.term.coefficient), &harmless(&t.name));
+    terms.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// The statements that add every term and its derivatives.
+pub(super) fn error_and_gain(language: &dyn Language, terms: &[NamedTerm]) -> String {
+    let mut statements = Vec::new();
+    for (k, NamedTerm { name, term }) in terms.iter().enumerate() {
+        let value = product(language, k, None, term.powers, term.sign_of);
+        statements.push(language.add_to_error(term.axis, &value, &harmless(name)));
+        for j in (0..3).filter(|j| term.powers[*j] > 0) {
+            let mut lower = term.powers;
+            lower[j] -= 1;
+            let derivative = product(language, k, Some(term.powers[j]), lower, term.sign_of);
+            statements.push(language.add_to_gain(term.axis, j, &derivative));
+        }
+    }
+    statements.join("\n")
+}
+
+/// `power * c_k * sign * f_1 * f_1 * f_2`.
+fn product(language: &dyn Language, k: usize, power: Option<u8>, powers: [u8; 3], sign_of: Option<usize>) -> String {
+    let mut factors: Vec<String> = power.filter(|p| *p > 1).map(|p| language.number(p.into())).into_iter().collect();
+    factors.push(language.coefficient(k));
+    factors.extend(sign_of.map(|j| language.sign(j)));
+    for j in 0..3 {
+        factors.extend((0..powers[j]).map(|_| language.component(j)));
+    }
+    factors.join(language.times())
+}

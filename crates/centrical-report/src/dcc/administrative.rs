@@ -1,0 +1,140 @@
+//! Administrative data: software, dates, item, laboratory, persons, customer, statements.
+
+use centrical_io::{Address, CalibrationResult, Contact, DecisionRule, Laboratory};
+
+use super::xml::Xml;
+use crate::conformity::conformity;
+use crate::language::Language;
+
+pub(super) fn data(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
+    xml.element("dcc:administrativeData", |xml| {
+        xml.element("dcc:dccSoftware", |xml| software(xml, result, language));
+        core_data(xml, laboratory, language);
+        items(xml, result, laboratory, language);
+        xml.element("dcc:calibrationLaboratory", |xml| {
+            xml.optional("dcc:calibrationLaboratoryCode", laboratory.laboratory.accreditation.as_deref());
+            let of = &laboratory.laboratory;
+            contact(xml, "dcc:contact", (&of.name, &of.address, &of.contact), language);
+        });
+        persons(xml, laboratory, language);
+        let of = &laboratory.customer;
+        contact(xml, "dcc:customer", (&of.name, &of.address, &of.contact), language);
+        statements(xml, result, laboratory, language);
+    });
+}
+
+/// The program that made result and certificate.
+pub(super) fn software(xml: &mut Xml, result: &CalibrationResult, language: Language) {
+    xml.element("dcc:software", |xml| {
+        xml.content("dcc:name", &result.program.name, language);
+        xml.leaf("dcc:release", &result.program.version);
+    });
+}
+
+fn core_data(xml: &mut Xml, laboratory: &Laboratory, language: Language) {
+    let certificate = &laboratory.certificate;
+    xml.element("dcc:coreData", |xml| {
+        xml.leaf("dcc:countryCodeISO3166_1", &laboratory.laboratory.address.country);
+        xml.leaf("dcc:usedLangCodeISO639_1", language.code());
+        xml.leaf("dcc:mandatoryLangCodeISO639_1", language.code());
+        xml.leaf("dcc:uniqueIdentifier", &certificate.number);
+        xml.optional("dcc:receiptDate", certificate.received.map(|date| date.to_string()).as_deref());
+        xml.leaf("dcc:beginPerformanceDate", &certificate.begun.to_string());
+        xml.leaf("dcc:endPerformanceDate", &certificate.ended.to_string());
+        xml.leaf("dcc:performanceLocation", if certificate.place.is_none() { "laboratory" } else { "other" });
+        xml.leaf("dcc:issueDate", &certificate.issued.to_string());
+        if let Some(replaced) = &certificate.replaces {
+            xml.element("dcc:reportAmendedSubstituted", |xml| {
+                xml.leaf("dcc:typeOfChange", "substituted");
+                xml.leaf("dcc:replacedUniqueIdentifier", replaced);
+            });
+        }
+    });
+}
+
+fn items(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
+    let (messages, item, session) = (language.messages(), &laboratory.item, &result.session);
+    let name = item.description.as_deref().unwrap_or(&session.unit_model);
+    let serial = if session.unit_serial.is_empty() { messages.not_given } else { &session.unit_serial };
+    let mut identifications = vec![("manufacturer", serial)];
+    identifications.extend(item.customer_number.as_deref().map(|number| ("customer", number)));
+    xml.element("dcc:items", |xml| {
+        xml.element("dcc:item", |xml| {
+            xml.content("dcc:name", name, language);
+            if let Some(condition) = &item.condition {
+                xml.content("dcc:description", &format!("{}: {condition}", messages.condition), language);
+            }
+            if let Some(manufacturer) = &item.manufacturer {
+                xml.element("dcc:manufacturer", |xml| xml.content("dcc:name", manufacturer, language));
+            }
+            xml.optional("dcc:model", Some(&session.unit_model));
+            xml.element("dcc:identifications", |xml| {
+                for (issuer, value) in identifications {
+                    identification(xml, issuer, value);
+                }
+            });
+        });
+    });
+}
+
+/// A number and who gave it.
+pub(super) fn identification(xml: &mut Xml, issuer: &str, value: &str) {
+    xml.element("dcc:identification", |xml| {
+        xml.leaf("dcc:issuer", issuer);
+        xml.leaf("dcc:value", value);
+    });
+}
+
+fn contact(xml: &mut Xml, element: &str, (name, address, how): (&str, &Address, &Contact), language: Language) {
+    xml.element(element, |xml| {
+        xml.content("dcc:name", name, language);
+        xml.optional("dcc:eMail", how.email.as_deref());
+        xml.optional("dcc:phone", how.phone.as_deref());
+        xml.element("dcc:location", |xml| {
+            xml.leaf("dcc:countryCode", &address.country);
+            xml.optional("dcc:city", Some(&address.city));
+            xml.optional("dcc:postCode", Some(&address.post_code));
+            xml.optional("dcc:street", Some(&address.street));
+        });
+    });
+}
+
+fn persons(xml: &mut Xml, laboratory: &Laboratory, language: Language) {
+    xml.element("dcc:respPersons", |xml| {
+        for person in &laboratory.person {
+            xml.element("dcc:respPerson", |xml| {
+                xml.element("dcc:person", |xml| xml.content("dcc:name", &person.name, language));
+                xml.optional("dcc:role", Some(&person.role));
+                xml.leaf("dcc:mainSigner", if person.authorises { "true" } else { "false" });
+            });
+        }
+    });
+}
+
+fn statements(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
+    let messages = language.messages();
+    xml.element("dcc:statements", |xml| {
+        let statement = |xml: &mut Xml, reference: &str, text: &str| {
+            xml.element("dcc:statement", |xml| {
+                xml.leaf("dcc:norm", "ISO/IEC 17025:2017");
+                xml.leaf("dcc:reference", reference);
+                xml.content("dcc:declaration", text, language);
+            });
+        };
+        statement(xml, "7.8.2.1 l", messages.item_only);
+        statement(xml, "7.8.2.1", messages.reproduction);
+        statement(xml, "7.8.4.1 c", messages.traceability_text);
+        if let Some(decision) = &laboratory.decision {
+            let rule = match decision.rule {
+                DecisionRule::Simple => messages.rule_simple,
+                DecisionRule::Guarded => messages.rule_guarded,
+            };
+            let passes = conformity(result, decision).iter().all(|judged| judged.conforms);
+            xml.element_with("dcc:statement", &[("refType", "basic_conformity")], |xml| {
+                xml.leaf("dcc:norm", &decision.specification);
+                xml.content("dcc:declaration", &format!("{}: {rule}", messages.decision_rule), language);
+                xml.leaf("dcc:conformity", if passes { "pass" } else { "fail" });
+            });
+        }
+    });
+}

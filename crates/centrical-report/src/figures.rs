@@ -1,0 +1,67 @@
+//! The figures of a report: each a drawing, and a sentence that says what to see in it.
+
+mod correlation;
+mod fit;
+mod record;
+
+use centrical::Position;
+use centrical_io::CalibrationResult;
+use nalgebra::Matrix3;
+
+use crate::language::Language;
+use crate::plot::Plot;
+use crate::positions_figure::positions_figure;
+
+/// A figure of the report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Name, for a file or an anchor: `residuals`.
+    pub name: &'static str,
+    /// Title.
+    pub title: String,
+    /// What to see in it, one sentence.
+    pub caption: String,
+    /// The drawings, SVG: one, or one for each record.
+    pub drawings: Vec<String>,
+}
+
+/// All figures that can be drawn from a result, in the order of the report.
+pub fn figures(result: &CalibrationResult, language: Language) -> Vec<Figure> {
+    let of_fit = fit::figures(result, language);
+    let correlation = correlation::figure(result, language);
+    let records = record::figure(result, language);
+    of_fit
+        .into_iter()
+        .chain(correlation)
+        .chain(fit::singular_values(result, language))
+        .chain([fit::convergence(result, language), records, fit::stability(result, language)].into_iter().flatten())
+        .collect()
+}
+
+/// The drawing of the mounting positions; none if the result does not have them.
+pub(crate) fn positions(result: &CalibrationResult, language: Language) -> Option<Figure> {
+    let messages = language.messages();
+    let positions: Vec<Position> = result
+        .model
+        .positions
+        .iter()
+        .map(|position| Position {
+            id: position.id.clone(),
+            p_zy: Matrix3::from_fn(|i, j| position.matrix[i][j]),
+            pair: position.pair.clone(),
+        })
+        .collect();
+    (!positions.is_empty()).then(|| Figure {
+        name: "positions",
+        title: messages.positions.to_owned(),
+        caption: messages.positions_caption.to_owned(),
+        drawings: vec![positions_figure(&positions, language)],
+    })
+}
+
+/// A figure of one plot, in the numbers of the language.
+fn of_plot(name: &'static str, caption: &str, plot: Plot, language: Language) -> Figure {
+    let title = plot.title.clone();
+    let plot = if language == Language::Russian { plot.with_decimal_comma() } else { plot };
+    Figure { name, title, caption: caption.to_owned(), drawings: vec![plot.to_svg()] }
+}

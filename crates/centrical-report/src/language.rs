@@ -1,0 +1,148 @@
+//! The languages of the documents: how each writes numbers, units and dates.
+
+use centrical_io::Date;
+
+use crate::customary::with_uncertainty;
+use crate::message::{ENGLISH, Messages, RUSSIAN};
+use crate::plot::power_of_ten;
+
+/// A language of the documents.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Language {
+    /// English: decimal point, ISO dates.
+    #[default]
+    English,
+    /// Russian: decimal comma, dates as 05.10.2026, Russian symbols of units.
+    Russian,
+}
+
+impl Language {
+    /// Code of ISO 639-1.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::English => "en",
+            Self::Russian => "ru",
+        }
+    }
+
+    /// The language of a code.
+    pub fn of_code(code: &str) -> Option<Self> {
+        [Self::English, Self::Russian].into_iter().find(|language| language.code() == code)
+    }
+
+    /// Everything the documents say.
+    pub(crate) fn messages(self) -> &'static Messages {
+        match self {
+            Self::English => &ENGLISH,
+            Self::Russian => &RUSSIAN,
+        }
+    }
+
+    /// A number written with a point and a hyphen, as this language writes it.
+    pub(crate) fn number(self, plain: &str) -> String {
+        let number = plain.replace('-', "\u{2212}");
+        match self {
+            Self::English => number,
+            Self::Russian => number.replace('.', ","),
+        }
+    }
+
+    /// A number to so many decimal places.
+    pub(crate) fn fixed(self, value: f64, places: usize) -> String {
+        self.number(&format!("{value:.places$}"))
+    }
+
+    /// A number to `digits` significant digits, never in powers of ten.
+    pub(crate) fn significant(self, value: f64, digits: i32) -> String {
+        let places = usize::try_from(digits - 1 - exponent(value)).unwrap_or(0);
+        self.fixed(value, places)
+    }
+
+    /// `1.5·10⁻⁵`, with the digits that the number has.
+    pub(crate) fn scientific(self, value: f64) -> String {
+        let plain = format!("{value:e}");
+        let (digits, power) = plain.split_once('e').unwrap_or((&plain, "0"));
+        format!("{}·{}", self.number(digits), power_of_ten(power.parse().unwrap_or(0)))
+    }
+
+    /// `value ± uncertainty` to two digits of the uncertainty.
+    pub(crate) fn plus_minus(self, value: f64, uncertainty: f64) -> String {
+        let (value, uncertainty) = with_uncertainty(value, uncertainty);
+        format!("{} ± {}", self.number(&value), self.number(&uncertainty))
+    }
+
+    /// `(value ± uncertainty)·10ⁿ` with a leading digit before the point.
+    pub(crate) fn plus_minus_scientific(self, value: f64, uncertainty: f64) -> String {
+        let power = exponent(value.abs().max(uncertainty));
+        if (-1..4).contains(&power) {
+            return self.plus_minus(value, uncertainty);
+        }
+        let scale = 10_f64.powi(-power);
+        format!("({})·{}", self.plus_minus(value * scale, uncertainty * scale), power_of_ten(power))
+    }
+
+    /// A unit as the result names it.
+    pub(crate) fn unit(self, plain: &str) -> String {
+        const SYMBOLS: [(&str, &str, &str); 9] = [
+            ("ppm", "ppm", "млн⁻¹"),
+            ("urad", "µrad", "мкрад"),
+            ("rad", "rad", "рад"),
+            ("um", "µm", "мкм"),
+            ("ug", "µg", "мкg"),
+            ("mg", "mg", "мg"),
+            ("s", "s", "с"),
+            ("m", "m", "м"),
+            ("1", "1", "1"),
+        ];
+        let symbol = |name: &str| {
+            let (stem, power) = name.split_once('^').unwrap_or((name, ""));
+            let known = SYMBOLS.iter().find(|(plain, _, _)| *plain == stem);
+            let stem = match (known, self) {
+                (Some((_, english, _)), Self::English) => english,
+                (Some((_, _, russian)), Self::Russian) => russian,
+                (None, _) => stem,
+            };
+            let raised = power.chars().map(|digit| match digit {
+                '2' => '²',
+                '3' => '³',
+                '4' => '⁴',
+                '6' => '⁶',
+                other => other,
+            });
+            format!("{stem}{}", raised.collect::<String>())
+        };
+        plain.split('/').map(symbol).collect::<Vec<_>>().join("/")
+    }
+
+    /// A day.
+    pub(crate) fn date(self, date: Date) -> String {
+        match self {
+            Self::English => date.to_string(),
+            Self::Russian => format!("{:02}.{:02}.{:04}", date.day, date.month, date.year),
+        }
+    }
+}
+
+/// Power of ten of the leading digit; 0 for zero.
+#[allow(clippy::cast_possible_truncation)]
+fn exponent(value: f64) -> i32 {
+    let size = value.abs();
+    if size > 0.0 && size.is_finite() { size.log10().floor() as i32 } else { 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Language::{English, Russian};
+
+    #[test]
+    fn numbers_and_units_by_language() {
+        assert_eq!(English.plus_minus(-3.952_149, 0.001_234), "−3.9521 ± 0.0012");
+        assert_eq!(Russian.plus_minus(-3.952_149, 0.001_234), "−3,9521 ± 0,0012");
+        assert_eq!(Russian.plus_minus_scientific(-1.6488e-6, 1.2e-9), "(−1,6488 ± 0,0012)·10⁻⁶");
+        assert_eq!(Russian.scientific(1.5e-5), "1,5·10⁻⁵");
+        assert_eq!(English.significant(1234.5, 3), "1234");
+        assert_eq!(Russian.significant(0.012_345, 3), "0,0123");
+        assert_eq!((English.unit("ug/g^2"), Russian.unit("ug/g^2")), ("µg/g²".to_owned(), "мкg/g²".to_owned()));
+        assert_eq!((English.unit("s^4/m^2"), Russian.unit("s^4/m^2")), ("s⁴/m²".to_owned(), "с⁴/м²".to_owned()));
+    }
+}

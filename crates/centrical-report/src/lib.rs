@@ -1,0 +1,42 @@
+//! What a calibration leaves on paper and screen. Pure functions from data to text; no files, no network.
+//!
+//! Everything is made from a [`centrical_io::CalibrationResult`], and what a certificate says beside it from a
+//! [`centrical_io::Laboratory`]. The same data give the same bytes.
+
+mod assessment;
+mod certificate;
+pub mod codegen;
+mod conformity;
+mod customary;
+mod dcc;
+mod equation;
+mod figures;
+mod groups;
+mod html;
+mod language;
+mod message;
+mod noise;
+mod observation;
+mod pdf;
+pub mod plot;
+mod positions_figure;
+mod reading_error;
+mod terminal;
+mod trials;
+mod verdict;
+mod watch;
+
+pub use assessment::{budget_table, outliers_text, pattern_in_words, prediction_table, validity_text};
+pub use certificate::pdf_certificate;
+pub use customary::{customary, with_uncertainty};
+pub use dcc::digital_certificate;
+pub use figures::{Figure, figures};
+pub use html::html_report;
+pub use language::Language;
+pub use noise::{deviation_plot, spectrum_plot};
+pub use observation::observation_text;
+pub use positions_figure::positions_figure;
+pub use terminal::terminal_table;
+pub use trials::{comparison_table, monte_carlo_table, selection_table};
+pub use verdict::{Objection, chi_squared_tail, objections};
+pub use watch::{WatchView, WatchedTest, watch_table};

@@ -1,0 +1,205 @@
+//! The message catalogue: everything the documents say, in each language.
+//!
+//! One field a message, so that a language that lacks one does not compile.
+
+mod english;
+mod russian;
+
+pub(crate) use english::ENGLISH;
+pub(crate) use russian::RUSSIAN;
+
+use crate::language::Language;
+use crate::verdict::Objection;
+
+/// What the documents say, in one language.
+#[allow(missing_docs)]
+pub(crate) struct Messages {
+    pub calibration_report: &'static str,
+    pub acceptable: &'static str,
+    pub not_acceptable: &'static str,
+    pub verdict_good: &'static str,
+    pub verdict_bad: &'static str,
+    pub serial: &'static str,
+    pub not_given: &'static str,
+    pub session: &'static str,
+    pub date: &'static str,
+    pub gravity: &'static str,
+    pub latitude: &'static str,
+    pub pair_relation: &'static str,
+    pub reference: &'static str,
+    pub speed_uncertainty: &'static str,
+    pub data: &'static str,
+    pub method: &'static str,
+    pub software: &'static str,
+    pub chi_squared: &'static str,
+    pub rank: &'static str,
+    pub residual_error: &'static str,
+    pub residual_error_note: &'static str,
+    pub before: &'static str,
+    pub after: &'static str,
+    pub after_speed_free: &'static str,
+    pub axis: &'static str,
+    pub parameters: &'static str,
+    pub parameters_note: &'static str,
+    pub instrument: &'static str,
+    pub mounting: &'static str,
+    pub parameter: &'static str,
+    pub value: &'static str,
+    pub unit: &'static str,
+    pub value_si: &'static str,
+    pub not_determined: &'static str,
+    pub budget: &'static str,
+    pub budget_note: &'static str,
+    pub no_budget: &'static str,
+    pub combined: &'static str,
+    pub positions: &'static str,
+    pub positions_caption: &'static str,
+    pub position: &'static str,
+    pub pair: &'static str,
+    pub plots: &'static str,
+    pub force_axis: &'static str,
+    pub error_before_axis: &'static str,
+    pub error_after_axis: &'static str,
+    pub before_caption: &'static str,
+    pub after_caption: &'static str,
+    pub residuals_title: &'static str,
+    pub residuals_caption: &'static str,
+    pub normalised_title: &'static str,
+    pub normalised_caption: &'static str,
+    pub plateau_axis: &'static str,
+    pub residual_axis: &'static str,
+    pub normalised_axis: &'static str,
+    pub correlation_title: &'static str,
+    pub correlation_caption: &'static str,
+    pub singular_title: &'static str,
+    pub singular_axis: &'static str,
+    pub order_axis: &'static str,
+    pub singular_caption_full: &'static str,
+    pub singular_caption_short: &'static str,
+    pub determined: &'static str,
+    pub lost: &'static str,
+    pub limit: &'static str,
+    pub null_directions: &'static str,
+    pub convergence_title: &'static str,
+    pub convergence_axis: &'static str,
+    pub convergence_caption: &'static str,
+    pub plateaus_used_axis: &'static str,
+    pub records_title: &'static str,
+    pub records_caption: &'static str,
+    pub mounting_word: &'static str,
+    pub radius: &'static str,
+    pub plateau: &'static str,
+    pub samples: &'static str,
+    pub rejected: &'static str,
+    pub time_axis: &'static str,
+    pub stability_title: &'static str,
+    pub tau_axis: &'static str,
+    pub deviation_axis: &'static str,
+    pub stability_caption: &'static str,
+    pub inputs: &'static str,
+    pub inputs_note: &'static str,
+    pub file: &'static str,
+    pub certificate: &'static str,
+    pub certificate_number: &'static str,
+    pub page: &'static str,
+    pub of: &'static str,
+    pub laboratory: &'static str,
+    pub accreditation: &'static str,
+    pub customer: &'static str,
+    pub item: &'static str,
+    pub manufacturer: &'static str,
+    pub model: &'static str,
+    pub description: &'static str,
+    pub customer_number: &'static str,
+    pub condition: &'static str,
+    pub received: &'static str,
+    pub calibrated: &'static str,
+    pub issued: &'static str,
+    pub place: &'static str,
+    pub own_premises: &'static str,
+    pub replaces: &'static str,
+    pub procedure: &'static str,
+    pub method_text: &'static str,
+    pub deviations: &'static str,
+    pub none: &'static str,
+    pub conditions: &'static str,
+    pub temperature: &'static str,
+    pub humidity: &'static str,
+    pub pressure: &'static str,
+    pub traceability: &'static str,
+    pub traceability_text: &'static str,
+    pub standard: &'static str,
+    pub standard_certificate: &'static str,
+    pub traceable_to: &'static str,
+    pub results: &'static str,
+    pub results_model: &'static str,
+    pub uncertainty_statement: &'static str,
+    pub adjustment: &'static str,
+    pub no_adjustment: &'static str,
+    pub conformity: &'static str,
+    pub specification: &'static str,
+    pub decision_rule: &'static str,
+    pub rule_simple: &'static str,
+    pub rule_guarded: &'static str,
+    pub limits: &'static str,
+    pub conforms: &'static str,
+    pub does_not_conform: &'static str,
+    pub authorised: &'static str,
+    pub responsible: &'static str,
+    pub signature: &'static str,
+    pub item_only: &'static str,
+    pub reproduction: &'static str,
+    pub end: &'static str,
+    pub covariance_note: &'static str,
+    pub mountings_used: &'static str,
+    pub plateaus_used: &'static str,
+    pub uncertainty: &'static str,
+    pub covariance: &'static str,
+    pub specific_force: &'static str,
+    /// Words of the result, groups of parameters among them, as people are shown them.
+    words: &'static [(&'static str, &'static str)],
+    not_converged: &'static str,
+    residuals_too_large: &'static str,
+    degrees_of_freedom: &'static str,
+    chance: &'static str,
+    lost_parameters: &'static str,
+}
+
+impl Messages {
+    /// A word of the result as people are shown it; itself if it is not known.
+    pub fn word<'a>(&self, word: &'a str) -> &'a str {
+        self.words.iter().find(|(name, _)| *name == word).map_or(word, |(_, shown)| shown)
+    }
+
+    /// What speaks against a result.
+    pub fn objection(&self, objection: &Objection, language: Language) -> String {
+        match objection {
+            Objection::NotConverged { termination, iterations } => {
+                format!("{} ({}, {iterations})", self.not_converged, self.word(termination))
+            }
+            Objection::Residuals { chi_squared, degrees_of_freedom, chance } => {
+                let (chi_squared, chance) =
+                    (language.fixed(*chi_squared, 1), language.number(&format!("{chance:.1e}")));
+                format!(
+                    "{}: χ² = {chi_squared}, {} {degrees_of_freedom}, {} {chance}",
+                    self.residuals_too_large, self.degrees_of_freedom, self.chance
+                )
+            }
+            Objection::NotDetermined(names) => format!("{}: {}", self.lost_parameters, names.join(", ")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ENGLISH, Messages, RUSSIAN};
+
+    /// Every word of one language has its counterpart where a translation is due.
+    #[test]
+    fn russian_knows_all_words_of_english() {
+        let knows = |messages: &Messages, word: &str| messages.words.iter().any(|(name, _)| *name == word);
+        for (word, _) in ENGLISH.words {
+            assert!(knows(&RUSSIAN, word), "{word}");
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! The few things about SVG text that every drawing needs.
+
+use std::fmt::{self, Display};
+
+/// Text with the characters that mean something to XML replaced; those that XML forbids are dropped.
+pub(crate) struct Escaped<'a>(pub(crate) &'a str);
+
+impl Display for Escaped<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for c in self.0.chars() {
+            match c {
+                '&' => f.write_str("&amp;")?,
+                '<' => f.write_str("&lt;")?,
+                '>' => f.write_str("&gt;")?,
+                '"' => f.write_str("&quot;")?,
+                '\t' | '\n' => f.write_str(" ")?,
+                c if c.is_control() => {}
+                c => write!(f, "{c}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A length in pixels, to a tenth, held within what renderers draw.
+pub(crate) struct Px(pub(crate) f64);
+
+impl Display for Px {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let tenths = (self.0.clamp(-1e5, 1e5) * 10.0).round() / 10.0;
+        // Adding zero turns a negative zero positive.
+        write!(f, "{}", tenths + 0.0)
+    }
+}
+
+/// A value as a person reads it: five significant digits.
+pub(super) struct Value(pub(super) f64);
+
+impl Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size == 0.0 || (1e-3..1e5).contains(&size) {
+            let decimals = [1e4, 1e3, 1e2, 1e1, 1e0, 1e-1, 1e-2].iter().take_while(|power| size < **power).count();
+            write!(f, "{:.decimals$}", self.0)
+        } else {
+            write!(f, "{:.4e}", self.0)
+        }
+    }
+}

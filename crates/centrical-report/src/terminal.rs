@@ -1,0 +1,230 @@
+//! A result as a table for the terminal: what a person reads first.
+
+use std::fmt::Write;
+
+use centrical_io::{CalibrationResult, ParameterEstimate, TermSummary};
+
+use crate::customary::{customary, with_uncertainty};
+
+/// Width of a column "value ± uncertainty".
+const CELL: usize = 24;
+/// Width of the two columns before them.
+const LABEL: usize = 10;
+const UNIT: usize = 10;
+
+/// The result as text: parameters with standard uncertainties in customary units, the fit, what is not
+/// estimable and why, what was rejected.
+pub fn terminal_table(result: &CalibrationResult) -> String {
+    let mut text = String::new();
+    heading(&mut text, result);
+    error_model(&mut text, result);
+    mounting(&mut text, result);
+    others(&mut text, result);
+    not_estimable(&mut text, result);
+    priors(&mut text, result);
+    plateaus(&mut text, result);
+    fit(&mut text, result);
+    text
+}
+
+fn heading(text: &mut String, result: &CalibrationResult) {
+    let session = &result.session;
+    let serial = if session.unit_serial.is_empty() { "not given" } else { &session.unit_serial };
+    let _ = writeln!(text, "{}, serial {serial}", session.unit_model);
+    let _ = writeln!(text, "{}, {}", session.title, session.date);
+    text.push_str("value ± standard uncertainty; 1 g = 9.80665 m/s^2\n");
+}
+
+/// One row per monomial, one column per newtonometer.
+fn error_model(text: &mut String, result: &CalibrationResult) {
+    text.push_str("\nERROR MODEL  reading = f + sum of term x coefficient\n");
+    row(text, "term", "unit", &["newtonometer 1", "newtonometer 2", "newtonometer 3"].map(str::to_owned));
+    let mut rows: Vec<([u8; 3], Option<usize>, &str)> = Vec::new();
+    for term in &result.model.error_model {
+        let key = row_of(result, term);
+        if !rows.contains(&key) {
+            rows.push(key);
+        }
+    }
+    for key in rows {
+        let mut unit = "";
+        let mut cells: [String; 3] = Default::default();
+        for term in result.model.error_model.iter().filter(|term| row_of(result, term) == key) {
+            if let Some(parameter) = result.parameter(&term.name) {
+                unit = customary(&parameter.unit, &parameter.group).1;
+                cells[term.axis - 1] = cell(parameter);
+            }
+        }
+        row(text, &monomial(key.0, key.1), unit, &cells);
+    }
+}
+
+/// Terms that share a row: the same monomial in the same customary unit.
+fn row_of<'r>(result: &'r CalibrationResult, term: &TermSummary) -> ([u8; 3], Option<usize>, &'r str) {
+    let unit = result.parameter(&term.name).map_or("", |p| customary(&p.unit, &p.group).1);
+    (term.powers, term.sign_of, unit)
+}
+
+/// `f1^2 f3`, or `1`; an odd term with its sign, `sgn(f1) f1^2`.
+pub(crate) fn monomial(powers: [u8; 3], sign_of: Option<usize>) -> String {
+    let mut factors: Vec<String> = sign_of.map(|axis| format!("sgn(f{axis})")).into_iter().collect();
+    for (axis, power) in (1..).zip(powers).filter(|(_, power)| *power > 0) {
+        factors.push(if power == 1 { format!("f{axis}") } else { format!("f{axis}^{power}") });
+    }
+    if factors.is_empty() { "1".to_owned() } else { factors.join(" ") }
+}
+
+/// Turns by position, shifts by pair, tilt and proof masses.
+fn mounting(text: &mut String, result: &CalibrationResult) {
+    text.push_str("\nMOUNTING\n");
+    row(text, "", "unit", &["axis 1", "axis 2", "axis 3"].map(str::to_owned));
+    let mut rows: Vec<(String, &str, [String; 3])> = Vec::new();
+    for parameter in result.parameters.iter().filter(|p| is_mounting(&p.group)) {
+        let Some((label, axis)) = label_and_axis(&parameter.name) else { continue };
+        let unit = customary(&parameter.unit, &parameter.group).1;
+        if rows.last().is_none_or(|(last, _, _)| *last != label) {
+            rows.push((label, unit, Default::default()));
+        }
+        if let Some((_, _, cells)) = rows.last_mut() {
+            cells[axis] = cell(parameter);
+        }
+    }
+    for (label, unit, cells) in rows {
+        row(text, &label, unit, &cells);
+    }
+}
+
+fn is_mounting(group: &str) -> bool {
+    ["tilt", "turn", "shift", "proof mass"].contains(&group)
+}
+
+/// `delta_2[4]` is axis 1 of the row `delta[4]`; `drho_33` axis 2 of `drho`.
+fn label_and_axis(name: &str) -> Option<(String, usize)> {
+    let (stem, rest) = name.split_once('_')?;
+    let axis = rest.chars().next()?.to_digit(10)?;
+    let index = rest.find('[').map_or("", |start| &rest[start..]);
+    Some((format!("{stem}{index}"), usize::try_from(axis).ok()?.checked_sub(1).filter(|axis| *axis < 3)?))
+}
+
+/// What fits neither table: extensions of the model.
+fn others(text: &mut String, result: &CalibrationResult) {
+    let in_model = |p: &ParameterEstimate| result.model.error_model.iter().any(|term| term.name == p.name);
+    let others: Vec<_> = result.parameters.iter().filter(|p| !is_mounting(&p.group) && !in_model(p)).collect();
+    if others.is_empty() {
+        return;
+    }
+    text.push_str("\nEXTENSIONS\n");
+    for parameter in others {
+        let unit = customary(&parameter.unit, &parameter.group).1;
+        let _ = writeln!(text, "  {:<22}{:<18}{}", parameter.name, unit, cell(parameter).trim_start());
+    }
+}
+
+fn cell(parameter: &ParameterEstimate) -> String {
+    let factor = customary(&parameter.unit, &parameter.group).0;
+    match (parameter.value, parameter.standard_uncertainty) {
+        (Some(value), Some(uncertainty)) => {
+            let (value, uncertainty) = with_uncertainty(value * factor, uncertainty * factor);
+            format!("{value:>11} ± {uncertainty:<8}")
+        }
+        _ => format!("{:>11}", "not seen"),
+    }
+}
+
+fn row(text: &mut String, label: &str, unit: &str, cells: &[String; 3]) {
+    let mut line = format!("  {label:<LABEL$}{unit:<UNIT$}");
+    for cell in cells {
+        let _ = write!(line, "{cell:<CELL$}");
+    }
+    text.push_str(line.trim_end());
+    text.push('\n');
+}
+
+fn not_estimable(text: &mut String, result: &CalibrationResult) {
+    let seen = &result.observability;
+    if seen.null_directions.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "\nNOT SEEN  rank {} of {}: the readings do not change along", seen.rank, seen.columns);
+    for direction in &seen.null_directions {
+        let _ = writeln!(text, "  {}", combination(direction));
+    }
+    let lost: Vec<&str> = result.parameters.iter().filter(|p| !p.estimable).map(|p| p.name.as_str()).collect();
+    let _ = writeln!(text, "  so these have no value of their own: {}", lost.join(", "));
+    let names = |p: &&ParameterEstimate| result.model.error_model.iter().any(|term| term.name == p.name);
+    let (of_instrument, lost_of_it) =
+        result.parameters.iter().filter(names).fold((0, 0), |(n, lost), p| (n + 1, lost + usize::from(!p.estimable)));
+    if lost_of_it == 0 {
+        let _ = writeln!(text, "  All {of_instrument} parameters of the instrument are determined.");
+    } else {
+        let _ =
+            writeln!(text, "  {lost_of_it} of the {of_instrument} parameters of the instrument are not determined.");
+    }
+}
+
+/// What rests on priors, and what the data added to each.
+fn priors(text: &mut String, result: &CalibrationResult) {
+    let given: Vec<_> = result.parameters.iter().filter_map(|p| Some((p, p.prior?))).collect();
+    if given.is_empty() {
+        return;
+    }
+    text.push_str("\nPRIORS  standard uncertainty after the data over that before\n");
+    for (parameter, prior) in given {
+        let _ = writeln!(text, "  {:<22}{:.3}", parameter.name, prior.posterior_over_prior);
+    }
+    let resting = result.parameters.iter().filter(|p| p.rests_on_prior);
+    let resting: Vec<&str> = resting.map(|p| p.name.as_str()).collect();
+    if !resting.is_empty() {
+        let _ = writeln!(text, "  without the priors these would have no value: {}", resting.join(", "));
+    }
+}
+
+/// `dR_2[A] + dR_1[B] - drho_22`.
+pub(crate) fn combination(direction: &serde_json::Map<String, serde_json::Value>) -> String {
+    let mut text = String::new();
+    for (name, component) in direction {
+        let component = component.as_f64().unwrap_or(0.0);
+        let sign = if component < 0.0 { "-" } else { "+" };
+        match (text.is_empty(), sign) {
+            (true, "+") => {}
+            (true, _) => text.push('-'),
+            (false, _) => {
+                let _ = write!(text, " {sign} ");
+            }
+        }
+        let size = component.abs();
+        if size != 1.0 {
+            let _ = if size.fract() == 0.0 { write!(text, "{size} ") } else { write!(text, "{size:.4e} ") };
+        }
+        text.push_str(name);
+    }
+    text
+}
+
+fn plateaus(text: &mut String, result: &CalibrationResult) {
+    let samples: u64 = result.plateaus.iter().map(|p| p.samples).sum();
+    let rejected: u64 = result.plateaus.iter().map(|p| p.rejected).sum();
+    let mountings = result.plateaus.iter().map(|p| p.mounting).max().unwrap_or(0);
+    let _ = writeln!(
+        text,
+        "\nDATA  {} plateaus in {mountings} mountings, {samples} samples used, {rejected} rejected",
+        result.plateaus.len()
+    );
+}
+
+fn fit(text: &mut String, result: &CalibrationResult) {
+    let fit = &result.fit;
+    let _ = write!(text, "FIT   {}, {} after {} iterations; ", fit.method, fit.termination, fit.iterations);
+    if fit.degrees_of_freedom == 0 {
+        text.push_str("no redundancy, so nothing checks the stated uncertainties\n");
+        return;
+    }
+    let dof = fit.degrees_of_freedom as f64;
+    let spread = (2.0 / dof).sqrt();
+    let _ = writeln!(
+        text,
+        "chi^2 per degree of freedom {:.3} (expected 1 ± {spread:.3}; {} degrees)",
+        fit.chi_squared / dof,
+        fit.degrees_of_freedom
+    );
+}

@@ -1,0 +1,67 @@
+//! Whether a result can be accepted as it stands, and why not.
+
+use std::fmt;
+
+use centrical_io::CalibrationResult;
+
+use crate::language::Language;
+
+/// Residuals as large as these come by chance once in ten thousand sessions.
+const CHANCE: f64 = 1e-4;
+
+/// What speaks against a result.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Objection {
+    /// The fit did not converge.
+    NotConverged {
+        /// How it ended, as the result says it.
+        termination: String,
+        /// Linearisations made.
+        iterations: usize,
+    },
+    /// Residuals are larger than the stated uncertainties explain (chi^2 beyond its 99.99 % quantile).
+    Residuals {
+        /// chi^2.
+        chi_squared: f64,
+        /// Its degrees of freedom.
+        degrees_of_freedom: usize,
+        /// Probability of so large a chi^2.
+        chance: f64,
+    },
+    /// Parameters of the instrument are not determined. Lost geometry alone is no objection.
+    NotDetermined(Vec<String>),
+}
+
+impl fmt::Display for Objection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&Language::English.messages().objection(self, Language::English))
+    }
+}
+
+/// What speaks against the result; nothing if it is acceptable.
+pub fn objections(result: &CalibrationResult) -> Vec<Objection> {
+    let fit = &result.fit;
+    let mut objections = Vec::new();
+    if fit.termination == "stalled" || fit.termination == "iteration limit" {
+        objections.push(Objection::NotConverged { termination: fit.termination.clone(), iterations: fit.iterations });
+    }
+    let (chi_squared, degrees_of_freedom) = (fit.chi_squared, fit.degrees_of_freedom);
+    let chance = chi_squared_tail(chi_squared, degrees_of_freedom);
+    if chance < CHANCE {
+        objections.push(Objection::Residuals { chi_squared, degrees_of_freedom, chance });
+    }
+    let names = result.model.error_model.iter().map(|term| &term.name);
+    let lost: Vec<String> = names.filter(|name| result.parameter(name).is_none_or(|p| !p.estimable)).cloned().collect();
+    if !lost.is_empty() {
+        objections.push(Objection::NotDetermined(lost));
+    }
+    objections
+}
+
+/// Probability that chi^2 with `dof` degrees of freedom exceeds `chi_squared`; 1 without any.
+pub fn chi_squared_tail(chi_squared: f64, dof: usize) -> f64 {
+    if dof == 0 {
+        return 1.0;
+    }
+    statrs::function::gamma::gamma_ur(0.5 * dof as f64, 0.5 * chi_squared.max(0.0))
+}

@@ -1,0 +1,285 @@
+//! The generated code, compiled and run, against the library: gcc, clang, Octave, Python.
+//!
+//! A tool that is not installed is named on standard error and its part left out, unless `CENTRICAL_ALL_TOOLS` is
+//! set, as `.ci/run` does after installing them.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use centrical_compensate::{Compensation, Term, reading};
+use centrical_report::codegen::{NamedTerm, compensation_source};
+use tempfile::TempDir;
+
+/// 1 g [m/s^2].
+const G: f64 = 9.806_65;
+const RANGE: f64 = 200.0 * G;
+const READINGS: usize = 100_000;
+
+/// The source's terms at 5 mg, 1e-3, 1e-5 /g, 1e-7 /g^2, with signs that differ.
+fn kozlov() -> Vec<NamedTerm> {
+    let sizes = [5e-3 * G, 1e-3, 1e-5 / G, 1e-7 / (G * G)];
+    let model = centrical::ErrorModel::kozlov_2017();
+    let term = |(k, term): (usize, &centrical::Term)| {
+        let size = sizes[usize::from(term.monomial.degree())];
+        let coefficient = size * (1.0 + (k as f64 * 0.618).sin()) * if k % 3 == 0 { -1.0 } else { 1.0 };
+        let powers = term.monomial.powers;
+        NamedTerm { name: term.name.clone(), term: Term { axis: term.axis, powers, sign_of: None, coefficient } }
+    };
+    model.terms.iter().enumerate().map(term).collect()
+}
+
+/// The same with a product, an odd square, a kink and a fourth power, under the names that sessions give them.
+fn with_more_terms() -> Vec<NamedTerm> {
+    let mut terms = kozlov();
+    let mut add = |name: &str, axis, powers, sign_of, coefficient| {
+        terms.push(NamedTerm { name: name.to_owned(), term: Term { axis, powers, sign_of, coefficient } });
+    };
+    add("K_1[f1*f2]", 0, [1, 1, 0], None, 1e-5 / G);
+    add("K_2[f2*|f2|]", 1, [0, 2, 0], Some(1), -1e-5 / G);
+    add("K_3[|f3|]", 2, [0, 0, 1], Some(2), 1e-3);
+    add("K_3[f1^4]", 2, [4, 0, 0], None, 1e-10 / G.powi(3));
+    terms
+}
+
+fn models() -> [(&'static str, Vec<NamedTerm>); 3] {
+    [("kozlov", kozlov()), ("with more terms", with_more_terms()), ("without terms", Vec::new())]
+}
+
+/// A folder with the generated files, whose heading tries to break out of its comment.
+fn generate(terms: &[NamedTerm]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let heading = ["TA-200 */ No. 0001 /* ??/\\".to_owned(), "line\nof \"\"\" a session @vectors@".to_owned()];
+    for file in compensation_source(&heading, terms, RANGE).unwrap() {
+        fs::write(folder.path().join(file.name), file.text).unwrap();
+    }
+    folder
+}
+
+/// Whether a tool can be run.
+fn has(tool: &str) -> bool {
+    let answers = Command::new(tool).arg("--version").output().is_ok_and(|output| output.status.success());
+    assert!(answers || std::env::var_os("CENTRICAL_ALL_TOOLS").is_none(), "{tool} is not installed");
+    if !answers {
+        eprintln!("{tool} is not installed: the code generated for it is not checked");
+    }
+    answers
+}
+
+/// What a program prints when it is given `input`; its warnings and errors are a failure.
+fn run(command: &mut Command, input: &str) -> String {
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut pipe = child.stdin.take().unwrap();
+    let input = input.to_owned();
+    let writer = std::thread::spawn(move || pipe.write_all(input.as_bytes()));
+    let output = child.wait_with_output().unwrap();
+    // A program that needs no input may end before it is all written.
+    let _ = writer.join().unwrap();
+    let messages = String::from_utf8_lossy(&output.stderr);
+    // Octave 7 takes leave like this whatever it was asked.
+    let messages = messages.replace("error: ignoring const execution_exception& while preparing to exit\n", "");
+    assert!(output.status.success() && messages.is_empty(), "{command:?}: {}\n{messages}", output.status);
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Random readings over the range (SplitMix64), here and there one from beyond it.
+fn readings(terms: &[Term]) -> Vec<[f64; 3]> {
+    let mut state = 1_u64;
+    let mut uniform = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let mut one = |k: usize| {
+        let scale = if k.is_multiple_of(100) { 1.2 * RANGE } else { RANGE };
+        reading(terms, [(); 3].map(|()| scale * uniform()))
+    };
+    (0..READINGS).map(&mut one).collect()
+}
+
+fn as_text(readings: &[[f64; 3]]) -> String {
+    readings.iter().fold(String::new(), |mut text, [a, b, c]| {
+        writeln!(text, "{a:e} {b:e} {c:e}").unwrap();
+        text
+    })
+}
+
+/// Compares lines `f1 f2 f3`, or `outside`, with the library: each to `tolerance` of the largest component.
+fn agrees(lines: &str, readings: &[[f64; 3]], terms: &[Term], tolerance: f64, what: &str) {
+    let compensation = Compensation::new(terms, RANGE).unwrap();
+    let (mut worst, mut refused) = (0.0_f64, 0);
+    assert_eq!(lines.lines().count(), readings.len(), "{what}");
+    for (line, reading) in lines.lines().zip(readings) {
+        match compensation.apply(*reading) {
+            Err(_) => {
+                assert_eq!(line, "outside", "{what}: {reading:?}");
+                refused += 1;
+            }
+            Ok(f) => {
+                let found: Vec<f64> = line.split_whitespace().map(|word| word.parse().expect(line)).collect();
+                let largest = f.iter().fold(0.0_f64, |largest, x| x.abs().max(largest));
+                let error = (0..3).map(|i| (found[i] - f[i]).abs()).fold(0.0, f64::max);
+                worst = worst.max(error / largest);
+            }
+        }
+    }
+    println!("{what}: {worst:.2e} relative over {} readings, {refused} refused", readings.len());
+    assert!(worst <= tolerance, "{what}: {worst:e}");
+    assert!((1..READINGS / 100).contains(&refused), "{what}: {refused} refused");
+}
+
+/// Reads `f1 f2 f3` from standard input; argument `f` chooses single precision. The test vectors are run first.
+const C_MAIN: &str = r#"
+#include <stdio.h>
+#include "centrical_compensate.h"
+int main(int argc, char **argv) {
+    double f[3];
+    float s[3];
+    int i, outside;
+    (void)argv;
+    if (centrical_compensate_self_test() != 0) { return 1; }
+    while (scanf("%lf %lf %lf", &f[0], &f[1], &f[2]) == 3) {
+        if (argc > 1) {
+            for (i = 0; i < 3; i++) { s[i] = (float)f[i]; }
+            outside = centrical_compensate_float(s, s);
+            for (i = 0; i < 3; i++) { f[i] = (double)s[i]; }
+        } else {
+            outside = centrical_compensate(f, f);
+        }
+        if (outside) { puts("outside"); } else { printf("%.17g %.17g %.17g\n", f[0], f[1], f[2]); }
+    }
+    return 0;
+}
+"#;
+
+fn check_c(compiler: &str, optimisation: &str, name: &str, terms: &[NamedTerm]) {
+    let folder = generate(terms);
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("main.c"), C_MAIN).unwrap();
+    let mut compile = Command::new(compiler);
+    compile.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", optimisation, "-o"]);
+    compile.args(["program", "main.c", "centrical_compensate.c"]).current_dir(&folder);
+    run(&mut compile, "");
+
+    let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
+    let readings = readings(&plain);
+    let what = format!("{compiler} {optimisation}, {name}");
+    let double = run(&mut Command::new(at("program")), &as_text(&readings));
+    agrees(&double, &readings, &plain, 1e-12, &format!("{what}, double"));
+
+    // Single precision is given what it can hold, and not within its rounding of the edge.
+    let [less, more] = [1.0 - 1e-5, 1.0 + 1e-5].map(|scale| Compensation::new(&plain, scale * RANGE).unwrap());
+    let near_edge = |r: &[f64; 3]| less.apply(*r).is_ok() != more.apply(*r).is_ok();
+    #[allow(clippy::cast_possible_truncation, reason = "single precision is what is checked")]
+    let rounded = readings.iter().map(|r| r.map(|x| f64::from(x as f32)));
+    let rounded: Vec<[f64; 3]> = rounded.filter(|r| !near_edge(r)).collect();
+    let single = run(Command::new(at("program")).arg("f"), &as_text(&rounded));
+    agrees(&single, &rounded, &plain, 1e-6, &format!("{what}, single"));
+}
+
+#[test]
+fn c_by_gcc() {
+    if has("gcc") {
+        for (name, terms) in models() {
+            check_c("gcc", "-O0", name, &terms);
+        }
+        check_c("gcc", "-O2", "kozlov", &kozlov());
+    }
+}
+
+#[test]
+fn c_by_clang() {
+    if has("clang") {
+        for (name, terms) in models() {
+            check_c("clang", "-O2", name, &terms);
+        }
+    }
+}
+
+const OCTAVE_MAIN: &str = r#"
+centrical_compensate();
+[f, outside] = centrical_compensate(load("-ascii", "readings.txt"));
+file = fopen("answers.txt", "w");
+fprintf(file, "%.17g %.17g %.17g\n", f.');
+fclose(file);
+if any(outside != any(isnan(f), 2)), exit(1); end
+"#;
+
+#[test]
+fn octave() {
+    if !has("octave-cli") {
+        return;
+    }
+    for (name, terms) in models() {
+        let folder = generate(&terms);
+        let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
+        let readings = readings(&plain);
+        fs::write(folder.path().join("readings.txt"), as_text(&readings)).unwrap();
+        fs::write(folder.path().join("main.m"), OCTAVE_MAIN).unwrap();
+        run(Command::new("octave-cli").args(["--no-init-file", "main.m"]).current_dir(&folder), "");
+        let answers = fs::read_to_string(folder.path().join("answers.txt")).unwrap();
+        let answers = answers.replace("NaN NaN NaN", "outside");
+        agrees(&answers, &readings, &plain, 1e-12, &format!("Octave, {name}"));
+    }
+}
+
+const PYTHON_MAIN: &str = r#"
+import sys
+from centrical_compensate import compensate, self_test
+
+self_test()
+for line in sys.stdin:
+    try:
+        print(*map(repr, compensate([float(word) for word in line.split()])))
+    except ValueError:
+        print("outside")
+"#;
+
+#[test]
+fn python() {
+    if !has("python3") {
+        return;
+    }
+    for (name, terms) in models() {
+        let folder = generate(&terms);
+        let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
+        let readings = readings(&plain);
+        fs::write(folder.path().join("main.py"), PYTHON_MAIN).unwrap();
+        let answers = run(Command::new("python3").args(["-B", "main.py"]).current_dir(&folder), &as_text(&readings));
+        agrees(&answers, &readings, &plain, 1e-12, &format!("Python, {name}"));
+        run(Command::new("python3").args(["-B", "centrical_compensate.py"]).current_dir(&folder), "");
+    }
+}
+
+/// The test vectors have power: a coefficient that is off by the tolerance is found by each language.
+#[test]
+fn test_vectors_find_a_wrong_coefficient() {
+    let folder = generate(&kozlov());
+    spoil(folder.path(), "centrical_compensate.py", "COEFFICIENTS = (\n    ");
+    spoil(folder.path(), "centrical_compensate.m", "  c = [\n    ");
+    spoil(folder.path(), "centrical_compensate.c", "coefficient[] = {\n    ");
+    fs::write(folder.path().join("main.c"), C_MAIN).unwrap();
+    let fails = |command: &mut Command| !command.current_dir(&folder).output().unwrap().status.success();
+    if has("python3") {
+        assert!(fails(Command::new("python3").args(["-B", "centrical_compensate.py"])));
+    }
+    if has("octave-cli") {
+        assert!(fails(Command::new("octave-cli").args(["--no-init-file", "--eval", "centrical_compensate()"])));
+    }
+    if has("gcc") {
+        let build = ["-std=c99", "-o", "program", "main.c", "centrical_compensate.c"];
+        assert!(!fails(Command::new("gcc").args(build)));
+        assert!(fails(Command::new(folder.path().join("program")).stdin(Stdio::null())));
+    }
+}
+
+/// Moves the first coefficient, a bias, by 1e-8 m/s^2.
+fn spoil(folder: &Path, name: &str, table: &str) {
+    let text = fs::read_to_string(folder.join(name)).unwrap();
+    let start = text.find(table).unwrap() + table.len();
+    fs::write(folder.join(name), format!("{}1e-8 + {}", &text[..start], &text[start..])).unwrap();
+}

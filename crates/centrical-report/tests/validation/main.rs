@@ -1,0 +1,3 @@
+//! Numbers that independent programs compute.
+
+mod generated_code;
