@@ -1,0 +1,12 @@
+//! The commands: each has its arguments and a `run`.
+
+pub mod assess;
+pub mod calibrate;
+pub mod compare;
+pub mod compensate;
+pub mod models;
+pub mod montecarlo;
+pub mod observe;
+pub mod report;
+pub mod simulate;
+pub mod watch;

@@ -1,0 +1,81 @@
+//! `centrical calibrate SESSION`: from a session folder to calibrated parameters.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use centrical_io::{CalibrationResult, Error, Method, PlateauName, Session, calibrate_without, create_folder};
+use centrical_report::{Objection, objections, terminal_table};
+
+use crate::command::report::Documents;
+use crate::{Outcome, progress};
+
+/// Calibrate a unit from a session folder: plateau means, fit, result.json.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// The session folder, or its experiment.toml
+    session: PathBuf,
+    /// Folder for result.json, the report and its plots, made if it is not there [default: result.json alone, in the
+    /// current folder]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print result.json instead of the table; a file is written only if --out is given
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    documents: Documents,
+    /// The linear fit of [K5.3] alone, with its second-order error
+    #[arg(long)]
+    linear: bool,
+    /// How the exact fit is made: all plateaus at once, or by the recursive filter, which comes to the same
+    #[arg(long, value_enum, default_value_t = FitMethod::Batch, conflicts_with = "linear")]
+    method: FitMethod,
+    /// Hold out a plateau of the fit, e.g. 4:3 for the third of the fourth mounting; may be repeated
+    #[arg(long, value_name = "MOUNTING:PLATEAU")]
+    hold_out: Vec<PlateauName>,
+}
+
+/// How the exact fit is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum FitMethod {
+    Batch,
+    Recursive,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let session = Session::read(&arguments.session)?;
+    let method = match arguments.method {
+        _ if arguments.linear => Method::Linear,
+        FitMethod::Batch => Method::Exact,
+        FitMethod::Recursive => Method::Recursive,
+    };
+    let bar = progress::mountings("reading", session.experiment.mountings.len());
+    let result = calibrate_without(&session, &arguments.hold_out, method, &|_| bar.inc(1))?;
+    bar.finish_and_clear();
+    let file = match (&arguments.out, arguments.json) {
+        (Some(folder), _) => {
+            create_folder(folder)?;
+            Some(folder.join("result.json"))
+        }
+        (None, false) => Some(PathBuf::from("result.json")),
+        (None, true) => None,
+    };
+    if let Some(file) = &file {
+        result.write(file)?;
+    }
+    if let Some(folder) = &arguments.out {
+        arguments.documents.write_all(&result, folder)?;
+    }
+    let objections = objections(&result);
+    let text = if arguments.json { result.to_json() } else { report(&result, &objections, file.as_deref()) };
+    // A reader that has seen enough (`| head`) is no failure.
+    let _ = io::stdout().write_all(text.as_bytes());
+    Ok(if objections.is_empty() { Outcome::Done } else { Outcome::NotAcceptable })
+}
+
+fn report(result: &CalibrationResult, objections: &[Objection], file: Option<&Path>) -> String {
+    let mut lines = vec![terminal_table(result)];
+    lines.extend(objections.iter().map(|objection| format!("NOT ACCEPTABLE  {objection}\n")));
+    lines.extend(file.map(|file| format!("\nWritten to {}\n", file.display())));
+    lines.concat()
+}

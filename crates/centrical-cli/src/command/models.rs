@@ -1,0 +1,29 @@
+//! `centrical models SESSION`: which error model the data speak for.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use centrical::uncertainty::{rivals_of, select};
+use centrical_io::{Error, Problem, Session};
+use centrical_report::selection_table;
+
+use crate::{Outcome, progress};
+
+/// Fit rival models to a session and compare them by F test, BIC and hold-out.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// The session folder, or its experiment.toml
+    session: PathBuf,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let session = Session::read(&arguments.session)?;
+    let bar = progress::mountings("reading", session.experiment.mountings.len());
+    let problem = Problem::of(&session, &|_| bar.inc(1))?;
+    bar.finish_and_clear();
+    let selection = select(&rivals_of(&problem.model), &problem.reduced.observations(), session.speed_uncertainty)
+        .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
+    let _ = io::stdout().write_all(selection_table(&selection).as_bytes());
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,122 @@
+//! `centrical report RESULT`: what the laboratory hands over, from a result.
+
+use std::path::{Path, PathBuf};
+
+use centrical_io::{CalibrationResult, Error, Laboratory, create_folder, write_whole};
+use centrical_report::codegen::{NamedTerm, compensation_source, heading};
+use centrical_report::{Language, digital_certificate, figures, html_report, objections, pdf_certificate};
+use clap::ValueEnum;
+
+use crate::Outcome;
+
+/// Make the documents of a calibration from its result.json.
+#[derive(Debug, clap::Args)]
+#[command(arg_required_else_help = true)]
+pub struct Arguments {
+    /// The result.json of a calibration
+    result: PathBuf,
+    /// Write the report to this file: one page, self-contained
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    /// Write the calibration certificate (ISO/IEC 17025) to this file
+    #[arg(long, value_name = "FILE", requires = "laboratory")]
+    pdf: Option<PathBuf>,
+    /// Write the digital calibration certificate (DCC XML 3.3.0) to this file
+    #[arg(long, value_name = "FILE", requires = "laboratory")]
+    dcc: Option<PathBuf>,
+    /// Write the compensation as source code with test vectors to this folder: C99, MATLAB and Octave, Python
+    #[arg(long, value_name = "DIR")]
+    c: Option<PathBuf>,
+    #[command(flatten)]
+    documents: Documents,
+}
+
+/// How documents are written.
+#[derive(Debug, clap::Args)]
+pub struct Documents {
+    /// What the certificates say of laboratory, customer, dates, standards and persons
+    #[arg(long, value_name = "FILE")]
+    laboratory: Option<PathBuf>,
+    /// Language of the documents
+    #[arg(long, value_enum, default_value = "en")]
+    language: LanguageName,
+}
+
+/// A language by its code.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum LanguageName {
+    /// English
+    En,
+    /// Russian
+    Ru,
+}
+
+impl From<LanguageName> for Language {
+    fn from(name: LanguageName) -> Self {
+        match name {
+            LanguageName::En => Self::English,
+            LanguageName::Ru => Self::Russian,
+        }
+    }
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let result = CalibrationResult::read(&arguments.result)?;
+    let language = arguments.documents.language.into();
+    if let Some(file) = &arguments.html {
+        write_whole(file, html_report(&result, language).as_bytes())?;
+    }
+    if let Some(laboratory) = arguments.documents.laboratory()? {
+        if let Some(file) = &arguments.pdf {
+            write_whole(file, &pdf_certificate(&result, &laboratory, language))?;
+        }
+        if let Some(file) = &arguments.dcc {
+            write_whole(file, digital_certificate(&result, &laboratory, language).as_bytes())?;
+        }
+    }
+    if let Some(folder) = &arguments.c {
+        write_source(&result, &arguments.result, folder)?;
+    }
+    Ok(if objections(&result).is_empty() { Outcome::Done } else { Outcome::NotAcceptable })
+}
+
+/// Writes the compensation as source code.
+fn write_source(result: &CalibrationResult, file: &Path, folder: &Path) -> Result<(), Error> {
+    let file = || file.to_owned();
+    let no_model = |source| Error::ErrorModel { file: file(), source };
+    let terms = NamedTerm::of(result).map_err(no_model)?;
+    let plain = result.error_terms().map_err(no_model)?;
+    let sources = (result.compensation_range(&plain))
+        .and_then(|range| compensation_source(&heading(result), &terms, range))
+        .map_err(|source| Error::NotInvertible { file: file(), source })?;
+    create_folder(folder)?;
+    sources.iter().try_for_each(|source| write_whole(&folder.join(source.name), source.text.as_bytes()))
+}
+
+impl Documents {
+    fn laboratory(&self) -> Result<Option<Laboratory>, Error> {
+        self.laboratory.as_deref().map(Laboratory::read).transpose()
+    }
+
+    /// Writes the report and its plots to a folder, and the certificates if the laboratory's data are given.
+    pub fn write_all(&self, result: &CalibrationResult, folder: &Path) -> Result<(), Error> {
+        let language = self.language.into();
+        write_whole(&folder.join("report.html"), html_report(result, language).as_bytes())?;
+        if let Some(laboratory) = self.laboratory()? {
+            write_whole(&folder.join("certificate.pdf"), &pdf_certificate(result, &laboratory, language))?;
+            let dcc = digital_certificate(result, &laboratory, language);
+            write_whole(&folder.join("certificate.xml"), dcc.as_bytes())?;
+        }
+        let plots = folder.join("plots");
+        create_folder(&plots)?;
+        for figure in figures(result, language) {
+            let is_one = figure.drawings.len() == 1;
+            for (n, drawing) in (1..).zip(&figure.drawings) {
+                let name = if is_one { format!("{}.svg", figure.name) } else { format!("{}-{n:02}.svg", figure.name) };
+                write_whole(&plots.join(name), drawing.as_bytes())?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,47 @@
+//! `centrical simulate PLAN --truth T.toml --seed N --out SESSION`: a session as a laboratory would deliver it.
+
+use std::path::PathBuf;
+
+use centrical_io::{Error, Session, TableFormat, Truth, simulate_session};
+
+use crate::{Outcome, progress};
+
+/// Simulate a session: records, telemetry and experiment.toml, with truth.json beside them.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// The plan: an experiment.toml, or the folder that holds it; its mountings need no records
+    plan: PathBuf,
+    /// The unit as it is and the equipment as it errs
+    #[arg(long, value_name = "TOML")]
+    truth: PathBuf,
+    /// What everything random follows from
+    #[arg(long, value_name = "N")]
+    seed: u64,
+    /// Folder for the session, made if it is not there
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// How records and telemetry are written
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
+enum Format {
+    #[default]
+    Csv,
+    Parquet,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let plan = Session::read(&arguments.plan)?;
+    let truth = Truth::read(&arguments.truth, &plan, arguments.seed)?;
+    let format = match arguments.format {
+        Format::Csv => TableFormat::Csv,
+        Format::Parquet => TableFormat::Parquet,
+    };
+    let bar = progress::mountings("simulating", plan.experiment.mountings.len());
+    simulate_session(&plan, &truth, arguments.seed, format, &arguments.out, &|_| bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok(Outcome::Done)
+}

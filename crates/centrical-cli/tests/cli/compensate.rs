@@ -1,0 +1,118 @@
+//! `centrical compensate` on the example session.
+
+use std::fs;
+use std::process::Output;
+
+use crate::session::Copy;
+
+fn text(output: &Output) -> String {
+    [&output.stdout, &output.stderr].map(|part| String::from_utf8_lossy(part).into_owned()).concat()
+}
+
+/// Calibrates the example; the result is in the output folder.
+fn calibrated() -> Copy {
+    let copy = Copy::new();
+    assert!(copy.calibrate(&[]).status.success());
+    copy
+}
+
+fn compensate(copy: &Copy, arguments: &[&str]) -> Output {
+    let record = copy.session().join("records/m01.csv");
+    let mut all = vec!["compensate", "result.json", record.to_str().unwrap(), "--out"];
+    all.extend(arguments);
+    copy.run(&all)
+}
+
+/// Columns of a CSV table, without its header.
+fn columns(csv: &str) -> Vec<[f64; 4]> {
+    let row = |line: &str| {
+        let numbers: Vec<f64> = line.split(',').map(|number| number.parse().unwrap()).collect();
+        [numbers[0], numbers[1], numbers[2], numbers[3]]
+    };
+    csv.lines().skip(1).map(row).collect()
+}
+
+/// The specific forces read, by the result's own error model, as the record does.
+#[test]
+fn readings_are_explained() {
+    let copy = calibrated();
+    let output = compensate(&copy, &["f.csv"]);
+    assert!(output.status.success(), "{}", text(&output));
+    let result = centrical_io::CalibrationResult::read(&copy.out().join("result.json")).unwrap();
+    let terms = result.error_terms().unwrap();
+    assert_eq!(terms.len(), 21);
+    let before = columns(&fs::read_to_string(copy.session().join("records/m01.csv")).unwrap());
+    let after = columns(&fs::read_to_string(copy.out().join("f.csv")).unwrap());
+    assert_eq!(before.len(), after.len());
+    let mut largest: f64 = 0.0;
+    for ([t, b1, b2, b3], [u, f @ ..]) in before.into_iter().zip(after) {
+        assert_eq!(t, u);
+        let read = centrical_compensate::reading(&terms, f);
+        for (found, expected) in read.into_iter().zip([b1, b2, b3]) {
+            assert!((found - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{found} for {expected} at {t} s");
+        }
+        largest = [b1 - f[0], b2 - f[1], b3 - f[2]].iter().fold(largest, |l, e| l.max(e.abs()));
+    }
+    assert!(largest > 1e-3, "the compensation should do something, found {largest} m/s^2 at most");
+}
+
+/// Readings from beyond the range are counted, told, and nan; the exit code says so.
+#[test]
+fn readings_from_beyond_the_range_are_told() {
+    let copy = calibrated();
+    let output = compensate(&copy, &["f.csv", "--range", "5 g"]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output));
+    let after = columns(&fs::read_to_string(copy.out().join("f.csv")).unwrap());
+    let missing = after.iter().filter(|[_, f @ ..]| f.iter().all(|f| f.is_nan())).count();
+    assert!(missing > 0 && missing < after.len());
+    let said = format!("NOT ACCEPTABLE  {missing} readings come from beyond the range and are nan, the first at t = ");
+    assert!(text(&output).contains(&said), "{}", text(&output));
+}
+
+/// The same bytes twice, and Parquet if its name says so.
+#[test]
+fn formats_and_bytes() {
+    let copy = calibrated();
+    for name in ["f.csv", "again.csv", "f.parquet"] {
+        assert!(compensate(&copy, &[name]).status.success());
+    }
+    let read = |name: &str| fs::read(copy.out().join(name)).unwrap();
+    assert_eq!(read("f.csv"), read("again.csv"));
+    assert!(read("f.parquet").starts_with(b"PAR1"));
+}
+
+/// What cannot be done is refused before anything is written, with what was found and expected.
+#[test]
+fn refusals() {
+    let copy = calibrated();
+    let refused = |arguments: &[&str], said: &str| {
+        let output = compensate(&copy, arguments);
+        assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+        assert!(text(&output).contains(said), "{}", text(&output));
+        assert!(!copy.out().join("f.csv").exists());
+    };
+    refused(&["f.csv", "--range", "5 parsecs"], "expected an acceleration such as");
+    refused(&["f.csv", "--range", "1e9 g"], "result.json: over twice the range the gain changes by up to");
+    let result = copy.out().join("result.json");
+    let text = fs::read_to_string(&result).unwrap();
+    let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let parameters = json["parameters"].as_array_mut().unwrap();
+    parameters.iter_mut().find(|p| p["name"] == "G1_31").unwrap()["value"] = serde_json::Value::Null;
+    fs::write(&result, json.to_string()).unwrap();
+    refused(&["f.csv"], "result.json: G1_31: found no value, the data do not determine it");
+}
+
+/// `report --c` leaves the source files; what they compute is checked where they are made.
+#[test]
+fn source_code() {
+    let copy = calibrated();
+    let output = copy.run(&["report", "result.json", "--c", "source"]);
+    assert!(output.status.success(), "{}", text(&output));
+    let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
+    let mut names: Vec<String> = fs::read_dir(copy.out().join("source")).unwrap().map(name).collect();
+    names.sort();
+    let extensions = [".c", ".h", ".m", ".py"];
+    assert_eq!(names, extensions.map(|extension| format!("centrical_compensate{extension}")));
+    let header = fs::read_to_string(copy.out().join("source/centrical_compensate.h")).unwrap();
+    assert!(header.contains(" * Compensation of "), "{header}");
+}

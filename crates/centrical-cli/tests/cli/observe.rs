@@ -1,0 +1,96 @@
+//! `centrical observe` on sessions and plans.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::session::{Copy, example};
+
+fn plan(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/plans").join(name).to_str().unwrap().to_owned()
+}
+
+fn json(copy: &Copy, arguments: &[&str]) -> (Value, Option<i32>) {
+    let run = copy.run(&[arguments, &["--json"]].concat());
+    assert!(run.stderr.is_empty(), "{}", String::from_utf8_lossy(&run.stderr));
+    (serde_json::from_slice(&run.stdout).unwrap(), run.status.code())
+}
+
+/// The printed relation: rank 47, two lost combinations of geometry, the instrument whole, so done.
+#[test]
+fn normalised_experiment() {
+    let copy = Copy::new();
+    let (report, code) = json(&copy, &["observe", &plan("normalised.toml"), "--combination", "dR_2[A] + drho_22"]);
+    assert_eq!(code, Some(0));
+    assert_eq!((report["rank"].as_u64(), report["columns"].as_u64()), (Some(47), Some(49)));
+    assert_eq!(report["lost"][0]["text"], "dR_2[A] + dR_1[B] - drho_22");
+    assert_eq!(report["lost"][0]["direction"]["drho_22"], -1.0);
+    assert_eq!(report["lost"][1]["text"], "dR_2[B] + dR_1[C] - drho_33");
+    assert_eq!(report["remedies"][0]["restores_rank"], true);
+    assert_eq!(report["combinations"][0]["estimable"], true);
+    let lost = |p: &&Value| p["estimable"] == false && p["standard_uncertainty"].is_null();
+    assert_eq!(report["parameters"].as_array().unwrap().iter().filter(lost).count(), 6);
+    let text = String::from_utf8(copy.run(&["observe", &plan("normalised.toml")]).stdout).unwrap();
+    for part in ["RANK  47 of 49", "feels nothing but its own distance", "REMEDIES", "SUFFICIENT CONDITIONS"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+/// A plan that loses parameters of the instrument is not acceptable; its priors are accounted for.
+#[test]
+fn plan_of_ones_own() {
+    let copy = Copy::new();
+    let (report, code) = json(&copy, &["observe", &plan("four-positions.toml")]);
+    assert_eq!(code, Some(1));
+    let named = |name: &str| {
+        let parameters = report["parameters"].as_array().unwrap();
+        parameters.iter().find(|p| p["name"] == name).unwrap().clone()
+    };
+    assert_eq!(named("drho_22")["rests_on_prior"], true);
+    assert!((named("drho_22")["prior"]["posterior_over_prior"].as_f64().unwrap() - 1.0).abs() < 1e-3);
+    assert_eq!(named("G1_22")["estimable"], false);
+}
+
+/// A session is weighted by its data; the same bytes twice.
+#[test]
+fn session() {
+    let copy = Copy::new();
+    let example = example();
+    let arguments = ["observe", example.to_str().unwrap(), "--json"];
+    let first = copy.run(&arguments);
+    assert_eq!(first.status.code(), Some(0));
+    assert_eq!(first.stdout, copy.run(&arguments).stdout);
+    let report: Value = serde_json::from_slice(&first.stdout).unwrap();
+    assert_eq!((report["rank"].as_u64(), report["doubtful"].as_bool()), (Some(49), Some(false)));
+    assert_eq!(report["weighted_by"], "the noise of its data");
+}
+
+/// A prior in a session reaches the result, which says what rests on it.
+#[test]
+fn calibrate_tells_what_rests_on_a_prior() {
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| {
+        text.replacen("\"common\"", "\"opposite\"", 1) + "\n[prior]\n\"proof mass\" = \"50 um\"\n"
+    });
+    let run = copy.calibrate(&["--json"]);
+    let result: Value = serde_json::from_slice(&run.stdout).unwrap();
+    assert_eq!(result["observability"]["rank"], 49);
+    let parameters = result["parameters"].as_array().unwrap();
+    let resting: Vec<&str> =
+        parameters.iter().filter(|p| p["rests_on_prior"] == true).map(|p| p["name"].as_str().unwrap()).collect();
+    assert_eq!(resting, ["dR_2[A]", "dR_1[B]", "dR_2[B]", "dR_1[C]", "drho_22", "drho_33"]);
+    let prior = &parameters.iter().find(|p| p["name"] == "drho_33").unwrap()["prior"];
+    assert!((prior["standard_uncertainty"].as_f64().unwrap() / 5e-5 - 1.0).abs() < 1e-15);
+    assert!(prior["posterior_over_prior"].as_f64().unwrap() <= 1.0);
+}
+
+#[test]
+fn refusals() {
+    let copy = Copy::new();
+    let run = copy.run(&["observe", &plan("normalised.toml"), "--combination", "dR_2[A] + drho_44"]);
+    assert_eq!(run.status.code(), Some(2));
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert!(message.contains("character 11: found \"drho_44\", expected a parameter such as drho_22"), "{message}");
+    let run = copy.run(&["observe", "missing.toml"]);
+    assert_eq!(run.status.code(), Some(2));
+}

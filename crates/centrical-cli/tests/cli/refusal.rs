@@ -1,0 +1,123 @@
+//! Bad input: exit code 2, one message that names the file, the place, what was found and what was expected,
+//! no panic, nothing left behind.
+
+use std::fs;
+
+use crate::session::Copy;
+
+/// Calibrates a spoilt session and checks how it is refused.
+fn refused(copy: &Copy, parts: &[&str]) {
+    let run = copy.calibrate(&["--out", "."]);
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(2), "{message}{}", String::from_utf8_lossy(&run.stdout));
+    assert_eq!(message.trim_end().lines().count(), 1, "one message: {message}");
+    assert!(!message.contains("panicked"), "{message}");
+    for part in parts {
+        assert!(message.contains(part), "{part:?} is not in {message}");
+    }
+    assert!(run.stdout.is_empty());
+    assert_eq!(copy.left_behind(), Vec::<String>::new());
+}
+
+/// The session with one replacement in its experiment file.
+fn toml(from: &str, to: &str, parts: &[&str]) {
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| text.replacen(from, to, 1));
+    refused(&copy, &[&["experiment.toml"], parts].concat());
+}
+
+/// The session with one line of a record replaced.
+fn line(number: usize, to: &str, parts: &[&str]) {
+    let copy = Copy::new();
+    copy.edit("records/m07.csv", |text| {
+        let mut lines: Vec<&str> = text.lines().collect();
+        lines[number - 1] = to;
+        lines.join("\n")
+    });
+    refused(&copy, &[&["m07.csv"], parts].concat());
+}
+
+#[test]
+fn files() {
+    let copy = Copy::new();
+    fs::remove_file(copy.session().join("records/m03.csv")).unwrap();
+    refused(&copy, &["m03.csv", "no such file", "expected"]);
+
+    let copy = Copy::new();
+    fs::write(copy.session().join("records/m03.csv"), "").unwrap();
+    refused(&copy, &["m03.csv", "empty", "expected"]);
+
+    let copy = Copy::new();
+    fs::write(copy.session().join("records/m03.csv"), "t,f1,f2,f3\n").unwrap();
+    refused(&copy, &["m03.csv", "without rows", "expected"]);
+
+    let copy = Copy::new();
+    fs::write(copy.session().join("experiment.toml"), b"[session]\ntitle = \"\xff\xfe\"\n").unwrap();
+    refused(&copy, &["experiment.toml", "line 2", "0xff", "UTF-8"]);
+
+    let copy = Copy::new();
+    fs::write(copy.session().join("records/m03.csv"), b"t,f1,f2,f3\n0,1,\xff,3\n").unwrap();
+    refused(&copy, &["m03.csv", "line 2", "0xff", "UTF-8"]);
+
+    let copy = Copy::new();
+    fs::write(copy.session().join("records/m03.csv"), b"PAR1\x15\x04\x15\x00PAR").unwrap();
+    refused(&copy, &["m03.csv", "expected"]);
+}
+
+#[test]
+fn records() {
+    line(1, "t,f1,f2,g3", &["f3", "expected"]);
+    line(500, "4.9800,-0.1,NaN(ind),9.8", &["line 500", "f2", "NaN(ind)", "a number in m/s^2"]);
+    line(500, "4.9800,-0.1,inf,9.8", &["line 500", "f2", "inf", "expected"]);
+    line(500, "4.9800,-0.1,twelve,9.8", &["line 500", "f2", "twelve", "expected"]);
+    line(500, "4.9800,-0.1", &["line 500", "expected"]);
+    line(500, "0.0100,-0.1,0.1,9.8", &["line 500", "0.01", "expected"]);
+}
+
+/// A record with fewer plateaus than the schedule says which one is missing, what was looked for and what was seen.
+#[test]
+fn fewer_plateaus_than_scheduled() {
+    let copy = Copy::new();
+    copy.edit("records/m07.csv", |text| text.lines().take(8_000).collect::<Vec<_>>().join("\n"));
+    refused(&copy, &["m07.csv", "mounting 7", "plateau 7 of 9", "looked for", "seen"]);
+}
+
+#[test]
+fn experiment() {
+    toml("gravity = \"9.81523 m/s^2\"", "gravity = 0", &["[site]", "gravity", "found", "expected"]);
+    toml("gravity = \"9.81523 m/s^2\"", "gravity = \"9.81523 furlong\"", &["gravity", "furlong", "expected"]);
+    toml("speed_uncertainty = 1e-05", "speed_uncertainty = -1e-05", &["speed_uncertainty", "-1e-5", "expected"]);
+    toml("speed_uncertainty", "speed_uncertianty", &["speed_uncertianty", "expected"]);
+    toml("axes = \"+1 +2 +3\"", "axes = \"+1 +1 +3\"", &["axes", "+1 +1 +3", "expected"]);
+    toml("axes = \"+1 +2 +3\"", "axes = \"-1 +2 +3\"", &["axes", "-1 +2 +3", "expected", "right-handed"]);
+    toml("axes = \"+1 +2 +3\"", "matrix = [[0, 1, 0], [1, 0, 0], [0, 0, 1]]", &["matrix", "right-handed"]);
+    toml("id = \"2\"", "id = \"1\"", &["id", "\"1\"", "expected"]);
+    toml("arm = [0.5, 0.0, 0.0]", "arm = [-0.5, 0.0, 0.0]", &["arm", "-0.5", "expected"]);
+    toml("arm = [0.5, 0.0, 0.0]", "arm = [\"half\", 0.0, 0.0]", &["half", "expected"]);
+    toml("arm = [0.5, 0.0, 0.0]", "arm = [nan, 0.0, 0.0]", &["arm", "NaN", "expected"]);
+    toml("position = \"1\"", "position = \"9\"", &["position", "\"9\"", "expected"]);
+}
+
+#[test]
+fn positions_and_schedules() {
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| {
+        text.replace("[[mounting]]\nposition = \"4\"", "[[mounting]]\nposition = \"3\"")
+    });
+    refused(&copy, &["experiment.toml", "\"4\"", "mounting"]);
+
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| {
+        text.lines().filter(|line| !line.contains("rpm\" },") || line.contains("angle")).collect::<Vec<_>>().join("\n")
+    });
+    refused(&copy, &["experiment.toml", "at rest", "expected"]);
+}
+
+#[test]
+fn usage() {
+    let copy = Copy::new();
+    assert_eq!(copy.run(&["calibrate"]).status.code(), Some(2));
+    assert_eq!(copy.run(&["calibrate", "nowhere"]).status.code(), Some(2));
+    assert_eq!(copy.run(&["calibrade"]).status.code(), Some(2));
+    assert_eq!(copy.run(&["--help"]).status.code(), Some(0));
+}

@@ -1,0 +1,145 @@
+//! `centrical watch` on a folder that is complete, and on one that is being filled.
+
+use std::fs::{self, OpenOptions};
+use std::io::Write;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::session::{Copy, example};
+
+/// Longest time that any step of a run may take.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A complete folder: each plateau in the history, no alarm, and the bytes of the recursive calibration at the end, which
+/// are those of the batch to the last digits shown.
+#[test]
+fn a_complete_session_is_followed_to_its_calibration() {
+    let copy = Copy::new();
+    let session = copy.session();
+    let run = copy.run(&["watch", session.to_str().unwrap(), "--quiet", "0", "--once", "--target", "bias=0.05"]);
+    let text = String::from_utf8(run.stdout).unwrap();
+    assert_eq!(run.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&run.stderr));
+    assert!(String::from_utf8_lossy(&run.stderr).starts_with("30 states of 49 unknowns"));
+    for part in ["PLATEAU 108 of 108   RANK 49 of 49", "Every target is met", "The schedule is complete"] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    assert!(!text.contains("DOES NOT FIT"), "{text}");
+    let history = history(&copy.out());
+    assert_eq!(history.len(), 108);
+    let rank: Vec<u64> = history.iter().map(|line| line["rank"].as_u64().unwrap()).collect();
+    assert!(rank.is_sorted() && rank[0] == 3 && rank[107] == 49, "{rank:?}");
+    let freedom: u64 = history.iter().map(|line| line["innovation"]["degrees_of_freedom"].as_u64().unwrap()).sum();
+    assert_eq!(freedom, 324 - 49);
+    let watched = fs::read(copy.out().join("result.json")).unwrap();
+    assert_eq!(copy.calibrate(&["--method", "recursive"]).status.code(), Some(0));
+    assert!(watched == fs::read(copy.out().join("result.json")).unwrap());
+    let batch: Value = serde_json::from_slice(&copy.calibrate(&["--json"]).stdout).unwrap();
+    let watched: Value = serde_json::from_slice(&watched).unwrap();
+    for (a, b) in watched["parameters"].as_array().unwrap().iter().zip(batch["parameters"].as_array().unwrap()) {
+        let (difference, uncertainty) =
+            (a["value"].as_f64().unwrap() - b["value"].as_f64().unwrap(), b["standard_uncertainty"].as_f64().unwrap());
+        assert!(difference.abs() < 1e-6 * uncertainty, "{} {difference}", a["name"]);
+    }
+}
+
+/// Records that come piece by piece, lines in part; Ctrl-C in the middle, and the same command again: the end is the same as
+/// without.
+#[test]
+fn a_growing_session_is_followed_over_a_stop() {
+    let copy = Copy::new();
+    let records = copy.session().join("records");
+    fs::remove_dir_all(&records).unwrap();
+    fs::create_dir(&records).unwrap();
+    let mut watch = start(&copy);
+    let first = fs::read(example().join("records/m01.csv")).unwrap();
+    // No whole lines, and not all of them at once.
+    for piece in first.chunks(first.len() / 7 + 1) {
+        append(&records.join("m01.csv"), piece);
+        thread::sleep(Duration::from_millis(100));
+    }
+    until("a plateau of the first mounting", || history(&copy.out()).len() >= 3);
+    interrupt(&watch);
+    assert_eq!(watch.wait().unwrap().code(), Some(0));
+    let come = history(&copy.out()).len();
+    assert!((3..9).contains(&come), "{come}: the last plateau has not ended yet");
+    assert!(!copy.out().join("result.json").exists());
+
+    let mut watch = start(&copy);
+    for number in 2..=12 {
+        let name = format!("m{number:02}.csv");
+        // As a logger does that shows whole files only.
+        fs::copy(example().join("records").join(&name), records.join("coming")).unwrap();
+        fs::rename(records.join("coming"), records.join(&name)).unwrap();
+    }
+    until("the calibration", || watch.try_wait().unwrap().is_some());
+    assert_eq!(watch.wait().unwrap().code(), Some(0));
+    let numbers: Vec<u64> = history(&copy.out()).iter().map(|line| line["plateau"].as_u64().unwrap()).collect();
+    assert_eq!(numbers, (1..=108).collect::<Vec<_>>());
+    let watched = fs::read(copy.out().join("result.json")).unwrap();
+    assert_eq!(copy.calibrate(&["--method", "recursive"]).status.code(), Some(0));
+    assert!(watched == fs::read(copy.out().join("result.json")).unwrap());
+}
+
+/// A plateau that is off is said at once, held out if asked for, and then the calibration is the one without it.
+#[test]
+fn a_plateau_that_does_not_fit_is_held_out() {
+    let copy = Copy::new();
+    // All readings of the fifth mounting's last rest plateau 20 mg off.
+    copy.edit("records/m05.csv", |text| disturbed(&text));
+    let session = copy.session();
+    let run = copy.run(&["watch", session.to_str().unwrap(), "--quiet", "0", "--once", "--hold-out-alarms"]);
+    let text = String::from_utf8(run.stdout).unwrap();
+    let alarms: Vec<Value> = history(&copy.out()).into_iter().filter(|line| line["alarm"] == true).collect();
+    let named: Vec<u64> = alarms.iter().map(|line| line["set_point"].as_u64().unwrap()).collect();
+    assert_eq!(named, [44], "{text}{}", String::from_utf8_lossy(&run.stderr));
+    assert!(text.contains("5:9, rest at 180 deg") && text.contains("DOES NOT FIT, held out"), "{text}");
+    let watched = fs::read(copy.out().join("result.json")).unwrap();
+    copy.calibrate(&["--method", "recursive", "--hold-out", "5:9"]);
+    assert!(watched == fs::read(copy.out().join("result.json")).unwrap());
+}
+
+/// Adds 0.2 m/s^2 to the last 13 s of a record (rest and the end of the ramp down to it), all three readings.
+fn disturbed(text: &str) -> String {
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let time = |line: &str| line.split(',').next().and_then(|t| t.parse::<f64>().ok());
+    let last = time(lines.last().unwrap()).unwrap();
+    for line in &mut lines {
+        if time(line).is_some_and(|t| t > last - 13.0) {
+            let mut fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
+            fields[1..].iter_mut().for_each(|f| *f += 0.2);
+            *line = fields.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        }
+    }
+    lines.join("\n") + "\n"
+}
+
+fn start(copy: &Copy) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    command.arg("watch").arg(copy.session()).args(["--interval", "0.05", "--quiet", "2"]);
+    command.current_dir(copy.out()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+}
+
+fn interrupt(child: &Child) {
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+}
+
+fn append(file: &Path, bytes: &[u8]) {
+    OpenOptions::new().create(true).append(true).open(file).unwrap().write_all(bytes).unwrap();
+}
+
+fn until(what: &str, mut done: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !done() {
+        assert!(start.elapsed() < PATIENCE, "waited for {what} in vain");
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
+fn history(out: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(out.join("watch-history.jsonl")).unwrap_or_default();
+    text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+}
