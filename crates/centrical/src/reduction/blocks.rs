@@ -93,7 +93,11 @@ impl Blocks {
         };
         let (fresh, repeated) = (total(|block| block.fresh), total(|block| block.repeated));
         let largest = |axis: usize| {
-            gathered.iter().map(|b| b.low[axis].abs().max(b.high[axis].abs())).filter(|f| f.is_finite()).fold(0.0, f64::max)
+            gathered
+                .iter()
+                .map(|b| b.low[axis].abs().max(b.high[axis].abs()))
+                .filter(|f| f.is_finite())
+                .fold(0.0, f64::max)
         };
         let step = gathered.iter().fold(Vector3::repeat(f64::INFINITY), |step, block| step.inf(&block.step));
         // Readings that never change have no digit to see.

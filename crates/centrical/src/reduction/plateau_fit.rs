@@ -34,7 +34,12 @@ pub struct PlateauFit {
 
 impl PlateauFit {
     /// Fits the plateau `index` in its window.
-    pub(super) fn new(record: RecordSlice, index: usize, window: &Window, blocks: &Blocks) -> Result<Self, ReductionError> {
+    pub(super) fn new(
+        record: RecordSlice,
+        index: usize,
+        window: &Window,
+        blocks: &Blocks,
+    ) -> Result<Self, ReductionError> {
         let samples = Samples::cut_out(record, window, blocks);
         let mut good = samples.without_outliers(&samples.residuals_of_medians());
         let mut first = true;
