@@ -8,6 +8,7 @@
 //! |---|---|
 //! | text, also in gzip or Zstandard: any delimiter, decimal commas, comments | by name, or by number without a header |
 //! | Parquet (uncompressed, snappy, gzip, lz4, zstd) | by name or number |
+//! | Arrow IPC: files (Feather) and streams, plain, lz4 or zstd | by name or number |
 //! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number |
 //! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
 //! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
