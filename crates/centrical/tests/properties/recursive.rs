@@ -3,8 +3,8 @@
 use centrical::fit::recursive::{self, Filter, Follower, Lives, Readings, ResumeError};
 use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::{
-    ErrorModel, Experiment, Extension, Fit, FitError, Law, MeasurementModel, Observation, PairRelation, Termination,
-    fit, rotation,
+    ErrorModel, Experiment, Extension, Fit, FitError, Law, MeasurementModel, Observation, PairRelation,
+    STANDARD_GRAVITY, Termination, fit, rotation,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -452,5 +452,47 @@ fn expectation_and_resumption_of_a_followed_session() {
         if let (Some((_, expected)), Some((_, came))) = (expected, came) {
             assert!((expected / came - 1.0).abs() < 0.01, "{expected} {came}");
         }
+    }
+}
+
+/// A plateau that is grossly off, at any place of the session, is never an error and leaves the follower at a finite
+/// point, also when it is taken up; and it is alarmed wherever the plateaus before it predict it well enough to tell.
+#[test]
+fn a_gross_plateau_anywhere_is_alarmed_and_survived() {
+    // By the linear filter on data without noise, the normalised innovation squared that the blow alone makes. A blow of
+    // sqrt(120) standard deviations stays below the alarm's 4.6 at one plateau in 1e9.
+    const TELLING: f64 = 120.0;
+    for (seed, relation) in [(55, PairRelation::Common), (56, PairRelation::Opposite)] {
+        let mut random = Random::new(seed);
+        let model = kozlov(experiment(AxisOneUp, relation, &[1.0, 0.5]));
+        let data = noisy(&model, &mut random);
+        let lives = Lives::new(&model, &order(&data));
+        let mut perfect = Filter::new(&lives);
+        let mut follower = Follower::new(&model, SPEED_UNCERTAINTY);
+        let mut told = 0;
+        for (place, observation) in data.iter().enumerate() {
+            let size = [20e-3, 1.0, 10.0][(place + random.below(3)) % 3] * STANDARD_GRAVITY;
+            let blow = Vector3::from_fn(|_, _| random.normal()).normalize() * size;
+            let bad = Observation { mean: observation.mean + blow, ..observation.clone() };
+
+            let at_zero = model.linearise_at_zero(&model.experiment().set_points[observation.set_point]);
+            let reading = |off: Vector3<f64>| {
+                let perfect = Observation { mean: at_zero.reading + off, ..observation.clone() };
+                Readings::new(&perfect, &at_zero, SPEED_UNCERTAINTY).unwrap()
+            };
+            let telling = perfect.innovation(place, &reading(blow)).unwrap().squared > TELLING;
+            perfect.update(place, &reading(Vector3::zeros())).unwrap();
+
+            let innovation = follower.test(&bad).unwrap();
+            let what = format!("{relation:?}, place {place}, {size} m/s^2: {innovation:?}");
+            assert!(!telling || innovation.is_alarm(0.01, data.len()), "{what}");
+            told += usize::from(telling);
+            let mut taken = follower.clone();
+            taken.take(bad).unwrap();
+            assert!(taken.point().iter().all(|x| x.is_finite()), "{what}");
+            assert!(taken.progress().unwrap().estimates.iter().flatten().all(|(x, u)| x.is_finite() && u.is_finite()));
+            follower.take(observation.clone()).unwrap();
+        }
+        assert!(told > 90, "{relation:?}: only {told} of 108 could be told");
     }
 }
