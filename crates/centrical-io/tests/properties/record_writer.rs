@@ -52,7 +52,7 @@ fn nothing_is_left_of_half_a_record() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("half.csv");
     let mut writer = RecordWriter::create(&file).unwrap();
-    writer.write(block(&record(10, 0.5))).unwrap();
+    writer.write(record(10, 0.5).as_slice()).unwrap();
     drop(writer);
     let input = folder.path().join("bad.csv");
     fs::write(&input, "t,f1,f2,f3\n0,1,2,3\n1,1,oops,3\n").unwrap();
