@@ -74,9 +74,11 @@ pub fn calibrate_without(
         Method::Recursive => fit::recursive::exact,
         Method::Linear => fit::linear,
     };
-    let fit = estimate(&model, &reduced.observations(), session.speed_uncertainty)
-        .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
-    let mut result = CalibrationResult::new(session, &model, &reduced, &fit);
+    let observations = reduced.observations();
+    let failed = |source| Error::Fit { file: session.file.clone(), source };
+    let fit = estimate(&model, &observations, session.speed_uncertainty).map_err(failed)?;
+    let result = CalibrationResult::new(session, &model, &reduced, &fit);
+    let mut result = result.with_trust(session, &model, &observations, &fit).map_err(failed)?;
     if method == Method::Recursive {
         "exact, recursive filter".clone_into(&mut result.fit.method);
     }

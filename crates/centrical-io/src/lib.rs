@@ -57,14 +57,16 @@ pub use record_writer::RecordWriter;
 pub use reduce::{MountingFindings, Reduced, ReducedPlateau};
 pub use reduced_session::write_reduced;
 pub use result::{
-    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, ModelSummary, MountingSummary,
-    NoErrorModel, ObservabilitySummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program,
-    SCHEMA, SessionSummary, StabilityCurve, TermSummary,
+    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, ModelSummary,
+    MountingPrediction, MountingSummary, NoErrorModel, ObservabilitySummary, OutlyingPlateau, ParameterEstimate,
+    PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
+    TermSummary, ValiditySummary,
 };
 pub use session::{MountingFiles, Noise, Plan, PlateauTable, Session};
 pub use simulate::{TableFormat, Truth, simulate_session};
 pub use table::ColumnName;
 pub use watch::{
     HistoryEntry, HistoryEstimate, InnovationSummary, Watch, WatchState, WatchedPlateau, append_history, keep_history,
+    read_history,
 };
 pub use write::{create_folder, write_whole};
