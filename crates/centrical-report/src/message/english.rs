@@ -87,6 +87,10 @@ pub(crate) const ENGLISH: Messages = Messages {
     lost: "not seen",
     limit: "limit",
     null_directions: "The readings do not change along",
+    prediction_title: "Uncertainty of a compensated reading",
+    prediction_axis: "standard uncertainty, µg",
+    prediction_caption: "Standard uncertainty that the calibration leaves in a compensated reading, for a force along each \
+        axis alone; the noise of the reading itself comes on top.",
     history_title: "Uncertainty as the session was watched",
     history_caption: "Largest standard uncertainty of each group over that after the last plateau, as it stood when each \
         plateau had come. A curve begins where all of its group that was determined in the end was determined first.",
