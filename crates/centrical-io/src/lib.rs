@@ -27,6 +27,7 @@ mod quantity;
 mod record;
 mod record_writer;
 mod reduce;
+mod reduced_session;
 mod result;
 mod session;
 mod simulate;
@@ -35,6 +36,7 @@ mod watch;
 mod write;
 
 pub use calibration::{Method, PlateauName, Problem, calibrate, calibrate_without};
+pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use compensate::{Compensated, FirstOutside, compensate_record};
 pub use error::{Error, Place};
 pub use input::Input;
@@ -49,9 +51,10 @@ pub use observation::{
 pub use overview::RecordOverview;
 pub use plateaus::{PlateauMean, read_plateaus, write_plateaus};
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
-pub use record::{Column, Columns, Record, RecordBlock, Scale, Telemetry};
+pub use record::{Column, Columns, Scale, read_growing_record, read_record, read_telemetry, scan_record};
 pub use record_writer::RecordWriter;
 pub use reduce::{MountingFindings, Reduced, ReducedPlateau};
+pub use reduced_session::write_reduced;
 pub use result::{
     BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, ModelSummary,
     MountingPrediction, MountingSummary, NoErrorModel, ObservabilitySummary, OutlyingPlateau, ParameterEstimate,

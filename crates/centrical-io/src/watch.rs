@@ -7,16 +7,14 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-use centrical::reduction::{
-    NoiseModel, Record as Reducible, ReducedMounting, ReductionError, ScheduledPlateau, reduce,
-};
+use centrical::reduction::{NoiseModel, ReducedMounting, ReductionError, ScheduledPlateau, reduce};
 use centrical::{Observation, SetPoint, linear};
 
 pub use history::{HistoryEntry, HistoryEstimate, InnovationSummary, append_history, keep_history, read_history};
 pub use state::{WatchState, WatchedPlateau};
 
 use crate::error::Error;
-use crate::record::Record;
+use crate::record::read_growing_record;
 use crate::session::Session;
 
 /// A session folder that is looked into again and again.
@@ -137,9 +135,8 @@ impl<'s> Watch<'s> {
         let record = if look.left_alone {
             self.session.record(mounting)?
         } else {
-            Record::read_growing(file, &self.session.columns)?
+            read_growing_record(file, &self.session.columns)?
         };
-        let record = reducible(record);
         let reduced = reduce(&record, None, &schedule).map_err(|source| self.refused(mounting, source))?;
         Ok((reduced, schedule.len()))
     }
@@ -147,7 +144,7 @@ impl<'s> Watch<'s> {
     /// The plateaus that a growing record shows, and how many of them have come to their end.
     fn begun(&self, mounting: usize, file: &Path) -> Result<Option<(ReducedMounting, usize)>, Error> {
         let schedule = self.schedule(mounting);
-        let record = reducible(Record::read_growing(file, &self.session.columns)?);
+        let record = read_growing_record(file, &self.session.columns)?;
         let mut count = schedule.len();
         while count > 0 {
             match reduce(&record, None, &schedule[..count]) {
@@ -194,8 +191,4 @@ impl<'s> Watch<'s> {
         let file = self.session.mountings[mounting].record.clone().unwrap_or_default();
         Error::Reduction { file, mounting: mounting + 1, source }
     }
-}
-
-fn reducible(Record { t, f }: Record) -> Reducible {
-    Reducible { t, f_z: f }
 }

@@ -53,8 +53,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
         eprint!("{}", states_text(&session.model()?, &order));
     }
-    let bar = progress::mountings("reading", session.experiment.mountings.len());
-    let result = calibrate_without(&session, &arguments.hold_out, method, &|_| bar.inc(1))?;
+    let bar = progress::reading(&session);
+    let result = calibrate_without(&session, &arguments.hold_out, method, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
     let file = match (&arguments.out, arguments.json) {
         (Some(folder), _) => {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use centrical::Observation;
-use centrical_io::{Record, RecordBlock, RecordWriter, Session, Watch};
+use centrical_io::{RecordWriter, Session, Watch, read_record};
 use tempfile::TempDir;
 
 /// Longer than any test: a record is finished when one of a later mounting is there, not by being left alone.
@@ -75,12 +75,11 @@ fn a_growing_text_is_taken_up_plateau_by_plateau() {
 #[test]
 fn a_parquet_record_replaced_by_rename_is_taken_up_plateau_by_plateau() {
     let (folder, session) = folder(".parquet");
-    let record = Record::read(&example("records/m01.csv"), &session.columns).unwrap();
+    let record = read_record(&example("records/m01.csv"), &session.columns).unwrap();
     let file = folder.path().join("records/m01.parquet");
     let write = |rows: usize| {
         let mut writer = RecordWriter::create(&file).unwrap();
-        let f = [0, 1, 2].map(|i| &record.f[i][..rows]);
-        writer.write(RecordBlock { t: &record.t[..rows], f }).unwrap();
+        writer.write(record.as_slice().part(0..rows)).unwrap();
         writer.finish().unwrap();
     };
     let mut watch = Watch::new(&session, NEVER);
