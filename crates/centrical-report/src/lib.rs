@@ -10,6 +10,7 @@ mod conformity;
 mod customary;
 mod dcc;
 mod equation;
+mod expanded;
 mod figures;
 mod groups;
 mod html;
