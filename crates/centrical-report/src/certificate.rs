@@ -5,13 +5,11 @@ use centrical_io::{Address, CalibrationResult, Condition, Contact, Decision, Dec
 use crate::conformity::conformity;
 use crate::customary::customary;
 use crate::equation::equations;
+use crate::expanded::expanded;
 use crate::groups::by_group;
 use crate::language::Language;
 use crate::pdf::{Align, Column, Furniture, Layout, write};
 use crate::reading_error::{error_table, reading_errors};
-
-/// Coverage factor of the expanded uncertainties.
-const COVERAGE: f64 = 2.0;
 
 /// The certificate as the bytes of a PDF file. The same data give the same bytes.
 pub fn pdf_certificate(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> Vec<u8> {
@@ -158,9 +156,9 @@ fn results(layout: &mut Layout, result: &CalibrationResult, language: Language) 
         .into_iter()
         .map(|parameter| {
             let (factor, unit) = customary(&parameter.unit, &parameter.group);
-            let [shown, si] = match (parameter.value, parameter.standard_uncertainty) {
-                (Some(value), Some(uncertainty)) => {
-                    let expanded = COVERAGE * uncertainty;
+            let [shown, si] = match (parameter.value, expanded(result, parameter)) {
+                (Some(value), Some(expanded)) => {
+                    let expanded = expanded.uncertainty;
                     let shown = language.plus_minus(value * factor, expanded * factor);
                     [shown, language.plus_minus_scientific(value, expanded)]
                 }

@@ -3,6 +3,7 @@
 mod correlation;
 mod fit;
 mod history;
+mod prediction;
 mod record;
 
 use centrical::Position;
@@ -34,6 +35,7 @@ pub fn figures(result: &CalibrationResult, language: Language) -> Vec<Figure> {
     let records = record::figure(result, language);
     of_fit
         .into_iter()
+        .chain(prediction::figure(result, language))
         .chain(correlation)
         .chain(fit::singular_values(result, language))
         .chain([fit::convergence(result, language), records, fit::stability(result, language)].into_iter().flatten())

@@ -205,7 +205,7 @@ fn parameter_tables(html: &mut String, result: &CalibrationResult, language: Lan
             let shown = by_group(&shown);
             if !shown.is_empty() {
                 let _ = writeln!(html, "<h3>{title}</h3>");
-                html.push_str(&parameters(&shown, language));
+                html.push_str(&parameters(result, &shown, language));
             }
         }
     });

@@ -10,6 +10,7 @@ mod conformity;
 mod customary;
 mod dcc;
 mod equation;
+mod expanded;
 mod figures;
 mod groups;
 mod html;
@@ -26,7 +27,9 @@ mod trials;
 mod verdict;
 mod watch;
 
-pub use assessment::{budget_table, outliers_text, pattern_in_words, prediction_table, validity_text};
+pub use assessment::{
+    budget_table, correlation_table, outliers_text, pattern_in_words, prediction_table, validity_text,
+};
 pub use certificate::pdf_certificate;
 pub use customary::{customary, with_uncertainty};
 pub use dcc::digital_certificate;
@@ -38,5 +41,5 @@ pub use observation::observation_text;
 pub use positions_figure::positions_figure;
 pub use terminal::{terminal_table, verdict_text};
 pub use trials::{comparison_table, monte_carlo_table, selection_table};
-pub use verdict::{Objection, chi_squared_tail, objections};
+pub use verdict::{Objection, objections};
 pub use watch::{WatchView, WatchedTest, states_text, watch_table};

@@ -33,7 +33,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     axis: "axis",
     parameters: "Parameters",
     parameters_note: "Value ± expanded uncertainty U = k·u with coverage factor k = 2, which for a normal \
-        distribution is a level of confidence of about 95 %. 1 g = 9.80665 m/s².",
+        distribution is a level of confidence of about 95 %; where the effective degrees of freedom are finite, k is that of Student’s \
+        distribution. 1 g = 9.80665 m/s².",
     instrument: "Instrument",
     mounting: "Geometry of the experiment",
     parameter: "Parameter",
@@ -42,7 +43,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     value_si: "Value ± U, SI",
     not_determined: "not determined",
     budget: "Uncertainty budget",
-    budget_note: "Standard uncertainty by source, in the customary unit of each parameter.",
+    budget_note: "Standard uncertainty by source, in the customary unit of each parameter; – is less than a \
+        thousandth of the combined one.",
     no_budget: "The session states no uncertainties of gravity, radii, attitudes and the like: they count as exact, and \
         the uncertainties hold what the fit weighs.",
     combined: "combined",
@@ -87,6 +89,10 @@ pub(crate) const ENGLISH: Messages = Messages {
     lost: "not seen",
     limit: "limit",
     null_directions: "The readings do not change along",
+    prediction_title: "Uncertainty of a compensated reading",
+    prediction_axis: "standard uncertainty, µg",
+    prediction_caption: "Standard uncertainty that the calibration leaves in a compensated reading, for a force along each \
+        axis alone; the noise of the reading itself comes on top.",
     history_title: "Uncertainty as the session was watched",
     history_caption: "Largest standard uncertainty of each group over that after the last plateau, as it stood when each \
         plateau had come. A curve begins where all of its group that was determined in the end was determined first.",
@@ -151,7 +157,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     results_model: "Error model of the reading f′ of axis i at the specific force f:",
     uncertainty_statement: "The expanded uncertainty U is the standard uncertainty multiplied by the coverage \
         factor k = 2, which for a normal distribution corresponds to a coverage probability of approximately 95 %. \
-        It was evaluated in accordance with JCGM 100 (GUM). 1 g = 9.80665 m/s².",
+        Where the effective degrees of freedom are finite, k is that of Student’s distribution for the same \
+        probability. It was evaluated in accordance with JCGM 100 (GUM). 1 g = 9.80665 m/s².",
     adjustment: "Before and after adjustment",
     no_adjustment: "The unit was not adjusted or repaired. Readings as received carry the error “before”; \
         compensated with the parameters above they carry the error “after”.",
