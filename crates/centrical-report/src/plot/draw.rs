@@ -19,7 +19,7 @@ struct Sheet {
 }
 
 /// Letters wide enough for 18 px, which a telephone is given.
-const WHOLE: Sheet = Sheet { class: "plot", width: 760.0, height: 460.0, left: 84.0, letter: 9.6, ticks: [8, 7] };
+const WHOLE: Sheet = Sheet { class: "plot", width: 760.0, height: 460.0, left: 94.0, letter: 9.6, ticks: [8, 7] };
 const PANEL: Sheet = Sheet { class: "plot panel", width: 400.0, height: 320.0, left: 78.0, letter: 7.2, ticks: [5, 6] };
 const RIGHT: f64 = 24.0;
 const BOTTOM: f64 = 56.0;
