@@ -230,6 +230,7 @@ fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                     column(messages.specific_force, |e| e.force);
                     column(messages.before, |e| e.before);
                     column(messages.after, |e| e.after);
+                    column(messages.compensation_uncertainty, |e| COVERAGE.1 * e.prediction);
                 });
             }
         });
