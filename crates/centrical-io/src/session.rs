@@ -5,6 +5,7 @@ mod attitude;
 mod columns;
 pub(crate) mod form;
 mod plan;
+mod planning;
 mod prior;
 mod schedule;
 mod terms;
@@ -20,6 +21,7 @@ use centrical::{ErrorModel, Experiment, Extension, MeasurementModel, PairRelatio
 use self::at::At;
 use self::form::{Form, ModelTable, SiteTable};
 pub use self::plan::{Noise, Plan};
+pub use self::planning::Planning;
 use self::prior::PriorEntry;
 pub(crate) use self::schedule::FASTEST;
 use crate::error::{Error, Place, quoted};
@@ -264,17 +266,21 @@ fn rotation(file: &Path, text: &str) -> Result<f64, Error> {
 }
 
 fn extensions(file: &Path, table: &ModelTable) -> Result<Vec<Extension>, Error> {
+    named_extensions(&At::table(file, "model"), &table.extensions)
+}
+
+fn named_extensions(at: &At, names: &[String]) -> Result<Vec<Extension>, Error> {
     let mut extensions = Vec::new();
-    for name in &table.extensions {
+    for name in names {
         let found = quoted(name.as_bytes());
         let Some(extension) = Extension::named(name) else {
             let known: Vec<&str> = Extension::NAMED.iter().map(|(name, _)| *name).collect();
             let expected = format!("one of {}", known.join(", "));
-            return Err(At::table(file, "model").unexpected("extensions", found, expected));
+            return Err(at.unexpected("extensions", found, expected));
         };
         if extensions.contains(&extension) {
             let expected = "every extension once";
-            return Err(At::table(file, "model").unexpected("extensions", format!("{found} a second time"), expected));
+            return Err(at.unexpected("extensions", format!("{found} a second time"), expected));
         }
         extensions.push(extension);
     }

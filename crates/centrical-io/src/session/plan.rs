@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
+use centrical::uncertainty::TypeB;
 use centrical::{MeasurementModel, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;
@@ -38,6 +39,8 @@ pub struct Plan {
     pub speed_uncertainty: f64,
     /// The noise that is reckoned with.
     pub noise: Noise,
+    /// Standard uncertainties that the data will not show, as stated in `[uncertainty]`.
+    pub type_b: TypeB,
 }
 
 /// White noise down to a floor: the variance of the mean of a plateau of duration `T` is `density^2 / (2 T) + floor^2`.
@@ -121,6 +124,7 @@ impl Plan {
             weights: weights(&noise, durations),
             speed_uncertainty: session.speed_uncertainty,
             noise,
+            type_b: session.type_b,
         })
     }
 
@@ -151,6 +155,7 @@ impl Plan {
             weights,
             speed_uncertainty,
             noise,
+            type_b: TypeB::default(),
         })
     }
 }
@@ -202,7 +207,7 @@ fn list(at: &At, key: &str, values: &[f64], (low, high): (f64, f64), meaning: &s
     }
 }
 
-fn noise(
+pub(super) fn noise(
     file: &Path,
     density: Option<&Quantity>,
     floor: Option<&Quantity>,
@@ -222,7 +227,7 @@ fn noise(
     Ok(noise)
 }
 
-fn duration(at: &At, key: &str, quantity: Option<&Quantity>) -> Result<Option<f64>, Error> {
+pub(super) fn duration(at: &At, key: &str, quantity: Option<&Quantity>) -> Result<Option<f64>, Error> {
     let bounded = |q| at.bounded(key, q, Dimension::Time, DURATIONS, "a duration from 1 ms to 1e7 s");
     quantity.map(bounded).transpose()
 }
