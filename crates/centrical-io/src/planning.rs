@@ -150,8 +150,8 @@ impl Planning {
     /// [`Error::Planning`] when there is none.
     pub fn plan(&self) -> Result<Plan, Error> {
         let plan = match self.time {
-            Some(time) => best_for_time(&self.candidates, &self.criterion, time, Effort::default()),
-            None => shortest_for_goals(&self.candidates, &self.criterion, 0.01, Effort::default()),
+            Some(time) => best_for_time(&self.candidates, &self.criterion, time, Effort::usual(self.candidates.len())),
+            None => shortest_for_goals(&self.candidates, &self.criterion, 0.01, Effort::usual(self.candidates.len())),
         };
         plan.map_err(|source| self.failed(source))
     }

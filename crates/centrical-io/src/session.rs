@@ -68,6 +68,8 @@ pub struct Session {
     pub mountings: Vec<MountingFiles>,
     /// Plateaus already averaged, if the session brings them instead of records.
     pub plateaus: Option<PlateauTable>,
+    /// Duration that the schedule states for each set point, if it does [s].
+    pub durations: Vec<Option<f64>>,
     priors: Vec<PriorEntry>,
 }
 
@@ -107,6 +109,7 @@ impl Session {
             session.plateaus = Some(table);
         } else {
             session.experiment.set_points = schedule::set_points(&file, &form.mounting, sign)?;
+            session.durations = plan::durations(&file, &form)?;
         }
         if session.experiment.set_points.iter().all(SetPoint::is_rest) {
             let at = At::entry(&file, "mounting", 0);
@@ -163,6 +166,7 @@ impl Session {
                 .map(|m| MountingFiles { record: path(&m.record), telemetry: path(&m.telemetry) })
                 .collect(),
             plateaus: None,
+            durations: Vec::new(),
             priors: prior::entries(&form.prior),
         })
     }

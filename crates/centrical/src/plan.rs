@@ -10,7 +10,7 @@
 //!   programming, with the bound of the equivalence theorem (Kiefer and Wolfowitz 1960) as its certificate;
 //! - [`exchange`]: the schedule in whole visits, by rounding and exchange;
 //! - [`search`]: both under branch and bound over mountings, whose set-ups are costs of groups;
-//! - [`account`]: why each plateau is there; [`frontier`]: time against uncertainty.
+//! - [`account`]: why each plateau is there; [`frontier`]: time against uncertainty; [`next_best`]: the best next plateau.
 //!
 //! **Unknowns that a schedule does not see** (turns of a position that is not mounted, lost combinations) are held by a
 //! standard deviation of ten typical magnitudes, as in a fit ([`crate::fit::NULL_HOLD`]): that is `M_0`, with the priors.
@@ -22,6 +22,7 @@ mod criterion;
 mod exchange;
 mod frontier;
 mod information;
+mod next;
 mod normalised;
 mod prediction;
 mod relaxation;
@@ -31,6 +32,7 @@ pub use account::{Account, Reason};
 pub use candidates::{Candidates, Costs, Noise, Scenario, Schedule, Visit};
 pub use criterion::{Criterion, Goal, ReadingRange};
 pub use frontier::{FrontierPoint, frontier};
+pub use next::{Gain, next_best};
 pub use normalised::Normalised;
 pub use prediction::{Prediction, predict};
 pub use relaxation::Relaxed;

@@ -109,14 +109,7 @@ impl Plan {
         let table = form.plan.as_ref();
         let of_table = |key: fn(&form::PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
         let noise = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;
-        let mut durations = Vec::with_capacity(session.experiment.set_points.len());
-        for (m, mounting) in form.mounting.iter().enumerate() {
-            let at = At::entry(file, "mounting", m);
-            for (index, plateau) in mounting.plateaus.iter().enumerate() {
-                let key = format!("plateaus {} duration", index + 1);
-                durations.push(duration(&at, &key, plateau.duration.as_ref())?.unwrap_or(noise.duration));
-            }
-        }
+        let durations = durations(file, form)?.into_iter().map(|duration| duration.unwrap_or(noise.duration)).collect();
         Ok(Self {
             file: file.to_owned(),
             title: session.title.clone(),
@@ -158,6 +151,19 @@ impl Plan {
             type_b: TypeB::default(),
         })
     }
+}
+
+/// Duration stated for each plateau [s], in the order of the set points.
+pub(super) fn durations(file: &Path, form: &Form) -> Result<Vec<Option<f64>>, Error> {
+    let mut durations = Vec::new();
+    for (m, mounting) in form.mounting.iter().enumerate() {
+        let at = At::entry(file, "mounting", m);
+        for (index, plateau) in mounting.plateaus.iter().enumerate() {
+            let key = format!("plateaus {} duration", index + 1);
+            durations.push(duration(&at, &key, plateau.duration.as_ref())?);
+        }
+    }
+    Ok(durations)
 }
 
 /// The normalised experiment with what the table says otherwise.

@@ -101,10 +101,14 @@ impl Exchange<'_> {
     pub fn fill(&self, mut whole: Whole) -> Whole {
         loop {
             let left = self.time - whole.time;
+            let prices = self.set_ups(&whole);
+            if !self.moves(&whole).any(|m| (0.0..=left + 1e-9).contains(&self.price_with_set_up(&prices, &m))) {
+                return whole;
+            }
             let insights = self.insights(&whole);
             let mut best: Option<(f64, Move)> = None;
             for m in self.moves(&whole) {
-                let price = self.price_with_set_up(&whole, &m);
+                let price = self.price_with_set_up(&prices, &m);
                 if price <= 0.0 || price > left + 1e-9 {
                     continue;
                 }
@@ -205,18 +209,23 @@ impl Exchange<'_> {
         of(m.to) - of(m.from)
     }
 
-    fn price_with_set_up(&self, whole: &Whole, m: &Move) -> f64 {
-        if m.from.is_some() {
-            return self.price_of(m);
-        }
-        let mounting = self.candidates.experiment().set_points[m.plateau].mounting;
+    /// What the set-up of each mounting would take more [s]; 0 where it is there already.
+    fn set_ups(&self, whole: &Whole) -> Vec<f64> {
         let mut used = self.used(&whole.counts);
-        if used[mounting] {
-            return self.price_of(m);
-        }
         let before = self.candidates.set_up_time(&used);
-        used[mounting] = true;
-        self.price_of(m) + self.candidates.set_up_time(&used) - before
+        let mut more = vec![0.0; used.len()];
+        for m in 0..used.len() {
+            if !std::mem::replace(&mut used[m], true) {
+                more[m] = self.candidates.set_up_time(&used) - before;
+                used[m] = false;
+            }
+        }
+        more
+    }
+
+    fn price_with_set_up(&self, set_ups: &[f64], m: &Move) -> f64 {
+        let mounting = self.candidates.experiment().set_points[m.plateau].mounting;
+        self.price_of(m) + if m.from.is_none() { set_ups[mounting] } else { 0.0 }
     }
 
     fn apply(&self, counts: &mut [u32], m: &Move) {

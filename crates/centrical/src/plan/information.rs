@@ -10,8 +10,9 @@ use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix3xX, Vector3};
 use super::candidates::{Candidates, Scenario};
 use super::criterion::{Columns, Criterion};
 use super::search::PlanError;
-use crate::design::total_covariance;
+use crate::design::{Weight, total_covariance};
 use crate::fit::NULL_HOLD;
+use crate::measurement::MeasurementModel;
 
 /// A scenario made ready: rows of all plateaus, precisions of all visits, what is judged.
 #[derive(Debug, Clone)]
@@ -32,7 +33,7 @@ pub(super) struct Scene {
 #[derive(Debug, Clone)]
 pub(super) struct Factor {
     triangle: DMatrix<f64>,
-    /// `P = R^-1`.
+    /// `P^T = R^-T`: its columns are the unknowns.
     root: DMatrix<f64>,
     /// `C K`, with `K` whitened by its own covariance for a determinant, `p x m`.
     reach: DMatrix<f64>,
@@ -62,22 +63,23 @@ impl Scene {
         total: f64,
     ) -> Result<Self, PlanError> {
         let model = &scenario.model;
-        let scale: Vec<f64> = model.parameters().iter().map(|p| NULL_HOLD * p.typical).collect();
-        let mut jacobians = Vec::with_capacity(candidates.len());
         let mut precisions = Vec::with_capacity(candidates.len() * candidates.durations.len());
-        for (n, set_point) in model.experiment().set_points.iter().enumerate() {
-            let linearisation = model.linearise_at_zero(set_point);
+        for n in 0..candidates.len() {
             for &duration in &candidates.durations {
-                let noise = scenario.noise.weight(n, duration).covariance;
-                let total = total_covariance(&noise, &linearisation.speed, scenario.speed_uncertainty);
-                precisions.push(total.cholesky().ok_or(PlanError::Noise { plateau: n })?.inverse());
+                precisions.push(precision(model, &scenario.noise.weight(n, duration), scenario.speed_uncertainty)?);
             }
-            let scaled = linearisation.columns.into_iter().map(|(j, column)| (j, column * scale[j]));
-            jacobians.push(scaled.collect::<Vec<_>>());
         }
-        if precisions.iter().flat_map(|n| n.iter()).any(|v| !v.is_finite()) {
-            return Err(PlanError::Noise { plateau: 0 });
-        }
+        Ok(Self { weight: scenario.weight / total, precisions, ..Self::of(model, criterion)? })
+    }
+
+    /// The rows of all plateaus of `model` and what is judged, without precisions.
+    pub fn of(model: &MeasurementModel, criterion: &Criterion) -> Result<Self, PlanError> {
+        let scale: Vec<f64> = model.parameters().iter().map(|p| NULL_HOLD * p.typical).collect();
+        let jacobian = |set_point| {
+            let columns = model.linearise_at_zero(set_point).columns.into_iter();
+            columns.map(|(j, column)| (j, column * scale[j])).collect::<Vec<_>>()
+        };
+        let jacobians: Vec<_> = model.experiment().set_points.iter().map(jacobian).collect();
         let mut squares = vec![1.0; scale.len()];
         for prior in model.priors() {
             squares[prior.parameter] += (scale[prior.parameter] / prior.standard_uncertainty).powi(2);
@@ -86,7 +88,7 @@ impl Scene {
         columns.k.row_iter_mut().zip(&scale).for_each(|(mut row, scale)| row *= *scale);
         let goals = columns.goal.iter().max().map_or(0, |last| last + 1);
         let prior = squares.into_iter().map(f64::sqrt).collect();
-        Ok(Self { weight: scenario.weight / total, jacobians, precisions, prior, columns, goals })
+        Ok(Self { weight: 1.0, jacobians, precisions: Vec::new(), prior, columns, goals })
     }
 
     /// `N` of an atom.
@@ -120,9 +122,10 @@ impl Scene {
         // The hold leaves no zero on the diagonal.
         let solved = triangle.solve_upper_triangular_mut(&mut root);
         debug_assert!(solved, "the hold makes every factor regular");
-        let mut seen = root.transpose() * &self.columns.k;
+        let transposed = root.transpose();
+        let mut seen = &transposed * &self.columns.k;
         let goals = if self.columns.is_determinant { self.whiten(&mut seen) } else { self.sums(&seen) };
-        Factor { triangle, reach: &root * seen, root, goals }
+        Factor { triangle, reach: root * seen, root: transposed, goals }
     }
 
     fn sums(&self, seen: &DMatrix<f64>) -> Vec<f64> {
@@ -183,13 +186,12 @@ impl Scene {
     /// `J P` of some plateaus, `p x 3` each, side by side.
     pub fn views(&self, factor: &Factor, plateaus: &[usize]) -> DMatrix<f64> {
         let p = self.prior.len();
-        let by_unknown = factor.root.transpose();
         let mut views = DMatrix::zeros(p, 3 * plateaus.len());
         for (n, &plateau) in plateaus.iter().enumerate() {
             for (column, derivative) in &self.jacobians[plateau] {
                 for i in 0..3 {
                     if derivative[i] != 0.0 {
-                        views.column_mut(3 * n + i).axpy(derivative[i], &by_unknown.column(*column), 1.0);
+                        views.column_mut(3 * n + i).axpy(derivative[i], &factor.root.column(*column), 1.0);
                     }
                 }
             }
@@ -264,6 +266,19 @@ impl Scene {
 pub(super) struct Insight {
     a: Matrix3<f64>,
     by_goal: Vec<Matrix3<f64>>,
+}
+
+/// `Sigma^-1` of a plateau's mean, its speed error included.
+pub(super) fn precision(
+    model: &MeasurementModel,
+    weight: &Weight,
+    speed_uncertainty: f64,
+) -> Result<Matrix3<f64>, PlanError> {
+    let set_points = &model.experiment().set_points;
+    let speed = model.linearise_at_zero(&set_points[weight.set_point]).speed;
+    let total = total_covariance(&weight.covariance, &speed, speed_uncertainty);
+    let precision = total.cholesky().map(|factor| factor.inverse());
+    precision.filter(|p| p.iter().all(|v| v.is_finite())).ok_or(PlanError::Noise { plateau: weight.set_point })
 }
 
 /// `tr(A B)` of two matrices, the second symmetric.

@@ -22,7 +22,14 @@ use super::information::{Factor, Scene, Smooth, sum_of, trace_of_product};
 const NOTHING: f64 = 1e-9;
 
 /// Multiplicative steps at the start.
-const MULTIPLICATIVE: usize = 40;
+const MULTIPLICATIVE: usize = 15;
+
+/// Atoms in a quadratic model: those that are farthest from where they should be, and those nearest to their price.
+const FARTHEST: usize = 240;
+const NEAREST: usize = 120;
+
+/// An inner problem is solved when no exchange gains this part of the distance to the bound any more.
+const INNER: f64 = 0.03;
 
 /// Quadratic models made at most, for each exponent.
 const MODELS: usize = 25;
@@ -333,43 +340,42 @@ struct Model<'a> {
     benefit: Vec<f64>,
     w: Vec<f64>,
     spent: f64,
+    /// Least gain of an exchange for a second of time.
+    least: f64,
 }
 
 impl<'a> Model<'a> {
     fn new(search: &Search<'a>, point: &Point, lambda: f64, w: &[f64]) -> Self {
         let polytope = search.polytope;
         let options = polytope.options;
-        let matters = |x: usize| {
-            w[x] > NOTHING
-                || polytope.high[x] > polytope.low[x] && point.sensitivity[x] > 0.75 * lambda * polytope.price[x]
-        };
-        let mut active = Vec::new();
+        let worth = Worth { polytope, sensitivity: &point.sensitivity, lambda, w };
+        let active = worth.chosen();
         let mut groups = Vec::new();
         let mut plateaus = Vec::new();
-        for c in 0..polytope.plateaus() {
-            let first = active.len();
-            active.extend(polytope.atoms_of(c).filter(|&x| matters(x)));
-            if active.len() > first {
-                groups.push(first..active.len());
-                plateaus.push(c);
-            }
+        let mut first = 0;
+        for same in active.chunk_by(|a, b| a / options == b / options) {
+            groups.push(first..first + same.len());
+            plateaus.push(same[0] / options);
+            first += same.len();
         }
         let n = active.len();
         let mut hessian = DMatrix::zeros(n, n);
         for ((scene, factor), smooth) in search.scenes.iter().zip(&point.factors).zip(&point.smooth) {
-            add_curvature(&mut hessian, scene, factor, smooth, search.exponent, (&active, &groups, &plateaus, options));
+            add_curvature(&mut hessian, scene, factor, smooth, search.exponent, (&active, &groups, &plateaus));
         }
         // A trace of a ridge makes parallel atoms no flat direction.
         let ridge = 1e-9 * hessian.diagonal().iter().copied().fold(0.0, f64::max);
         (0..n).for_each(|i| hessian[(i, i)] += ridge);
         let benefit = active.iter().map(|&x| point.sensitivity[x]).collect();
-        Self { polytope, active, groups, hessian, benefit, spent: polytope.spent(w), w: w.to_vec() }
+        let gap = (point.value - search.best).max(0.0);
+        let least = (INNER * gap / polytope.time).max(1e-9 * lambda);
+        Self { polytope, active, groups, hessian, benefit, spent: polytope.spent(w), w: w.to_vec(), least }
     }
 
     /// The optimum of the model by exchange of time between the plateau that gains most by more of it and the one that loses
     /// least by less.
     fn optimum(mut self) -> Vec<f64> {
-        let limit = 40 * self.active.len() + 200;
+        let limit = 20 * self.active.len() + 200;
         for _ in 0..limit {
             let (up, down) = self.steepest();
             let Some(up) = up else { break };
@@ -382,7 +388,7 @@ impl<'a> Model<'a> {
                 continue;
             };
             let gain = up.rate - down.rate;
-            if gain <= 1e-7 * up.rate.abs() || !self.shift(&[(up, 1.0), (down, -1.0)], gain, f64::INFINITY) {
+            if gain <= self.least || !self.shift(&[(up, 1.0), (down, -1.0)], gain, f64::INFINITY) {
                 break;
             }
         }
@@ -474,6 +480,55 @@ impl<'a> Model<'a> {
     }
 }
 
+/// What atoms are worth at a price of time.
+struct Worth<'a> {
+    polytope: &'a Polytope,
+    sensitivity: &'a [f64],
+    lambda: f64,
+    w: &'a [f64],
+}
+
+impl Worth<'_> {
+    fn price(&self, x: usize) -> f64 {
+        (self.lambda * self.polytope.price[x]).max(1e-300)
+    }
+
+    fn net(&self, x: usize) -> f64 {
+        self.sensitivity[x] - self.price(x)
+    }
+
+    /// By how much the criterion would fall if the atom went where its worth and its bounds draw it.
+    fn distance(&self, x: usize) -> f64 {
+        let net = self.net(x);
+        let plateau = x / self.polytope.options;
+        let idle = || self.polytope.repeats - self.polytope.atoms_of(plateau).map(|y| self.w[y]).sum::<f64>();
+        // A better duration of the same plateau draws as well, however few visits are left.
+        let dearest = self.polytope.atoms_of(plateau).filter(|&y| self.w[y] > NOTHING).map(|y| self.net(y));
+        let displaced = dearest.fold(f64::INFINITY, f64::min);
+        if net > 0.0 {
+            let room = self.polytope.high[x] - self.w[x];
+            let gain = net * room.min(idle().max(0.0));
+            if displaced < net { gain.max((net - displaced) * room) } else { gain }
+        } else {
+            -net * (self.w[x] - self.polytope.low[x])
+        }
+    }
+
+    /// The atoms of a model, rising.
+    fn chosen(&self) -> Vec<usize> {
+        let free = (0..self.w.len()).filter(|&x| self.polytope.high[x] > self.polytope.low[x]);
+        let mut far: Vec<(f64, usize)> = free.map(|x| (self.distance(x), x)).collect();
+        far.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let mut near = far.split_off(far.len().min(FARTHEST));
+        near.iter_mut().for_each(|(order, x)| *order = self.net(*x).abs() / self.price(*x));
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        near.truncate(NEAREST);
+        let mut chosen: Vec<usize> = far.into_iter().chain(near).map(|(_, x)| x).collect();
+        chosen.sort_unstable();
+        chosen
+    }
+}
+
 /// Part of a visit of a plateau turned from one duration, or none, to another, or none.
 #[derive(Debug, Clone, Copy)]
 struct Conversion {
@@ -493,7 +548,7 @@ fn add_curvature(
     factor: &Factor,
     smooth: &Smooth,
     exponent: f64,
-    (active, groups, plateaus, options): (&[usize], &[std::ops::Range<usize>], &[usize], usize),
+    (active, groups, plateaus): (&[usize], &[std::ops::Range<usize>], &[usize]),
 ) {
     let views = scene.views(factor, plateaus);
     let a = views.transpose() * &views;
@@ -506,7 +561,7 @@ fn add_curvature(
         }
     }
     let g = roots.transpose() * &roots;
-    let by_goal = by_goal(scene, &responses, active, groups, options, factor);
+    let by_goal = by_goal(scene, &responses, active, groups, factor);
     let block = |of: &DMatrix<f64>, i: usize, j: usize| of.fixed_view::<3, 3>(3 * i, 3 * j).into_owned();
     let s = m as f64;
     for i in 0..plateaus.len() {
@@ -542,7 +597,6 @@ fn by_goal(
     responses: &[nalgebra::Matrix3xX<f64>],
     active: &[usize],
     groups: &[std::ops::Range<usize>],
-    _options: usize,
     factor: &Factor,
 ) -> DMatrix<f64> {
     let mut by_goal = DMatrix::zeros(active.len(), scene.goals());

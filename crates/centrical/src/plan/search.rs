@@ -6,6 +6,7 @@
 //! decided first, the most used one first. Where a problem is small, visits are decided too, until nothing is left to find;
 //! where it is large, the continuous designs of the nodes that are left say how far from the optimum the schedule can be.
 
+use rayon::prelude::*;
 use thiserror::Error;
 
 use super::candidates::{Candidates, Schedule};
@@ -68,13 +69,12 @@ pub struct Effort {
     pub trials: usize,
 }
 
-impl Default for Effort {
-    fn default() -> Self {
-        Self { mounting_nodes: 40, visit_nodes: 0, trials: 150 }
-    }
-}
-
 impl Effort {
+    /// Some seconds' worth: fewer nodes over mountings where there are more plateaus to choose from.
+    pub fn usual(plateaus: usize) -> Self {
+        Self { mounting_nodes: (8000 / plateaus.max(1)).clamp(10, 300), visit_nodes: 0, trials: 120 }
+    }
+
     /// Until nothing is left to find: for small problems.
     pub const EXHAUSTIVE: Self = Self { mounting_nodes: 1 << 20, visit_nodes: 1 << 20, trials: 200 };
 
@@ -254,8 +254,10 @@ struct Tree<'a> {
     nodes: usize,
 }
 
-/// Known to this part of the criterion, nodes are not divided: far below what a plan is worth.
+/// Known to this part of the criterion, nodes are not divided: where the best of all is sought, and where a plan that is
+/// nearly as good will do (0.1 % of an uncertainty).
 const SAME: f64 = 1e-7;
+const NEARLY: f64 = 2e-3;
 
 impl<'a> Tree<'a> {
     fn new(problem: &'a Problem<'a>, time: f64, effort: Effort) -> Self {
@@ -266,10 +268,12 @@ impl<'a> Tree<'a> {
         let root = self.root();
         self.nodes = 1;
         self.seek(&root);
+        self.exchange_mountings();
         self.open.push(root);
         while let Some(node) = self.next() {
             self.divide(node);
         }
+        self.polish();
         self.into_plan()
     }
 
@@ -291,6 +295,11 @@ impl<'a> Tree<'a> {
         self.root().relaxed.value <= 0.0
     }
 
+    /// How near to the best schedule a bound is as good as the same.
+    fn same(&self) -> f64 {
+        if self.effort.visit_nodes > 0 { SAME } else { NEARLY }
+    }
+
     fn incumbent(&self) -> f64 {
         self.best.as_ref().map_or(f64::INFINITY, |best| best.value)
     }
@@ -300,7 +309,12 @@ impl<'a> Tree<'a> {
         let best = (0..self.open.len())
             .min_by(|&a, &b| self.open[a].relaxed.bound.total_cmp(&self.open[b].relaxed.bound).then(b.cmp(&a)))?;
         let node = self.open.swap_remove(best);
-        (node.relaxed.bound < self.incumbent() - SAME).then_some(node)
+        self.bound = if node.relaxed.bound < self.incumbent() - self.same() {
+            self.bound
+        } else {
+            self.bound.min(node.relaxed.bound)
+        };
+        (node.relaxed.bound < self.incumbent() - self.same()).then_some(node)
     }
 
     /// Two nodes that decide one thing more, or the end of this branch.
@@ -318,7 +332,8 @@ impl<'a> Tree<'a> {
             None => {
                 self.seek(&node);
                 self.take_whole(&node);
-                let is_left = self.nodes < self.effort.visit_nodes && node.relaxed.bound < self.incumbent() - SAME;
+                let is_left =
+                    self.nodes < self.effort.visit_nodes && node.relaxed.bound < self.incumbent() - self.same();
                 match self.split_visit(&node).filter(|_| is_left) {
                     Some((x, below, above)) => {
                         let (mut fewer, mut more) = (node.clone(), node.clone());
@@ -334,11 +349,15 @@ impl<'a> Tree<'a> {
         if decided.is_empty() {
             self.bound = self.bound.min(node.relaxed.bound);
         }
-        for child in decided {
+        let start = &node.relaxed.visits;
+        let children: Vec<_> = decided.into_par_iter().map(|child| self.relaxed(child, Some(start))).collect();
+        for child in children {
             self.nodes += 1;
-            if let Ok(child) = self.relaxed(child, Some(&node.relaxed.visits)) {
-                if child.relaxed.bound < self.incumbent() - SAME {
+            if let Ok(child) = child {
+                if child.relaxed.bound < self.incumbent() - self.same() {
                     self.open.push(child);
+                } else {
+                    self.bound = self.bound.min(child.relaxed.bound);
                 }
             }
         }
@@ -380,8 +399,11 @@ impl<'a> Tree<'a> {
         if !polytope.is_feasible() {
             return Err(node);
         }
-        let tolerance = if self.effort.visit_nodes > 0 { SAME } else { 5e-4 };
-        node.relaxed = relax(&self.problem.scenes, &polytope, start, tolerance, self.incumbent() - SAME);
+        let tolerance = 0.5 * self.same();
+        // What bounds all below the parent bounds all below its child.
+        let inherited = node.relaxed.bound;
+        node.relaxed = relax(&self.problem.scenes, &polytope, start, tolerance, self.incumbent() - self.same());
+        node.relaxed.bound = node.relaxed.bound.max(inherited);
         Ok(node)
     }
 
@@ -427,23 +449,73 @@ impl<'a> Tree<'a> {
 
     /// Seeks a schedule on the mountings that the node's continuous design uses.
     fn seek(&mut self, node: &Node) {
-        let Some((set, start)) = self.affordable(node) else { return };
-        if self.tried.contains(&set) {
+        if let Some(set) = self.affordable(node).filter(|set| !self.tried.contains(set)) {
+            let restricted = self.restricted(&set, &node.relaxed.visits);
+            self.round(set, restricted);
+        }
+    }
+
+    /// The continuous design on a set of mountings that are all set up.
+    fn restricted(&self, set: &[bool], start: &[f64]) -> Option<Relaxed> {
+        let atoms = self.problem.atoms();
+        let node = Node {
+            mountings: set.iter().map(|used| Some(*used)).collect(),
+            low: vec![0.0; atoms],
+            high: vec![self.problem.candidates.repeats as f64; atoms],
+            relaxed: Relaxed { visits: Vec::new(), value: f64::INFINITY, bound: f64::NEG_INFINITY, models: 0 },
+        };
+        self.relaxed(node, Some(start)).ok().map(|node| node.relaxed)
+    }
+
+    /// A schedule from a continuous design that may hold a better one than the best so far.
+    fn round(&mut self, set: Vec<bool>, relaxed: Option<Relaxed>) {
+        if let Some(relaxed) = relaxed.filter(|relaxed| relaxed.bound < self.incumbent() - self.same()) {
+            let whole = self.problem.exchange(self.time, &set, self.effort.trials).round(&relaxed.visits);
+            if whole.value < self.incumbent() - 1e-12 {
+                self.best = Some(whole);
+            }
+        }
+        self.tried.push(set);
+    }
+
+    /// The best schedule with visits exchanged, on its mountings.
+    fn polish(&mut self) {
+        if let Some(best) = self.best.take() {
+            let set = self.mountings_of(&best);
+            self.best = Some(self.problem.exchange(self.time, &set, self.effort.trials).improve(best));
+        }
+    }
+
+    /// One mounting left out, or taken in besides, as long as that is better.
+    fn exchange_mountings(&mut self) {
+        if self.effort.mounting_nodes <= 1 {
             return;
         }
-        let restricted = Node {
-            mountings: set.iter().map(|used| Some(*used)).collect(),
-            low: vec![0.0; self.problem.atoms()],
-            high: vec![self.problem.candidates.repeats as f64; self.problem.atoms()],
-            relaxed: node.relaxed.clone(),
-        };
-        self.tried.push(set.clone());
-        let Ok(restricted) = self.relaxed(restricted, Some(&start)) else { return };
-        let exchange = self.problem.exchange(self.time, &set, self.effort.trials);
-        let whole = exchange.improve(exchange.round(&restricted.relaxed.visits));
-        if whole.value < self.incumbent() - 1e-12 {
-            self.best = Some(whole);
+        loop {
+            let Some(best) = self.best.clone() else { return };
+            let used = self.mountings_of(&best);
+            let visits: Vec<f64> = best.counts.iter().map(|n| f64::from(*n)).collect();
+            let other = |m: usize| {
+                let mut set = used.clone();
+                set[m] = !set[m];
+                set
+            };
+            let sets: Vec<Vec<bool>> = (0..used.len()).map(other).filter(|set| !self.tried.contains(set)).collect();
+            let relaxed: Vec<_> = sets.par_iter().map(|set| self.restricted(set, &visits)).collect();
+            for (set, relaxed) in sets.into_iter().zip(relaxed) {
+                self.round(set, relaxed);
+            }
+            if self.incumbent() >= best.value {
+                return;
+            }
         }
+    }
+
+    fn mountings_of(&self, whole: &Whole) -> Vec<bool> {
+        let mut used = vec![false; self.problem.mountings()];
+        let visited = (0..whole.counts.len()).filter(|&x| whole.counts[x] > 0);
+        visited.for_each(|x| used[self.problem.mounting_of(x)] = true);
+        used
     }
 
     /// Takes the node's continuous design for the best schedule if its visits are whole and nothing better is known.
@@ -460,7 +532,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The mountings that the continuous design uses, the least used left out until their set-ups leave time to measure.
-    fn affordable(&self, node: &Node) -> Option<(Vec<bool>, Vec<f64>)> {
+    fn affordable(&self, node: &Node) -> Option<Vec<bool>> {
         let times = self.times(node);
         let mut set: Vec<bool> = times
             .iter()
@@ -470,7 +542,7 @@ impl<'a> Tree<'a> {
         loop {
             let set_up = self.problem.candidates.set_up_time(&set);
             if set_up < self.time && set.contains(&true) {
-                return Some((set, node.relaxed.visits.clone()));
+                return Some(set);
             }
             let least = (0..set.len()).filter(|&m| set[m]).min_by(|&a, &b| times[a].total_cmp(&times[b]))?;
             set[least] = false;
