@@ -29,6 +29,7 @@ mod quantity;
 mod record;
 mod record_writer;
 mod reduce;
+mod reduced_session;
 mod result;
 mod session;
 mod simulate;
@@ -37,6 +38,7 @@ mod watch;
 mod write;
 
 pub use calibration::{Method, PlateauName, Problem, calibrate, calibrate_without};
+pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use compensate::{Compensated, FirstOutside, compensate_record};
 pub use error::{Error, Place};
 pub use input::Input;
@@ -55,18 +57,21 @@ pub use planning::{
 pub use plateaus::{PlateauMean, read_plateaus, write_plateaus};
 pub use prediction::{PredictedParameter, PredictionReport};
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
-pub use record::{Column, Columns, Record, RecordBlock, Scale, Telemetry};
+pub use record::{Column, Columns, Scale, read_growing_record, read_record, read_telemetry, scan_record};
 pub use record_writer::RecordWriter;
 pub use reduce::{MountingFindings, Reduced, ReducedPlateau};
+pub use reduced_session::write_reduced;
 pub use result::{
-    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, ModelSummary, MountingSummary,
-    NoErrorModel, ObservabilitySummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program,
-    SCHEMA, SessionSummary, StabilityCurve, TermSummary,
+    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, ModelSummary,
+    MountingPrediction, MountingSummary, NoErrorModel, ObservabilitySummary, OutlyingPlateau, ParameterEstimate,
+    PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
+    TermSummary, ValiditySummary,
 };
 pub use session::{MountingFiles, Noise, Plan, Planning, PlateauTable, Session};
 pub use simulate::{TableFormat, Truth, simulate_session};
 pub use table::ColumnName;
 pub use watch::{
     HistoryEntry, HistoryEstimate, InnovationSummary, Watch, WatchState, WatchedPlateau, append_history, keep_history,
+    read_history,
 };
 pub use write::{create_folder, write_whole};

@@ -11,11 +11,11 @@ use super::settling::TimeStep;
 use super::shape::Shape;
 use super::stuck::stuck_on_any_axis;
 use super::window::Window;
-use super::{PlateauMean, Record, ReductionError};
+use super::{PlateauMean, RecordSlice, ReductionError};
 
 /// One plateau, fitted; what its covariance needs is kept in cells.
 #[derive(Debug, Clone)]
-pub(super) struct PlateauFit {
+pub struct PlateauFit {
     window: [f64; 2],
     samples: usize,
     rejected: usize,
@@ -27,14 +27,19 @@ pub(super) struct PlateauFit {
     /// Variance of a sample about the fit [m^2/s^4].
     variance: Vector3<f64>,
     /// Settling at the start of the window [m/s^2].
-    pub settling: Vector3<f64>,
+    pub(super) settling: Vector3<f64>,
     /// Residuals and design, condensed.
-    pub cells: Cells,
+    pub(super) cells: Cells,
 }
 
 impl PlateauFit {
     /// Fits the plateau `index` in its window.
-    pub fn new(record: &Record, index: usize, window: &Window, blocks: &Blocks) -> Result<Self, ReductionError> {
+    pub(super) fn new(
+        record: RecordSlice,
+        index: usize,
+        window: &Window,
+        blocks: &Blocks,
+    ) -> Result<Self, ReductionError> {
         let samples = Samples::cut_out(record, window, blocks);
         let mut good = samples.without_outliers(&samples.residuals_of_medians());
         let mut first = true;
@@ -88,18 +93,18 @@ impl PlateauFit {
     }
 
     /// Derivative of the settling's law by the logarithm of its time constant, one value a cell.
-    pub fn settling_rate(&self) -> Option<Vec<f64>> {
+    pub(super) fn settling_rate(&self) -> Option<Vec<f64>> {
         let settling = self.shape.settling?;
         Some((0..CELLS).map(|cell| settling.rate((cell as f64 + 0.5) * self.cells.width)).collect())
     }
 
     /// Variance of a sample about the fit [m^2/s^4].
-    pub fn variance(&self) -> Vector3<f64> {
+    pub(super) fn variance(&self) -> Vector3<f64> {
         self.variance
     }
 
     /// The plateau's mean, with its covariance under the noise.
-    pub fn mean(&self, noise: &NoiseModel, step: &TimeStep, quietest: &Vector3<f64>) -> PlateauMean {
+    pub(super) fn mean(&self, noise: &NoiseModel, step: &TimeStep, quietest: &Vector3<f64>) -> PlateauMean {
         let rounding = self.digit.zip_map(quietest, bias_variance);
         let (weights, drift) = self.cells.slope();
         let (correction, of_correction) = step.effect(self);
@@ -132,13 +137,12 @@ struct Samples<'a> {
 
 impl<'a> Samples<'a> {
     /// The samples of a record in a window, without repeated stamps.
-    fn cut_out(record: &Record, window: &'a Window, blocks: &'a Blocks) -> Self {
-        let from = record.t.partition_point(|t| *t < window.span[0]);
-        let to = record.t.partition_point(|t| *t <= window.span[1]);
-        let first_of_stamp = |i: &usize| *i == from || record.t[*i] > record.t[*i - 1];
-        let reading = |i: usize| Vector3::new(record.f_z[0][i], record.f_z[1][i], record.f_z[2][i]);
+    fn cut_out(record: RecordSlice, window: &'a Window, blocks: &'a Blocks) -> Self {
+        let RecordSlice { t, f_z } = record.between(window.span);
+        let first_of_stamp = |i: &usize| *i == 0 || t[*i] > t[*i - 1];
+        let reading = |i: usize| Vector3::new(f_z[0][i], f_z[1][i], f_z[2][i]);
         let (t, f_z): (Vec<f64>, Vec<Vector3<f64>>) =
-            (from..to).filter(first_of_stamp).map(|i| (record.t[i], reading(i))).unzip();
+            (0..t.len()).filter(first_of_stamp).map(|i| (t[i], reading(i))).unzip();
         let columns = window.shape.columns(&t);
         let stuck = stuck_on_any_axis(&f_z, &blocks.repeat_rate);
         Self { window, digit: &blocks.digit, t, f_z, stuck, columns }

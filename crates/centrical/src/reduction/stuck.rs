@@ -3,14 +3,6 @@
 
 use nalgebra::Vector3;
 
-/// Share of readings equal to the one before, of those whose own predecessor was different: a long run counts once.
-pub(super) fn repeat_rate(f: &[f64]) -> f64 {
-    let fresh = f.windows(3).filter(|w| w[0] != w[1]);
-    let (all, repeats) = fresh.fold((0_usize, 0_usize), |(all, n), w| (all + 1, n + usize::from(w[1] == w[2])));
-    // Rule of succession: a rate is never known to be 0 or 1.
-    (repeats as f64 + 1.0) / (all as f64 + 2.0)
-}
-
 /// Which samples are stuck on any axis, by the axes' repeat rates.
 pub(super) fn stuck_on_any_axis(f_z: &[Vector3<f64>], repeat_rate: &[f64; 3]) -> Vec<bool> {
     let on = [0, 1, 2].map(|axis| stuck(&f_z.iter().map(|f| f[axis]).collect::<Vec<f64>>(), repeat_rate[axis]));
@@ -27,22 +19,20 @@ fn stuck(f: &[f64], repeat_rate: f64) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
-    use super::{repeat_rate, stuck};
+    use super::stuck;
 
     #[test]
     fn a_held_reading_is_stuck_and_chance_repeats_are_not() {
         let mut f: Vec<f64> = (0..1000).map(|i| f64::from(i * 7919 % 31)).collect();
         f[500..520].fill(3.0);
         f[700] = f[699];
-        let rate = repeat_rate(&f);
-        let found = stuck(&f, rate);
-        assert!(rate < 0.01);
+        let found = stuck(&f, 1.0 / 1000.0);
         assert!((0..1000).all(|i| found[i] == (500..520).contains(&i)));
     }
 
     #[test]
     fn coarse_digits_are_not_stuck() {
         let f: Vec<f64> = (0..1000).map(|i| f64::from(u8::from(i * i % 97 > 80))).collect();
-        assert!(!stuck(&f, repeat_rate(&f)).contains(&true));
+        assert!(!stuck(&f, 0.8).contains(&true));
     }
 }
