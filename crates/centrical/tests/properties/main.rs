@@ -6,6 +6,7 @@ mod common;
 
 mod combination;
 mod comparison;
+mod consistency;
 mod coverage;
 mod fit;
 mod frame;
