@@ -30,6 +30,7 @@ enum Command {
     Montecarlo(command::montecarlo::Arguments),
     Models(command::models::Arguments),
     Compare(command::compare::Arguments),
+    Noise(command::noise::Arguments),
     Observe(command::observe::Arguments),
     Watch(command::watch::Arguments),
 }
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
         Command::Montecarlo(arguments) => command::montecarlo::run(&arguments),
         Command::Models(arguments) => command::models::run(&arguments),
         Command::Compare(arguments) => command::compare::run(&arguments),
+        Command::Noise(arguments) => command::noise::run(&arguments),
         Command::Observe(arguments) => command::observe::run(&arguments),
         Command::Watch(arguments) => command::watch::run(&arguments),
     };

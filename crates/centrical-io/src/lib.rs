@@ -20,6 +20,7 @@ mod compensate;
 mod error;
 mod input;
 mod laboratory;
+mod noise;
 mod observation;
 mod overview;
 mod plateaus;
@@ -42,6 +43,7 @@ pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
     LaboratoryTable, Limit, MethodTable, Person, Standard,
 };
+pub use noise::{NOISE_SCHEMA, NoiseAnalysis, ReadingNoise, Series};
 pub use observation::{
     CombinationReport, ConditionReport, Design, GroupReport, LostCombination, OBSERVATION_SCHEMA, ObservationReport,
     ObservedParameter, PairReport, RemedyReport, SightReport, StepReport,

@@ -174,7 +174,7 @@ impl Telemetry {
 }
 
 /// Reads columns, the first of them time, and takes them to SI.
-fn read_scaled(
+pub(crate) fn read_scaled(
     file: &Path,
     extent: Extent,
     columns: &[&Column],

@@ -33,7 +33,7 @@ pub use dcc::digital_certificate;
 pub use figures::{Figure, figures};
 pub use html::html_report;
 pub use language::Language;
-pub use noise::{deviation_plot, spectrum_plot};
+pub use noise::{noise_plots, noise_table, noise_warnings};
 pub use observation::observation_text;
 pub use positions_figure::positions_figure;
 pub use terminal::terminal_table;

@@ -36,6 +36,7 @@ pub use error::{ReductionError, Stretch};
 pub use noise::NoiseModel;
 
 use blocks::Blocks;
+pub(crate) use blocks::{MAD, cut, last_digit, median};
 use plateau_fit::PlateauFit;
 use settling::TimeStep;
 use window::Window;
