@@ -72,6 +72,16 @@ impl Cells {
         (Weights { by_cell, squares }, product)
     }
 
+    /// `function` less as much of `other` as makes its contrast orthogonal to that of `other`, both slow functions of time,
+    /// one value a cell.
+    pub fn free_of(&self, function: &[f64], other: &[f64]) -> Vec<f64> {
+        let (weights, _) = self.contrast(other);
+        let share = dot(&weights.by_cell, function) / weights.squares;
+        // What the fit has taken up wholly is not there to be taken out.
+        let share = if share.is_finite() { share } else { 0.0 };
+        function.iter().zip(other).map(|(f, o)| f - share * o).collect()
+    }
+
     /// The slope of the readings [m/s^3], with the weights that give it.
     pub fn slope(&self) -> (Weights, Vector3<f64>) {
         let middle = 0.5 * CELLS as f64;

@@ -105,6 +105,20 @@ fn means_are_right_to_their_own_uncertainty() {
     }
 }
 
+/// What the time constant of the settling is off by is no slow noise: the settling starts at a thousand times the white
+/// noise, and the pooled density at zero frequency stays that of the white noise alone. The bound is that of
+/// [`means_are_right_to_their_own_uncertainty`].
+#[test]
+fn settling_is_not_taken_for_noise() {
+    let stream = Stream { colour: (0.0, 0.5), settling: (1e-3, 0.4), ..Stream::default() };
+    let white = stream.white * stream.white / stream.rate;
+    for seed in 50..62 {
+        let density = pooled(&session(&stream, seed)).density(0.0).diagonal() / white;
+        println!("{seed}: {density:?}");
+        assert!(density.iter().all(|ratio| (ratio - 1.0).abs() < 0.22), "session {seed}: {density:?}");
+    }
+}
+
 /// Spikes are left out: with and without them the means differ by less than a tenth of their standard error on average.
 #[test]
 fn spikes_do_not_move_means() {
