@@ -174,7 +174,7 @@ impl Telemetry {
 }
 
 /// Reads columns, the first of them time, and takes them to SI.
-pub(crate) fn read_scaled(
+fn read_scaled(
     file: &Path,
     extent: Extent,
     columns: &[&Column],

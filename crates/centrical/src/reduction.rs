@@ -19,11 +19,14 @@ mod cells;
 mod clock;
 mod error;
 mod evidence;
+mod mistake;
 mod noise;
 mod path;
 mod plateau_fit;
 mod regression;
+mod rotation;
 mod rounding;
+mod saturation;
 mod settling;
 mod shape;
 mod stuck;
@@ -33,10 +36,11 @@ use nalgebra::{Matrix3, Vector3};
 
 pub use clock::{ClockOffset, SpeedTrace};
 pub use error::{ReductionError, Stretch};
+pub use mistake::Mistake;
 pub use noise::NoiseModel;
 
 use blocks::Blocks;
-pub(crate) use blocks::{MAD, cut, last_digit, median};
+pub(crate) use blocks::{MAD, cut, median};
 use plateau_fit::PlateauFit;
 use settling::TimeStep;
 use window::Window;
@@ -78,6 +82,8 @@ pub struct PlateauMean {
     pub samples: usize,
     /// Samples of the window left out: spikes, missing and stuck readings.
     pub rejected: usize,
+    /// What was left out, by kind.
+    pub left_out: LeftOut,
     /// Mean reading, instrument axes [m/s^2].
     pub mean: Vector3<f64>,
     /// Covariance of the mean [m^2/s^4].
@@ -88,10 +94,25 @@ pub struct PlateauMean {
     pub drift: Vector3<f64>,
     /// Standard uncertainty of the slope [m/s^3].
     pub drift_uncertainty: Vector3<f64>,
+    /// Covariance of either quadrature of the once-per-revolution term [m^2/s^4].
+    pub once_per_revolution_covariance: Matrix3<f64>,
     /// Median speed by the telemetry [rad/s], the clocks brought together.
     pub measured_speed: Option<f64>,
     /// What was left of the settling at the start of the window [m/s^2].
     pub settling: Vector3<f64>,
+}
+
+/// What is not used of a plateau's window, in samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LeftOut {
+    /// Samples that stand out of the noise on some axis.
+    pub spikes: usize,
+    /// Samples in runs that repeat one reading for longer than noise does.
+    pub stuck: usize,
+    /// Samples that never came, and readings that are not numbers.
+    pub missing: usize,
+    /// Samples with the stamp of the one before.
+    pub repeated: usize,
 }
 
 /// Finds and averages the scheduled plateaus of one mounting.

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Place};
 use crate::quantity::Dimension;
-use crate::record::{Column, Scale, read_scaled};
+use crate::record::{Column, Scale};
 use crate::session::Session;
+use crate::table::{self, ColumnName, Field, Rule};
 use crate::{PlateauName, Reduced};
 
 /// Columns of readings, and their time.
@@ -25,16 +26,28 @@ impl Series {
     /// # Errors
     /// As of a record; and if nothing is in the window.
     pub fn read(file: &Path, time: &Column, readings: &[Column], window: [f64; 2]) -> Result<Self, Error> {
-        let all: Vec<&Column> = std::iter::once(time).chain(readings).collect();
-        let mut values = vec![Vec::new(); all.len()];
-        let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-        read_scaled(file, crate::table::Extent::Whole, &all, "a record", &mut |block| {
-            let t = &block[0];
-            ends = [ends[0].min(t[0]), ends[1].max(t[t.len() - 1])];
-            let inside = t.partition_point(|t| *t < window[0])..t.partition_point(|t| *t <= window[1]);
-            values.iter_mut().zip(block).for_each(|(kept, column)| kept.extend_from_slice(&column[inside.clone()]));
+        // A row's number is not in the file.
+        let counted = time.name == ColumnName::Row;
+        let mut fields: Vec<Field> =
+            if counted { Vec::new() } else { vec![field(time, Rule::Ascending { stamps: true })] };
+        fields.extend(readings.iter().map(|column| field(column, Rule::OrMissing)));
+        let (mut t, mut values) = (Vec::new(), vec![Vec::new(); readings.len()]);
+        let (mut rows, mut ends) = (0_u64, [f64::INFINITY, f64::NEG_INFINITY]);
+        table::read(file, &fields, "a record", &mut |block| {
+            let first = rows;
+            rows += block[0].len() as u64;
+            let times: Vec<f64> = if counted {
+                (first..rows).map(|row| si(time, row as f64)).collect()
+            } else {
+                block[0].iter().map(|raw| si(time, *raw)).collect()
+            };
+            ends = [ends[0].min(times[0]), ends[1].max(times[times.len() - 1])];
+            let inside = times.partition_point(|t| *t < window[0])..times.partition_point(|t| *t <= window[1]);
+            for ((kept, raw), column) in values.iter_mut().zip(&block[usize::from(!counted)..]).zip(readings) {
+                kept.extend(raw[inside.clone()].iter().map(|raw| si(column, *raw)));
+            }
+            t.extend_from_slice(&times[inside]);
         })?;
-        let t = values.remove(0);
         if t.is_empty() {
             let found = format!("nothing from {} s to {} s", window[0], window[1]);
             let expected = format!("a stretch of the record, which runs from {} s to {} s", ends[0], ends[1]);
@@ -67,6 +80,16 @@ impl Series {
         let series = Self::read(record, &columns.time, &columns.f, window)?;
         Ok((series, PlateauName::of(session, set_point)))
     }
+}
+
+/// A column as a field of a table.
+fn field(column: &Column, rule: Rule) -> Field {
+    Field { name: column.name.clone(), expected: format!("a number in {}", column.unit), rule }
+}
+
+/// A number of a column in SI.
+fn si(column: &Column, raw: f64) -> f64 {
+    (raw - column.scale.offset) * column.scale.factor
 }
 
 /// Unit of the values of a column as read: m/s^2, or the file's own unit where nothing takes its numbers to SI.

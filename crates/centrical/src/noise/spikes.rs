@@ -1,6 +1,6 @@
 //! Spikes: readings that are off their neighbours by more than noise.
 
-use crate::reduction::{MAD, cut, last_digit, median};
+use crate::reduction::{MAD, cut, median};
 
 /// Marks the spikes among evenly spaced readings as missing (NaN) and says how many there were.
 ///
@@ -20,6 +20,13 @@ pub fn leave_out_spikes(readings: &mut [f64]) -> usize {
         }
     }
     spikes
+}
+
+/// Last digit of the readings: the smallest step between neighbours, beyond the rounding of `f64` itself.
+fn last_digit(readings: &[f64]) -> f64 {
+    let largest = readings.iter().filter(|y| y.is_finite()).fold(0.0, |largest: f64, y| largest.max(y.abs()));
+    let steps = readings.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 1e-12 * largest);
+    steps.fold(f64::INFINITY, f64::min)
 }
 
 /// Median of up to four neighbours, two on either side; the mean of the middle two of four. NaN without neighbours.

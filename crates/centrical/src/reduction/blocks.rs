@@ -141,7 +141,7 @@ pub(crate) fn cut(n: usize) -> f64 {
 }
 
 /// Last digit: the smallest step between neighbours.
-pub(crate) fn last_digit(f: &[f64]) -> f64 {
+fn last_digit(f: &[f64]) -> f64 {
     let largest = f.iter().filter(|value| value.is_finite()).fold(0.0, |largest: f64, value| largest.max(value.abs()));
     // A converted unit leaves steps of f64's own rounding.
     let rounding = (largest * 1e-12).max(f64::MIN_POSITIVE);

@@ -1,5 +1,7 @@
 //! Second pass: the mean of one plateau from its samples.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::blocks::{Blocks, MAD, cut, median, whole};
@@ -7,11 +9,12 @@ use super::cells::{CELLS, Cells};
 use super::noise::NoiseModel;
 use super::regression::Regression;
 use super::rounding::bias_variance;
+use super::saturation::piled_up;
 use super::settling::TimeStep;
 use super::shape::Shape;
-use super::stuck::stuck_on_any_axis;
+use super::stuck::{most_stuck, stuck_on_any_axis};
 use super::window::Window;
-use super::{PlateauMean, Record, ReductionError};
+use super::{LeftOut, PlateauMean, Record, ReductionError};
 
 /// One plateau, fitted; what its covariance needs is kept in cells.
 #[derive(Debug, Clone)]
@@ -19,6 +22,7 @@ pub(super) struct PlateauFit {
     window: [f64; 2],
     samples: usize,
     rejected: usize,
+    left_out: LeftOut,
     mean: Vector3<f64>,
     once_per_revolution: [Vector3<f64>; 2],
     shape: Shape,
@@ -36,12 +40,14 @@ impl PlateauFit {
     /// Fits the plateau `index` in its window.
     pub fn new(record: &Record, index: usize, window: &Window, blocks: &Blocks) -> Result<Self, ReductionError> {
         let samples = Samples::cut_out(record, window, blocks);
-        let mut good = samples.without_outliers(&samples.residuals_of_medians());
+        let residuals = samples.residuals_of_medians();
+        samples.check_range(index, &residuals)?;
+        let mut good = samples.without_outliers(&residuals);
         let mut first = true;
         loop {
             let (all, left) = (good.len(), good.iter().filter(|good| **good).count());
             if 2 * left <= all {
-                return Err(ReductionError::Unsteady { index, window: window.span, samples: all, good: left });
+                return Err(samples.unsteady(index, left, &blocks.repeat_rate));
             }
             let (omega, interval) = (window.shape.omega, blocks.interval);
             let aliased = ReductionError::RevolutionAliased { index, omega, interval };
@@ -77,6 +83,7 @@ impl PlateauFit {
             window: *span,
             samples: kept,
             rejected: good.len() - kept,
+            left_out: samples.left_out(good),
             mean: coefficients[columns - 1],
             once_per_revolution: if shape.omega == 0.0 { [zero; 2] } else { [coefficients[0], coefficients[1]] },
             settling: shape.settling.map_or(zero, |_| coefficients[columns - 2]),
@@ -98,6 +105,15 @@ impl PlateauFit {
         self.variance
     }
 
+    /// Covariance of either quadrature of the once-per-revolution term: `2 S(Omega / 2 pi) / T`, with the two-sided
+    /// density `S` of the noise at the frequency of rotation and the time `T` that was sampled; for whole revolutions.
+    fn covariance_of_harmonic(&self, noise: &NoiseModel) -> Matrix3<f64> {
+        if self.shape.omega == 0.0 {
+            return Matrix3::zeros();
+        }
+        noise.density(self.shape.omega / TAU) * (2.0 / (self.samples as f64 * self.cells.interval))
+    }
+
     /// The plateau's mean, with its covariance under the noise.
     pub fn mean(&self, noise: &NoiseModel, step: &TimeStep, quietest: &Vector3<f64>) -> PlateauMean {
         let rounding = self.digit.zip_map(quietest, bias_variance);
@@ -108,9 +124,11 @@ impl PlateauFit {
             window: self.window,
             samples: self.samples,
             rejected: self.rejected,
+            left_out: self.left_out,
             mean: self.mean + correction,
             covariance: of_noise + of_correction + Matrix3::from_diagonal(&rounding),
             once_per_revolution: self.once_per_revolution,
+            once_per_revolution_covariance: self.covariance_of_harmonic(noise),
             drift,
             measured_speed: None,
             drift_uncertainty: noise.covariance(&weights, &self.cells).diagonal().map(f64::sqrt),
@@ -124,10 +142,16 @@ struct Samples<'a> {
     window: &'a Window,
     /// Last digit of the readings [m/s^2].
     digit: &'a Vector3<f64>,
+    /// White noise of a sample [m/s^2].
+    white: &'a Vector3<f64>,
     t: Vec<f64>,
     f_z: Vec<Vector3<f64>>,
     stuck: Vec<bool>,
     columns: Vec<Vec<f64>>,
+    /// Samples with the stamp of the one before.
+    repeated: usize,
+    /// Sampling interval [s].
+    interval: f64,
 }
 
 impl<'a> Samples<'a> {
@@ -140,8 +164,10 @@ impl<'a> Samples<'a> {
         let (t, f_z): (Vec<f64>, Vec<Vector3<f64>>) =
             (from..to).filter(first_of_stamp).map(|i| (record.t[i], reading(i))).unzip();
         let columns = window.shape.columns(&t);
+        let repeated = to - from - t.len();
+        let interval = blocks.interval;
         let stuck = stuck_on_any_axis(&f_z, &blocks.repeat_rate);
-        Self { window, digit: &blocks.digit, t, f_z, stuck, columns }
+        Self { window, digit: &blocks.digit, white: &blocks.sample_noise, t, f_z, stuck, columns, repeated, interval }
     }
 
     fn columns_of(&self, good: &[bool]) -> Vec<Vec<f64>> {
@@ -179,15 +205,58 @@ impl<'a> Samples<'a> {
         residuals
     }
 
-    /// Which samples are no spikes and not stuck in any axis. Symmetric, so that the mean of good samples is not
-    /// biased.
-    fn without_outliers(&self, residuals: &[Vector3<f64>]) -> Vec<bool> {
+    /// What is not used, by kind. Samples that never came are counted by the intervals between those that did.
+    fn left_out(&self, good: &[bool]) -> LeftOut {
+        let unreadable = self.f_z.iter().filter(|f| !f.iter().all(|f| f.is_finite())).count();
+        let stuck = self.stuck.iter().filter(|stuck| **stuck).count();
+        let rejected = good.iter().filter(|good| !**good).count();
+        let gap = |pair: &[f64]| whole(((pair[1] - pair[0]) / self.interval).round()).saturating_sub(1);
+        LeftOut {
+            spikes: rejected.saturating_sub(unreadable + stuck),
+            stuck,
+            missing: unreadable + self.t.windows(2).map(gap).sum::<usize>(),
+            repeated: self.repeated,
+        }
+    }
+
+    /// Why most samples cannot be used.
+    fn unsteady(&self, index: usize, good: usize, repeat_rate: &[f64; 3]) -> ReductionError {
+        let (window, samples) = (self.window.span, self.t.len());
+        match most_stuck(&self.f_z, repeat_rate) {
+            (axis, value, stuck) if 2 * stuck > samples => {
+                ReductionError::Stuck { index, window, axis, value, samples, stuck }
+            }
+            _ => ReductionError::Unsteady { index, window, samples, good },
+        }
+    }
+
+    /// Refuses readings that pile up at the end of their range: what is cut off there is missing in the mean.
+    fn check_range(&self, index: usize, residuals: &[Vector3<f64>]) -> Result<(), ReductionError> {
+        let limit = self.limit(residuals);
+        for axis in (0..3).filter(|axis| self.white[*axis] > self.digit[*axis]) {
+            let near = residuals.iter().zip(&self.f_z).filter(|(r, _)| r[axis].abs() <= limit[axis]);
+            if let Some((value, piled_up)) = piled_up(near.map(|(_, f)| f[axis])) {
+                let (window, samples) = (self.window.span, self.t.len());
+                return Err(ReductionError::Saturated { index, window, axis, value, samples, piled_up });
+            }
+        }
+        Ok(())
+    }
+
+    /// What residuals of good samples are within [m/s^2].
+    fn limit(&self, residuals: &[Vector3<f64>]) -> [f64; 3] {
         let cut = cut(residuals.len());
-        let limit = [0, 1, 2].map(|axis| {
+        [0, 1, 2].map(|axis| {
             let sizes = residuals.iter().map(|r| r[axis].abs()).filter(|r| r.is_finite());
             // Rounding moves a reading by a digit at most, and may leave no spread to see.
             cut * MAD * median(&mut sizes.collect::<Vec<f64>>()) + self.digit[axis]
-        });
+        })
+    }
+
+    /// Which samples are no spikes and not stuck in any axis. Symmetric, so that the mean of good samples is not
+    /// biased.
+    fn without_outliers(&self, residuals: &[Vector3<f64>]) -> Vec<bool> {
+        let limit = self.limit(residuals);
         // A reading that is not a number is within no limit.
         let good = |(r, stuck): (&Vector3<f64>, &bool)| !stuck && (0..3).all(|axis| r[axis].abs() <= limit[axis]);
         residuals.iter().zip(&self.stuck).map(good).collect()

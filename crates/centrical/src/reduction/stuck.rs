@@ -17,6 +17,20 @@ pub(super) fn stuck_on_any_axis(f_z: &[Vector3<f64>], repeat_rate: &[f64; 3]) ->
     (0..f_z.len()).map(|i| on.iter().any(|on| on[i])).collect()
 }
 
+/// The newtonometer of which most readings are stuck, the reading at which it stands most, and how many are.
+pub(super) fn most_stuck(f_z: &[Vector3<f64>], repeat_rate: &[f64; 3]) -> (usize, f64, usize) {
+    let of = |axis: usize| {
+        let f: Vec<f64> = f_z.iter().map(|f| f[axis]).collect();
+        let is_stuck = stuck(&f, repeat_rate[axis]);
+        let mut standing: Vec<f64> = f.iter().zip(&is_stuck).filter(|(_, stuck)| **stuck).map(|(f, _)| *f).collect();
+        let count = standing.len();
+        standing.sort_by(f64::total_cmp);
+        let most = standing.chunk_by(f64::eq).max_by_key(|same| same.len());
+        (axis, most.map_or(f64::NAN, |same| same[0]), count)
+    };
+    [0, 1, 2].map(of).into_iter().max_by_key(|(_, _, count)| *count).unwrap_or((0, f64::NAN, 0))
+}
+
 /// Which readings stand in a run that `n` readings of that repeat rate have less than once in a million times.
 fn stuck(f: &[f64], repeat_rate: f64) -> Vec<bool> {
     const CHANCE: f64 = 1e-6;

@@ -12,6 +12,8 @@ mod fit;
 mod frame;
 mod invariance;
 mod measurement;
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
+mod mistakes;
 mod noise;
 mod noise_source;
 mod observability;
