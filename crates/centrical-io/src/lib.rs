@@ -31,6 +31,7 @@ mod reduce;
 mod result;
 mod session;
 mod simulate;
+mod steadiness;
 mod table;
 mod watch;
 mod write;
@@ -61,6 +62,7 @@ pub use result::{
 };
 pub use session::{MountingFiles, Noise, Plan, PlateauTable, Session};
 pub use simulate::{TableFormat, Truth, simulate_session};
+pub use steadiness::{DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, Steadiness, TiltSummary};
 pub use table::ColumnName;
 pub use watch::{
     HistoryEntry, HistoryEstimate, InnovationSummary, Watch, WatchState, WatchedPlateau, append_history, keep_history,

@@ -14,6 +14,7 @@ use crate::input::Input;
 use crate::overview::RecordOverview;
 use crate::plateaus::PlateauMean as TabledPlateau;
 use crate::session::Session;
+use crate::steadiness::Steadiness;
 
 /// A session's plateau means, and the files they come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,6 +57,8 @@ pub struct ReducedPlateau {
     pub once_per_revolution: Option<Vector3<f64>>,
     /// Median speed by the telemetry [rad/s].
     pub measured_speed: Option<f64>,
+    /// What it shows beside its mean; none for a plateau that came already averaged.
+    pub steadiness: Option<Steadiness>,
 }
 
 impl Reduced {
@@ -150,6 +153,7 @@ impl From<PlateauMean> for ReducedPlateau {
             covariance: plateau.covariance,
             once_per_revolution: amplitude(&plateau.once_per_revolution),
             measured_speed: plateau.measured_speed,
+            steadiness: Some(Steadiness::from(&plateau)),
         }
     }
 }
@@ -169,6 +173,7 @@ impl From<&TabledPlateau> for ReducedPlateau {
             covariance: row.covariance,
             once_per_revolution: None,
             measured_speed: None,
+            steadiness: None,
         }
     }
 }

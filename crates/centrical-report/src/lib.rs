@@ -21,6 +21,7 @@ mod pdf;
 pub mod plot;
 mod positions_figure;
 mod reading_error;
+mod steadiness;
 mod terminal;
 mod trials;
 mod verdict;

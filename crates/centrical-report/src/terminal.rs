@@ -5,6 +5,7 @@ use std::fmt::Write;
 use centrical_io::{CalibrationResult, ParameterEstimate, TermSummary};
 
 use crate::customary::{customary, with_uncertainty};
+use crate::steadiness::steadiness;
 
 /// Width of a column "value ± uncertainty".
 const CELL: usize = 24;
@@ -23,6 +24,7 @@ pub fn terminal_table(result: &CalibrationResult) -> String {
     not_estimable(&mut text, result);
     priors(&mut text, result);
     plateaus(&mut text, result);
+    steadiness(&mut text, result);
     fit(&mut text, result);
     text
 }

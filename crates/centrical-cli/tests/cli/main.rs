@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod compensate;
+mod noise;
 mod observe;
 mod refusal;
 mod report;

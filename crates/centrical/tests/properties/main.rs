@@ -26,5 +26,7 @@ mod simulate;
 mod simulated_noise;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod stream;
+#[allow(clippy::cast_possible_truncation, reason = "seeds")]
+mod tilt;
 mod uncertainty;
 mod validity;
