@@ -8,6 +8,7 @@ pub mod models;
 pub mod montecarlo;
 pub mod noise;
 pub mod observe;
+pub mod reduce;
 pub mod report;
 pub mod simulate;
 pub mod watch;

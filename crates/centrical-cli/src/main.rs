@@ -23,6 +23,7 @@ const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the result is not acce
 #[derive(Debug, Subcommand)]
 enum Command {
     Calibrate(command::calibrate::Arguments),
+    Reduce(command::reduce::Arguments),
     Compensate(command::compensate::Arguments),
     Simulate(command::simulate::Arguments),
     Report(command::report::Arguments),
@@ -47,6 +48,7 @@ enum Outcome {
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Calibrate(arguments) => command::calibrate::run(&arguments),
+        Command::Reduce(arguments) => command::reduce::run(&arguments),
         Command::Compensate(arguments) => command::compensate::run(&arguments),
         Command::Simulate(arguments) => command::simulate::run(&arguments),
         Command::Report(arguments) => command::report::run(&arguments),

@@ -3,9 +3,12 @@
 use centrical_compensate::{Compensation, Term};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
+use rayon::prelude::*;
 
 /// Ten minutes at 10 kHz.
 const READINGS: usize = 6_000_000;
+/// Readings in a task of the compensation on all threads.
+const TASK: usize = 16 * 1024;
 
 fn main() {
     divan::main();
@@ -55,9 +58,24 @@ fn all_threads(bencher: Bencher) {
     bencher.bench_local_refs(|f| compensation.apply_all_parallel(in_place(f)).unwrap());
 }
 
-/// What the memory alone allows: every number read, and written.
+/// What the memory alone allows: every number of the same arrays read and written, on all threads.
 #[divan::bench(sample_count = 20)]
-fn reference_scaling_in_place(bencher: Bencher) {
+fn reference_memory_all_threads(bencher: Bencher) {
+    let factor = black_box(1.000_001);
     let bencher = bencher.counter(ItemsCount::new(READINGS)).with_inputs(readings);
-    bencher.bench_local_refs(|f| f.iter_mut().flatten().for_each(|f| *f *= black_box(1.000_001)));
+    bencher.bench_local_refs(|f| {
+        f.par_iter_mut().for_each(|axis| axis.par_chunks_mut(TASK).for_each(|task| scale(task, factor)));
+    });
+}
+
+/// The same on one thread.
+#[divan::bench(sample_count = 20)]
+fn reference_memory_one_thread(bencher: Bencher) {
+    let factor = black_box(1.000_001);
+    let bencher = bencher.counter(ItemsCount::new(READINGS)).with_inputs(readings);
+    bencher.bench_local_refs(|f| f.iter_mut().for_each(|axis| scale(axis, factor)));
+}
+
+fn scale(f: &mut [f64], factor: f64) {
+    f.iter_mut().for_each(|f| *f *= factor);
 }

@@ -15,6 +15,10 @@ pub struct Outside {
 /// Readings worked on together: long enough for any vectors, short enough to stay in the first-level cache.
 const LANES: usize = 64;
 
+/// The readings of a block, on the boundary of a cache line: the widest vectors would straddle two otherwise.
+#[repr(align(64))]
+struct Lanes([[f64; LANES]; 3]);
+
 impl Compensation<'_> {
     /// Takes readings `f'` [m/s^2], an array per axis, to specific forces [m/s^2] in place. Each becomes what
     /// [`Compensation::apply`] makes of it; where that is an error, NaN on all axes, and it is counted.
@@ -67,16 +71,16 @@ impl Compensation<'_> {
         let mut outside = Outside::default();
         let [f1, f2, f3] = f.map(|f| f.chunks_mut(LANES));
         for (n, ((f1, f2), f3)) in f1.zip(f2).zip(f3).enumerate() {
-            let mut lanes = [[0.0; LANES]; 3];
+            let mut lanes = Lanes([[0.0; LANES]; 3]);
             let length = f1.len();
-            for (lane, f) in lanes.iter_mut().zip([&*f1, &*f2, &*f3]) {
+            for (lane, f) in lanes.0.iter_mut().zip([&*f1, &*f2, &*f3]) {
                 lane[..length].copy_from_slice(f);
             }
-            self.invert(&mut lanes);
-            for (lane, f) in lanes.iter().zip([f1, f2, f3]) {
+            self.invert(&mut lanes.0);
+            for (lane, f) in lanes.0.iter().zip([f1, f2, f3]) {
                 f.copy_from_slice(&lane[..length]);
             }
-            outside = outside.and(Outside::of(&lanes[0][..length]).after(n * LANES));
+            outside = outside.and(Outside::of(&lanes.0[0][..length]).after(n * LANES));
         }
         outside
     }

@@ -46,13 +46,38 @@ pub(crate) fn is_affine(term: &Term) -> bool {
 }
 
 /// Solves `g x = d` by Cramer's rule, `g` given by columns. Backward stable enough for a Newton step, whose own
-/// error the next step removes, and without a branch, so that it goes into vectors.
+/// error the next step removes, and without a branch, so that it goes into vectors. Products are shared: the first
+/// unknown is `d . (b x c) = b . (c x d)` over the determinant `a . (b x c) = c . (a x b)`.
 #[inline(always)]
 pub(crate) fn solve(g: [[f64; 3]; 3], d: [f64; 3]) -> [f64; 3] {
     let [a, b, c] = g;
-    let bc = cross(b, c);
-    let scale = 1.0 / dot(a, bc);
-    [dot(d, bc) * scale, dot(d, cross(c, a)) * scale, dot(d, cross(a, b)) * scale]
+    let (ab, cd) = (cross(a, b), cross(c, d));
+    let scale = 1.0 / dot(c, ab);
+    [dot(b, cd) * scale, -dot(a, cd) * scale, dot(d, ab) * scale]
+}
+
+/// The inverse of a matrix for more than one right-hand side, as [`solve`] has it.
+#[derive(Clone, Copy)]
+pub(crate) struct Inverse {
+    /// Rows, times the determinant.
+    rows: [[f64; 3]; 3],
+    scale: f64,
+}
+
+impl Inverse {
+    /// The inverse of `g`, given by columns.
+    #[inline(always)]
+    pub fn of(g: [[f64; 3]; 3]) -> Self {
+        let [a, b, c] = g;
+        let rows = [cross(b, c), cross(c, a), cross(a, b)];
+        Self { rows, scale: 1.0 / dot(a, rows[0]) }
+    }
+
+    /// `g^-1 d`.
+    #[inline(always)]
+    pub fn times(&self, d: [f64; 3]) -> [f64; 3] {
+        self.rows.map(|row| dot(row, d) * self.scale)
+    }
 }
 
 #[inline(always)]

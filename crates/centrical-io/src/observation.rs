@@ -33,20 +33,20 @@ pub struct Design {
 }
 
 impl Design {
-    /// Reads a plan, or a session and the noise of its records. `done` is told the index of each mounting as it is
-    /// reduced, from any thread.
+    /// Reads a plan, or a session and the noise of its records. `progress` is told of bytes of records as
+    /// they are read, from any thread, twice of nearly each.
     ///
     /// # Errors
     /// [`Error`] naming the file, the place, what was found and what was expected.
-    pub fn read(path: &Path, done: &(dyn Fn(usize) + Sync)) -> Result<Self, Error> {
+    pub fn read(path: &Path, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
         match Plan::read(path)? {
             Some(plan) => Ok(plan.into()),
-            None => Self::of_session(&Session::read(path)?, done),
+            None => Self::of_session(&Session::read(path)?, progress),
         }
     }
 
-    fn of_session(session: &Session, done: &(dyn Fn(usize) + Sync)) -> Result<Self, Error> {
-        let reduced = Reduced::of(session, done)?;
+    fn of_session(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
+        let reduced = Reduced::of(session, progress)?;
         Ok(Self {
             file: session.file.clone(),
             title: session.title.clone(),

@@ -14,6 +14,7 @@ mod unit;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 use centrical::uncertainty::TypeB;
 use centrical::{ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, SetPoint, Site};
 
@@ -25,7 +26,7 @@ pub(crate) use self::schedule::FASTEST;
 use crate::error::{Error, Place, quoted};
 use crate::plateaus::{PlateauMean, read_plateaus};
 use crate::quantity::Dimension;
-use crate::record::{Columns, Record, RecordBlock, Telemetry};
+use crate::record::{Columns, read_record, read_telemetry, scan_record};
 
 /// Name of the experiment file in a session folder.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
@@ -168,26 +169,32 @@ impl Session {
     /// Reads the whole record of a mounting, by its index.
     ///
     /// # Errors
-    /// If the mounting has no record, or as [`Record::scan`].
+    /// If the mounting has no record, or as [`scan_record`].
     pub fn record(&self, mounting: usize) -> Result<Record, Error> {
-        Record::read(self.record_file(mounting)?, &self.columns)
+        read_record(self.record_file(mounting)?, &self.columns)
     }
 
     /// Hands the record of a mounting to `visit` block by block, in memory that does not grow with the record.
     ///
     /// # Errors
-    /// If the mounting has no record, or as [`Record::scan`].
-    pub fn scan_record(&self, mounting: usize, visit: &mut dyn FnMut(RecordBlock)) -> Result<(), Error> {
-        Record::scan(self.record_file(mounting)?, &self.columns, visit)
+    /// If the mounting has no record, or as [`scan_record`].
+    pub fn scan_record(&self, mounting: usize, visit: &mut dyn FnMut(RecordSlice)) -> Result<(), Error> {
+        scan_record(self.record_file(mounting)?, &self.columns, visit)
     }
 
     /// Reads the telemetry of a mounting, if it has any.
     ///
     /// # Errors
-    /// As [`Record::scan`].
-    pub fn telemetry(&self, mounting: usize) -> Result<Option<Telemetry>, Error> {
+    /// As [`scan_record`].
+    pub fn telemetry(&self, mounting: usize) -> Result<Option<SpeedTrace>, Error> {
         let file = self.mountings.get(mounting).and_then(|m| m.telemetry.as_ref());
-        file.map(|file| Telemetry::read(file, &self.columns)).transpose()
+        file.map(|file| read_telemetry(file, &self.columns)).transpose()
+    }
+
+    /// Size of the records [bytes]; zero for a session that comes already averaged, and of records that are not there.
+    pub fn record_bytes(&self) -> u64 {
+        let files = self.mountings.iter().filter(|_| self.plateaus.is_none()).filter_map(|m| m.record.as_ref());
+        files.filter_map(|file| fs::metadata(file).ok()).map(|metadata| metadata.len()).sum()
     }
 
     /// All files of the session in the order they are named: the experiment file first.
@@ -197,7 +204,8 @@ impl Session {
         std::iter::once(&self.file).chain(table).chain(of_mountings).map(PathBuf::as_path).collect()
     }
 
-    fn record_file(&self, mounting: usize) -> Result<&Path, Error> {
+    /// The file of a mounting's record.
+    pub(crate) fn record_file(&self, mounting: usize) -> Result<&Path, Error> {
         let record = self.mountings.get(mounting).and_then(|m| m.record.as_deref());
         record.ok_or_else(|| {
             At::entry(&self.file, "mounting", mounting).unexpected("record", "no record", "the path of one")
@@ -221,7 +229,7 @@ impl PlateauTable {
 }
 
 /// The text of the experiment file.
-fn read_text(file: &Path) -> Result<String, Error> {
+pub(crate) fn read_text(file: &Path) -> Result<String, Error> {
     let expected = "an experiment file, or the folder with its experiment.toml";
     let failed = |e| Error::reading(file, e, expected);
     let metadata = fs::metadata(file).map_err(failed)?;

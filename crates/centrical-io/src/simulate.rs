@@ -15,7 +15,7 @@ use rayon::prelude::*;
 pub use truth::Truth;
 
 use self::csv::CsvTable;
-use self::parquet::ParquetTable;
+pub(crate) use self::parquet::ParquetTable;
 use crate::error::{Error, Place};
 use crate::record::Column;
 use crate::session::{EXPERIMENT_FILE, Session};

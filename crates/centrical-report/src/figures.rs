@@ -2,12 +2,14 @@
 
 mod correlation;
 mod fit;
+mod history;
 mod record;
 
 use centrical::Position;
 use centrical_io::CalibrationResult;
 use nalgebra::Matrix3;
 
+pub use self::history::history_figure;
 use crate::language::Language;
 use crate::plot::Plot;
 use crate::positions_figure::positions_figure;

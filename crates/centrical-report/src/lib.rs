@@ -31,13 +31,13 @@ pub use assessment::{budget_table, outliers_text, pattern_in_words, prediction_t
 pub use certificate::pdf_certificate;
 pub use customary::{customary, with_uncertainty};
 pub use dcc::digital_certificate;
-pub use figures::{Figure, figures};
-pub use html::html_report;
+pub use figures::{Figure, figures, history_figure};
+pub use html::{html_report, html_report_with};
 pub use language::Language;
 pub use noise::{noise_plots, noise_table, noise_warnings};
 pub use observation::observation_text;
 pub use positions_figure::positions_figure;
-pub use terminal::terminal_table;
+pub use terminal::{terminal_table, verdict_text};
 pub use trials::{comparison_table, monte_carlo_table, selection_table};
 pub use verdict::{Objection, chi_squared_tail, objections};
-pub use watch::{WatchView, WatchedTest, watch_table};
+pub use watch::{WatchView, WatchedTest, states_text, watch_table};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical::fit::recursive::Progress;
+use centrical::fit::recursive::{Lives, Progress};
 use centrical::{MeasurementModel, Parameter};
 use centrical_io::InnovationSummary;
 
@@ -58,6 +58,22 @@ pub fn watch_table(view: &WatchView) -> String {
     }
     if !view.targets.is_empty() && view.targets.iter().all(|(group, target)| is_met(view, group, *target)) {
         text.push_str("Every target is met.\n");
+    }
+    text
+}
+
+/// How many states a filter carries at a time for `order`, and what an order costs that does not keep positions together.
+pub fn states_text(model: &MeasurementModel, order: &[usize]) -> String {
+    let lives = Lives::new(model, order);
+    let mut text = format!("{} states of {} unknowns at a time\n", lives.states(), lives.unknowns());
+    if lives.cost() > 0 {
+        let waiting: Vec<&str> = lives.waiting(model).iter().map(|&j| model.parameters()[j].name.as_str()).collect();
+        let _ = writeln!(
+            text,
+            "The order does not keep positions together, which costs {} states; waiting at the fullest: {}",
+            lives.cost(),
+            waiting.join(", ")
+        );
     }
     text
 }

@@ -39,8 +39,8 @@ pub fn probability(text: &str) -> Result<f64, String> {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
-    let bar = progress::mountings("reading", session.experiment.mountings.len());
-    let problem = Problem::of(&session, &|_| bar.inc(1))?;
+    let bar = progress::reading(&session);
+    let problem = Problem::of(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
     let text =
         assess(arguments, &session, &problem).map_err(|source| Error::Fit { file: session.file.clone(), source })?;

@@ -40,8 +40,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let failed = |source| Error::Fit { file: session.file.clone(), source };
     let has_data = session.plateaus.is_some() || session.mountings.iter().any(|m| m.record.is_some());
     let (model, observations, truth) = if has_data {
-        let bar = progress::mountings("reading", session.experiment.mountings.len());
-        let problem = Problem::of(&session, &|_| bar.inc(1))?;
+        let bar = progress::reading(&session);
+        let problem = Problem::of(&session, &|bytes| bar.inc(bytes))?;
         bar.finish_and_clear();
         let observations = problem.reduced.observations();
         let fit = fit::exact(&problem.model, &observations, session.speed_uncertainty).map_err(failed)?;

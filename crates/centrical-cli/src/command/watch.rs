@@ -7,13 +7,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use centrical::fit::recursive::{Follower, Lives, Progress};
+use centrical::fit::recursive::{Follower, Progress};
 use centrical::{MeasurementModel, Observation};
 use centrical_io::{
     Error, HistoryEntry, HistoryEstimate, Method, Place, PlateauName, Session, Watch, WatchState, WatchedPlateau,
-    append_history, calibrate_without, create_folder, keep_history,
+    append_history, calibrate_without, create_folder, keep_history, read_history, write_whole,
 };
-use centrical_report::{WatchView, WatchedTest, objections, terminal_table, watch_table};
+use centrical_report::{
+    Language, WatchView, WatchedTest, history_figure, objections, states_text, terminal_table, verdict_text,
+    watch_table,
+};
 
 use crate::Outcome;
 
@@ -23,7 +26,7 @@ use crate::Outcome;
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
-    /// Folder for watch.json (where it stands), watch-history.jsonl (a line per plateau) and result.json
+    /// Folder for watch.json (where it stands), watch-history.jsonl (a line per plateau), its plot and result.json
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// A wanted standard uncertainty in the unit that the table shows, e.g. --target bias=0.01; may be repeated
@@ -55,14 +58,15 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     create_folder(&arguments.out)?;
     let model = session.model()?;
     let mut following = Following::resume(arguments, &session, &model)?;
-    following.say_what_the_order_costs();
+    let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
+    eprint!("{}", states_text(&model, &order));
     let mut watch = Watch::new(&session, Duration::from_secs_f64(arguments.quiet));
     let stop = stopped_by_ctrl_c();
     let mut note = None;
     loop {
         for observation in watch.look()? {
             if stop.load(Ordering::Relaxed) {
-                return Ok(following.stopped());
+                return following.stopped();
             }
             following.arrived(&observation)?;
         }
@@ -76,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             }
         }
         if stop.load(Ordering::Relaxed) || arguments.once {
-            return Ok(following.stopped());
+            return following.stopped();
         }
         thread::sleep(Duration::from_secs_f64(arguments.interval));
     }
@@ -192,29 +196,32 @@ impl<'a> Following<'a> {
         format!("{mounting}:{plateau}, {set}")
     }
 
-    fn say_what_the_order_costs(&self) {
-        let order: Vec<usize> = (0..self.session.experiment.set_points.len()).collect();
-        let lives = Lives::new(self.model, &order);
-        let waiting: Vec<String> =
-            lives.waiting(self.model).iter().map(|&j| self.model.parameters()[j].name.clone()).collect();
-        eprintln!("{} states of {} unknowns at a time", lives.states(), lives.unknowns());
-        if lives.cost() > 0 {
-            eprintln!(
-                "The order does not keep positions together, which costs {} states; waiting at the fullest: {}",
-                lives.cost(),
-                waiting.join(", ")
-            );
+    /// The history as a plot, beside it.
+    fn draw(&self) -> Result<(), Error> {
+        let folder = &self.arguments.out;
+        let history = folder.join("watch-history.jsonl");
+        if !history.exists() {
+            return Ok(());
+        }
+        let group_of = |name: &str| {
+            let parameters = self.model.parameters();
+            parameters.find(name).map(|j| parameters[j].group)
+        };
+        match history_figure(&read_history(&history)?, &group_of, Language::English) {
+            Some(figure) => write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes()),
+            None => Ok(()),
         }
     }
 
-    fn stopped(&self) -> Outcome {
+    fn stopped(&self) -> Result<Outcome, Error> {
+        self.draw()?;
         let file = self.arguments.out.join("watch.json");
         eprintln!(
             "Stopped after {} plateaus; the same command goes on from {}",
             self.state.plateaus.len(),
             file.display()
         );
-        Outcome::Done
+        Ok(Outcome::Done)
     }
 
     /// The calibration of the complete session, from its files anew.
@@ -224,9 +231,9 @@ impl<'a> Following<'a> {
         let result = calibrate_without(self.session, &held_out, Method::Recursive, &|_| {})?;
         let file = self.arguments.out.join("result.json");
         result.write(&file)?;
+        self.draw()?;
         let objections = objections(&result);
-        let mut lines = vec![terminal_table(&result)];
-        lines.extend(objections.iter().map(|objection| format!("NOT ACCEPTABLE  {objection}\n")));
+        let mut lines = vec![terminal_table(&result), verdict_text(&objections)];
         lines.push(format!("\nThe schedule is complete. Written to {}\n", file.display()));
         let _ = io::stdout().write_all(lines.concat().as_bytes());
         Ok(if objections.is_empty() { Outcome::Done } else { Outcome::NotAcceptable })

@@ -78,15 +78,18 @@ pub(super) fn budget(result: &CalibrationResult, language: Language) -> Option<S
     let messages = language.messages();
     let budget = result.budget.as_ref()?;
     let mut head = vec![messages.parameter.to_owned(), messages.unit.to_owned()];
-    head.extend(budget.sources.iter().map(|source| source.name.clone()));
-    head.push(messages.combined.to_owned());
+    head.extend(budget.sources.iter().map(|source| messages.word(&source.name).to_owned()));
+    head.extend([messages.combined, messages.degrees_word].map(str::to_owned));
     let mut table = Table::new("numbers").with_head(&head);
     for (j, parameter) in result.parameters.iter().enumerate() {
         let (factor, unit) = customary(&parameter.unit, &parameter.group);
         let shown = |value: Option<f64>| value.map_or(String::new(), |value| language.significant(value * factor, 2));
         let mut cells = vec![language.unit(unit)];
         cells.extend(budget.sources.iter().map(|source| shown(source.standard_uncertainty.get(j).copied().flatten())));
-        cells.push(shown(budget.combined.get(j).copied().flatten()));
+        let combined = budget.combined.get(j).copied().flatten();
+        let degrees = budget.degrees_of_freedom.get(j).copied().flatten();
+        let degrees = degrees.map_or("∞".to_owned(), |nu| language.fixed(nu, 0));
+        cells.extend([shown(combined), combined.map_or(String::new(), |_| degrees)]);
         table.row(&parameter.name, &cells);
     }
     Some(table.into_html())

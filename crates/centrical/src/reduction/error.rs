@@ -68,7 +68,7 @@ pub enum ReductionError {
     },
     /// The record was taken down by mistake: it is decisively better explained otherwise than as it stands.
     #[error(
-        "readings fit {mistake}, or another mounting of the unit: on plateau {} at {omega:.3} rad/s found {}, expected about {}",
+        "readings fit {mistake}: on plateau {} at {omega:.3} rad/s found {}, expected about {}",
         index + 1, Level(found_z), Level(level_z)
     )]
     Mistaken {
@@ -96,7 +96,7 @@ pub enum ReductionError {
     },
     /// A newtonometer stands still on a plateau.
     #[error(
-        "plateau {} from {:.3} s to {:.3} s: f{} stands at {value} m/s^2 in {stuck} of {samples} samples: \
+        "plateau {} from {:.3} s to {:.3} s: f{} reads exactly {value} m/s^2 in {stuck} of {samples} samples: \
          a stuck newtonometer, or one beyond its range; expected noise", index + 1, window[0], window[1], axis + 1
     )]
     Stuck {

@@ -151,6 +151,12 @@ impl Mistake {
         i32::try_from(moved.saturating_sub(1) + reversed + units).unwrap_or(i32::MAX)
     }
 
+    /// Whether the unit turned otherwise would read so: a proper rotation, in the right unit.
+    fn is_turn(&self) -> bool {
+        let row = |i: usize| Vector3::ith(self.source[i], self.sign[i]);
+        self.factor == 1.0 && Matrix3::from_columns(&[row(0), row(1), row(2)]).determinant() > 0.0
+    }
+
     /// Logarithm of its odds against no mistake: [`ODDS`] shared among the mistakes of one kind, the fewer the likelier.
     fn log_prior(&self) -> f64 {
         ODDS.ln() + f64::from(self.count() - 1) * FURTHER.ln()
@@ -181,9 +187,12 @@ impl fmt::Display for Mistake {
             parts.push(format!("f{} with the sign reversed", axis + 1));
         }
         if self.factor < 1.0 {
-            parts.push("readings in g taken for m/s^2".to_owned());
+            parts.push("the unit g taken for m/s^2".to_owned());
         } else if self.factor > 1.0 {
-            parts.push("readings in m/s^2 taken for g".to_owned());
+            parts.push("the unit m/s^2 taken for g".to_owned());
+        }
+        if self.is_turn() {
+            parts.push("or another mounting of the unit".to_owned());
         }
         out.write_str(&parts.join(", "))
     }

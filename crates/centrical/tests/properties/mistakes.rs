@@ -43,8 +43,8 @@ fn reversed_signs_and_wrong_units_are_named() {
         assert!(said.starts_with(&format!("readings fit f{} with the sign reversed", axis + 1)), "{said}");
     }
     for (factor, words) in [
-        (1.0 / STANDARD_GRAVITY, "readings fit readings in g taken for m/s^2"),
-        (STANDARD_GRAVITY, "readings fit readings in m/s^2 taken for g"),
+        (1.0 / STANDARD_GRAVITY, "readings fit the unit g taken for m/s^2"),
+        (STANDARD_GRAVITY, "readings fit the unit m/s^2 taken for g"),
     ] {
         let all = |f: &mut [Vec<f64>; 3]| (0..3).for_each(|axis| times(axis, factor)(f));
         let said = verdict(&stream, &changed(&stream, all)).expect("the record is wrong");
@@ -60,7 +60,7 @@ fn two_mistakes_at_once_are_named() {
         (0..3).for_each(|axis| times(axis, 1.0 / STANDARD_GRAVITY)(f));
     };
     let said = verdict(&stream, &changed(&stream, both)).expect("the record is wrong");
-    let expected = "readings fit axes 1 and 3 exchanged (f3 as f1 and f1 as f3), readings in g taken for m/s^2";
+    let expected = "readings fit axes 1 and 3 exchanged (f3 as f1 and f1 as f3), the unit g taken for m/s^2";
     assert!(said.starts_with(expected), "{said}");
 }
 
@@ -94,21 +94,19 @@ fn good_records_are_not_blamed() {
 fn a_saturated_plateau_is_named() {
     let stream = Stream::default();
     let top = stream.truth(4).x;
-    // The range ends where the fastest plateau reads, or a standard deviation beyond: half or a sixth is cut off.
-    for end in [top, top - 2e-3] {
-        let record = changed(&stream, |f| f[0].iter_mut().for_each(|f| *f = f.max(end)));
-        let error = reduce(&record, None, &stream.schedule()).expect_err("the record is cut off");
-        let ReductionError::Saturated { index: 4, axis: 0, value, piled_up, samples, .. } = error else {
-            panic!("{end}: {error}")
-        };
-        assert_eq!(value, end);
-        assert!(piled_up > 10 && piled_up < samples, "{error}");
-    }
-    // Nearly all of it, and all.
-    for end in [top + 4e-3, top + 1.0] {
-        let record = changed(&stream, |f| f[0].iter_mut().for_each(|f| *f = f.max(end)));
-        let said = verdict(&stream, &record).expect("the record is cut off");
-        assert!(said.contains("a stuck newtonometer, or one beyond its range"), "{said}");
+    // The range ends a standard deviation beyond what the fastest plateau reads: a sixth is cut off.
+    let end = top - 2e-3;
+    let cut_off = |end: f64| changed(&stream, |f| f[0].iter_mut().for_each(|f| *f = f.max(end)));
+    let error = reduce(&cut_off(end), None, &stream.schedule()).expect_err("the record is cut off");
+    let ReductionError::Saturated { index: 4, axis: 0, value, piled_up, samples, .. } = error else {
+        panic!("{error}")
+    };
+    assert_eq!(value, end);
+    assert!(piled_up > 100 && piled_up < samples / 4, "{error}");
+    // Half of it, nearly all, and all.
+    for end in [top, top + 4e-3, top + 1.0] {
+        let said = verdict(&stream, &cut_off(end)).expect("the record is cut off");
+        assert!(said.contains("saturated") || said.contains("a stuck newtonometer, or one beyond its range"), "{said}");
     }
 }
 
@@ -156,4 +154,39 @@ fn a_plateau_cut_short_is_used_or_named() {
     let short = Stream { lengths: vec![10.0, 10.0, 0.3, 10.0, 10.0, 10.0], ..Stream::default() };
     let said = verdict(&short, &short.record()).expect("a third of a second is no plateau");
     assert!(said.starts_with("plateau 3 "), "{said}");
+}
+
+/// The mean of the samples that are left is that of all of them where there is nothing to leave out: over 144 plateaus at
+/// rest it moves by less than a hundredth of its standard error, an efficiency above 0.9999. One sample in ten being a
+/// spike, it is that of the good ones.
+#[test]
+fn robust_location_is_as_efficient_as_the_mean() {
+    let (mut clean, mut spiked, mut count) = (0.0, 0.0, 0.0);
+    for seed in 0..24 {
+        let stream = Stream { seed: 200 + seed, ..Stream::default() };
+        let record = stream.record();
+        let dirty = changed(&stream, |f| {
+            f[0].iter_mut().enumerate().filter(|(i, _)| i * 7919 % 10 == 3).for_each(|(_, f)| *f += 30.0);
+        });
+        let means = |record: &Record| {
+            let reduced = reduce(record, None, &stream.schedule()).expect("the plateaus are there");
+            reduced.means(&NoiseModel::pool([&reduced]))
+        };
+        for (means, record, sum) in [(means(&record), &record, &mut clean), (means(&dirty), &dirty, &mut spiked)] {
+            for k in [0, 5] {
+                let [from, to] = means[k].window;
+                let inside = record.t.partition_point(|t| *t < from)..record.t.partition_point(|t| *t <= to);
+                for axis in 0..3 {
+                    let good = record.f_z[axis][inside.clone()].iter().filter(|f| **f < 20.0);
+                    let (n, total) = good.fold((0.0, 0.0), |(n, total), f| (n + 1.0, total + f));
+                    *sum += ((means[k].mean[axis] - total / n) / (stream.white / n.sqrt())).powi(2);
+                }
+            }
+        }
+        count += 6.0;
+    }
+    assert!(clean / count < 1e-4, "{}", clean / count);
+    // A sample that is a spike on one axis is left out on all: the other two lose a tenth of their samples, and with it a
+    // tenth of their efficiency; two thirds of the squares, each 0.11.
+    assert!(spiked / count < 0.1, "{}", spiked / count);
 }

@@ -1,7 +1,7 @@
 //! Reduction of simulated records: plateaus found where they are, means right to their own uncertainty, and plain
 //! words where a plateau is not there.
 
-use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, reduce};
+use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, Survey, reduce};
 use nalgebra::Vector3;
 
 use crate::stream::{Random, Stream};
@@ -218,6 +218,30 @@ fn the_same_record_gives_the_same_bits() {
         reduced.means(&NoiseModel::pool([&reduced]))
     });
     assert_eq!(twice[0], twice[1]);
+}
+
+/// A record in stretches of any length, cut anywhere, gives the bits that it gives whole.
+#[test]
+fn in_stretches_as_whole() {
+    let stream = Stream { colour: (1e-3, 0.5), repeats: 0.01, ..Stream::default() }.rough();
+    let (record, schedule) = (stream.record(), stream.schedule());
+    let whole = reduce(&record, None, &schedule).expect("plateaus are there");
+    let noise = NoiseModel::pool([&whole]);
+    for length in [1, 7, 64, 1000, 4099] {
+        let mut survey = Survey::new(&record.t);
+        let mut from = 0;
+        while from < record.t.len() {
+            let to = (from + length).min(record.t.len());
+            survey.append(survey.condense(record.as_slice().part(from..to)));
+            from = to;
+        }
+        survey.finish();
+        let located = survey.locate(None, &schedule).expect("plateaus are there");
+        let windows = located.windows();
+        let average = |k: usize| located.average(k, record.as_slice().between(windows[k])).expect("a steady plateau");
+        let averaged = (0..windows.len()).map(average).collect();
+        assert_eq!(located.into_mounting(averaged).means(&noise), whole.means(&noise), "stretches of {length}");
+    }
 }
 
 /// Two plateaus at rest with a short turn between them, which nobody scheduled.
