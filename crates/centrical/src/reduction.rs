@@ -10,6 +10,14 @@
 //! its colour: it is pooled over all plateaus of the session ([`NoiseModel`]), and then gives every mean its
 //! covariance.
 //!
+//! Samples are taken with equal weight, or not at all: what is off the fit by more than `sqrt(2 ln 20 n)` robust standard
+//! deviations of `n` samples, what is stuck, and what is no number. Fewer than one in twenty plateaus loses a good sample
+//! on an axis, so the mean has an efficiency above `1 - (2 ln 20 n) / (20 n)` of that of least squares, 0.999 of a thousand
+//! samples, and up to half of the samples may be spikes.
+//!
+//! A record that is decisively better explained by a mistake in taking it down, exchanged axes for one, is refused with
+//! that mistake by name ([`Mistake`]).
+//!
 //! Two passes, so that a record need never be held as a whole: the first makes blocks of it and finds the windows
 //! ([`Survey`]); the second takes the samples of one window at a time ([`Located`]). [`reduce`] is both, for a record in
 //! memory.

@@ -9,5 +9,6 @@ mod refusal;
 mod report;
 mod session;
 mod simulate;
+mod steadiness;
 mod trust;
 mod watch;

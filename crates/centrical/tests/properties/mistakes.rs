@@ -156,9 +156,10 @@ fn a_plateau_cut_short_is_used_or_named() {
     assert!(said.starts_with("plateau 3 "), "{said}");
 }
 
-/// The mean of the samples that are left is that of all of them where there is nothing to leave out: over 144 plateaus at
-/// rest it moves by less than a hundredth of its standard error, an efficiency above 0.9999. One sample in ten being a
-/// spike, it is that of the good ones.
+/// The mean of the samples that are left is that of all of them where there is nothing to leave out, but for one good
+/// sample in twenty plateaus and axes, at the limit of `sqrt(2 ln 20 n)` standard deviations: that moves the mean by
+/// `(2 ln 20 n) / n` of its variance, so the efficiency is above `1 - (2 ln 20 n) / (20 n)`, 0.999 of a thousand samples.
+/// One sample in ten being a spike, it is the mean of the good ones.
 #[test]
 fn robust_location_is_as_efficient_as_the_mean() {
     let (mut clean, mut spiked, mut count) = (0.0, 0.0, 0.0);
@@ -185,7 +186,7 @@ fn robust_location_is_as_efficient_as_the_mean() {
         }
         count += 6.0;
     }
-    assert!(clean / count < 1e-4, "{}", clean / count);
+    assert!(clean / count < 1e-3, "{}", clean / count);
     // A sample that is a spike on one axis is left out on all: the other two lose a tenth of their samples, and with it a
     // tenth of their efficiency; two thirds of the squares, each 0.11.
     assert!(spiked / count < 0.1, "{}", spiked / count);
