@@ -6,6 +6,7 @@ pub mod compare;
 pub mod compensate;
 pub mod models;
 pub mod montecarlo;
+pub mod noise;
 pub mod observe;
 pub mod plan;
 pub mod reduce;

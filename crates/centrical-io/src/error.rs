@@ -71,6 +71,16 @@ pub enum Error {
         /// Why.
         source: centrical::plan::PlanError,
     },
+    /// A column of readings cannot be analysed for noise.
+    #[error("{}, {reading}: {source}", file.display())]
+    Noise {
+        /// The file.
+        file: PathBuf,
+        /// The column.
+        reading: String,
+        /// What was found and what was expected.
+        source: centrical::noise::NoiseError,
+    },
     /// Nothing can be simulated of a truth.
     #[error("{}: {source}", file.display())]
     Simulation {

@@ -21,6 +21,7 @@ mod compensate;
 mod error;
 mod input;
 mod laboratory;
+mod noise;
 mod observation;
 mod overview;
 mod planning;
@@ -34,6 +35,7 @@ mod reduced_session;
 mod result;
 mod session;
 mod simulate;
+mod steadiness;
 mod table;
 mod watch;
 mod write;
@@ -47,6 +49,7 @@ pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
     LaboratoryTable, Limit, MethodTable, Person, Standard,
 };
+pub use noise::{NOISE_SCHEMA, NoiseAnalysis, ReadingNoise, Series};
 pub use observation::{
     CombinationReport, ConditionReport, Design, GroupReport, LostCombination, OBSERVATION_SCHEMA, ObservationReport,
     ObservedParameter, PairReport, RemedyReport, SightReport, StepReport,
@@ -70,6 +73,7 @@ pub use result::{
 };
 pub use session::{MountingFiles, Noise, Plan, Planning, PlateauTable, Session};
 pub use simulate::{TableFormat, Truth, simulate_session};
+pub use steadiness::{DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, Steadiness, TiltSummary};
 pub use table::ColumnName;
 pub use watch::{
     HistoryEntry, HistoryEstimate, InnovationSummary, Watch, WatchState, WatchedPlateau, append_history, keep_history,

@@ -11,7 +11,7 @@ use crate::language::Language;
 pub(crate) const MICRO_G: f64 = 1e-6 * STANDARD_GRAVITY;
 
 /// Coverage factor of the uncertainty of compensation.
-const COVERAGE: f64 = 2.0;
+pub(crate) const COVERAGE: f64 = 2.0;
 
 /// Errors of the reading on one plateau, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,7 @@
 //! Second pass: the mean of one plateau from its samples.
 
 use std::borrow::Cow;
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
@@ -11,12 +12,13 @@ use super::lanes::{dot, subtract, sum};
 use super::noise::NoiseModel;
 use super::regression::Regression;
 use super::rounding::bias_variance;
+use super::saturation::{piled_up, standing};
 use super::settling::TimeStep;
 use super::shape::Shape;
 use super::stuck::stuck_on_any_axis;
 use super::triangle::{TERMS, Triangle};
 use super::window::Window;
-use super::{PlateauMean, RecordSlice, ReductionError};
+use super::{LeftOut, PlateauMean, RecordSlice, ReductionError};
 
 /// One plateau, fitted; what its covariance needs is kept in cells.
 #[derive(Debug, Clone)]
@@ -24,6 +26,7 @@ pub struct PlateauFit {
     window: [f64; 2],
     samples: usize,
     rejected: usize,
+    left_out: LeftOut,
     mean: Vector3<f64>,
     once_per_revolution: [Vector3<f64>; 2],
     shape: Shape,
@@ -52,7 +55,7 @@ impl PlateauFit {
         loop {
             let (all, left) = (good.len(), good.iter().filter(|good| **good).count());
             if 2 * left <= all {
-                return Err(ReductionError::Unsteady { index, window: window.span, samples: all, good: left });
+                return Err(samples.unsteady(index, left));
             }
             let (omega, interval) = (window.shape.omega, blocks.interval);
             let aliased = ReductionError::RevolutionAliased { index, omega, interval };
@@ -63,6 +66,7 @@ impl PlateauFit {
                 still_good.iter_mut().zip(&good).for_each(|(still, before)| *still &= *before);
             }
             if still_good == good {
+                samples.check_range(index, &good)?;
                 return Ok(Self::from_fit(&samples, &good, &coefficients, &triangle, interval));
             }
             strips.renew(&samples, &good, &still_good);
@@ -87,6 +91,7 @@ impl PlateauFit {
             window: *span,
             samples: kept,
             rejected: good.len() - kept,
+            left_out: samples.left_out(good.len() - kept),
             mean: coefficients[columns - 1],
             once_per_revolution: if shape.omega == 0.0 { [zero; 2] } else { [coefficients[0], coefficients[1]] },
             settling: shape.settling.map_or(zero, |_| coefficients[columns - 2]),
@@ -108,6 +113,15 @@ impl PlateauFit {
         self.variance
     }
 
+    /// Covariance of either quadrature of the once-per-revolution term: `2 S(Omega / 2 pi) / T`, with the two-sided
+    /// density `S` of the noise at the frequency of rotation and the time `T` that was sampled; for whole revolutions.
+    fn covariance_of_harmonic(&self, noise: &NoiseModel) -> Matrix3<f64> {
+        if self.shape.omega == 0.0 {
+            return Matrix3::zeros();
+        }
+        noise.density(self.shape.omega / TAU) * (2.0 / (self.samples as f64 * self.cells.interval))
+    }
+
     /// The plateau's mean, with its covariance under the noise.
     pub(super) fn mean(&self, noise: &NoiseModel, step: &TimeStep, quietest: &Vector3<f64>) -> PlateauMean {
         let rounding = self.digit.zip_map(quietest, bias_variance);
@@ -118,9 +132,11 @@ impl PlateauFit {
             window: self.window,
             samples: self.samples,
             rejected: self.rejected,
+            left_out: self.left_out,
             mean: self.mean + correction,
             covariance: of_noise + of_correction + Matrix3::from_diagonal(&rounding),
             once_per_revolution: self.once_per_revolution,
+            once_per_revolution_covariance: self.covariance_of_harmonic(noise),
             drift,
             measured_speed: None,
             drift_uncertainty: noise.covariance(&weights, &self.cells).diagonal().map(f64::sqrt),
@@ -134,17 +150,24 @@ struct Samples<'a> {
     window: &'a Window,
     /// Last digit of the readings [m/s^2].
     digit: &'a Vector3<f64>,
+    /// White noise of a sample [m/s^2].
+    white: &'a Vector3<f64>,
     t: Cow<'a, [f64]>,
     f_z: [Cow<'a, [f64]>; 3],
     /// The stuck ones, if there are any.
     stuck: Option<Vec<bool>>,
     columns: Vec<Vec<f64>>,
+    /// Samples with the stamp of the one before.
+    repeated: usize,
+    /// Sampling interval [s].
+    interval: f64,
 }
 
 impl<'a> Samples<'a> {
     /// The samples of a record in a window, without repeated stamps.
     fn cut_out(record: RecordSlice<'a>, window: &'a Window, blocks: &'a Blocks) -> Self {
         let RecordSlice { t, f_z } = record.between(window.span);
+        let came = t.len();
         let (t, f_z) = if t.windows(2).all(|pair| pair[0] < pair[1]) {
             (Cow::from(t), f_z.map(Cow::from))
         } else {
@@ -156,7 +179,8 @@ impl<'a> Samples<'a> {
         };
         let columns = window.shape.columns(&t);
         let stuck = stuck_on_any_axis(f_z.each_ref().map(|f| &**f), &blocks.repeat_rate);
-        Self { window, digit: &blocks.digit, t, f_z, stuck, columns }
+        let (repeated, interval) = (came - t.len(), blocks.interval);
+        Self { window, digit: &blocks.digit, white: &blocks.sample_noise, t, f_z, stuck, columns, repeated, interval }
     }
 
     /// Samples of each cell: the times do not decrease.
@@ -247,6 +271,49 @@ impl<'a> Samples<'a> {
             good.iter_mut().zip(stuck).for_each(|(good, stuck)| *good &= !stuck);
         }
         good
+    }
+
+    /// What is not used, by kind, `rejected` being the samples that came and are not. Samples that never came are counted
+    /// by the intervals between those that did.
+    fn left_out(&self, rejected: usize) -> LeftOut {
+        let is_readable = |i: &usize| self.f_z.iter().all(|f| f[*i].is_finite());
+        let unreadable = if rejected == 0 { 0 } else { (0..self.t.len()).filter(|i| !is_readable(i)).count() };
+        let stuck = self.stuck.as_ref().map_or(0, |stuck| stuck.iter().filter(|stuck| **stuck).count());
+        let gaps = self.t.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1.5 * self.interval);
+        let missing: usize = gaps.map(|step| whole((step / self.interval).round()) - 1).sum();
+        LeftOut {
+            spikes: rejected.saturating_sub(unreadable + stuck),
+            stuck,
+            missing: unreadable + missing,
+            repeated: self.repeated,
+        }
+    }
+
+    /// Why most samples cannot be used.
+    fn unsteady(&self, index: usize, good: usize) -> ReductionError {
+        let (window, samples) = (self.window.span, self.t.len());
+        let (axis, (value, stuck)) = [0, 1, 2]
+            .map(|axis| (axis, standing(&self.f_z[axis])))
+            .into_iter()
+            .max_by_key(|most| most.1.1)
+            .unwrap_or_default();
+        // Most: a lesser number of equal readings does not keep the others from being averaged.
+        if 3 * stuck > samples {
+            ReductionError::Stuck { index, window, axis, value, samples, stuck }
+        } else {
+            ReductionError::Unsteady { index, window, samples, good }
+        }
+    }
+
+    /// Refuses good readings that pile up at the end of their range: what is cut off there is missing in the mean.
+    fn check_range(&self, index: usize, good: &[bool]) -> Result<(), ReductionError> {
+        for axis in (0..3).filter(|axis| self.white[*axis] > self.digit[*axis]) {
+            if let Some((value, piled_up)) = piled_up(&self.f_z[axis], good) {
+                let (window, samples) = (self.window.span, self.t.len());
+                return Err(ReductionError::Saturated { index, window, axis, value, samples, piled_up });
+            }
+        }
+        Ok(())
     }
 
     fn cells(&self, good: &[bool], residuals: &[Vec<f64>; 3], triangle: &Triangle, interval: f64) -> Cells {
