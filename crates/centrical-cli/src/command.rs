@@ -7,6 +7,7 @@ pub mod compensate;
 pub mod models;
 pub mod montecarlo;
 pub mod observe;
+pub mod plan;
 pub mod reduce;
 pub mod report;
 pub mod simulate;

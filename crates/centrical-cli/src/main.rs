@@ -32,6 +32,7 @@ enum Command {
     Models(command::models::Arguments),
     Compare(command::compare::Arguments),
     Observe(command::observe::Arguments),
+    Plan(command::plan::Arguments),
     Watch(command::watch::Arguments),
 }
 
@@ -56,6 +57,7 @@ fn main() -> ExitCode {
         Command::Models(arguments) => command::models::run(&arguments),
         Command::Compare(arguments) => command::compare::run(&arguments),
         Command::Observe(arguments) => command::observe::run(&arguments),
+        Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Watch(arguments) => command::watch::run(&arguments),
     };
     match outcome {

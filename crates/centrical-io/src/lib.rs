@@ -23,7 +23,9 @@ mod input;
 mod laboratory;
 mod observation;
 mod overview;
+mod planning;
 mod plateaus;
+mod prediction;
 mod quantity;
 mod record;
 mod record_writer;
@@ -50,7 +52,11 @@ pub use observation::{
     ObservedParameter, PairReport, RemedyReport, SightReport, StepReport,
 };
 pub use overview::RecordOverview;
+pub use planning::{
+    FrontierRow, GoalReport, PlanReport, PlanRequest, PlannedMounting, PlannedPlateau, ReasonReport, USUAL_LEVELS,
+};
 pub use plateaus::{PlateauMean, read_plateaus, write_plateaus};
+pub use prediction::{PredictedParameter, PredictionReport};
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
 pub use record::{Column, Columns, Scale, read_growing_record, read_record, read_telemetry, scan_record};
 pub use record_writer::RecordWriter;
@@ -62,7 +68,7 @@ pub use result::{
     PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
     TermSummary, ValiditySummary,
 };
-pub use session::{MountingFiles, Noise, Plan, PlateauTable, Session};
+pub use session::{MountingFiles, Noise, Plan, Planning, PlateauTable, Session};
 pub use simulate::{TableFormat, Truth, simulate_session};
 pub use table::ColumnName;
 pub use watch::{

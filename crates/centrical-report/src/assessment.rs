@@ -69,6 +69,26 @@ fn improvements(text: &mut String, parameters: &Parameters, budget: &Budget) {
     }
 }
 
+/// Correlations of the parameters of the instrument, the lower triangle with two decimals.
+pub fn correlation_table(parameters: &Parameters, budget: &Budget) -> String {
+    let own: Vec<usize> = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument()).collect();
+    let mut text = String::from("CORRELATION  of the parameters of the instrument\n");
+    for (n, &i) in own.iter().enumerate() {
+        let _ = write!(text, "  {:<12}", parameters[i].name);
+        for &j in &own[..=n] {
+            let _ = match budget.correlation(i, j) {
+                Some(r) => write!(text, "{r:>6.2}"),
+                None => write!(text, "{:>6}", "-"),
+            };
+        }
+        text.push('\n');
+    }
+    let _ = write!(text, "  {:<12}", "");
+    own.iter().for_each(|&j| _ = write!(text, "{:>6}", parameters[j].name));
+    text.push('\n');
+    text
+}
+
 /// chi^2, plateaus that stand out, hold-out by mounting, and patterns in words.
 pub fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[Pattern]) -> String {
     let mut text = String::from("VALIDITY\n");

@@ -5,13 +5,11 @@ use centrical_io::{Address, CalibrationResult, Condition, Contact, Decision, Dec
 use crate::conformity::conformity;
 use crate::customary::customary;
 use crate::equation::equations;
+use crate::expanded::expanded;
 use crate::groups::by_group;
 use crate::language::Language;
 use crate::pdf::{Align, Column, Furniture, Layout, write};
 use crate::reading_error::{error_table, reading_errors};
-
-/// Coverage factor of the expanded uncertainties.
-const COVERAGE: f64 = 2.0;
 
 /// The certificate as the bytes of a PDF file. The same data give the same bytes.
 pub fn pdf_certificate(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> Vec<u8> {
@@ -141,7 +139,7 @@ fn traceability(layout: &mut Layout, laboratory: &Laboratory, language: Language
         .iter()
         .map(|s| vec![s.name.clone(), s.identification.clone(), s.certificate.clone(), s.traceable_to.clone()])
         .collect();
-    let head = [messages.standard, "№", messages.standard_certificate, messages.traceable_to];
+    let head = [messages.standard, messages.number_sign, messages.standard_certificate, messages.traceable_to];
     layout.table(&columns, &head, &rows);
 }
 
@@ -158,9 +156,9 @@ fn results(layout: &mut Layout, result: &CalibrationResult, language: Language) 
         .into_iter()
         .map(|parameter| {
             let (factor, unit) = customary(&parameter.unit, &parameter.group);
-            let [shown, si] = match (parameter.value, parameter.standard_uncertainty) {
-                (Some(value), Some(uncertainty)) => {
-                    let expanded = COVERAGE * uncertainty;
+            let [shown, si] = match (parameter.value, expanded(result, parameter)) {
+                (Some(value), Some(expanded)) => {
+                    let expanded = expanded.uncertainty;
                     let shown = language.plus_minus(value * factor, expanded * factor);
                     [shown, language.plus_minus_scientific(value, expanded)]
                 }
@@ -226,7 +224,7 @@ fn conformity_statement(layout: &mut Layout, result: &CalibrationResult, decisio
         })
         .collect();
     let columns =
-        [(0.12, Align::Left), (0.25, Align::Right), (0.27, Align::Right), (0.12, Align::Left), (0.24, Align::Left)]
+        [(0.16, Align::Left), (0.24, Align::Right), (0.26, Align::Right), (0.12, Align::Left), (0.22, Align::Left)]
             .map(|(share, align)| Column { share, align });
     let head = [messages.parameter, messages.limits, messages.value, messages.unit, ""];
     layout.table(&columns, &head, &rows);

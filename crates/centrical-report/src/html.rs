@@ -77,7 +77,7 @@ fn heading(html: &mut String, result: &CalibrationResult, language: Language) {
     let serial = if session.unit_serial.is_empty() { messages.not_given } else { &session.unit_serial };
     let _ = writeln!(
         html,
-        "<header><p class=\"kind\">{}</p><h1>{}</h1><p>{} {}</p><p>{}, {}</p></header>",
+        "<header><p class=\"kind\">{}</p><h1>{}</h1><p>{} {}</p><p>{}, <time>{}</time></p></header>",
         messages.calibration_report,
         Escaped(&session.unit_model),
         messages.serial,
@@ -205,7 +205,7 @@ fn parameter_tables(html: &mut String, result: &CalibrationResult, language: Lan
             let shown = by_group(&shown);
             if !shown.is_empty() {
                 let _ = writeln!(html, "<h3>{title}</h3>");
-                html.push_str(&parameters(&shown, language));
+                html.push_str(&parameters(result, &shown, language));
             }
         }
     });

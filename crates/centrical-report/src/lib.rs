@@ -10,6 +10,7 @@ mod conformity;
 mod customary;
 mod dcc;
 mod equation;
+mod expanded;
 mod figures;
 mod groups;
 mod html;
@@ -18,6 +19,7 @@ mod message;
 mod noise;
 mod observation;
 mod pdf;
+mod plan;
 pub mod plot;
 mod positions_figure;
 mod reading_error;
@@ -26,7 +28,9 @@ mod trials;
 mod verdict;
 mod watch;
 
-pub use assessment::{budget_table, outliers_text, pattern_in_words, prediction_table, validity_text};
+pub use assessment::{
+    budget_table, correlation_table, outliers_text, pattern_in_words, prediction_table, validity_text,
+};
 pub use certificate::pdf_certificate;
 pub use customary::{customary, with_uncertainty};
 pub use dcc::digital_certificate;
@@ -35,8 +39,9 @@ pub use html::{html_report, html_report_with};
 pub use language::Language;
 pub use noise::{deviation_plot, spectrum_plot};
 pub use observation::observation_text;
+pub use plan::{frontier_plot, plan_text, prediction_text};
 pub use positions_figure::positions_figure;
 pub use terminal::{terminal_table, verdict_text};
 pub use trials::{comparison_table, monte_carlo_table, selection_table};
-pub use verdict::{Objection, chi_squared_tail, objections};
+pub use verdict::{Objection, objections};
 pub use watch::{WatchView, WatchedTest, states_text, watch_table};

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use centrical::uncertainty::chi_squared_tail;
 use centrical_io::{CalibrationResult, PatternSummary, ValiditySummary};
 
 use crate::language::Language;
@@ -71,12 +72,4 @@ fn of_validity(validity: &ValiditySummary) -> Vec<Objection> {
     let of_plateaus = outlying.first().map(|first| Objection::Outlying(names, first.probability));
     let of_patterns = (!patterns.is_empty()).then_some(Objection::Patterns(patterns));
     of_plateaus.into_iter().chain(of_patterns).collect()
-}
-
-/// Probability that chi^2 with `dof` degrees of freedom exceeds `chi_squared`; 1 without any.
-pub fn chi_squared_tail(chi_squared: f64, dof: usize) -> f64 {
-    if dof == 0 {
-        return 1.0;
-    }
-    statrs::function::gamma::gamma_ur(0.5 * dof as f64, 0.5 * chi_squared.max(0.0))
 }

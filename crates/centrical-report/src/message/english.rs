@@ -25,15 +25,21 @@ pub(crate) const ENGLISH: Messages = Messages {
     chi_squared: "χ² per degree of freedom",
     rank: "Rank",
     residual_error: "Reading error over the calibrated range",
-    residual_error_note: "Root mean square and, in brackets, largest magnitude over all plateaus. The second row still holds the error of each \
-        plateau’s speed; the third is without it, which along the arm leaves next to nothing, so it speaks for the axes across the arm and for rest.",
+    residual_error_note: "Root mean square and, in brackets, largest magnitude over all plateaus, against the specific \
+        force of the fitted geometry. The second row still holds the error of each plateau’s speed; the third is without \
+        it, which along the arm leaves next to nothing, so it speaks for the axes across the arm and for rest. The last \
+        row is the expanded uncertainty that the parameters leave in a compensated reading of the same force.",
     before: "Before compensation",
     after: "After compensation",
     after_speed_free: "After, less the speed error of each plateau",
+    compensation_uncertainty: "Uncertainty of compensation, k = 2",
     axis: "axis",
+    newtonometer: "Newtonometer",
+    number_sign: "No.",
     parameters: "Parameters",
     parameters_note: "Value ± expanded uncertainty U = k·u with coverage factor k = 2, which for a normal \
-        distribution is a level of confidence of about 95 %. 1 g = 9.80665 m/s².",
+        distribution is a level of confidence of about 95 %; where the effective degrees of freedom are finite, k is that of Student’s \
+        distribution. 1 g = 9.80665 m/s².",
     instrument: "Instrument",
     mounting: "Geometry of the experiment",
     parameter: "Parameter",
@@ -42,7 +48,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     value_si: "Value ± U, SI",
     not_determined: "not determined",
     budget: "Uncertainty budget",
-    budget_note: "Standard uncertainty by source, in the customary unit of each parameter.",
+    budget_note: "Standard uncertainty by source, in the customary unit of each parameter; – is less than a \
+        thousandth of the combined one.",
     no_budget: "The session states no uncertainties of gravity, radii, attitudes and the like: they count as exact, and \
         the uncertainties hold what the fit weighs.",
     combined: "combined",
@@ -57,13 +64,15 @@ pub(crate) const ENGLISH: Messages = Messages {
     position: "Position",
     pair: "pair",
     plots: "Plots",
-    force_axis: "specific force along the axis, g",
+    force_axis: "specific force along the loaded axis, g",
     error_before_axis: "reading error, mg",
     error_after_axis: "reading error, µg",
-    before_caption: "Without compensation the error grows with the specific force: its offset is the bias, its slope the scale error, its bend the quadratic and cubic terms; \
-        the column at zero is the pull along the other axes.",
-    after_caption: "After compensation, less what an error of the plateau’s speed explains: points should keep within their bars (k = 2) \
-        without a trend; along the arm the speed explains nearly all, so points far from zero force lie at zero by construction.",
+    before_caption: "Error of each newtonometer against the specific force along the axis loaded most, a marker for each \
+        such axis: along its own axis the offset is the bias, the slope the scale error, the bend the quadratic and cubic \
+        terms; along another, the slope is misalignment and the parabola a quadratic term across.",
+    after_caption: "The same after compensation, less what an error of the plateau’s speed explains: points should keep \
+        within their bars (k = 2) without a trend; along its own axis the speed explains nearly all, so that those points \
+        lie at zero by construction.",
     residuals_title: "Residuals by plateau",
     residuals_caption: "Mean reading less fitted model with bars of k = 2, speed error included: bars that miss \
         zero more often than one in twenty, or a pattern along the session, would mean a model that does not fit.",
@@ -87,6 +96,10 @@ pub(crate) const ENGLISH: Messages = Messages {
     lost: "not seen",
     limit: "limit",
     null_directions: "The readings do not change along",
+    prediction_title: "Uncertainty of a compensated reading",
+    prediction_axis: "standard uncertainty, µg",
+    prediction_caption: "Standard uncertainty that the calibration leaves in a compensated reading, for a force along each \
+        axis alone; the noise of the reading itself comes on top.",
     history_title: "Uncertainty as the session was watched",
     history_caption: "Largest standard uncertainty of each group over that after the last plateau, as it stood when each \
         plateau had come. A curve begins where all of its group that was determined in the end was determined first.",
@@ -151,7 +164,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     results_model: "Error model of the reading f′ of axis i at the specific force f:",
     uncertainty_statement: "The expanded uncertainty U is the standard uncertainty multiplied by the coverage \
         factor k = 2, which for a normal distribution corresponds to a coverage probability of approximately 95 %. \
-        It was evaluated in accordance with JCGM 100 (GUM). 1 g = 9.80665 m/s².",
+        Where the effective degrees of freedom are finite, k is that of Student’s distribution for the same \
+        probability. It was evaluated in accordance with JCGM 100 (GUM). 1 g = 9.80665 m/s².",
     adjustment: "Before and after adjustment",
     no_adjustment: "The unit was not adjusted or repaired. Readings as received carry the error “before”; \
         compensated with the parameters above they carry the error “after”.",
