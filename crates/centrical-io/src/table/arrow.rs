@@ -117,9 +117,8 @@ impl<'a> Messages<'a> {
 
     /// The footer of a file: before its length and the letters at the end.
     fn footer(&mut self) -> Result<Vec<u8>, Error> {
-        const END: u64 = 10;
-        let mut end = [0; END as usize];
-        let at = self.length.checked_sub(END).ok_or_else(|| damaged(self.file, "no footer"))?;
+        let mut end = [0; 10];
+        let at = self.length.checked_sub(end.len() as u64).ok_or_else(|| damaged(self.file, "no footer"))?;
         self.read(at, &mut end)?;
         let length = u64::from(u32::from_le_bytes([end[0], end[1], end[2], end[3]]));
         match at.checked_sub(length) {

@@ -12,7 +12,7 @@ mod piece;
 
 use std::path::Path;
 
-use memchr::memchr;
+use memchr::{memchr, memchr_iter};
 use rayon::prelude::*;
 
 use self::layout::{Fault, Layout, Prologue};
@@ -82,7 +82,7 @@ pub(super) fn read(file: &Path, lines: &mut dyn Lines, rows: &mut Rows) -> Resul
         }
         let Some(index) = &mut index else {
             // Nothing but comments so far.
-            line += pieces[0].text.iter().filter(|byte| **byte == b'\n').count() as u64;
+            line += memchr_iter(b'\n', &pieces[0].text).count() as u64;
             number += 1;
             continue;
         };

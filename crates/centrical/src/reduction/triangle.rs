@@ -39,7 +39,9 @@ impl Triangle {
             let left = if left > ROUNDING * length { left } else { 0.0 };
             triangle.r[j][j] = left;
             let scale = if left > 0.0 { 1.0 / left } else { 0.0 };
-            column.iter_mut().for_each(|c| *c *= scale);
+            for c in column.iter_mut() {
+                *c *= scale;
+            }
             for (axis, f) in readings.iter_mut().enumerate() {
                 let projection = dot(column, f);
                 subtract(f, projection, column);
@@ -55,7 +57,7 @@ impl Triangle {
         let mut readings = [const { Vec::new() }; 3];
         for (s, strip) in strips.iter().enumerate() {
             for (j, column) in columns.iter_mut().enumerate() {
-                column[s * terms..s * terms + j + 1].copy_from_slice(&strip.r[j][..=j]);
+                column[s * terms..][..=j].copy_from_slice(&strip.r[j][..=j]);
             }
             for (axis, z) in readings.iter_mut().enumerate() {
                 z.extend((0..terms).map(|j| strip.z[j][axis]));

@@ -81,13 +81,15 @@ impl ArrowColumn {
 }
 
 /// A column of stamps in seconds; of numbers, as it is.
-pub(super) fn in_seconds<'a>(mut numbers: Column<'a>, unit: f64) -> Column<'a> {
+pub(super) fn in_seconds(mut numbers: Column, unit: f64) -> Column {
     if unit == 1.0 {
         return numbers;
     }
     Box::new(move |values| {
         numbers(values)?;
-        values.iter_mut().for_each(|value| *value *= unit);
+        for value in values {
+            *value *= unit;
+        }
         Ok(())
     })
 }
