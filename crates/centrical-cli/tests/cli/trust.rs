@@ -130,7 +130,7 @@ fn stated_uncertainties_are_in_the_result() {
         assert!((sum.sqrt() / combined - 1.0).abs() < 1e-12, "{j}");
     }
     // delta_1[5] is nearly all attitude, doubtful by a quarter: 8 degrees of freedom, so U = 2.37 u and not 2 u.
-    assert!(page.contains("750 ± 48") && !page.contains("750 ± 40"), "k of Student's distribution in the report");
+    assert!(page.contains("750 ± 47") && !page.contains("750 ± 40"), "k of Student's distribution in the report");
     // The source that shifts a parameter most: a common radius is dR_1 and nothing else.
     let shift = with["parameters"].as_array().unwrap().iter().position(|p| p["name"] == "dR_1[A]").unwrap();
     assert!(with["parameters"][shift]["standard_uncertainty"].as_f64().unwrap() > 19e-6);
