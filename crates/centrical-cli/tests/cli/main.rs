@@ -3,6 +3,7 @@
 mod calibrate;
 mod compensate;
 mod observe;
+mod plan;
 mod reduce;
 mod refusal;
 mod report;
