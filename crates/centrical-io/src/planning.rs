@@ -279,7 +279,7 @@ impl Planning {
             return Ok(Vec::new());
         }
         let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
-        let points = frontier(&self.candidates, &self.criterion, &times, Effort::QUICK);
+        let points = frontier(&self.candidates, &self.criterion, &times, Effort::FAIR);
         let points = points.map_err(|source| self.failed(source))?;
         let uniform = with_set_points(&self.candidates, uniform_set_points(self.candidates.experiment()));
         let normalised =

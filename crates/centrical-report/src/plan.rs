@@ -20,6 +20,9 @@ pub fn plan_text(report: &PlanReport) -> String {
     for (number, mounting) in report.mountings.iter().enumerate() {
         one_mounting(&mut text, number + 1, mounting);
     }
+    text.push_str(
+        "  Visits of one plateau come in separate runs through the speeds: each has a speed error of its own.\n",
+    );
     goals(&mut text, report);
     text.push('\n');
     text.push_str(&prediction_text(&report.prediction));
@@ -87,7 +90,12 @@ fn one_mounting(text: &mut String, number: usize, mounting: &PlannedMounting) {
         span(mounting.reason.time),
         lost(&mounting.reason)
     );
-    for same in mounting.plateaus.chunk_by(|a, b| a == b) {
+    let mut plateaus = mounting.plateaus.clone();
+    plateaus.sort_by(|a, b| {
+        let by_set_point = a.speed.total_cmp(&b.speed).then(a.angle.total_cmp(&b.angle));
+        by_set_point.then(a.duration.total_cmp(&b.duration))
+    });
+    for same in plateaus.chunk_by(|a, b| a == b) {
         let plateau = &same[0];
         let times = if same.len() > 1 { format!("{} x ", same.len()) } else { String::new() };
         let duration = format!("{times}{} s", digits(plateau.duration));

@@ -4,6 +4,7 @@ mod calibrate;
 mod compensate;
 mod noise;
 mod observe;
+mod plan;
 mod reduce;
 mod refusal;
 mod report;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical_io::{Design, Plan, Session};
+use centrical_io::{Design, Plan, Planning, Session};
 
 use crate::sample::{EXPERIMENT, Sample};
 
@@ -165,5 +165,62 @@ fn weights_follow_durations() {
         let found = plan.weights[weight].covariance;
         assert!((found[(1, 1)] / expected - 1.0).abs() < 1e-12);
         assert_eq!(found[(0, 1)], 0.0);
+    }
+}
+
+const CANDIDATES: &str = include_str!("../../../../examples/plans/best.toml");
+
+#[test]
+fn candidates_costs_and_targets() {
+    let cases = [
+        (
+            "radii = [\"0.5 m\", \"0.25 m\"]",
+            "radii = []",
+            "[candidates], radii: found none, expected at least one radius",
+        ),
+        (
+            "count = 20",
+            "count = 1",
+            "[candidates], loads: found 1 from \"5 g\" to \"200 g\", expected two or more steps, rising",
+        ),
+        ("repeats = 2", "repeats = 0", "[candidates], repeats: found 0, expected 1 to 20 visits of a plateau"),
+        (
+            "durations = [\"30 s\", \"60 s\", \"120 s\"]",
+            "durations = []",
+            "[candidates], durations: found 0 of them, expected 1 to 10 durations of a plateau",
+        ),
+        (
+            "repeats = 2",
+            "positions = [\"7\"]",
+            "[candidates], positions: found unknown position \"7\", expected some of 1, 2, 3, 4, 5, 6",
+        ),
+        (
+            "seat = \"10 min\"",
+            "seat = \"30 min\"",
+            "[cost], seat: found 1800 s, expected at most the cost of a change of position, which contains one",
+        ),
+        ("ramp = \"20 s\"", "ramp = \"-1 s\"", "[cost], ramp: found \"-1 s\", expected a time from 0 to 1e7 s"),
+        (
+            "criterion = \"I\"",
+            "criterion = \"E\"",
+            "[target], criterion: found \"E\", expected \"I\", \"A\", \"D\" or \"worst\"",
+        ),
+        (
+            "time = \"8 h\"",
+            "",
+            "[target], time: found neither time nor uncertainty, expected time = \"8 h\", or [target.uncertainty]",
+        ),
+        (
+            "time = \"8 h\"",
+            "[target.uncertainty]\ndR = \"1 um\"",
+            "[target.uncertainty], dR: found dR_1[A] of the geometry, expected a parameter or group of the instrument, or \"reading\"",
+        ),
+    ];
+    for (from, to, expected) in cases {
+        let sample = Sample::new("");
+        assert!(CANDIDATES.contains(from), "{from}");
+        let file = sample.file("plan.toml", CANDIDATES.replacen(from, to, 1));
+        let message = sample.relative(&Planning::read(&file).expect_err("the plan is wrong").to_string());
+        assert_eq!(message, format!("plan.toml, {expected}"));
     }
 }

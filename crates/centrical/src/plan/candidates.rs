@@ -117,15 +117,23 @@ impl Candidates {
         self.set_up_time(&used) + visits.iter().map(|visit| self.visit_time(visit)).sum::<f64>()
     }
 
-    /// A schedule of these visits, ordered by mounting, rest first, then by rising speed.
+    /// A schedule of these visits: mounting by mounting, in each rest first and then rising speeds. A plateau that is visited
+    /// again is so in another run through the speeds, so that each visit is approached anew and has a speed error of its own.
+    /// Of two visits of each plateau none follow one another but in a mounting that has one plateau.
     pub fn schedule(&self, mut visits: Vec<Visit>) -> Schedule {
         let set_points = &self.experiment().set_points;
-        let key = |visit: &Visit| (set_points[visit.plateau].mounting, set_points[visit.plateau].omega.abs());
+        let speed = |visit: &Visit| set_points[visit.plateau].omega.abs();
         visits.sort_by(|a, b| {
-            let ((m, u), (n, v)) = (key(a), key(b));
-            m.cmp(&n).then(u.total_cmp(&v)).then(a.plateau.cmp(&b.plateau)).then(a.duration.total_cmp(&b.duration))
+            let by_speed = speed(a).total_cmp(&speed(b));
+            by_speed.then(a.plateau.cmp(&b.plateau)).then(a.duration.total_cmp(&b.duration))
         });
-        Schedule { time: self.time_of(&visits), visits }
+        let time = self.time_of(&visits);
+        let mut ordered = Vec::with_capacity(visits.len());
+        for mounting in 0..self.experiment().mountings.len() {
+            let there = visits.iter().filter(|visit| set_points[visit.plateau].mounting == mounting);
+            ordered.extend(in_runs(there.copied().collect()));
+        }
+        Schedule { visits: ordered, time }
     }
 
     /// Set-ups of the mountings in use [s]: `position` for each position, `seat` for each further mounting in it, and the
@@ -167,4 +175,28 @@ impl Candidates {
         let same = |s: &Scenario| s.model.experiment() == first.model.experiment();
         if self.scenarios.iter().all(same) { Ok(()) } else { Err(PlanError::Experiments) }
     }
+}
+
+/// Visits of one mounting, rising, in as many runs as its most visited plateau has visits. A further run, which has fewer
+/// plateaus, comes before the others, or after them where it would end on the plateau that they begin with.
+fn in_runs(rising: Vec<Visit>) -> Vec<Visit> {
+    let mut runs: Vec<Vec<Visit>> = Vec::new();
+    for visit in rising {
+        match runs.iter_mut().find(|run| run.iter().all(|other| other.plateau != visit.plateau)) {
+            Some(run) => run.push(visit),
+            None => runs.push(vec![visit]),
+        }
+    }
+    let mut ordered: Vec<Visit> = Vec::new();
+    for mut run in runs {
+        let meets =
+            |run: &[Visit], others: &[Visit]| run.last().map(|v| v.plateau) == others.first().map(|v| v.plateau);
+        if meets(&run, &ordered) {
+            ordered.append(&mut run);
+        } else {
+            run.append(&mut ordered);
+            ordered = run;
+        }
+    }
+    ordered
 }

@@ -25,8 +25,8 @@ const NOTHING: f64 = 1e-9;
 const MULTIPLICATIVE: usize = 15;
 
 /// Atoms in a quadratic model: those that are farthest from where they should be, and those nearest to their price.
-const FARTHEST: usize = 240;
-const NEAREST: usize = 120;
+const FARTHEST: usize = 150;
+const NEAREST: usize = 60;
 
 /// An inner problem is solved when no exchange gains this part of the distance to the bound any more.
 const INNER: f64 = 0.03;

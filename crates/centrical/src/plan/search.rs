@@ -78,8 +78,11 @@ impl Effort {
     /// Until nothing is left to find: for small problems.
     pub const EXHAUSTIVE: Self = Self { mounting_nodes: 1 << 20, visit_nodes: 1 << 20, trials: 200 };
 
-    /// One schedule, without a bound over sets of mountings.
+    /// One schedule, with no exchange of mountings and no bound over sets of them.
     pub const QUICK: Self = Self { mounting_nodes: 1, visit_nodes: 0, trials: 60 };
+
+    /// Mountings exchanged, and the bound of the first continuous design.
+    pub const FAIR: Self = Self { mounting_nodes: 2, visit_nodes: 0, trials: 60 };
 }
 
 /// A plan, and how far it can be from the best one.
@@ -152,7 +155,7 @@ pub fn shortest_for_goals(
     let mut time = shortest;
     while best.is_none() {
         time = (shortest * (1.0 + step)).min(everything.time);
-        let found = plan(time, Effort::QUICK);
+        let found = plan(time, Effort::FAIR);
         if found.criterion <= 1.0 {
             best = Some(found);
         } else if time >= everything.time {
@@ -163,7 +166,7 @@ pub fn shortest_for_goals(
     let mut low = shortest * (1.0 + 0.25 * step);
     while time / low > 1.0 + resolution {
         let middle = (low * time).sqrt();
-        let found = plan(middle, Effort::QUICK);
+        let found = plan(middle, Effort::FAIR);
         if found.criterion <= 1.0 { (time, best) = (middle, Some(found)) } else { low = middle }
     }
     let thorough = plan(time, effort);
@@ -268,6 +271,7 @@ impl<'a> Tree<'a> {
         let root = self.root();
         self.nodes = 1;
         self.seek(&root);
+        self.seek_on_all(&root);
         self.exchange_mountings();
         self.open.push(root);
         while let Some(node) = self.next() {
@@ -483,6 +487,16 @@ impl<'a> Tree<'a> {
         if let Some(best) = self.best.take() {
             let set = self.mountings_of(&best);
             self.best = Some(self.problem.exchange(self.time, &set, self.effort.trials).improve(best));
+        }
+    }
+
+    /// Seeks a schedule on all mountings, if their set-ups leave time to measure.
+    fn seek_on_all(&mut self, root: &Node) {
+        let all = vec![true; self.problem.mountings()];
+        let fits = self.problem.candidates.set_up_time(&all) < self.time;
+        if fits && self.effort.mounting_nodes > 1 && !self.tried.contains(&all) {
+            let relaxed = self.restricted(&all, &root.relaxed.visits);
+            self.round(all, relaxed);
         }
     }
 

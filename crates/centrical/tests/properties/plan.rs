@@ -202,9 +202,10 @@ fn small_plans_are_the_best_of_all() {
     assert!(proven >= 55, "{proven}");
 }
 
+/// Mounting by mounting, and no plateau twice running.
 fn schedule_is_sorted(schedule: &Schedule, candidates: &Candidates) -> bool {
     let mounting = |v: &Visit| candidates.experiment().set_points[v.plateau].mounting;
-    schedule.visits.windows(2).all(|w| mounting(&w[0]) <= mounting(&w[1]))
+    schedule.visits.windows(2).all(|w| mounting(&w[0]) <= mounting(&w[1]) && w[0].plateau != w[1].plateau)
 }
 
 /// A machine's worth of candidates: six positions, two radii, speeds by load.
@@ -347,21 +348,25 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let weights: Vec<Weight> = (0..model.experiment().set_points.len()).map(|n| noise.weight(n, 40.0)).collect();
     let prediction = predict(&model, &weights, 1e-5, &TypeB::default()).unwrap();
     let p = model.parameters().len();
-    let covariance = DMatrix::from_fn(p, p, |i, j| prediction.budget().covariance(i, j).unwrap());
-    let scale = nalgebra::DVector::from_fn(p, |j, _| covariance[(j, j)].sqrt());
-    let correlation = DMatrix::from_fn(p, p, |i, j| covariance[(i, j)] / (scale[i] * scale[j]));
-    let factor = correlation.cholesky().unwrap();
+    let scale = nalgebra::DVector::from_fn(p, |j, _| prediction.budget().standard_uncertainty(j).unwrap());
     let mut squares = nalgebra::DVector::zeros(p);
     let mut weighted = 0.0;
+    let mut stated = nalgebra::DVector::zeros(p);
     for seed in 0..SESSIONS {
         let truth = truth(&model, 0.3, &mut Random::new(100 + seed));
         let observations = calibration_means(&model, &truth, &settings, seed);
         let fit = fit::exact(&model, &observations, 1e-5).unwrap();
         let error = nalgebra::DVector::from_fn(p, |j, _| (fit.value(j).unwrap() - truth[j]) / scale[j]);
         squares += error.component_mul(&error) / SESSIONS as f64;
-        weighted += factor.solve(&error).dot(&error);
+        // Correlations hang on the directions of the speed errors at the estimate, so they are the fit's own.
+        let covariance = DMatrix::from_fn(p, p, |i, j| fit.covariance(i, j).unwrap() / (scale[i] * scale[j]));
+        stated += nalgebra::DVector::from_fn(p, |j, _| covariance[(j, j)].sqrt() / SESSIONS as f64);
+        weighted += covariance.cholesky().unwrap().solve(&error).dot(&error);
     }
     let mean = weighted / SESSIONS as f64;
+    for j in 0..p {
+        println!("{} {:.2} {:.3}", model.parameters()[j].name, squares[j].sqrt(), stated[j]);
+    }
     println!(
         "weighted square {mean:.2} of {p}; by parameter {:.2} to {:.2}",
         squares.min().sqrt(),

@@ -1,0 +1,118 @@
+//! `centrical plan`: a plan, its schedule as a plan file, and what the other commands make of it.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::session::Copy;
+
+/// The example with few speeds and no second scenario.
+fn small(copy: &Copy, from: &str, to: &str) -> String {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/plans/best.toml");
+    let text = fs::read_to_string(example).unwrap();
+    let few = text.replace("count = 20", "count = 4").replace("noise = [\"40 ug/sqrt(Hz)\"]", "noise = []");
+    assert!(few.contains(from), "{from}");
+    let file = copy.out().join("plan.toml");
+    fs::write(&file, few.replacen(from, to, 1)).unwrap();
+    file.to_str().unwrap().to_owned()
+}
+
+fn json(copy: &Copy, arguments: &[&str]) -> Value {
+    let run = copy.run(arguments);
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    serde_json::from_slice(&run.stdout).unwrap()
+}
+
+/// Within the time, on all positions, above its bound; the schedule that is written is predicted by `observe` as by `plan`,
+/// and the same input gives the same bytes.
+#[test]
+fn a_plan_for_a_time() {
+    let copy = Copy::new();
+    let plan = small(&copy, "time = \"8 h\"", "time = \"6 h\"");
+    let arguments = ["plan", &plan, "--json", "--frontier", "--svg", "frontier.svg", "--out", "schedule.toml"];
+    let report = json(&copy, &arguments);
+    let number = |key: &str| report[key].as_f64().unwrap();
+    assert!(number("time") <= 6.0 * 3600.0 && number("time") > 5.9 * 3600.0, "{}", number("time"));
+    assert!(number("bound") <= number("value") && number("continuous_gap") < 0.01);
+    let mountings = report["mountings"].as_array().unwrap();
+    let spent: f64 = report["time_by_use"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).sum();
+    assert!((spent - number("time")).abs() < 1e-6);
+    for row in report["frontier"].as_array().unwrap() {
+        for usual in ["uniform", "normalised"] {
+            assert!(row[usual].as_f64().is_none_or(|usual| usual > row["best"].as_f64().unwrap()), "{row}");
+        }
+    }
+    let svg = fs::read_to_string(copy.out().join("frontier.svg")).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("best plan"));
+
+    let observed = json(&copy, &["observe", "schedule.toml", "--json"]);
+    let visits: usize = mountings.iter().map(|m| m["plateaus"].as_array().unwrap().len()).sum();
+    assert_eq!(observed["plateaus"].as_u64().unwrap(), visits as u64);
+    assert_eq!(observed["rank"], observed["columns"]);
+    let of = |report: &Value| report["prediction"]["parameters"].as_array().unwrap().clone();
+    for (a, b) in of(&report).iter().zip(of(&observed)) {
+        let (u, v) = (a["combined"].as_f64().unwrap(), b["combined"].as_f64().unwrap());
+        assert!(a["name"] == b["name"] && (u / v - 1.0).abs() < 1e-9, "{a} {b}");
+    }
+
+    let schedule = fs::read(copy.out().join("schedule.toml")).unwrap();
+    assert_eq!(json(&copy, &arguments), report);
+    assert!(schedule == fs::read(copy.out().join("schedule.toml")).unwrap());
+    let text = String::from_utf8(copy.run(&["plan", &plan]).stdout).unwrap();
+    for part in ["PLAN  6 h 00 min", "SCHEDULE", "without it", "PREDICTION", "compensated reading"] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+}
+
+/// Goals that time reaches are met in the shortest time; goals that no time reaches are an error that says by how much; goals
+/// that type B alone misses are told.
+#[test]
+fn plans_for_goals() {
+    let copy = Copy::new();
+    let goals = |goals: &str| {
+        let plan = small(&copy, "criterion = \"I\"", "");
+        let text = fs::read_to_string(&plan).unwrap().replace("time = \"8 h\"", goals);
+        fs::write(&plan, text).unwrap();
+        copy.run(&["plan", &plan, "--json"])
+    };
+    let met = goals("[target.uncertainty]\nmisalignment = \"40 urad\"\nG1_11 = \"0.1 ug/g^2\"");
+    assert_eq!(met.status.code(), Some(0), "{}", String::from_utf8_lossy(&met.stderr));
+    let report: Value = serde_json::from_slice(&met.stdout).unwrap();
+    assert!(report["value"].as_f64().unwrap() <= 1.0);
+    for goal in report["goals"].as_array().unwrap() {
+        assert!(goal["combined"].as_f64().unwrap() <= goal["wanted"].as_f64().unwrap(), "{goal}");
+    }
+    let missed = goals("[target.uncertainty]\nscale = \"0.001 ppm\"");
+    assert_eq!(missed.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&missed.stderr).into_owned();
+    assert!(message.contains("all candidates together miss by a factor of"), "{message}");
+}
+
+/// The plan is simulated as long as it says, and calibrates.
+#[test]
+fn a_plan_is_simulated_as_it_says() {
+    let copy = Copy::new();
+    let plan = small(&copy, "time = \"8 h\"", "time = \"5 h\"");
+    assert_eq!(copy.run(&["plan", &plan, "--out", "schedule.toml"]).status.code(), Some(0));
+    fs::write(
+        copy.out().join("truth.toml"),
+        "typical = { size = 0.5, seed = 3 }\n[sensor]\nwhite = \"100 ug\"\n[recorder]\nrate = 20\n",
+    )
+    .unwrap();
+    let run = copy.run(&["simulate", "schedule.toml", "--truth", "truth.toml", "--seed", "1", "--out", "session"]);
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let truth: Value = serde_json::from_slice(&fs::read(copy.out().join("session/truth.json")).unwrap()).unwrap();
+    let report = json(&copy, &["plan", &plan, "--json"]);
+    let planned =
+        report["mountings"].as_array().unwrap().iter().flat_map(|m| m["plateaus"].as_array().unwrap().clone());
+    let planned: Vec<f64> = planned.map(|p| p["duration"].as_f64().unwrap()).collect();
+    let windows = truth["plateaus"].as_array().unwrap();
+    assert_eq!(windows.len(), planned.len());
+    for (made, planned) in windows.iter().zip(planned) {
+        let end = |n: usize| made["window"][n].as_f64().unwrap();
+        assert!((end(1) - end(0) - planned).abs() < 1.0, "{made} {planned}");
+    }
+    let calibrated = copy.run(&["calibrate", "session", "--json"]);
+    assert_eq!(calibrated.status.code(), Some(0), "{}", String::from_utf8_lossy(&calibrated.stderr));
+}
