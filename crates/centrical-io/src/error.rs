@@ -37,7 +37,7 @@ pub enum Error {
         /// Number of the mounting, from 1.
         mounting: usize,
         /// What was looked for and what was seen.
-        source: centrical::reduction::ReductionError,
+        source: Box<centrical::reduction::ReductionError>,
     },
     /// The plateau means of a session cannot be fitted.
     #[error("{}: {source}", file.display())]

@@ -153,7 +153,7 @@ fn one_mounting(
         .map(|set_point| ScheduledPlateau { omega: set_point.omega, nominal_z: linear::nominal(experiment, set_point) })
         .collect();
     let file = session.record_file(mounting)?;
-    let refused = |source| Error::Reduction { file: file.to_owned(), mounting: mounting + 1, source };
+    let refused = |source| Error::Reduction { file: file.to_owned(), mounting: mounting + 1, source: Box::new(source) };
     let record = RecordFile::new(file, &session.columns, progress);
     let (survey, index) = record.survey()?;
     let telemetry = session.telemetry(mounting)?;

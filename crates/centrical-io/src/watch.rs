@@ -189,6 +189,6 @@ impl<'s> Watch<'s> {
 
     fn refused(&self, mounting: usize, source: ReductionError) -> Error {
         let file = self.session.mountings[mounting].record.clone().unwrap_or_default();
-        Error::Reduction { file, mounting: mounting + 1, source }
+        Error::Reduction { file, mounting: mounting + 1, source: Box::new(source) }
     }
 }

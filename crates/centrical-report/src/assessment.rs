@@ -84,7 +84,9 @@ pub fn correlation_table(parameters: &Parameters, budget: &Budget) -> String {
         text.push('\n');
     }
     let _ = write!(text, "  {:<12}", "");
-    own.iter().for_each(|&j| _ = write!(text, "{:>6}", parameters[j].name));
+    for j in own {
+        let _ = write!(text, "{:>6}", parameters[j].name);
+    }
     text.push('\n');
     text
 }

@@ -49,7 +49,9 @@ pub fn html_report_with(result: &CalibrationResult, further: &[Figure], language
                 null_directions(html, result, language);
             }
         }
-        further.iter().for_each(|figure| draw(html, figure, true));
+        for figure in further {
+            draw(html, figure, true);
+        }
     });
     inputs(&mut html, result, language);
     let _ = write!(

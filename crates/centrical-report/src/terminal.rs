@@ -297,5 +297,6 @@ pub fn verdict_text(objections: &[Objection]) -> String {
     if objections.is_empty() {
         return "ACCEPTABLE  nothing speaks against this result\n".to_owned();
     }
-    objections.iter().map(|objection| format!("NOT ACCEPTABLE  {objection}\n")).collect()
+    let lines: Vec<String> = objections.iter().map(|objection| format!("NOT ACCEPTABLE  {objection}\n")).collect();
+    lines.concat()
 }

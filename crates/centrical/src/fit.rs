@@ -382,8 +382,7 @@ impl<'a> Search<'a> {
         if step.whitened_length <= CONVERGED + rounding {
             self.x += &step.dx;
             self.termination = (!self.let_go(&step)).then_some(Termination::Converged);
-        } else if let Some((x, linearisations)) = self.descend(&step, (objective_norm + rounding).powi(2))? {
-            (self.x, self.ahead) = (x, Some(linearisations));
+        } else if self.descend(&step, (objective_norm + rounding).powi(2))? {
             if self.iterations == ITERATION_LIMIT {
                 self.termination = Some(Termination::IterationLimit);
             }
@@ -406,16 +405,17 @@ impl<'a> Search<'a> {
         free
     }
 
-    /// The point one step on, halved until the objective falls, and the linearisations there; none if it does not.
-    fn descend(&self, step: &Step, objective: f64) -> Result<Option<(DVector<f64>, Vec<Linearisation>)>, FitError> {
+    /// Goes one step on, halved until the objective falls, and keeps the linearisations there; stays if it does not fall.
+    fn descend(&mut self, step: &Step, objective: f64) -> Result<bool, FitError> {
         for halvings in 0..HALVING_LIMIT {
             let x = &self.x + &step.dx * 0.5_f64.powi(halvings.cast_signed());
             let linearisations = linearised(self.model, self.start.observations, x.as_slice());
             if self.objective(&x, &linearisations)? <= objective {
-                return Ok(Some((x, linearisations)));
+                (self.x, self.ahead) = (x, Some(linearisations));
+                return Ok(true);
             }
         }
-        Ok(None)
+        Ok(false)
     }
 
     /// chi^2 of the exact model at `x`, where it reads as in `there`, with the weights of the present linearisation; and

@@ -1,5 +1,6 @@
 //! `centrical watch` on a folder that is complete, and on one that is being filled.
 
+use std::fmt::Write as _;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::Path;
@@ -183,7 +184,7 @@ fn averaged() -> Copy {
         let of_covariance = [&c[0][0], &c[0][1], &c[0][2], &c[1][1], &c[1][2], &c[2][2]];
         let numbers: Vec<String> = cells.into_iter().chain(of_covariance).map(Value::to_string).collect();
         let (mounting, speed, samples) = (&plateau["mounting"], &plateau["speed"], &plateau["samples"]);
-        table += &format!("{mounting},{speed},{angle},{},{samples}\n", numbers.join(","));
+        let _ = writeln!(table, "{mounting},{speed},{angle},{},{samples}", numbers.join(","));
     }
     fs::write(copy.session().join("plateaus.csv"), table).unwrap();
     copy.edit("experiment.toml", |text| format!("plateaus = \"plateaus.csv\"\n{text}"));
@@ -192,7 +193,7 @@ fn averaged() -> Copy {
 
 /// Lines of the history that are whole.
 fn lines(out: &Path) -> usize {
-    fs::read(out.join("watch-history.jsonl")).unwrap_or_default().iter().filter(|byte| **byte == b'\n').count()
+    fs::read_to_string(out.join("watch-history.jsonl")).unwrap_or_default().matches('\n').count()
 }
 
 fn start(copy: &Copy) -> Child {

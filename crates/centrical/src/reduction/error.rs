@@ -73,7 +73,7 @@ pub enum ReductionError {
     )]
     Mistaken {
         /// What explains the readings.
-        mistake: Mistake,
+        mistake: Box<Mistake>,
         /// Index of the plateau in the schedule where it shows most.
         index: usize,
         /// Its speed [rad/s].

@@ -67,6 +67,7 @@ pub(super) fn recognise(
     let off = |k: &usize| (level(blocks, &cores[*k]) - schedule[*k].nominal_z).norm();
     let index = (0..schedule.len()).max_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
     let ScheduledPlateau { omega, nominal_z } = schedule[index];
+    let mistake = Box::new(mistake);
     Err(ReductionError::Mistaken { mistake, index, omega, level_z: nominal_z, found_z: level(blocks, &cores[index]) })
 }
 
