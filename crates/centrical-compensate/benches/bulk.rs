@@ -77,5 +77,7 @@ fn reference_memory_one_thread(bencher: Bencher) {
 }
 
 fn scale(f: &mut [f64], factor: f64) {
-    f.iter_mut().for_each(|f| *f *= factor);
+    for f in f {
+        *f *= factor;
+    }
 }

@@ -3,6 +3,8 @@
 mod claims;
 mod damage;
 mod growing;
+mod pieces;
 mod record_writer;
 mod session_forms;
+mod two_passes;
 mod watched;

@@ -1,0 +1,81 @@
+//! Texts of many pieces: no row is lost or doubled at a border, and a fault is found on its line.
+
+use std::fmt::Write as _;
+use std::fs;
+
+use centrical_io::{Columns, Record, read_record};
+use tempfile::TempDir;
+
+/// A text longer than many pieces, with comments, blank lines and quoted numbers here and there, and the line of each row.
+fn text(rows: usize, end: &str) -> (String, Record, Vec<usize>) {
+    let (mut text, mut record, mut lines) = (String::new(), Record::default(), Vec::new());
+    let mut line = 1;
+    let mut add = |text: &mut String, content: &str| {
+        text.push_str(content);
+        text.push_str(end);
+        line += 1;
+        line - 1
+    };
+    add(&mut text, "# a comment");
+    add(&mut text, "t,f1,f2,f3");
+    for k in 0..rows {
+        if k % 1009 == 7 {
+            add(&mut text, "# what a logger says, \"and, quotes");
+        }
+        if k % 2003 == 5 {
+            add(&mut text, "");
+        }
+        let row = [k as f64 / 1000.0, (k * 7919 % 10_007) as f64 / 1e5, -9.81, (k % 13) as f64 * 1e-7 - 196.3];
+        let mut content = String::new();
+        match k % 501 {
+            0 => write!(content, "\"{}\",{:e}, {} ,{}", row[0], row[1], row[2], row[3]).unwrap(),
+            _ => write!(content, "{},{},{},{}", row[0], row[1], row[2], row[3]).unwrap(),
+        }
+        lines.push(add(&mut text, &content));
+        record.t.push(row[0]);
+        record.f_z.iter_mut().zip(&row[1..]).for_each(|(column, value)| column.push(*value));
+    }
+    (text, record, lines)
+}
+
+#[test]
+fn every_row_once_and_in_order() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.csv");
+    for end in ["\n", "\r\n"] {
+        let (text, record, _) = text(70_000, end);
+        assert!(text.len() > 2 << 20);
+        // The borders of the pieces fall elsewhere in every text.
+        for shift in [0, 1, 2, 17] {
+            fs::write(&file, format!("{}{text}", format!("#{end}").repeat(shift))).unwrap();
+            assert!(read_record(&file, &Columns::default()).unwrap() == record, "{end:?} {shift}");
+        }
+    }
+}
+
+#[test]
+fn a_fault_is_on_its_line() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.csv");
+    let (text, record, lines) = text(70_000, "\n");
+    for row in [0, 1, 500, 6_000, 6_001, 34_567, 50_001, 69_999] {
+        let line = lines[row];
+        let mut all: Vec<&str> = text.lines().collect();
+        let wrong = |all: &[&str]| {
+            fs::write(&file, all.join("\n")).unwrap();
+            read_record(&file, &Columns::default()).unwrap_err().to_string()
+        };
+        all[line - 1] = "0,1,x,3";
+        let expected = format!("{}, line {line}, f2: found \"x\", expected a number in m/s^2", file.display());
+        assert_eq!(wrong(&all), expected);
+        if row > 0 {
+            all[line - 1] = "-1,1,2,3";
+            let before = record.t[row - 1];
+            let expected = format!(
+                "{}, line {line}, t: found -1 after {before}, expected a time that does not run backwards",
+                file.display()
+            );
+            assert_eq!(wrong(&all), expected);
+        }
+    }
+}
