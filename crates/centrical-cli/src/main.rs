@@ -31,7 +31,9 @@ enum Command {
     Montecarlo(command::montecarlo::Arguments),
     Models(command::models::Arguments),
     Compare(command::compare::Arguments),
+    Noise(command::noise::Arguments),
     Observe(command::observe::Arguments),
+    Plan(command::plan::Arguments),
     Watch(command::watch::Arguments),
 }
 
@@ -55,7 +57,9 @@ fn main() -> ExitCode {
         Command::Montecarlo(arguments) => command::montecarlo::run(&arguments),
         Command::Models(arguments) => command::models::run(&arguments),
         Command::Compare(arguments) => command::compare::run(&arguments),
+        Command::Noise(arguments) => command::noise::run(&arguments),
         Command::Observe(arguments) => command::observe::run(&arguments),
+        Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Watch(arguments) => command::watch::run(&arguments),
     };
     match outcome {

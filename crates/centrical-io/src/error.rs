@@ -63,6 +63,24 @@ pub enum Error {
         /// Why, and over what range it has one.
         source: centrical_compensate::NotInvertible,
     },
+    /// There is no plan.
+    #[error("{}: {source}", file.display())]
+    Planning {
+        /// The plan file.
+        file: PathBuf,
+        /// Why.
+        source: centrical::plan::PlanError,
+    },
+    /// A column of readings cannot be analysed for noise.
+    #[error("{}, {reading}: {source}", file.display())]
+    Noise {
+        /// The file.
+        file: PathBuf,
+        /// The column.
+        reading: String,
+        /// What was found and what was expected.
+        source: centrical::noise::NoiseError,
+    },
     /// Nothing can be simulated of a truth.
     #[error("{}: {source}", file.display())]
     Simulation {

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | text, also in gzip or Zstandard: any delimiter, decimal commas, comments | by name, or by number without a header |
 //! | Parquet (uncompressed, snappy, gzip, lz4, zstd) | by name or number |
+//! | Arrow IPC: files (Feather) and streams, plain, lz4 or zstd | by name or number |
 //! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number |
 //! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
 //! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
@@ -20,9 +21,12 @@ mod compensate;
 mod error;
 mod input;
 mod laboratory;
+mod noise;
 mod observation;
 mod overview;
+mod planning;
 mod plateaus;
+mod prediction;
 mod quantity;
 mod record;
 mod record_writer;
@@ -31,6 +35,7 @@ mod reduced_session;
 mod result;
 mod session;
 mod simulate;
+mod steadiness;
 mod table;
 mod watch;
 mod write;
@@ -44,12 +49,17 @@ pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
     LaboratoryTable, Limit, MethodTable, Person, Standard,
 };
+pub use noise::{NOISE_SCHEMA, NoiseAnalysis, ReadingNoise, Series};
 pub use observation::{
     CombinationReport, ConditionReport, Design, GroupReport, LostCombination, OBSERVATION_SCHEMA, ObservationReport,
     ObservedParameter, PairReport, RemedyReport, SightReport, StepReport,
 };
 pub use overview::RecordOverview;
+pub use planning::{
+    FrontierRow, GoalReport, PlanReport, PlanRequest, PlannedMounting, PlannedPlateau, ReasonReport, USUAL_LEVELS,
+};
 pub use plateaus::{PlateauMean, read_plateaus, write_plateaus};
+pub use prediction::{PredictedParameter, PredictionReport};
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
 pub use record::{Column, Columns, Scale, read_growing_record, read_record, read_telemetry, scan_record};
 pub use record_writer::RecordWriter;
@@ -61,8 +71,9 @@ pub use result::{
     PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
     TermSummary, ValiditySummary,
 };
-pub use session::{MountingFiles, Noise, Plan, PlateauTable, Session};
+pub use session::{MountingFiles, Noise, Plan, Planning, PlateauTable, Session};
 pub use simulate::{TableFormat, Truth, simulate_session};
+pub use steadiness::{DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, Steadiness, TiltSummary};
 pub use table::ColumnName;
 pub use watch::{
     HistoryEntry, HistoryEstimate, InnovationSummary, Watch, WatchState, WatchedPlateau, append_history, keep_history,

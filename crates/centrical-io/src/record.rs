@@ -203,7 +203,9 @@ impl Wanted<'_> {
                 self.to_si(first, block);
             }
             visit(blocks);
-            blocks.iter_mut().for_each(|block| self.give_back(block));
+            for block in blocks {
+                self.give_back(block);
+            }
         };
         let mut visitor = Visitor { visit: &mut to_si, progress };
         table::read_batches(file, extent, &self.fields(), self.expected, &mut visitor)

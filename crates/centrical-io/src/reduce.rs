@@ -13,6 +13,7 @@ use crate::overview::RecordOverview;
 use crate::plateaus::PlateauMean as TabledPlateau;
 use crate::record::RecordFile;
 use crate::session::Session;
+use crate::steadiness::Steadiness;
 
 /// A session's plateau means, and the files they come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +56,8 @@ pub struct ReducedPlateau {
     pub once_per_revolution: Option<Vector3<f64>>,
     /// Median speed by the telemetry [rad/s].
     pub measured_speed: Option<f64>,
+    /// What it shows beside its mean; none for a plateau that came already averaged.
+    pub steadiness: Option<Steadiness>,
 }
 
 impl Reduced {
@@ -172,6 +175,7 @@ impl From<PlateauMean> for ReducedPlateau {
             covariance: plateau.covariance,
             once_per_revolution: amplitude(&plateau.once_per_revolution),
             measured_speed: plateau.measured_speed,
+            steadiness: Some(Steadiness::from(&plateau)),
         }
     }
 }
@@ -191,6 +195,7 @@ impl From<&TabledPlateau> for ReducedPlateau {
             covariance: row.covariance,
             once_per_revolution: None,
             measured_speed: None,
+            steadiness: None,
         }
     }
 }

@@ -24,6 +24,7 @@ use crate::input::Input;
 use crate::overview::RecordOverview;
 use crate::reduce::{Reduced, ReducedPlateau};
 use crate::session::Session;
+use crate::steadiness::{self, DriftSummary, LeftOutSummary, Steadiness, TiltSummary};
 use crate::write::write_whole;
 
 /// Name of the schema's present version.
@@ -67,6 +68,12 @@ pub struct CalibrationResult {
     /// Stability of the reading at rest, if it was computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<Vec<StabilityCurve>>,
+    /// How the readings drifted over plateaus and over the session; none for a session that came already averaged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<DriftSummary>,
+    /// The tilt of the axis seen while spinning, against the fitted one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tilt: Option<TiltSummary>,
     /// What the records look like; empty for a session that came already averaged.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<RecordOverview>,
@@ -258,6 +265,21 @@ pub struct PlateauSummary {
     pub specific_force: Option<[f64; 3]>,
     /// Amplitude of the once-per-revolution term [m/s^2]: the tilt of the axis seen while spinning.
     pub once_per_revolution: Option<[f64; 3]>,
+    /// Standard uncertainty of either quadrature of that term [m/s^2].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub once_per_revolution_uncertainty: Option<[f64; 3]>,
+    /// Phase of that term as the window starts [rad]: `amplitude cos(Omega (t - start) + phase)`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub once_per_revolution_phase: Option<[f64; 3]>,
+    /// Slope of the readings over the window [m/s^3].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<[f64; 3]>,
+    /// Its standard uncertainty [m/s^3].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift_uncertainty: Option<[f64; 3]>,
+    /// Samples that are not used, by kind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<LeftOutSummary>,
     /// Median speed by the telemetry [rad/s].
     pub measured_speed: Option<f64>,
     /// Whether the plateau was held out of the fit; its residual is against a fit of the others then.
@@ -310,6 +332,8 @@ impl CalibrationResult {
             budget: None,
             validity: None,
             stability: None,
+            drift: steadiness::drift(session, model, reduced, fit),
+            tilt: steadiness::tilt(model, reduced, fit),
             records: reduced.records.clone(),
         }
     }
@@ -497,6 +521,7 @@ fn plateaus(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit:
         let (covariance, residual) = next.unwrap_or_else(|| against(fit, model, set_point, plateau, session));
         index = if previous == Some(set_point.mounting) { index + 1 } else { 0 };
         previous = Some(set_point.mounting);
+        let turning = plateau.steadiness.filter(|_| !set_point.is_rest());
         summaries.push(PlateauSummary {
             mounting: set_point.mounting + 1,
             index,
@@ -511,6 +536,13 @@ fn plateaus(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit:
             residual: residual.into(),
             specific_force: Some(model.specific_force(set_point, fit.state()).into()),
             once_per_revolution: plateau.once_per_revolution.map(Into::into),
+            once_per_revolution_uncertainty: turning
+                .map(|seen| seen.quadrature_covariance.diagonal().map(f64::sqrt).into()),
+            once_per_revolution_phase: turning
+                .map(|Steadiness { quadratures: [c, s], .. }| c.zip_map(&s, |c, s| (-s).atan2(c)).into()),
+            drift: plateau.steadiness.map(|seen| seen.drift.into()),
+            drift_uncertainty: plateau.steadiness.map(|seen| seen.drift_uncertainty.into()),
+            left_out: plateau.steadiness.map(|seen| seen.left_out.into()),
             measured_speed: plateau.measured_speed,
             held_out,
         });

@@ -5,6 +5,7 @@ mod attitude;
 mod columns;
 pub(crate) mod form;
 mod plan;
+mod planning;
 mod prior;
 mod schedule;
 mod terms;
@@ -21,6 +22,7 @@ use centrical::{ErrorModel, Experiment, Extension, MeasurementModel, PairRelatio
 use self::at::At;
 use self::form::{Form, ModelTable, SiteTable};
 pub use self::plan::{Noise, Plan};
+pub use self::planning::Planning;
 use self::prior::PriorEntry;
 pub(crate) use self::schedule::FASTEST;
 use crate::error::{Error, Place, quoted};
@@ -67,6 +69,8 @@ pub struct Session {
     pub mountings: Vec<MountingFiles>,
     /// Plateaus already averaged, if the session brings them instead of records.
     pub plateaus: Option<PlateauTable>,
+    /// Duration that the schedule states for each set point, if it does [s].
+    pub durations: Vec<Option<f64>>,
     priors: Vec<PriorEntry>,
 }
 
@@ -106,6 +110,7 @@ impl Session {
             session.plateaus = Some(table);
         } else {
             session.experiment.set_points = schedule::set_points(&file, &form.mounting, sign)?;
+            session.durations = plan::durations(&file, &form)?;
         }
         if session.experiment.set_points.iter().all(SetPoint::is_rest) {
             let at = At::entry(&file, "mounting", 0);
@@ -162,6 +167,7 @@ impl Session {
                 .map(|m| MountingFiles { record: path(&m.record), telemetry: path(&m.telemetry) })
                 .collect(),
             plateaus: None,
+            durations: Vec::new(),
             priors: prior::entries(&form.prior),
         })
     }
@@ -272,17 +278,21 @@ fn rotation(file: &Path, text: &str) -> Result<f64, Error> {
 }
 
 fn extensions(file: &Path, table: &ModelTable) -> Result<Vec<Extension>, Error> {
+    named_extensions(&At::table(file, "model"), &table.extensions)
+}
+
+fn named_extensions(at: &At, names: &[String]) -> Result<Vec<Extension>, Error> {
     let mut extensions = Vec::new();
-    for name in &table.extensions {
+    for name in names {
         let found = quoted(name.as_bytes());
         let Some(extension) = Extension::named(name) else {
             let known: Vec<&str> = Extension::NAMED.iter().map(|(name, _)| *name).collect();
             let expected = format!("one of {}", known.join(", "));
-            return Err(At::table(file, "model").unexpected("extensions", found, expected));
+            return Err(at.unexpected("extensions", found, expected));
         };
         if extensions.contains(&extension) {
             let expected = "every extension once";
-            return Err(At::table(file, "model").unexpected("extensions", format!("{found} a second time"), expected));
+            return Err(at.unexpected("extensions", format!("{found} a second time"), expected));
         }
         extensions.push(extension);
     }

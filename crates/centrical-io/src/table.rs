@@ -3,6 +3,7 @@
 //! The format is told by the first bytes of the file, not by its name.
 
 mod arrays;
+mod arrow;
 mod columnar;
 #[cfg(feature = "hdf5")]
 mod hdf5;
@@ -152,6 +153,7 @@ pub(crate) fn read_batches(
         Format::Parquet => parquet::read(file, input, &mut rows)?,
         Format::Npy => npy::read(file, &input, &mut rows)?,
         Format::Npz => npy::read_archive(file, input, &mut rows)?,
+        Format::Arrow => arrow::read(file, &input, &mut rows)?,
         Format::Mat => mat::read(file, &input, &mut rows)?,
         #[cfg(feature = "hdf5")]
         Format::Hdf5 | Format::MatHdf5 => hdf5::read(file, format == Format::MatHdf5, &mut rows)?,
@@ -182,6 +184,8 @@ enum Format {
     /// Text in Zstandard.
     Zstd,
     Parquet,
+    /// Arrow IPC, as a file or a stream.
+    Arrow,
     /// An array of NumPy.
     Npy,
     /// An archive of such arrays.
@@ -195,10 +199,12 @@ enum Format {
 
 impl Format {
     fn of(magic: &[u8]) -> Self {
-        const MAGIC: [(&[u8], Format); 8] = [
+        const MAGIC: [(&[u8], Format); 10] = [
             (b"\x1f\x8b", Format::Gzip),
             (b"\x28\xb5\x2f\xfd", Format::Zstd),
             (b"PAR1", Format::Parquet),
+            (b"ARROW1", Format::Arrow),
+            (&arrow::CONTINUATION, Format::Arrow),
             (b"\x93NUMPY", Format::Npy),
             (b"PK\x03\x04", Format::Npz),
             (b"MATLAB 5", Format::Mat),

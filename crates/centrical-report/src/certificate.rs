@@ -139,7 +139,7 @@ fn traceability(layout: &mut Layout, laboratory: &Laboratory, language: Language
         .iter()
         .map(|s| vec![s.name.clone(), s.identification.clone(), s.certificate.clone(), s.traceable_to.clone()])
         .collect();
-    let head = [messages.standard, "№", messages.standard_certificate, messages.traceable_to];
+    let head = [messages.standard, messages.number_sign, messages.standard_certificate, messages.traceable_to];
     layout.table(&columns, &head, &rows);
 }
 
@@ -224,7 +224,7 @@ fn conformity_statement(layout: &mut Layout, result: &CalibrationResult, decisio
         })
         .collect();
     let columns =
-        [(0.12, Align::Left), (0.25, Align::Right), (0.27, Align::Right), (0.12, Align::Left), (0.24, Align::Left)]
+        [(0.16, Align::Left), (0.24, Align::Right), (0.26, Align::Right), (0.12, Align::Left), (0.22, Align::Left)]
             .map(|(share, align)| Column { share, align });
     let head = [messages.parameter, messages.limits, messages.value, messages.unit, ""];
     layout.table(&columns, &head, &rows);

@@ -13,7 +13,7 @@ use nalgebra::Matrix3;
 pub use self::history::history_figure;
 use crate::language::Language;
 use crate::plot::Plot;
-use crate::positions_figure::positions_figure;
+use crate::positions_figure::position_drawings;
 
 /// A figure of the report.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,13 +59,16 @@ pub(crate) fn positions(result: &CalibrationResult, language: Language) -> Optio
         name: "positions",
         title: messages.positions.to_owned(),
         caption: messages.positions_caption.to_owned(),
-        drawings: vec![positions_figure(&positions, language)],
+        drawings: position_drawings(&positions, language),
     })
 }
 
 /// A figure of one plot, in the numbers of the language.
 fn of_plot(name: &'static str, caption: &str, plot: Plot, language: Language) -> Figure {
-    let title = plot.title.clone();
-    let plot = if language == Language::Russian { plot.with_decimal_comma() } else { plot };
-    Figure { name, title, caption: caption.to_owned(), drawings: vec![plot.to_svg()] }
+    Figure { name, title: plot.title.clone(), caption: caption.to_owned(), drawings: vec![drawn(plot, language)] }
+}
+
+/// A plot in the numbers of the language.
+fn drawn(plot: Plot, language: Language) -> String {
+    if language == Language::Russian { plot.with_decimal_comma() } else { plot }.to_svg()
 }

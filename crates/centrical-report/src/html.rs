@@ -77,7 +77,7 @@ fn heading(html: &mut String, result: &CalibrationResult, language: Language) {
     let serial = if session.unit_serial.is_empty() { messages.not_given } else { &session.unit_serial };
     let _ = writeln!(
         html,
-        "<header><p class=\"kind\">{}</p><h1>{}</h1><p>{} {}</p><p>{}, {}</p></header>",
+        "<header><p class=\"kind\">{}</p><h1>{}</h1><p>{} {}</p><p>{}, <time>{}</time></p></header>",
         messages.calibration_report,
         Escaped(&session.unit_model),
         messages.serial,

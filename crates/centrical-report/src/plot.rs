@@ -29,6 +29,7 @@ pub struct Plot {
     pub(crate) y: Axis,
     pub(crate) series: Vec<Series>,
     pub(crate) has_decimal_comma: bool,
+    pub(crate) is_panel: bool,
 }
 
 /// An axis. Its range spans the data unless one is given.
@@ -81,7 +82,7 @@ pub struct Point {
 impl Plot {
     /// An empty plot.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
-        Self { title: title.into(), x, y, series: Vec::new(), has_decimal_comma: false }
+        Self { title: title.into(), x, y, series: Vec::new(), has_decimal_comma: false, is_panel: false }
     }
 
     /// The plot with one more series.
@@ -95,6 +96,13 @@ impl Plot {
     #[must_use]
     pub fn with_decimal_comma(mut self) -> Self {
         self.has_decimal_comma = true;
+        self
+    }
+
+    /// The plot in the size of a panel: several stand side by side, or one fills a telephone.
+    #[must_use]
+    pub fn as_panel(mut self) -> Self {
+        self.is_panel = true;
         self
     }
 

@@ -19,14 +19,9 @@ const ARROW: f64 = 56.0;
 
 /// The positions as one SVG drawing, in the order given, column by column.
 pub fn positions_figure(positions: &[Position], language: Language) -> String {
-    let messages = language.messages();
     let columns = positions.len().div_ceil(ROWS);
-    let (width, height) = (PANEL.0 * columns as f64, PANEL.1 * ROWS as f64);
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"positions\" viewBox=\"0 0 {width} {height}\" role=\"img\" \
-         aria-label=\"{}\">\n{STYLE}",
-        messages.positions
-    );
+    let messages = language.messages();
+    let mut svg = opened((PANEL.0 * columns as f64, PANEL.1 * ROWS as f64), messages.positions);
     for (n, position) in positions.iter().enumerate() {
         let (column, row) = (n / ROWS, n % ROWS);
         let _ = writeln!(svg, "<g transform=\"translate({},{})\">", PANEL.0 * column as f64, PANEL.1 * row as f64);
@@ -37,15 +32,34 @@ pub fn positions_figure(positions: &[Position], language: Language) -> String {
     svg
 }
 
+/// A drawing for each position.
+pub(crate) fn position_drawings(positions: &[Position], language: Language) -> Vec<String> {
+    let messages = language.messages();
+    let draw = |position: &Position| {
+        let mut svg = opened(PANEL, &format!("{} {}", messages.position, position.id));
+        panel(&mut svg, position, messages);
+        svg + "</svg>\n"
+    };
+    positions.iter().map(draw).collect()
+}
+
+fn opened((width, height): (f64, f64), label: &str) -> String {
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"positions\" viewBox=\"0 0 {width} {height}\" role=\"img\" \
+         aria-label=\"{}\">\n{STYLE}",
+        Escaped(label)
+    )
+}
+
 const STYLE: &str = "<style>\
-.positions text{font:13px system-ui,sans-serif;fill:#1f2328}.positions .soft{fill:#59636e;font-size:11px}\
+.positions text{font:13px system-ui,sans-serif;fill:#1f2328}.positions .soft{fill:#59636e;font-size:12px}\
 .positions .arm{stroke:#8c959f;stroke-width:9;stroke-linecap:round}\
 .positions .axis{stroke:#59636e;stroke-width:1.5;stroke-dasharray:5 4}\
 .positions .turn{stroke:#59636e;stroke-width:1.5;fill:none}\
 .positions .box{fill:#d1d9e0;fill-opacity:.75;stroke:#59636e;stroke-linejoin:round}\
 .positions .z1{stroke:#d55e00;fill:#d55e00}.positions .z2{stroke:#0072b2;fill:#0072b2}\
 .positions .z3{stroke:#009e73;fill:#009e73}.positions line.z1,.positions line.z2,.positions line.z3{stroke-width:3}\
-.positions text.z1,.positions text.z2,.positions text.z3{stroke:none;font-weight:600}\
+.positions .name{font-weight:600}\
 @media (prefers-color-scheme:dark){.positions text{fill:#e6edf3}.positions .soft{fill:#9198a1}\
 .positions .box{fill:#3d444d;stroke:#9198a1}.positions .axis,.positions .turn{stroke:#9198a1}\
 .positions .arm{stroke:#656c76}.positions .z1{stroke:#f08c3c;fill:#f08c3c}.positions .z2{stroke:#58a6ff;fill:#58a6ff}\
@@ -122,7 +136,7 @@ fn arrow(svg: &mut String, axis: usize, direction: &Vector3<f64>) {
     );
     let _ = writeln!(
         svg,
-        "<text class=\"{class}\" text-anchor=\"middle\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+        "<text class=\"name\" text-anchor=\"middle\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
         label.0,
         label.1 + 4.5,
         axis + 1

@@ -1,13 +1,17 @@
 //! Errors of the unit's readings on the plateaus, before and after compensation.
 
+use centrical::uncertainty::Compensated;
 use centrical::{ErrorModel, Monomial, STANDARD_GRAVITY, Term};
 use centrical_io::{CalibrationResult, PlateauSummary};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::language::Language;
 
 /// One microgram in m/s^2.
 pub(crate) const MICRO_G: f64 = 1e-6 * STANDARD_GRAVITY;
+
+/// Coverage factor of the uncertainty of compensation.
+pub(crate) const COVERAGE: f64 = 2.0;
 
 /// Errors of the reading on one plateau, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,15 +26,24 @@ pub(crate) struct ReadingError {
     pub speed_free: Vector3<f64>,
     /// Standard uncertainty of `speed_free` from the noise of the mean.
     pub uncertainty: Vector3<f64>,
+    /// Standard uncertainty that the parameters leave in a compensated reading of this specific force.
+    pub prediction: Vector3<f64>,
 }
 
 /// Errors on every plateau; none if the unit cannot be compensated because a parameter of it is not determined.
 pub(crate) fn reading_errors(result: &CalibrationResult) -> Option<Vec<ReadingError>> {
     let (model, coefficients) = error_model(result)?;
-    result.plateaus.iter().map(|plateau| reading_error(plateau, &model, &coefficients)).collect()
+    let covariance = covariance(result)?;
+    let prediction = Compensated::new(model.clone(), coefficients.clone(), covariance)?;
+    result.plateaus.iter().map(|plateau| reading_error(plateau, &model, &coefficients, &prediction)).collect()
 }
 
-fn reading_error(plateau: &PlateauSummary, model: &ErrorModel, coefficients: &[f64]) -> Option<ReadingError> {
+fn reading_error(
+    plateau: &PlateauSummary,
+    model: &ErrorModel,
+    coefficients: &[f64],
+    prediction: &Compensated,
+) -> Option<ReadingError> {
     let force = Vector3::from(plateau.specific_force?);
     let residual = Vector3::from(plateau.residual);
     // A residual is small, so the inverse of the error model is that of its gain.
@@ -42,6 +55,7 @@ fn reading_error(plateau: &PlateauSummary, model: &ErrorModel, coefficients: &[f
         after: to_force * residual,
         speed_free: to_force * (residual - of_speed(plateau, &residual)),
         uncertainty: noise.diagonal().map(f64::sqrt),
+        prediction: prediction.covariance(&force)?.diagonal().map(|variance| variance.max(0.0).sqrt()),
     })
 }
 
@@ -68,12 +82,22 @@ pub(crate) fn error_model(result: &CalibrationResult) -> Option<(ErrorModel, Vec
     Some((ErrorModel { terms }, coefficients))
 }
 
+/// Covariance of the coefficients, in the order of the terms.
+fn covariance(result: &CalibrationResult) -> Option<DMatrix<f64>> {
+    let place = |name: &str| result.parameters.iter().position(|parameter| parameter.name == name);
+    let places: Vec<usize> = result.model.error_model.iter().map(|t| place(&t.name)).collect::<Option<_>>()?;
+    let entry = |i: usize, j: usize| *result.covariance.get(i)?.get(j)?;
+    let entries: Option<Vec<f64>> = places.iter().flat_map(|&i| places.iter().map(move |&j| entry(i, j))).collect();
+    Some(DMatrix::from_row_slice(places.len(), places.len(), &entries?))
+}
+
 fn matrix(rows: &[[f64; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|i, j| rows[i][j])
 }
 
-/// Before, after, and after less the speed's error: for each axis root mean square and, in brackets, largest magnitude.
-pub(crate) fn error_table(errors: &[ReadingError], language: Language) -> [(&'static str, [String; 3]); 3] {
+/// Before, after, after less the speed's error, and the expanded uncertainty of compensation: for each axis root mean
+/// square and, in brackets, largest magnitude.
+pub(crate) fn error_table(errors: &[ReadingError], language: Language) -> [(&'static str, [String; 3]); 4] {
     let messages = language.messages();
     let shown = |(rms, largest): (f64, f64)| {
         let (factor, unit) = if rms < 1e3 * MICRO_G { (1.0 / MICRO_G, "ug") } else { (1e-3 / MICRO_G, "mg") };
@@ -84,6 +108,7 @@ pub(crate) fn error_table(errors: &[ReadingError], language: Language) -> [(&'st
         (messages.before, size(errors, |e| e.before).map(shown)),
         (messages.after, size(errors, |e| e.after).map(shown)),
         (messages.after_speed_free, size(errors, |e| e.speed_free).map(shown)),
+        (messages.compensation_uncertainty, size(errors, |e| COVERAGE * e.prediction).map(shown)),
     ]
 }
 

@@ -6,6 +6,7 @@ use centrical_io::{CalibrationResult, ParameterEstimate, TermSummary};
 
 use crate::assessment::pattern_in_words;
 use crate::customary::{customary, with_uncertainty};
+use crate::steadiness::steadiness;
 use crate::verdict::Objection;
 
 /// Width of a column "value ± uncertainty".
@@ -25,6 +26,7 @@ pub fn terminal_table(result: &CalibrationResult) -> String {
     not_estimable(&mut text, result);
     priors(&mut text, result);
     plateaus(&mut text, result);
+    steadiness(&mut text, result);
     fit(&mut text, result);
     uncertainties(&mut text, result);
     validity(&mut text, result);

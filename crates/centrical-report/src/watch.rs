@@ -23,6 +23,9 @@ pub struct WatchView<'a> {
     pub now: &'a Progress,
     /// The next plateau, and what will be known after it.
     pub next: Option<(String, &'a Progress)>,
+    /// What each plateau that remains would bring, the best first: its name, and the mean uncertainty of the compensated
+    /// reading with it over that without.
+    pub best: Vec<(String, f64)>,
     /// Wanted standard uncertainties: group, and value in its customary unit.
     pub targets: &'a [(String, f64)],
 }
@@ -55,6 +58,10 @@ pub fn watch_table(view: &WatchView) -> String {
     let groups = groups(view.model);
     for group in &groups {
         group_row(&mut text, view, group);
+    }
+    if !view.best.is_empty() {
+        let shown: Vec<String> = view.best.iter().map(|(name, factor)| format!("{name} (x {factor:.3})")).collect();
+        let _ = writeln!(text, "BEST NEXT for the compensated reading's mean uncertainty: {}", shown.join("; "));
     }
     if !view.targets.is_empty() && view.targets.iter().all(|(group, target)| is_met(view, group, *target)) {
         text.push_str("Every target is met.\n");

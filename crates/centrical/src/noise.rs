@@ -5,6 +5,7 @@
 //!
 //! - [`regular_grid`] lays time-stamped readings on a regular grid; [`Phase::integrate`] makes the phase, bridges
 //!   what is missing and says how much that was ([`Gaps`]).
+//! - [`leave_out_spikes`] takes out what is no noise but an error of transmission.
 //! - [`deviations`] gives any [`Estimator`] of the Allan family with chi^2 confidence intervals.
 //! - [`time_interval_rms`] and [`maximum_time_interval`] give TIE rms and MTIE.
 //! - [`power_spectrum`] gives the spectral density, [`fit_noise_terms`] the terms of IEEE Std 952 and 1293.
@@ -22,6 +23,7 @@ mod phase;
 mod power_law;
 mod scatter;
 mod spectrum;
+mod spikes;
 mod stability;
 mod terms;
 mod total;
@@ -32,6 +34,7 @@ pub use grid::{Grid, regular_grid};
 pub use interval::{maximum_time_interval, time_interval_rms};
 pub use phase::{Gaps, Phase};
 pub use power_law::PowerLaw;
-pub use spectrum::{Spectrum, power_spectrum};
+pub use spectrum::{Spectrum, SpectrumBand, SpectrumLine, power_spectrum};
+pub use spikes::leave_out_spikes;
 pub use stability::{Deviation, deviations};
 pub use terms::{Coefficient, NoiseTerm, NoiseTerms, fit_noise_terms};

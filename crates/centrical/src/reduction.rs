@@ -10,6 +10,14 @@
 //! its colour: it is pooled over all plateaus of the session ([`NoiseModel`]), and then gives every mean its
 //! covariance.
 //!
+//! Samples are taken with equal weight, or not at all: what is off the fit by more than `sqrt(2 ln 20 n)` robust standard
+//! deviations of `n` samples, what is stuck, and what is no number. Fewer than one in twenty plateaus loses a good sample
+//! on an axis, so the mean has an efficiency above `1 - (2 ln 20 n) / (20 n)` of that of least squares, 0.999 of a thousand
+//! samples, and up to half of the samples may be spikes.
+//!
+//! A record that is decisively better explained by a mistake in taking it down, exchanged axes for one, is refused with
+//! that mistake by name ([`Mistake`]).
+//!
 //! Two passes, so that a record need never be held as a whole: the first makes blocks of it and finds the windows
 //! ([`Survey`]); the second takes the samples of one window at a time ([`Located`]). [`reduce`] is both, for a record in
 //! memory.
@@ -21,27 +29,35 @@ mod cells;
 mod clock;
 mod error;
 mod evidence;
+mod lanes;
+mod mistake;
 mod noise;
 mod path;
 mod plateau_fit;
 mod record;
 mod regression;
+mod revolution;
+mod rotation;
 mod rounding;
+mod saturation;
 mod settling;
 mod shape;
 mod stuck;
 mod survey;
+mod triangle;
 mod window;
 
 use nalgebra::{Matrix3, Vector3};
 
 pub use clock::{ClockOffset, SpeedTrace};
 pub use error::{ReductionError, Stretch};
+pub use mistake::Mistake;
 pub use noise::NoiseModel;
 pub use plateau_fit::PlateauFit;
 pub use record::{Record, RecordSlice};
 pub use survey::{Condensed, Extremes, Located, Survey};
 
+pub(crate) use blocks::{MAD, cut, median};
 use settling::TimeStep;
 
 /// One plateau of a mounting's schedule.
@@ -72,6 +88,8 @@ pub struct PlateauMean {
     pub samples: usize,
     /// Samples of the window left out: spikes, missing and stuck readings.
     pub rejected: usize,
+    /// What was left out, by kind.
+    pub left_out: LeftOut,
     /// Mean reading, instrument axes [m/s^2].
     pub mean: Vector3<f64>,
     /// Covariance of the mean [m^2/s^4].
@@ -82,10 +100,25 @@ pub struct PlateauMean {
     pub drift: Vector3<f64>,
     /// Standard uncertainty of the slope [m/s^3].
     pub drift_uncertainty: Vector3<f64>,
+    /// Covariance of either quadrature of the once-per-revolution term [m^2/s^4].
+    pub once_per_revolution_covariance: Matrix3<f64>,
     /// Median speed by the telemetry [rad/s], the clocks brought together.
     pub measured_speed: Option<f64>,
     /// What was left of the settling at the start of the window [m/s^2].
     pub settling: Vector3<f64>,
+}
+
+/// What is not used of a plateau's window, in samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LeftOut {
+    /// Samples that stand out of the noise on some axis.
+    pub spikes: usize,
+    /// Samples in runs that repeat one reading for longer than noise does.
+    pub stuck: usize,
+    /// Samples that never came, and readings that are not numbers.
+    pub missing: usize,
+    /// Samples with the stamp of the one before.
+    pub repeated: usize,
 }
 
 /// Finds and averages the scheduled plateaus of one mounting.

@@ -8,7 +8,8 @@ use std::thread;
 use std::time::Duration;
 
 use centrical::fit::recursive::{Follower, Progress};
-use centrical::{MeasurementModel, Observation};
+use centrical::plan::{Criterion, Gain, ReadingRange, next_best};
+use centrical::{MeasurementModel, Observation, SetPoint, Weight, linear};
 use centrical_io::{
     Error, HistoryEntry, HistoryEstimate, Method, Place, PlateauName, Session, Watch, WatchState, WatchedPlateau,
     append_history, calibrate_without, create_folder, keep_history, read_history, write_whole,
@@ -158,6 +159,7 @@ impl<'a> Following<'a> {
         let come = |set_point: &usize| self.state.plateaus.iter().any(|p| p.set_point == *set_point);
         let next = (0..all).find(|set_point| !come(set_point));
         let expected = next.map(|next| self.fitted(self.follower.expected(next, last.covariance))).transpose()?;
+        let best = self.best_next(last)?;
         let tests: Vec<WatchedTest> = self.state.plateaus.iter().map(|plateau| self.tested(plateau)).collect();
         let view = WatchView {
             title: &self.session.title,
@@ -166,6 +168,7 @@ impl<'a> Following<'a> {
             tests: &tests,
             now,
             next: next.map(|next| self.label(next)).zip(expected.as_ref()),
+            best,
             targets: &self.arguments.target,
         };
         // On a terminal the table stays in its place.
@@ -173,6 +176,28 @@ impl<'a> Following<'a> {
         // A reader that has seen enough (`| head`) is no failure.
         let _ = writeln!(io::stdout(), "{clear}{}", watch_table(&view));
         Ok(())
+    }
+
+    /// The plateaus that remain in the mounting on the arm, and those of later mountings, by what they would bring if they
+    /// were as noisy as the last one; the best of each.
+    fn best_next(&self, last: &Observation) -> Result<Vec<(String, f64)>, Error> {
+        let experiment = &self.session.experiment;
+        let come = |set_point: usize| self.state.plateaus.iter().any(|p| p.set_point == set_point);
+        let remaining: Vec<Weight> = (0..experiment.set_points.len())
+            .filter(|&set_point| !come(set_point))
+            .map(|set_point| Weight { set_point, covariance: last.covariance })
+            .collect();
+        let taken: Vec<Weight> = self.follower.taken().iter().map(Weight::from).collect();
+        let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
+        let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
+        let criterion = Criterion::Reading(ReadingRange { force });
+        let gains = next_best(self.model, self.session.speed_uncertainty, &criterion, &taken, &remaining)
+            .map_err(|source| Error::Planning { file: self.session.file.clone(), source })?;
+        let on_the_arm = experiment.set_points[last.set_point].mounting;
+        let is_here = |gain: &Gain| experiment.set_points[gain.set_point].mounting == on_the_arm;
+        let here = gains.iter().find(|gain| is_here(gain));
+        let elsewhere = gains.iter().find(|gain| !is_here(gain));
+        Ok(here.into_iter().chain(elsewhere).map(|gain| (self.label(gain.set_point), gain.factor)).collect())
     }
 
     fn tested(&self, plateau: &WatchedPlateau) -> WatchedTest {

@@ -1,7 +1,9 @@
 //! `centrical compensate` on the example session.
 
-use std::fs;
-use std::process::Output;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use std::process::{Command, Output};
 
 use crate::session::Copy;
 
@@ -115,4 +117,48 @@ fn source_code() {
     assert_eq!(names, extensions.map(|extension| format!("centrical_compensate{extension}")));
     let header = fs::read_to_string(copy.out().join("source/centrical_compensate.h")).unwrap();
     assert!(header.contains(" * Compensation of "), "{header}");
+}
+
+/// Any format the program reads, told by its bytes: the same record gives the same specific forces.
+#[test]
+fn any_format() {
+    let copy = calibrated();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../centrical-io/tests/data");
+    let compensated = |name: &str| {
+        let record = data.join(name);
+        let run = copy.run(&["compensate", "result.json", record.to_str().unwrap(), "--out", "f.csv"]);
+        assert!(run.status.success(), "{name}: {}", text(&run));
+        fs::read(copy.out().join("f.csv")).unwrap()
+    };
+    let expected = compensated("record.csv");
+    assert_eq!(columns(std::str::from_utf8(&expected).unwrap()).len(), 300);
+    for name in
+        ["record.csv.gz", "record.csv.zst", "savetxt.txt", "record.npy", "packed.npz", "packed.mat", "snappy.parquet"]
+    {
+        assert!(compensated(name) == expected, "{name}");
+    }
+}
+
+/// The record streams through: with half of its size to live in, all of it comes out.
+#[test]
+#[cfg(target_os = "linux")]
+fn memory_does_not_grow_with_the_record() {
+    const ROWS: u64 = 8_000_000;
+    /// Address space allowed [KiB], the program itself and the stacks of its threads included.
+    const LIMIT: u64 = 128 * 1024;
+    let copy = calibrated();
+    let record = copy.out().join("long.csv");
+    let mut file = BufWriter::new(File::create(&record).unwrap());
+    writeln!(file, "t,f1,f2,f3").unwrap();
+    for k in 0..ROWS {
+        writeln!(file, "{}.{:03},{}.25,-{}.125,9.8134277512345678", k / 1000, k % 1000, k % 1999, k % 1777).unwrap();
+    }
+    file.flush().unwrap();
+    let size = fs::metadata(&record).unwrap().len();
+    assert!(size > 2 * 1024 * LIMIT, "{size} bytes");
+    let command = format!("ulimit -v {LIMIT}; exec \"$0\" compensate result.json long.csv --out f.parquet");
+    let mut shell = Command::new("sh");
+    let run = shell.args(["-c", &command, env!("CARGO_BIN_EXE_centrical")]).current_dir(copy.out()).output().unwrap();
+    assert!(run.status.success(), "{}", text(&run));
+    assert!(text(&run).contains(&format!("{ROWS} readings compensated")), "{}", text(&run));
 }

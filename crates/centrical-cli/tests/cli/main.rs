@@ -2,11 +2,13 @@
 
 mod calibrate;
 mod compensate;
+mod noise;
 mod observe;
 mod reduce;
 mod refusal;
 mod report;
 mod session;
 mod simulate;
+mod steadiness;
 mod trust;
 mod watch;

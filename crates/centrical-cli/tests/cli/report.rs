@@ -1,6 +1,9 @@
 //! `centrical report` and the documents of `calibrate --out`.
 
+use std::collections::BTreeMap;
 use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::session::{Copy, example};
 
@@ -13,22 +16,95 @@ fn calibrated(language: &str) -> Copy {
     copy
 }
 
+/// Files of a folder and of its folders, by name, with their bytes.
+fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = PathBuf::from(path.file_name().unwrap());
+        if path.is_dir() {
+            files.extend(contents(&path).into_iter().map(|(inner, bytes)| (name.join(inner), bytes)));
+        } else {
+            files.insert(name, fs::read(path).unwrap());
+        }
+    }
+    files
+}
+
+/// `calibrate --out` leaves result, report, certificates and plots at once, and `report` makes the same of the result.
 #[test]
 fn calibrate_writes_everything_and_report_writes_the_same() {
     let copy = calibrated("en");
-    for plot in ["before", "after", "residuals", "normalised", "correlation", "singular-values", "convergence"] {
-        let svg = fs::read_to_string(copy.out().join(format!("plots/{plot}.svg"))).unwrap();
-        assert!(svg.starts_with("<svg") && svg.contains("<title>"), "{plot}");
+    let files = contents(&copy.out());
+    let mut expected = vec!["certificate.pdf".to_owned(), "certificate.xml".to_owned()];
+    let whole = ["convergence", "correlation", "normalised", "residuals", "singular-values"];
+    expected.extend(whole.map(|plot| format!("plots/{plot}.svg")));
+    let parts = [("after", 3), ("before", 3), ("records", 12)];
+    expected.extend(parts.iter().flat_map(|(plot, n)| (1..=*n).map(move |k| format!("plots/{plot}-{k:02}.svg"))));
+    expected.extend(["report.html".to_owned(), "result.json".to_owned()]);
+    expected.sort();
+    let names: Vec<&str> = files.keys().map(|name| name.to_str().unwrap()).collect();
+    assert_eq!(names, expected);
+    for (name, bytes) in files.iter().filter(|(name, _)| name.starts_with("plots")) {
+        let svg = std::str::from_utf8(bytes).unwrap();
+        assert!(svg.starts_with("<svg") && svg.contains("<title>"), "{}", name.display());
     }
-    assert!(copy.out().join("plots/records-12.svg").exists());
     let laboratory = example().join("laboratory.toml");
-    let arguments = ["--html", "h", "--pdf", "p", "--dcc", "d", "--laboratory", laboratory.to_str().unwrap()];
-    let run = copy.run(&[&["report", "result.json"], &arguments[..]].concat());
+    let arguments = ["--html", "h", "--pdf", "p", "--dcc", "d", "--c", "source", "--laboratory"];
+    let run = copy.run(&[&["report", "result.json"], &arguments[..], &[laboratory.to_str().unwrap()]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
-    for (file, again) in [("report.html", "h"), ("certificate.pdf", "p"), ("certificate.xml", "d")] {
-        let read = |name: &str| fs::read(copy.out().join(name)).unwrap();
-        assert!(read(file) == read(again), "{file} differs");
+    let again = contents(&copy.out());
+    for (file, copied) in [("report.html", "h"), ("certificate.pdf", "p"), ("certificate.xml", "d")] {
+        assert!(again[Path::new(file)] == again[Path::new(copied)], "{file} differs");
     }
+    assert_eq!(again.keys().filter(|name| name.starts_with("source")).count(), 4);
+}
+
+/// The same bytes from another folder, another day and any number of threads: all documents and all source code.
+#[test]
+fn the_same_bytes() {
+    let documents = |threads: &str| {
+        let copy = Copy::new();
+        let laboratory = example().join("laboratory.toml");
+        let (session, laboratory) = (copy.session(), laboratory.to_str().unwrap().to_owned());
+        let run = |arguments: &[&str]| {
+            let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+            let run =
+                command.args(arguments).current_dir(copy.out()).env("RAYON_NUM_THREADS", threads).output().unwrap();
+            assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        };
+        run(&["calibrate", session.to_str().unwrap(), "--out", ".", "--laboratory", &laboratory]);
+        run(&["report", "result.json", "--c", "source"]);
+        contents(&copy.out())
+    };
+    let (one, two) = (documents("1"), documents("2"));
+    assert_eq!(one.keys().collect::<Vec<_>>(), two.keys().collect::<Vec<_>>());
+    for (name, bytes) in &one {
+        assert!(*bytes == two[name], "{} differs", name.display());
+    }
+}
+
+/// A result that has Allan deviations gets their plot; one that has none gets no empty place.
+#[test]
+fn allan_curves_if_they_were_computed() {
+    let copy = calibrated("en");
+    let file = copy.out().join("result.json");
+    assert!(!fs::read_to_string(copy.out().join("report.html")).unwrap().contains("id=\"stability\""));
+    let mut result: serde_json::Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    let curve = |axis: usize| {
+        serde_json::json!({ "axis": axis, "tau": [0.1, 1.0, 10.0], "deviation": [3e-4, 1e-4, 4e-5],
+            "lower": [2e-4, 0.8e-4, 3e-5], "upper": [4e-4, 1.2e-4, 6e-5] })
+    };
+    result["stability"] = (1..=3).map(curve).collect();
+    fs::write(&file, result.to_string()).unwrap();
+    let run = copy.run(&["report", "result.json", "--html", "h.html"]);
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let page = fs::read_to_string(copy.out().join("h.html")).unwrap();
+    let plot = &page[page.find("<figure id=\"stability\"").unwrap()..];
+    let plot = &plot[..plot.find("</figure>").unwrap()];
+    assert_eq!(plot.matches("class=\"mark\"").count(), 9 + 3, "nine points and three in the legend");
+    assert!(plot.contains("<title>axis 2: 1.0000, 1.0000e-4 (8.0000e-5 .. 1.2000e-4)</title>"));
+    assert!(plot.contains("the level of its lowest stretch is the bias instability."));
 }
 
 /// Verdict first, then the parameters; nothing from the network; every plot with its sentence.

@@ -30,9 +30,13 @@ impl<'a> RecordFile<'a> {
         let index = self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks: &[Block]| {
             if let Some(survey) = &mut survey {
                 let condensed: Vec<_> = blocks.par_iter().map(|block| survey.condense(stretch(block))).collect();
-                condensed.into_iter().for_each(|stretch| survey.append(stretch));
+                for stretch in condensed {
+                    survey.append(stretch);
+                }
             } else {
-                blocks.iter().for_each(|block| beginning.extend(stretch(block)));
+                for block in blocks {
+                    beginning.extend(stretch(block));
+                }
                 if beginning.t.len() >= Survey::BEGINNING {
                     survey = Some(begin(&std::mem::take(&mut beginning)));
                 }
@@ -102,7 +106,9 @@ impl<'a> RecordFile<'a> {
             }
         };
         self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks| {
-            blocks.iter().for_each(|block| visit(stretch(block)));
+            for block in blocks {
+                visit(stretch(block));
+            }
         })?;
         for k in averaged.len()..windows.len() {
             averaged.push(average(k, samples[k].as_slice()));

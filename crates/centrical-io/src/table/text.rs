@@ -12,7 +12,7 @@ mod piece;
 
 use std::path::Path;
 
-use memchr::memchr;
+use memchr::{memchr, memchr_iter};
 use rayon::prelude::*;
 
 use self::layout::{Fault, Layout, Prologue};
@@ -50,6 +50,8 @@ pub(super) struct Piece {
     first_row: u64,
     /// What stands wrong, and in which line of the piece.
     fault: Option<(u64, Fault)>,
+    /// Lines of the text's second half whose rows are read before their time, and these rows.
+    later: (u64, Block),
 }
 
 /// Reads the table of `file` from its `lines`.
@@ -80,7 +82,7 @@ pub(super) fn read(file: &Path, lines: &mut dyn Lines, rows: &mut Rows) -> Resul
         }
         let Some(index) = &mut index else {
             // Nothing but comments so far.
-            line += pieces[0].text.iter().filter(|byte| **byte == b'\n').count() as u64;
+            line += memchr_iter(b'\n', &pieces[0].text).count() as u64;
             number += 1;
             continue;
         };
@@ -157,7 +159,8 @@ impl Piece {
     /// Reads the rows of the text after its first `skipped` lines, up to the first fault.
     fn read(&mut self, layout: &Layout, skipped: u64, fields: &[Field], block: &mut Block) {
         block.iter_mut().for_each(Vec::clear);
-        let mut text = self.text.as_slice();
+        let whole = std::mem::take(&mut self.text);
+        let mut text = whole.as_slice();
         for _ in 0..skipped {
             text = split_line(text).1;
         }
@@ -170,29 +173,74 @@ impl Piece {
             self.fault = Some((skipped + at, Fault::no_table(found)));
             text = &text[..piece::before_line(text, at)];
         }
+        let rest = self.read_side_by_side(text, layout, block);
+        for text in rest {
+            if let Err(fault) = self.read_rows(text, layout, fields, block) {
+                self.fault = Some(fault);
+                break;
+            }
+            // The second half begins where the first one ends.
+            self.lines += self.later.0;
+            block.iter_mut().zip(&mut self.later.1).for_each(|(column, later)| column.append(later));
+            self.later.0 = 0;
+        }
+        self.text = whole;
+        self.check_times(skipped, fields, block);
+    }
+
+    /// Reads bare numbers from both halves of a text at once, as far as there are no other lines: a row is a chain of
+    /// steps each of which waits for the one before, and a processor has room for two chains. What is left of the halves is
+    /// returned; the rows of the second wait in `later`.
+    fn read_side_by_side<'t>(&mut self, text: &'t [u8], layout: &Layout, block: &mut Block) -> [&'t [u8]; 2] {
+        let half = text.len() / 2;
+        let middle = memchr(b'\n', &text[half..]).map_or(text.len(), |end| half + end + 1);
+        let (mut first, mut second) = text.split_at(middle);
+        let mut rows = [vec![0.0; block.len()], vec![0.0; block.len()]];
+        let (_, later) = &mut self.later;
+        later.resize(block.len(), Vec::new());
+        later.iter_mut().for_each(Vec::clear);
+        let mut count = 0;
+        while !second.is_empty()
+            && let Some(of_first) = layout.plain_row(first, &mut rows[0])
+            && let Some(of_second) = layout.plain_row(second, &mut rows[1])
+        {
+            first = &first[of_first..];
+            second = &second[of_second..];
+            block.iter_mut().zip(&rows[0]).for_each(|(column, value)| column.push(*value));
+            later.iter_mut().zip(&rows[1]).for_each(|(column, value)| column.push(*value));
+            count += 1;
+        }
+        self.lines += count;
+        self.later.0 = count;
+        [first, second]
+    }
+
+    /// Reads the rows of a text one by one, up to the first fault.
+    fn read_rows(
+        &mut self,
+        mut text: &[u8],
+        layout: &Layout,
+        fields: &[Field],
+        block: &mut Block,
+    ) -> Result<(), (u64, Fault)> {
         let mut row = vec![0.0; fields.len()];
         while !text.is_empty() {
+            let (line, rest) = split_line(text);
             if let Some(length) = layout.plain_row(text, &mut row) {
                 text = &text[length..];
-            } else {
-                let (line, rest) = split_line(text);
-                if is_data(line) {
-                    if let Err(fault) = layout.row(line, &mut row, fields) {
-                        self.fault = Some((self.lines, fault));
-                        break;
-                    }
-                } else {
-                    self.first_row += u64::from(block[0].is_empty());
-                    self.lines += 1;
-                    text = rest;
-                    continue;
-                }
+            } else if is_data(line) {
+                layout.row(line, &mut row, fields).map_err(|fault| (self.lines, fault))?;
                 text = rest;
+            } else {
+                self.first_row += u64::from(block[0].is_empty());
+                self.lines += 1;
+                text = rest;
+                continue;
             }
             self.lines += 1;
             block.iter_mut().zip(&row).for_each(|(column, value)| column.push(*value));
         }
-        self.check_times(skipped, fields, block);
+        Ok(())
     }
 
     /// Sees that what should ascend does, row after row.

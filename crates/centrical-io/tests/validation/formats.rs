@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use centrical_io::{Column, ColumnName, Columns, Record, Scale, read_record};
 
+/// A file as it is kept or, with `CENTRICAL_GENERATED`, as those programs wrote it just now into that folder.
 fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+    let kept = || Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    std::env::var_os("CENTRICAL_GENERATED").map_or_else(kept, PathBuf::from).join(name)
 }
 
 /// The reference, by the standard library's own parser.
@@ -38,6 +40,44 @@ fn text_is_read_to_the_last_bit() {
 fn text_of_every_kind() {
     for name in ["record.csv.gz", "record.csv.zst", "comma.csv", "savetxt.txt", "extra.csv"] {
         assert_eq!(read_record(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
+    }
+}
+
+#[test]
+fn frames_of_pandas_and_polars() {
+    let names = [
+        "pandas.csv",
+        "pandas.parquet",
+        "pandas.feather",
+        "polars.csv",
+        "polars.parquet",
+        "polars.arrow",
+        "polars.arrows",
+    ];
+    for name in names {
+        assert_eq!(read_record(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
+    }
+}
+
+#[test]
+fn arrow_files_and_streams() {
+    for name in ["uncompressed.feather", "lz4.feather", "zstd.feather", "wide.arrows", "plain.arrows"] {
+        assert_eq!(read_record(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
+    }
+    assert_eq!(read_record(&data("plain.arrows"), &numbered()).unwrap(), reference());
+    assert_eq!(read_record(&data("counts.feather"), &counts()).unwrap(), reference());
+}
+
+#[test]
+fn arrow_that_is_no_record() {
+    let cases = [
+        ("null.feather", ", f2: found 1 values missing, expected a value in every row"),
+        ("text.arrows", ", f2: found a column without numbers, expected a number in m/s^2"),
+    ];
+    for (name, expected) in cases {
+        let file = data(name);
+        let error = read_record(&file, &Columns::default()).unwrap_err();
+        assert_eq!(error.to_string(), format!("{}{expected}", file.display()));
     }
 }
 
@@ -136,7 +176,7 @@ fn time_as_a_count_of_samples() {
 fn time_as_stamps() {
     // 2026-10-05T10:00:00Z, by `date -d 2026-10-05T10:00:00Z +%s`; stamps carry microseconds.
     const START: f64 = 1_791_194_400.0;
-    for name in ["stamps.csv", "stamps.parquet"] {
+    for name in ["stamps.csv", "stamps.parquet", "stamps.feather"] {
         let record = read_record(&data(name), &Columns::default()).unwrap();
         assert_eq!(record.f_z, reference().f_z, "{name}");
         for (t, reference) in record.t.iter().zip(reference().t) {

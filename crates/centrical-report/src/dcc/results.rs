@@ -11,7 +11,7 @@ use super::unit::Unit;
 use super::xml::Xml;
 use crate::expanded::{Expanded, expanded};
 use crate::language::Language;
-use crate::reading_error::{ReadingError, reading_errors};
+use crate::reading_error::{self, ReadingError, reading_errors};
 
 pub(super) fn list(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
     let messages = language.messages();
@@ -230,6 +230,7 @@ fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                     column(messages.specific_force, |e| e.force);
                     column(messages.before, |e| e.before);
                     column(messages.after, |e| e.after);
+                    column(messages.compensation_uncertainty, |e| reading_error::COVERAGE * e.prediction);
                 });
             }
         });

@@ -4,7 +4,7 @@ use centrical::STANDARD_GRAVITY;
 use centrical_io::{CalibrationResult, PlateauSummary};
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Figure, of_plot};
+use super::{Figure, drawn, of_plot};
 use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
 use crate::reading_error::{MICRO_G, ReadingError, reading_errors};
@@ -27,22 +27,42 @@ pub(super) fn figures(result: &CalibrationResult, language: Language) -> Vec<Fig
 
 fn before(errors: &[ReadingError], language: Language) -> Figure {
     let messages = language.messages();
-    let point = |error: &ReadingError, axis| {
-        Point::new(error.force[axis] / STANDARD_GRAVITY, error.before[axis] / (1e3 * MICRO_G))
-    };
-    let plot = Plot::new(messages.before, Axis::linear(messages.force_axis), Axis::linear(messages.error_before_axis));
-    of_plot("before", messages.before_caption, by_axis(plot, errors, language, point), language)
+    let drawings = panels(errors, messages.error_before_axis, language, |error, axis, load| {
+        Point::new(load / STANDARD_GRAVITY, error.before[axis] / (1e3 * MICRO_G))
+    });
+    Figure { name: "before", title: messages.before.to_owned(), caption: messages.before_caption.to_owned(), drawings }
 }
 
 fn after(errors: &[ReadingError], language: Language) -> Figure {
     let messages = language.messages();
-    let point = |error: &ReadingError, axis| {
+    let drawings = panels(errors, messages.error_after_axis, language, |error, axis, load| {
         let value = error.speed_free[axis] / MICRO_G;
         let bar = COVERAGE * error.uncertainty[axis] / MICRO_G;
-        Point::new(error.force[axis] / STANDARD_GRAVITY, value).with_interval(value - bar, value + bar)
+        Point::new(load / STANDARD_GRAVITY, value).with_interval(value - bar, value + bar)
+    });
+    Figure { name: "after", title: messages.after.to_owned(), caption: messages.after_caption.to_owned(), drawings }
+}
+
+/// A panel for the error of each newtonometer, against the specific force along the axis that is loaded most; a series
+/// for each such axis.
+fn panels(
+    errors: &[ReadingError],
+    error_axis: &str,
+    language: Language,
+    point: impl Fn(&ReadingError, usize, f64) -> Point,
+) -> Vec<String> {
+    let messages = language.messages();
+    let panel = |axis: usize| {
+        let title = format!("{} {}", messages.newtonometer, axis + 1);
+        let plot = Plot::new(title, Axis::linear(messages.force_axis), Axis::linear(error_axis)).as_panel();
+        let with_load = |plot: Plot, loaded: usize| {
+            let along = errors.iter().filter(|error| error.force.iamax() == loaded);
+            let points = along.map(|error| point(error, axis, error.force[loaded])).collect();
+            plot.with(Series::markers(format!("{} {}", messages.axis, loaded + 1), points))
+        };
+        drawn((0..3).fold(plot, with_load), language)
     };
-    let plot = Plot::new(messages.after, Axis::linear(messages.force_axis), Axis::linear(messages.error_after_axis));
-    of_plot("after", messages.after_caption, by_axis(plot, errors, language, point), language)
+    (0..3).map(panel).collect()
 }
 
 fn residuals(plateaus: &[PlateauSummary], language: Language) -> Figure {

@@ -11,7 +11,7 @@ use crate::plot::{Escaped, Px};
 
 const WIDTH: f64 = 420.0;
 const HEIGHT: f64 = 190.0;
-const LEFT: f64 = 46.0;
+const LEFT: f64 = 58.0;
 const RIGHT: f64 = 10.0;
 const TOP: f64 = 28.0;
 const BOTTOM: f64 = 34.0;
@@ -21,8 +21,7 @@ const STYLE: &str = "\
 .strip .ground{fill:#fff}.strip .frame{fill:none;stroke:#8c959f}.strip .zero{stroke:#c0c0c0}\
 .strip .found{fill:#8c959f;fill-opacity:.28}.strip .found:hover{fill-opacity:.55}\
 .strip .a1{fill:#0072b2;stroke:#0072b2}.strip .a2{fill:#d55e00;stroke:#d55e00}.strip .a3{fill:#009e73;stroke:#009e73}\
-.strip path.a1,.strip path.a2,.strip path.a3{stroke-width:1.2;stroke-linejoin:round;fill-opacity:.8}\
-.strip text.a1,.strip text.a2,.strip text.a3{stroke:none;font-weight:600}\
+.strip path.a1,.strip path.a2,.strip path.a3{stroke-width:1.6;stroke-linejoin:round;fill-opacity:.8}\
 @media(prefers-color-scheme:dark){.strip text{fill:#e8e8e8}.strip .ground{fill:#161616}.strip .zero{stroke:#484848}\
 .strip .a1{fill:#56b4e9;stroke:#56b4e9}.strip .a2{fill:#ff8a3c;stroke:#ff8a3c}.strip .a3{fill:#2fd0a0;stroke:#2fd0a0}}";
 
@@ -70,12 +69,17 @@ fn draw(result: &CalibrationResult, record: &RecordOverview, language: Language)
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"strip\" role=\"img\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" \
          aria-label=\"{0}\"><style>{STYLE}</style><rect class=\"ground\" width=\"{WIDTH}\" height=\"{HEIGHT}\"/>\
-         <text class=\"title\" x=\"{LEFT}\" y=\"18\">{0}</text>",
+         <text class=\"title\" x=\"8\" y=\"18\">{0}</text>",
         Escaped(&title)
     );
     for axis in 1..=3_u8 {
-        let x = WIDTH - RIGHT - 18.0 * f64::from(4 - axis) + 8.0;
-        let _ = write!(svg, "<text class=\"a{axis}\" x=\"{}\" y=\"18\">{axis}</text>", Px(x));
+        let x = WIDTH - RIGHT - 27.0 * f64::from(4 - axis) + 4.0;
+        let _ = write!(
+            svg,
+            "<path class=\"a{axis}\" d=\"M{} 14h12\"/><text x=\"{}\" y=\"18\">{axis}</text>",
+            Px(x),
+            Px(x + 15.0)
+        );
     }
     scale(&mut svg, &frame, language);
     for axis in 0..3 {

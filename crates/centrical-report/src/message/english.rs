@@ -25,12 +25,17 @@ pub(crate) const ENGLISH: Messages = Messages {
     chi_squared: "χ² per degree of freedom",
     rank: "Rank",
     residual_error: "Reading error over the calibrated range",
-    residual_error_note: "Root mean square and, in brackets, largest magnitude over all plateaus. The second row still holds the error of each \
-        plateau’s speed; the third is without it, which along the arm leaves next to nothing, so it speaks for the axes across the arm and for rest.",
+    residual_error_note: "Root mean square and, in brackets, largest magnitude over all plateaus, against the specific \
+        force of the fitted geometry. The second row still holds the error of each plateau’s speed; the third is without \
+        it, which along the arm leaves next to nothing, so it speaks for the axes across the arm and for rest. The last \
+        row is the expanded uncertainty that the parameters leave in a compensated reading of the same force.",
     before: "Before compensation",
     after: "After compensation",
     after_speed_free: "After, less the speed error of each plateau",
+    compensation_uncertainty: "Uncertainty of compensation, k = 2",
     axis: "axis",
+    newtonometer: "Newtonometer",
+    number_sign: "No.",
     parameters: "Parameters",
     parameters_note: "Value ± expanded uncertainty U = k·u with coverage factor k = 2, which for a normal \
         distribution is a level of confidence of about 95 %; where the effective degrees of freedom are finite, k is that of Student’s \
@@ -59,13 +64,15 @@ pub(crate) const ENGLISH: Messages = Messages {
     position: "Position",
     pair: "pair",
     plots: "Plots",
-    force_axis: "specific force along the axis, g",
+    force_axis: "specific force along the loaded axis, g",
     error_before_axis: "reading error, mg",
     error_after_axis: "reading error, µg",
-    before_caption: "Without compensation the error grows with the specific force: its offset is the bias, its slope the scale error, its bend the quadratic and cubic terms; \
-        the column at zero is the pull along the other axes.",
-    after_caption: "After compensation, less what an error of the plateau’s speed explains: points should keep within their bars (k = 2) \
-        without a trend; along the arm the speed explains nearly all, so points far from zero force lie at zero by construction.",
+    before_caption: "Error of each newtonometer against the specific force along the axis loaded most, a marker for each \
+        such axis: along its own axis the offset is the bias, the slope the scale error, the bend the quadratic and cubic \
+        terms; along another, the slope is misalignment and the parabola a quadratic term across.",
+    after_caption: "The same after compensation, less what an error of the plateau’s speed explains: points should keep \
+        within their bars (k = 2) without a trend; along its own axis the speed explains nearly all, so that those points \
+        lie at zero by construction.",
     residuals_title: "Residuals by plateau",
     residuals_caption: "Mean reading less fitted model with bars of k = 2, speed error included: bars that miss \
         zero more often than one in twenty, or a pattern along the session, would mean a model that does not fit.",

@@ -6,17 +6,27 @@ use super::axis::{Ruler, Tick, power_of_ten};
 use super::svg::{Escaped, Px, Value};
 use super::{Mark, Plot, Point, Series};
 
-const WIDTH: f64 = 760.0;
-const HEIGHT: f64 = 460.0;
-const LEFT: f64 = 84.0;
+/// Lengths of a drawing, px.
+struct Sheet {
+    class: &'static str,
+    width: f64,
+    height: f64,
+    left: f64,
+    /// Width allowed for a letter of the legend.
+    letter: f64,
+    /// About so many ticks along x and y.
+    ticks: [usize; 2],
+}
+
+/// Letters wide enough for 18 px, which a telephone is given.
+const WHOLE: Sheet = Sheet { class: "plot", width: 760.0, height: 460.0, left: 94.0, letter: 9.6, ticks: [8, 7] };
+const PANEL: Sheet = Sheet { class: "plot panel", width: 400.0, height: 320.0, left: 78.0, letter: 7.2, ticks: [5, 6] };
 const RIGHT: f64 = 24.0;
 const BOTTOM: f64 = 56.0;
 /// Baseline of the title, first row of the legend, height of a legend row.
 const TITLE: f64 = 26.0;
 const LEGEND: f64 = 50.0;
 const ROW: f64 = 20.0;
-/// Width allowed for a letter of the legend, px: wide for sans serif at 13 px.
-const LETTER: f64 = 7.2;
 
 /// Okabe and Ito's palette without yellow and black, darkened where it would be pale on white and lightened for dark
 /// grounds. Plain rules rather than variables, which few renderers other than browsers know.
@@ -28,7 +38,7 @@ const STYLE: &str = "\
 .plot .hit{fill:transparent;stroke:none}.plot .mark{fill:currentColor;stroke:none}\
 .plot .s0{stroke:#0072b2;color:#0072b2}.plot .s1{stroke:#d55e00;color:#d55e00}\
 .plot .s2{stroke:#009e73;color:#009e73}.plot .s3{stroke:#b5508d;color:#b5508d}\
-.plot .s4{stroke:#a86f00;color:#a86f00}.plot .s5{stroke:#2f8fc4;color:#2f8fc4}\
+.plot .s4{stroke:#5a3a00;color:#5a3a00}.plot .s5{stroke:#2f8fc4;color:#2f8fc4}\
 @media(prefers-color-scheme:dark){\
 .plot text{fill:#e8e8e8}.plot .ground{fill:#161616}.plot .frame{stroke:#e8e8e8}.plot .grid{stroke:#484848}\
 .plot .s0{stroke:#56b4e9;color:#56b4e9}.plot .s1{stroke:#ff8a3c;color:#ff8a3c}\
@@ -39,6 +49,7 @@ const DASHES: [&str; 4] = ["none", "7 4", "2 3", "9 3 2 3"];
 
 /// Where the data are drawn.
 struct Frame {
+    sheet: Sheet,
     top: f64,
     x: Ruler,
     y: Ruler,
@@ -47,9 +58,10 @@ struct Frame {
 }
 
 pub(super) fn plot(plot: &Plot) -> String {
-    let legend = legend_places(&plot.series);
+    let sheet = if plot.is_panel { PANEL } else { WHOLE };
+    let legend = legend_places(&plot.series, &sheet);
     let rows = legend.last().map_or(0.0, |&(_, row)| row + 1.0);
-    let frame = Frame::new(plot, LEGEND - 12.0 + ROW * rows);
+    let frame = Frame::new(plot, sheet, LEGEND - 12.0 + ROW * rows);
     let mut svg = String::new();
     // Writing to a String cannot fail.
     let _ = draw(&mut svg, plot, &frame, &legend);
@@ -58,12 +70,13 @@ pub(super) fn plot(plot: &Plot) -> String {
 
 fn draw(svg: &mut String, plot: &Plot, frame: &Frame, legend: &[(f64, f64)]) -> std::fmt::Result {
     let title = Escaped(&plot.title);
+    let Sheet { class, width, height, left, .. } = frame.sheet;
     write!(
         svg,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" role=\"img\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"{class}\" role=\"img\" viewBox=\"0 0 {width} {height}\" \
          aria-label=\"{title}\"><style>{STYLE}</style>\
-         <rect class=\"ground\" width=\"{WIDTH}\" height=\"{HEIGHT}\"/>\
-         <text class=\"title\" x=\"{LEFT}\" y=\"{TITLE}\">{title}</text>"
+         <rect class=\"ground\" width=\"{width}\" height=\"{height}\"/>\
+         <text class=\"title\" x=\"{left}\" y=\"{TITLE}\">{title}</text>"
     )?;
     for (index, (series, place)) in plot.series.iter().zip(legend).enumerate() {
         legend_entry(svg, index, series, *place)?;
@@ -72,7 +85,7 @@ fn draw(svg: &mut String, plot: &Plot, frame: &Frame, legend: &[(f64, f64)]) -> 
     // The inner element clips what a given range leaves outside.
     write!(
         svg,
-        "<svg x=\"{LEFT}\" y=\"{}\" width=\"{}\" height=\"{}\" overflow=\"hidden\">",
+        "<svg x=\"{left}\" y=\"{}\" width=\"{}\" height=\"{}\" overflow=\"hidden\">",
         Px(frame.top),
         Px(frame.width),
         Px(frame.height)
@@ -84,15 +97,15 @@ fn draw(svg: &mut String, plot: &Plot, frame: &Frame, legend: &[(f64, f64)]) -> 
 }
 
 impl Frame {
-    fn new(plot: &Plot, top: f64) -> Self {
-        let (width, height) = (WIDTH - LEFT - RIGHT, HEIGHT - top - BOTTOM);
+    fn new(plot: &Plot, sheet: Sheet, top: f64) -> Self {
+        let (width, height) = (sheet.width - sheet.left - RIGHT, sheet.height - top - BOTTOM);
         let points = || plot.series.iter().flat_map(|series| &series.points);
         let ordinates = points().flat_map(|point| {
             let (low, high) = point.interval.unwrap_or((point.y, point.y));
             [point.y, low, high]
         });
         let x = Ruler::new(&plot.x, points().map(|point| point.x), width);
-        Self { top, x, y: Ruler::new(&plot.y, ordinates, height), width, height }
+        Self { sheet, top, x, y: Ruler::new(&plot.y, ordinates, height), width, height }
     }
 
     /// Place of a point inside the frame, from its upper left corner.
@@ -103,11 +116,12 @@ impl Frame {
 
 fn axes(svg: &mut String, plot: &Plot, frame: &Frame) -> std::fmt::Result {
     let bottom = frame.top + frame.height;
-    let (x_ticks, x_power) = frame.x.ticks(8);
-    let (y_ticks, y_power) = frame.y.ticks(7);
+    let Sheet { left, ticks: [across, up], .. } = frame.sheet;
+    let (x_ticks, x_power) = frame.x.ticks(across);
+    let (y_ticks, y_power) = frame.y.ticks(up);
     let class = |tick: &Tick| if tick.text.is_some() { "grid" } else { "grid minor" };
     for tick in &x_ticks {
-        let x = Px(LEFT + tick.position);
+        let x = Px(left + tick.position);
         write!(svg, "<path class=\"{}\" d=\"M{x} {}V{}\"/>", class(tick), Px(frame.top), Px(bottom))?;
         if let Some(text) = &tick.text {
             let text = with_comma(text.clone(), plot.has_decimal_comma);
@@ -116,16 +130,16 @@ fn axes(svg: &mut String, plot: &Plot, frame: &Frame) -> std::fmt::Result {
     }
     for tick in &y_ticks {
         let y = bottom - tick.position;
-        write!(svg, "<path class=\"{}\" d=\"M{LEFT} {}H{}\"/>", class(tick), Px(y), Px(LEFT + frame.width))?;
+        write!(svg, "<path class=\"{}\" d=\"M{left} {}H{}\"/>", class(tick), Px(y), Px(left + frame.width))?;
         if let Some(text) = &tick.text {
             let text = with_comma(text.clone(), plot.has_decimal_comma);
-            write!(svg, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{text}</text>", Px(LEFT - 8.0), Px(y + 4.5))?;
+            write!(svg, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{text}</text>", Px(left - 8.0), Px(y + 4.5))?;
         }
     }
-    let (middle_x, middle_y) = (Px(LEFT + frame.width / 2.0), Px(frame.top + frame.height / 2.0));
+    let (middle_x, middle_y) = (Px(left + frame.width / 2.0), Px(frame.top + frame.height / 2.0));
     write!(
         svg,
-        "<rect class=\"frame\" x=\"{LEFT}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\
+        "<rect class=\"frame\" x=\"{left}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\
          <text x=\"{middle_x}\" y=\"{}\" text-anchor=\"middle\">{}</text>\
          <text transform=\"translate(18 {middle_y})rotate(-90)\" text-anchor=\"middle\">{}</text>",
         Px(frame.top),
@@ -143,13 +157,13 @@ fn label(label: &str, power: i32) -> String {
 }
 
 /// `(x, row)` of each legend entry, wrapped to the plot's width.
-fn legend_places(series: &[Series]) -> Vec<(f64, f64)> {
-    let mut next = (LEFT, 0.0);
+fn legend_places(series: &[Series], sheet: &Sheet) -> Vec<(f64, f64)> {
+    let mut next = (sheet.left, 0.0);
     let mut places = Vec::with_capacity(series.len());
     for series in series {
-        let width = 44.0 + LETTER * series.label.chars().count() as f64;
-        if next.0 > LEFT && next.0 + width > WIDTH - RIGHT {
-            next = (LEFT, next.1 + 1.0);
+        let width = 44.0 + sheet.letter * series.label.chars().count() as f64;
+        if next.0 > sheet.left && next.0 + width > sheet.width {
+            next = (sheet.left, next.1 + 1.0);
         }
         places.push(next);
         next.0 += width;

@@ -1,3 +1,4 @@
 //! What holds for every plot.
 
+mod palette;
 mod plot;

@@ -69,6 +69,22 @@ impl Estimator {
         Self::HadamardTotal,
     ];
 
+    /// Its name in files and options: `overlapping-allan`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Allan => "allan",
+            Self::OverlappingAllan => "overlapping-allan",
+            Self::ModifiedAllan => "modified-allan",
+            Self::Time => "time",
+            Self::Hadamard => "hadamard",
+            Self::OverlappingHadamard => "overlapping-hadamard",
+            Self::Total => "total",
+            Self::ModifiedTotal => "modified-total",
+            Self::TimeTotal => "time-total",
+            Self::HadamardTotal => "hadamard-total",
+        }
+    }
+
     /// The variance at averaging factor `m`; none if the record, less its gaps, has no term that long.
     pub fn variance(self, phase: &Phase, m: usize) -> Option<RawVariance> {
         let tau = m as f64 * phase.tau0();

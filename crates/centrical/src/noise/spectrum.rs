@@ -4,6 +4,7 @@ use realfft::RealFftPlanner;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::NoiseError;
+use crate::reduction::median;
 
 /// One-sided power spectral density of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +23,73 @@ pub struct Spectrum {
     pub resolution: f64,
 }
 
+/// Mean density of a band of frequencies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpectrumBand {
+    /// Middle of the band, mean of its frequencies, Hz.
+    pub frequency: f64,
+    /// Mean density, square of the readings' unit per Hz.
+    pub density: f64,
+}
+
+/// A line that stands out of the noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpectrumLine {
+    /// Its frequency, to within the resolution, Hz.
+    pub frequency: f64,
+    /// Amplitude of a sine of its power, the readings' unit.
+    pub amplitude: f64,
+    /// Its density over that of the noise about it.
+    pub excess: f64,
+}
+
 impl Spectrum {
+    /// Mean densities of bands of equal width in logarithm, so many an octave; without the ends of the spectrum: the
+    /// mean at frequency 0 is taken off, and half the sampling rate has one side only.
+    pub fn bands(&self, per_octave: f64) -> Vec<SpectrumBand> {
+        let inner = 1..self.density.len().saturating_sub(1).max(1);
+        let band = |k: &usize| (self.frequency[*k].log2() * per_octave).floor();
+        let places: Vec<usize> = inner.collect();
+        let mean = |of: &[f64], part: &[usize]| part.iter().map(|k| of[*k]).sum::<f64>() / part.len() as f64;
+        let bands = places.chunk_by(|a, b| band(a) == band(b));
+        bands
+            .map(|part| SpectrumBand { frequency: mean(&self.frequency, part), density: mean(&self.density, part) })
+            .collect()
+    }
+
+    /// Lines: peaks above what the noise on both sides of them comes to by chance once in a thousand spectra.
+    ///
+    /// The noise about a peak is the larger of the medians of the densities on either side, the window's main lobe left
+    /// out; densities of noise follow chi^2 with the spectrum's degrees of freedom.
+    pub fn lines(&self) -> Vec<SpectrumLine> {
+        const CHANCE: f64 = 1e-3;
+        /// Bins of the main lobe of the Hann window on either side of a line, and bins that tell the noise.
+        const LOBE: usize = 2;
+        const SIDE: usize = 24;
+        let Ok(law) = ChiSquared::new(self.degrees_of_freedom) else { return Vec::new() };
+        let bins = self.density.len().saturating_sub(2);
+        if bins <= 2 * (SIDE + LOBE) {
+            return Vec::new();
+        }
+        let highest = law.inverse_cdf(1.0 - CHANCE / bins as f64) / law.inverse_cdf(0.5);
+        let side = |range: std::ops::Range<usize>| median(&mut self.density[range].to_vec());
+        let step = self.frequency[1];
+        let line = |k: usize| {
+            let near = &self.density[k - LOBE..=k + LOBE];
+            let middle = side(k - LOBE - SIDE..k - LOBE).max(side(k + LOBE + 1..k + LOBE + 1 + SIDE));
+            let is_peak = near.iter().all(|density| *density <= self.density[k]);
+            // The median of chi^2 is below its mean.
+            let noise = middle * self.degrees_of_freedom / law.inverse_cdf(0.5);
+            let power: f64 = near.iter().map(|density| (density - noise) * step).sum();
+            (is_peak && self.density[k] > highest * middle).then(|| SpectrumLine {
+                frequency: self.frequency[k],
+                amplitude: (2.0 * power.max(0.0)).sqrt(),
+                excess: self.density[k] / noise,
+            })
+        };
+        (1 + LOBE + SIDE..bins + 1 - LOBE - SIDE).filter_map(line).collect()
+    }
+
     /// The factors by which a density is multiplied for the ends of its confidence interval at the level
     /// `confidence`: `edf / chi^2_(1-p)` and `edf / chi^2_p`, p = (1 - confidence) / 2.
     ///

@@ -47,6 +47,17 @@ impl NoiseTerm {
         }
     }
 
+    /// Its name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quantisation => "quantisation",
+            Self::White => "white noise",
+            Self::BiasInstability => "bias instability",
+            Self::RandomWalk => "random walk",
+            Self::Ramp => "ramp",
+        }
+    }
+
     /// Allan variance at `tau` (s) of the term with this coefficient.
     pub fn allan_variance(self, coefficient: f64, tau: f64) -> f64 {
         let square = coefficient * coefficient;

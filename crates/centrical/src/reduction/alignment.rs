@@ -7,13 +7,35 @@ use nalgebra::Vector3;
 use super::blocks::{Blocks, median};
 use super::evidence::{Candidate, Evidence};
 use super::path::best_path;
-use super::{ReductionError, ScheduledPlateau, Stretch};
+use super::{ReductionError, ScheduledPlateau, Stretch, mistake, rotation};
 
 /// More rounds than it takes.
 const ROUNDS: usize = 8;
 
-/// The core of each scheduled plateau, in blocks.
+/// The core of each scheduled plateau, in blocks; not in a record that was taken down by mistake.
 pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
+    let other = |schedule: &[ScheduledPlateau]| by_schedule(blocks, schedule).ok();
+    match by_schedule(blocks, schedule) {
+        Ok(cores) => {
+            mistake::recognise(blocks, schedule, Some(&cores), other)?;
+            rotation::check(blocks, schedule, &cores)?;
+            Ok(cores)
+        }
+        Err(error) => {
+            mistake::recognise(blocks, schedule, None, other)?;
+            Err(error)
+        }
+    }
+}
+
+/// Median reading of some blocks [m/s^2].
+pub(super) fn level(blocks: &Blocks, range: &Range<usize>) -> Vector3<f64> {
+    let of = |axis: usize| median(&mut blocks.f_z[range.clone()].iter().map(|f| f[axis]).collect::<Vec<f64>>());
+    Vector3::from_fn(|axis, _| of(axis))
+}
+
+/// The core of each scheduled plateau, in blocks.
+fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
     let evidence = Evidence::new(blocks);
     let candidates: Vec<Candidate> = schedule.iter().map(|plateau| evidence.of(plateau)).collect();
     let between = evidence.in_transition();
@@ -49,10 +71,9 @@ fn missing(cores: &[Range<usize>]) -> Option<usize> {
 fn stretch(blocks: &Blocks, range: Range<usize>, cores: &[Range<usize>], candidates: &[Candidate]) -> Stretch {
     let half = 0.5 * blocks.width;
     let middle = usize::midpoint(range.start, range.end);
-    let level = |axis: usize| median(&mut blocks.f_z[range.clone()].iter().map(|f| f[axis]).collect::<Vec<f64>>());
     Stretch {
         window: [blocks.t[range.start] - half, blocks.t[range.end - 1] + half],
-        level_z: Vector3::from_fn(|axis, _| level(axis)),
+        level_z: level(blocks, &range),
         plateau: cores.iter().position(|core| core.contains(&middle)),
         resembles: (0..cores.len()).filter(|k| candidates[*k].has_level(middle)).collect(),
     }

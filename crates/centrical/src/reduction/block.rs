@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::blocks::{MAD, SAMPLES, cut, median};
+use super::lanes::{fold, sum};
 use super::record::RecordSlice;
 
 /// What is kept of the samples of one block of time.
@@ -39,7 +40,7 @@ impl Block {
     pub fn of(number: usize, samples: RecordSlice, differences: &mut Vec<f64>) -> Self {
         let axes = samples.f_z.map(|f| Axis::of(f, differences));
         let finite = |i: &usize| samples.f_z.iter().all(|f| f[*i].is_finite());
-        let whole = axes.iter().all(|axis| (axis.range[1] - axis.range[0]).is_finite());
+        let whole = samples.f_z.iter().all(|f| sum(f, |value| value).is_finite());
         let readable = if whole { samples.t.len() } else { (0..samples.t.len()).filter(finite).count() };
         let vector = |of: fn(&Axis) -> f64| Vector3::from_fn(|k, _| of(&axes[k]));
         let [a, b, c] = axes.each_ref().map(|axis| axis.level);
@@ -72,41 +73,17 @@ impl Axis {
     }
 }
 
-/// Lanes of sums and extremes: independent of each other, so that a processor may take them at once.
-const LANES: usize = 8;
-
-/// Folds values into lanes, and the lanes into one.
-fn in_lanes<T: Copy>(values: &[f64], start: T, step: impl Fn(T, f64) -> T, join: impl Fn(T, T) -> T) -> T {
-    let mut lanes = [start; LANES];
-    let whole = values.chunks_exact(LANES);
-    let rest = whole.remainder();
-    for chunk in whole {
-        for (lane, value) in lanes.iter_mut().zip(chunk) {
-            *lane = step(*lane, *value);
-        }
-    }
-    for (lane, value) in lanes.iter_mut().zip(rest) {
-        *lane = step(*lane, *value);
-    }
-    lanes.into_iter().reduce(join).unwrap_or(start)
-}
-
-/// Sum of values.
-fn sum(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
-    in_lanes(values, 0.0, |sum, value| sum + of(value), |a, b| a + b)
-}
-
 /// Lowest and highest of the values that are numbers.
 fn range(f: &[f64]) -> [f64; 2] {
-    let low = in_lanes(f, f64::INFINITY, |low, value| if value < low { value } else { low }, f64::min);
-    let high = in_lanes(f, f64::NEG_INFINITY, |high, value| if value > high { value } else { high }, f64::max);
+    let low = fold(f, f64::INFINITY, |low, value| if value < low { value } else { low }, f64::min);
+    let high = fold(f, f64::NEG_INFINITY, |high, value| if value > high { value } else { high }, f64::max);
     [low, high]
 }
 
 /// The smallest size above a limit; infinite if there is none.
 fn smallest_above(differences: &[f64], limit: f64) -> f64 {
     let smaller = |smallest: f64, d: f64| if d.abs() > limit && d.abs() < smallest { d.abs() } else { smallest };
-    in_lanes(differences, f64::INFINITY, smaller, f64::min)
+    fold(differences, f64::INFINITY, smaller, f64::min)
 }
 
 /// Readings different from the one before, and of these the ones that the next repeats: a long run counts once.
@@ -120,14 +97,14 @@ fn repeats(differences: &[f64]) -> (u64, u64) {
 
 /// Standard deviation of white noise by its second differences, whose variance is six-fold.
 fn noise(differences: &[f64]) -> f64 {
-    let before = &differences[..differences.len() - 1];
-    let mut squares = [0.0; LANES];
-    for (a, b) in before.chunks(LANES).zip(differences[1..].chunks(LANES)) {
-        for ((square, a), b) in squares.iter_mut().zip(a).zip(b) {
-            *square += (b - a) * (b - a);
+    let (before, after) = (&differences[..differences.len() - 1], &differences[1..]);
+    let mut lanes = [0.0; 8];
+    for (a, b) in before.chunks(lanes.len()).zip(after.chunks(lanes.len())) {
+        for ((lane, a), b) in lanes.iter_mut().zip(a).zip(b) {
+            *lane += (b - a) * (b - a);
         }
     }
-    (squares.iter().sum::<f64>() / (6 * before.len()) as f64).sqrt()
+    (lanes.iter().sum::<f64>() / (6 * before.len()) as f64).sqrt()
 }
 
 /// Mean of the values that are no spikes. A mean, since the median of part of a revolution is no linear function of

@@ -140,10 +140,10 @@ pub(super) fn whole(number: f64) -> usize {
 }
 
 /// Normal law: standard deviation over median absolute value.
-pub(super) const MAD: f64 = 1.482_602_218_505_602;
+pub(crate) const MAD: f64 = 1.482_602_218_505_602;
 
 /// Median; of an even number the upper of the middle two. Zero of none.
-pub(super) fn median(values: &mut [f64]) -> f64 {
+pub(crate) fn median(values: &mut [f64]) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
@@ -153,6 +153,6 @@ pub(super) fn median(values: &mut [f64]) -> f64 {
 
 /// How many standard deviations are too many among `n` good samples: less than one in twenty such sets has one beyond
 /// it, since the normal law leaves less than `exp(-c^2 / 2)` beyond `c`.
-pub(super) fn cut(n: usize) -> f64 {
+pub(crate) fn cut(n: usize) -> f64 {
     (2.0 * (20.0 * n as f64).ln()).sqrt()
 }

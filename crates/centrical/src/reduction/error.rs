@@ -5,6 +5,8 @@ use std::fmt;
 use nalgebra::Vector3;
 use thiserror::Error;
 
+use super::Mistake;
+
 /// Why a record could not be reduced.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ReductionError {
@@ -64,6 +66,72 @@ pub enum ReductionError {
         /// Shortest that can be averaged [s].
         least: f64,
     },
+    /// The record was taken down by mistake: it is decisively better explained otherwise than as it stands.
+    #[error(
+        "readings fit {mistake}: on plateau {} at {omega:.3} rad/s found {}, expected about {}",
+        index + 1, Level(found_z), Level(level_z)
+    )]
+    Mistaken {
+        /// What explains the readings.
+        mistake: Mistake,
+        /// Index of the plateau in the schedule where it shows most.
+        index: usize,
+        /// Its speed [rad/s].
+        omega: f64,
+        /// Its nominal reading [m/s^2].
+        level_z: Vector3<f64>,
+        /// Its reading [m/s^2].
+        found_z: Vector3<f64>,
+    },
+    /// The ramps fit the other sense of rotation.
+    #[error(
+        "the {ramps} ramps fit the other sense of rotation: found {part:.2} times the expected pull across the arm, \
+         expected 1; the sign of rotation is wrong, or that of the newtonometer across the arm"
+    )]
+    Rotation {
+        /// Ramps that tell.
+        ramps: usize,
+        /// The tangential part of the readings over the expected one.
+        part: f64,
+    },
+    /// A newtonometer stands still on a plateau.
+    #[error(
+        "plateau {} from {:.3} s to {:.3} s: f{} reads exactly {value} m/s^2 in {stuck} of {samples} samples: \
+         a stuck newtonometer, or one beyond its range; expected noise", index + 1, window[0], window[1], axis + 1
+    )]
+    Stuck {
+        /// Index of the plateau in the schedule.
+        index: usize,
+        /// Where it was found [s].
+        window: [f64; 2],
+        /// Newtonometer, 0 to 2.
+        axis: usize,
+        /// The reading at which it stands most [m/s^2].
+        value: f64,
+        /// Samples there.
+        samples: usize,
+        /// Samples that are stuck.
+        stuck: usize,
+    },
+    /// A newtonometer is at the end of its range on a plateau.
+    #[error(
+        "plateau {} from {:.3} s to {:.3} s: f{} reads {value} m/s^2 and nothing beyond in {piled_up} of {samples} samples: \
+         saturated; expected readings within the range", index + 1, window[0], window[1], axis + 1
+    )]
+    Saturated {
+        /// Index of the plateau in the schedule.
+        index: usize,
+        /// Where it was found [s].
+        window: [f64; 2],
+        /// Newtonometer, 0 to 2.
+        axis: usize,
+        /// The end of the range [m/s^2].
+        value: f64,
+        /// Samples there.
+        samples: usize,
+        /// Samples at the end of the range.
+        piled_up: usize,
+    },
     /// No steady reading to average, though the medians of blocks are steady.
     #[error(
         "plateau {} from {:.3} s to {:.3} s: found {good} of {samples} samples near any one reading",
@@ -110,6 +178,15 @@ pub struct Stretch {
 struct Sought<'a> {
     omega: f64,
     level: &'a Vector3<f64>,
+}
+
+struct Level<'a>(&'a Vector3<f64>);
+
+impl fmt::Display for Level<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let l = self.0;
+        write!(out, "({:.2}, {:.2}, {:.2}) m/s^2", l.x, l.y, l.z)
+    }
 }
 
 struct Seen<'a>(&'a [Stretch]);

@@ -17,7 +17,7 @@ const DISTURBED: f64 = 0.01;
 
 /// Half-width of the level's density on a plateau, relative and absolute [m/s^2]: the uncalibrated unit's scale,
 /// misalignment and bias. The density has the tails of Cauchy's law, so a unit ten times worse is found as well.
-const LEVEL: (f64, f64) = (5e-3, 0.05);
+pub(super) const LEVEL: (f64, f64) = (5e-3, 0.05);
 
 /// Blocks whose mean is compared with that of as many before: the more, the slower a change is seen.
 const REACH: f64 = 4.0;

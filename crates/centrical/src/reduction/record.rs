@@ -65,11 +65,13 @@ impl Record {
 
 impl<'a> RecordSlice<'a> {
     /// Samples `from..to`.
+    #[must_use]
     pub fn part(&self, range: std::ops::Range<usize>) -> RecordSlice<'a> {
         RecordSlice { t: &self.t[range.clone()], f_z: self.f_z.map(|f| &f[range.clone()]) }
     }
 
     /// The samples from the time `span[0]` to the time `span[1]`, both included.
+    #[must_use]
     pub fn between(&self, span: [f64; 2]) -> RecordSlice<'a> {
         let from = self.t.partition_point(|t| *t < span[0]);
         let to = self.t.partition_point(|t| *t <= span[1]);

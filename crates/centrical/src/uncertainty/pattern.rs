@@ -64,9 +64,22 @@ pub fn patterns(
     observations: &[Observation],
     speed_uncertainty: f64,
 ) -> Result<Vec<Pattern>, FitError> {
+    trends_of(fit, model, observations, speed_uncertainty, &trends(model.experiment()))
+}
+
+/// Those of the patterns `trends` alone.
+///
+/// # Errors
+/// As [`patterns`].
+pub fn trends_of(
+    fit: &Fit,
+    model: &MeasurementModel,
+    observations: &[Observation],
+    speed_uncertainty: f64,
+    trends: &[Trend],
+) -> Result<Vec<Pattern>, FitError> {
     let gain = Gain::of(fit, model, observations, speed_uncertainty)?;
     let e = gain.redundant_residuals();
-    let trends = trends(model.experiment());
     let candidates: Vec<(usize, Trend)> = trends.iter().flat_map(|t| (0..3).map(move |axis| (axis, *t))).collect();
     let columns = columns(&candidates, model.experiment(), observations);
     let (whitened, redundant) = (gain.whitened(&columns), gain.redundant(&columns));

@@ -6,14 +6,18 @@ mod common;
 
 mod combination;
 mod comparison;
+mod consistency;
 mod coverage;
 mod fit;
 mod frame;
 mod invariance;
 mod measurement;
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
+mod mistakes;
 mod noise;
 mod noise_source;
 mod observability;
+mod plan;
 mod prior;
 mod recursive;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
@@ -23,5 +27,7 @@ mod simulate;
 mod simulated_noise;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod stream;
+#[allow(clippy::cast_possible_truncation, reason = "seeds")]
+mod tilt;
 mod uncertainty;
 mod validity;

@@ -300,3 +300,40 @@ fn coefficients_follow_the_units_of_reading_and_time() {
         assert!((b / a / factor - 1.0).abs() < 1e-6 && (u_b / u_a / factor - 1.0).abs() < 1e-6, "{term:?}");
     }
 }
+
+/// A sine among white noise stands out at its frequency with its amplitude; noise alone, red or white, shows no line in
+/// 200 records (expected: a fifth of one).
+#[test]
+fn lines_are_found_with_their_amplitude() {
+    let recipe = Recipe { white: 1e-3, ..Recipe::default() };
+    let mut readings = recipe.readings(16_384, TAU0, 7);
+    let rate = std::f64::consts::TAU * 0.123_4;
+    readings.iter_mut().enumerate().for_each(|(k, y)| *y += 5e-3 * (rate * k as f64).sin());
+    let spectrum = power_spectrum(&readings, TAU0, 2048).unwrap();
+    let lines = spectrum.lines();
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    assert!((lines[0].frequency * TAU0 - 0.123_4).abs() < 1.0 / 2048.0);
+    // Noise of 0.01 a sample leaves an amplitude uncertain by 0.01 sqrt(2 / 16384), 2.2 %.
+    assert!((lines[0].amplitude / 5e-3 - 1.0).abs() < 0.066, "{lines:?}");
+    let red = Recipe { white: 1e-3, random_walk: 1e-3, ..Recipe::default() };
+    let found: usize = (0..200)
+        .map(|seed| {
+            let recipe = if seed % 2 == 0 { &red } else { &recipe };
+            power_spectrum(&recipe.readings(8192, TAU0, 100 + seed), TAU0, 512).unwrap().lines().len()
+        })
+        .sum();
+    assert!(found <= 2, "{found} lines in noise");
+}
+
+/// Bands keep the power: white noise has its density in each of them.
+#[test]
+fn bands_of_white_noise_have_its_density() {
+    let readings = Recipe { white: 1e-3, ..Recipe::default() }.readings(65_536, TAU0, 8);
+    let spectrum = power_spectrum(&readings, TAU0, 4096).unwrap();
+    let bands = spectrum.bands(2.0);
+    assert!(bands.len() > 15 && bands.is_sorted_by(|a, b| a.frequency < b.frequency));
+    for band in bands.iter().filter(|band| band.frequency > 8.0 / (4096.0 * TAU0)) {
+        // One-sided: twice N^2. Some 30 segments and 4 bins and more: 15 % is three standard deviations.
+        assert!((band.density / 2e-6 - 1.0).abs() < 0.25, "{band:?}");
+    }
+}

@@ -358,7 +358,7 @@ fn a_plateau_read_by_a_stuck_sensor_is_refused() {
         }
     }
     let error = reduce(&record, None, &run.schedule()).expect_err("one axis says nothing");
-    assert!(matches!(error, ReductionError::Unsteady { index: 2, good: 0, .. }), "{error}");
+    assert!(matches!(error, ReductionError::Stuck { index: 2, axis: 1, value: -0.7, .. }), "{error}");
 }
 
 /// Sampled once a revolution, the once-per-revolution term is a constant.

@@ -1,0 +1,158 @@
+//! `centrical noise FILE`: deviations of the Allan family, spectrum and noise terms of a record.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use centrical::noise::Estimator;
+use centrical_io::{
+    Column, ColumnName, Columns, Dimension, Error, NoiseAnalysis, NotThatQuantity, PlateauName, Quantity, Scale,
+    Series, Session, create_folder, write_whole,
+};
+use centrical_report::{noise_plots, noise_table, noise_warnings};
+
+use crate::Outcome;
+
+/// Noise of a record: deviations of the Allan family with intervals, spectrum, noise terms.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A record in any format that is read, or a session: one of its plateaus
+    file: PathBuf,
+    /// Plateau of the session [default: the longest at rest]
+    #[arg(long, value_name = "MOUNTING:PLATEAU")]
+    plateau: Option<PlateauName>,
+    /// The session whose experiment.toml tells the record's columns and units
+    #[arg(long, value_name = "SESSION", conflicts_with_all = ["time", "rate", "readings", "unit"])]
+    session: Option<PathBuf>,
+    /// Column of time, in s: its name, or its number from 1
+    #[arg(long, value_name = "COLUMN", default_value = "t", value_parser = column_name)]
+    time: ColumnName,
+    /// Sampling rate of a record without a column of time, such as "250 Hz"
+    #[arg(long, value_name = "QUANTITY", value_parser = frequency, conflicts_with = "time")]
+    rate: Option<f64>,
+    /// Columns of readings: names, or numbers from 1
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',', default_value = "f1,f2,f3", value_parser = column_name)]
+    readings: Vec<ColumnName>,
+    /// Unit of the readings; another than of acceleration is shown as it is, "counts" for instance
+    #[arg(long, default_value = "m/s^2")]
+    unit: String,
+    /// Begin of the part to analyse, on the record's clock, s
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
+    from: Option<f64>,
+    /// End of the part to analyse
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
+    to: Option<f64>,
+    /// Estimators, or "all"
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "overlapping-allan,overlapping-hadamard", value_parser = estimators)]
+    estimators: Vec<Estimators>,
+    /// Folder for noise.json and the plots, made if it is not there
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the analysis as JSON instead of tables
+    #[arg(long)]
+    json: bool,
+}
+
+/// One estimator or all.
+#[derive(Debug, Clone)]
+struct Estimators(Vec<Estimator>);
+
+/// Runs the command. Not acceptable: noise terms do not describe a column of readings.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let (series, plateau) = series(arguments)?;
+    let mut estimators: Vec<Estimator> = Vec::new();
+    for estimator in arguments.estimators.iter().flat_map(|some| &some.0) {
+        if !estimators.contains(estimator) {
+            estimators.push(*estimator);
+        }
+    }
+    let analysis = NoiseAnalysis::of(&series, &estimators)?;
+    if let Some(folder) = &arguments.out {
+        create_folder(folder)?;
+        analysis.write(&folder.join("noise.json"))?;
+        for (name, plot) in noise_plots(&analysis) {
+            write_whole(&folder.join(name), plot.to_svg().as_bytes())?;
+        }
+    }
+    let warnings = noise_warnings(&analysis);
+    let text = if arguments.json {
+        analysis.to_json()
+    } else {
+        let plateau = plateau.map(|name| format!("Plateau {}:{} of ", name.mounting, name.plateau));
+        let mut lines = vec![plateau.unwrap_or_default(), noise_table(&analysis), "\n".to_owned()];
+        lines.extend(warnings.iter().map(|warning| format!("NOT ACCEPTABLE  {warning}\n")));
+        lines.extend(arguments.out.iter().map(|folder| format!("Written to {}\n", folder.display())));
+        lines.concat()
+    };
+    // A reader that has seen enough (`| head`) is no failure.
+    let _ = io::stdout().write_all(text.as_bytes());
+    Ok(if warnings.is_empty() { Outcome::Done } else { Outcome::NotAcceptable })
+}
+
+/// The readings to analyse, and the plateau that they are of.
+fn series(arguments: &Arguments) -> Result<(Series, Option<PlateauName>), Error> {
+    if is_session(&arguments.file) {
+        let session = Session::read(&arguments.file)?;
+        let (series, name) = Series::of_plateau(&session, arguments.plateau)?;
+        return Ok((series, Some(name)));
+    }
+    let (time, readings) = match &arguments.session {
+        Some(session) => {
+            let Columns { time, f, .. } = Session::read(session)?.columns;
+            (time, f.to_vec())
+        }
+        None => columns(arguments),
+    };
+    let window = [arguments.from.unwrap_or(f64::NEG_INFINITY), arguments.to.unwrap_or(f64::INFINITY)];
+    let series = Series::read(&arguments.file, &time, &readings, window)?;
+    Ok((series, None))
+}
+
+/// A folder, or an experiment file.
+fn is_session(file: &Path) -> bool {
+    file.is_dir() || file.extension().is_some_and(|extension| extension == "toml")
+}
+
+fn columns(arguments: &Arguments) -> (Column, Vec<Column>) {
+    let column = |name: &ColumnName, unit: &str, factor| Column {
+        name: name.clone(),
+        unit: unit.to_owned(),
+        scale: Scale::factor(factor),
+    };
+    let time = match arguments.rate {
+        Some(rate) => column(&ColumnName::Row, "samples", 1.0 / rate),
+        None => column(&arguments.time, "s", 1.0),
+    };
+    let factor = Dimension::Acceleration.factor(&arguments.unit).unwrap_or(1.0);
+    (time, arguments.readings.iter().map(|name| column(name, &arguments.unit, factor)).collect())
+}
+
+/// A number from 1, or a name.
+fn column_name(text: &str) -> Result<ColumnName, String> {
+    match text.parse::<usize>() {
+        Ok(0) => Err("found 0, expected a number from 1 or a name".to_owned()),
+        Ok(number) => Ok(ColumnName::Number(number)),
+        Err(_) => Ok(ColumnName::Name(text.to_owned())),
+    }
+}
+
+fn frequency(text: &str) -> Result<f64, String> {
+    let rate = quantity(text, Dimension::Frequency).map_err(|wrong| wrong.to_string())?;
+    if rate > 0.0 { Ok(rate) } else { Err(format!("found {text:?}, expected a rate above zero")) }
+}
+
+fn time(text: &str) -> Result<f64, NotThatQuantity> {
+    quantity(text, Dimension::Time)
+}
+
+fn quantity(text: &str, dimension: Dimension) -> Result<f64, NotThatQuantity> {
+    Quantity::Text(text.to_owned()).si(dimension)
+}
+
+fn estimators(text: &str) -> Result<Estimators, String> {
+    if text == "all" {
+        return Ok(Estimators(Estimator::ALL.to_vec()));
+    }
+    let found = Estimator::ALL.into_iter().find(|estimator| estimator.name() == text);
+    let names = || Estimator::ALL.map(Estimator::name).join(", ");
+    found.map(|one| Estimators(vec![one])).ok_or_else(|| format!("expected \"all\" or some of {}", names()))
+}

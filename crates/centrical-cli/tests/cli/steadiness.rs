@@ -1,0 +1,71 @@
+//! Drift and tilt as `calibrate` tells them, of sessions that were made with and without.
+
+use std::fs;
+
+use centrical_io::CalibrationResult;
+
+use crate::session::{Copy, example};
+
+/// Simulates the example with its first speed run again at the end, and calibrates it: the result and what is said.
+fn calibrated(truth: &str, seed: &str) -> (CalibrationResult, String) {
+    let copy = Copy::new();
+    let plan = fs::read_to_string(example().join("experiment.toml")).unwrap();
+    let last = "  { speed = \"598.3 rpm\" },\n";
+    let plan = plan.replace(last, &format!("{last}  {{ speed = \"133.8 rpm\" }},\n"));
+    fs::write(copy.out().join("plan.toml"), plan).unwrap();
+    fs::write(copy.out().join("truth.toml"), truth).unwrap();
+    let made = copy.run(&["simulate", "plan.toml", "--truth", "truth.toml", "--seed", seed, "--out", "session"]);
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    let output = copy.run(&["calibrate", "session"]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    (CalibrationResult::read(&copy.out().join("result.json")).unwrap(), said)
+}
+
+const STEADY: &str = r#"
+typical = { size = 1.0 }
+[parameters]
+alpha_1 = "0.3 mrad"
+alpha_2 = "-0.4 mrad"
+[sensor]
+white = "0.2 mg"
+"#;
+
+#[test]
+fn a_steady_session_is_said_to_be_steady() {
+    let (result, said) = calibrated(STEADY, "11");
+    let drift = result.drift.expect("records tell the drift");
+    assert_eq!(drift.repeats.len(), 12);
+    assert_eq!(drift.repeats[0].indices, [1, 8]);
+    assert!(drift.repeats.iter().all(|repeat| repeat.probability > 1e-5));
+    assert_eq!(said.matches("no drift seen").count(), 2, "{said}");
+    assert!(said.contains("plateaus run again: 12") && said.contains("no difference seen"), "{said}");
+    let tilt = result.tilt.expect("the tilt is determined");
+    assert!((tilt.spinning - 5e-4).abs() < 4.0 * tilt.spinning_uncertainty, "{tilt:?}");
+    assert!((tilt.at_rest - 5e-4).abs() < 4.0 * tilt.at_rest_uncertainty, "{tilt:?}");
+    assert!(said.contains("urad; chi^2") && said.contains("they agree"), "{said}");
+    let spinning = &result.plateaus[3];
+    let [phase, size] = [spinning.once_per_revolution_phase, spinning.once_per_revolution].map(Option::unwrap);
+    assert!(phase.iter().all(|phase| phase.abs() <= std::f64::consts::PI));
+    assert!(size[1] > 10.0 * spinning.once_per_revolution_uncertainty.unwrap()[1], "{size:?}");
+    assert!(result.plateaus[0].once_per_revolution_phase.is_none());
+}
+
+/// A bias that moves by 0.2 mm/s^3 over every record is seen in the plateaus and in those that were run again.
+#[test]
+fn a_drifting_session_is_said_to_drift() {
+    let (result, said) = calibrated(&STEADY.replace("white", "drift = 2e-4\nwhite"), "12");
+    assert!(said.contains("plateaus drift"), "{said}");
+    assert!(said.contains("they differ"), "{said}");
+    let drift = result.drift.expect("records tell the drift");
+    assert!(drift.probability < 1e-9, "{drift:?}");
+    let [first, second] = drift.repeats[0].indices.map(|index| &result.plateaus[index]);
+    let middle = |plateau: &centrical_io::PlateauSummary| plateau.window.unwrap().iter().sum::<f64>() / 2.0;
+    // The slope of one plateau foretells the change to the next of its kind.
+    for axis in 0..3 {
+        let foretold = first.drift.unwrap()[axis] * (middle(second) - middle(first));
+        let uncertainty = first.drift_uncertainty.unwrap()[axis] * (middle(second) - middle(first));
+        // The speeds of the two differ by 1e-5 each: 3 mm/s^2 at 10 g.
+        let tolerance = 4.0 * uncertainty + 4.0 * 3e-3;
+        assert!((drift.repeats[0].difference[axis] - foretold).abs() < tolerance, "{foretold} {:?}", drift.repeats[0]);
+    }
+}

@@ -1,0 +1,165 @@
+//! The certificate's text, item by item of ISO/IEC 17025:2017.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::documents;
+
+/// Text of a PDF file, pages apart by form feeds.
+pub fn text_of(pdf: &Path) -> String {
+    let run = Command::new("pdftotext").arg("-layout").arg(pdf).arg("-").output();
+    String::from_utf8(run.expect("pdftotext is installed").stdout).unwrap()
+}
+
+fn certificate(language: &str, alter: impl Fn(String) -> String) -> String {
+    text_of(&documents(language, alter).path().join("certificate.pdf"))
+}
+
+/// The text with its lines joined, so that a sentence is found wherever it is broken.
+fn joined(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn has(text: &str, items: &[(&str, &str)]) {
+    let joined = joined(text);
+    for (item, expected) in items {
+        assert!(joined.contains(expected), "{item}: {expected:?} is not in\n{text}");
+    }
+}
+
+/// Number and page x of y on every page.
+fn pages_are_numbered(text: &str, number: &str, page_of: impl Fn(usize, usize) -> String) {
+    let pages: Vec<&str> = text.split('\u{c}').filter(|page| !page.trim().is_empty()).collect();
+    assert!(pages.len() > 1);
+    for (n, page) in (1..).zip(&pages) {
+        assert!(page.contains(&page_of(n, pages.len())), "page {n}");
+        assert!(page.contains(number), "page {n}");
+    }
+}
+
+/// 7.8.2.1 a to o and 7.8.4.1 a to e; k (sampling) and p (results of others) do not apply.
+#[test]
+#[ignore = "needs pdftotext"]
+fn the_certificate_has_every_item() {
+    let text = certificate("en", |text| text);
+    has(
+        &text,
+        &[
+            ("7.8.2.1 a, title", "Calibration certificate"),
+            ("b, laboratory", "Centrifuge Laboratory, Institute of Inertial Metrology"),
+            ("b, address", "Leninskiye Gory 1, 119991 Moscow, RU"),
+            ("c, place", "Place of calibration the laboratory’s premises"),
+            ("d, end", "End of certificate"),
+            ("e, customer", "Customer Northern Navigation Works"),
+            ("e, address", "Embankment 12, 190000 Saint Petersburg, RU"),
+            ("f, method", "by the method of A. V. Kozlov"),
+            ("f, procedure", "Procedure CL-MP-07, edition 3"),
+            ("g, item", "Description Unit of three newtonometers"),
+            ("g, model", "Model TA-200"),
+            ("g, serial number", "Serial number 0001"),
+            ("g, condition", "Condition on receipt No visible damage, complete"),
+            ("h, receipt", "Received 2026-10-01"),
+            ("i, performance", "Calibrated 2026-10-05 – 2026-10-07"),
+            ("j, issue", "Issued 2026-10-09"),
+            ("l, item only", "The results relate only to the item calibrated"),
+            ("m, a result with sign and unit", "df_1 Bias −3.9525 ± 0.0040 mg (−3.8761 ± 0.0039)·10⁻² m/s²"),
+            ("m, the last result", "G2_33 Cubic −0.00011 ± 0.00053 µg/g³"),
+            ("m, what the results mean", "f1′ = f1 + df_1 + G0_11·f1 + G1_11·f1²"),
+            ("n, deviations", "Additions, deviations, exclusions None"),
+            ("o, authorised", "Authorised by A. Ivanova"),
+            ("o, role", "Head of the laboratory"),
+            ("7.8.2.1, reproduction", "shall not be reproduced except in full"),
+            ("7.8.4.1 a, coverage", "coverage factor k = 2"),
+            ("7.8.4.1 a, probability", "coverage probability of approximately 95 %"),
+            ("b, temperature", "Air temperature 20.3 ± 0.5 °C"),
+            ("b, humidity", "Relative humidity 45 ± 5 %"),
+            ("b, pressure", "Air pressure 100.9 ± 0.4 kPa"),
+            ("b, gravity", "Local gravity 9.81523 m/s²"),
+            ("c, traceability", "traceable to the SI"),
+            ("c, standard", "GET 94-2001"),
+            ("c, its certificate", "DL-2026-0031"),
+            ("d, adjustment", "The unit was not adjusted or repaired"),
+            ("d, before", "Before compensation 185 (1499) mg"),
+            ("d, after", "After compensation 857 (4182) µg"),
+            ("d, what remains uncertain", "Uncertainty of compensation, k = 2"),
+            ("e, specification", "TA-200 data sheet, table 3"),
+            ("e, conformity", "df_1 −15.30 … 15.30 −3.9525 ± 0.0040 mg conforms"),
+            ("7.8.6, rule", "guarded acceptance with guard band w = U"),
+        ],
+    );
+    // 7.8.4.3: no recommendation on the calibration interval.
+    assert!(!text.to_lowercase().contains("interval") && !text.to_lowercase().contains("next calibration"));
+    pages_are_numbered(&text, "Certificate no. CL-2026-0117", |n, of| format!("page {n} of {of}"));
+}
+
+/// The same in Russian: words, decimal commas, dates and units as they are written there.
+#[test]
+#[ignore = "needs pdftotext"]
+fn in_russian() {
+    let text = certificate("ru", |text| text);
+    has(
+        &text,
+        &[
+            ("title", "Сертификат калибровки"),
+            ("customer", "Заказчик Northern Navigation Works"),
+            ("dates", "Калибровка выполнена 05.10.2026 – 07.10.2026"),
+            ("method", "по методу А. В. Козлова"),
+            ("conditions", "Температура воздуха 20,3 ± 0,5 °C"),
+            ("pressure", "100,9 ± 0,4 кПа"),
+            ("a result", "df_1 Смещение нуля −3,9525 ± 0,0040 мg (−3,8761 ± 0,0039)·10⁻² м/с²"),
+            ("uncertainty", "коэффициент охвата k = 2"),
+            ("adjustment", "Прибор не юстировался и не ремонтировался"),
+            ("rule", "приёмка с защитной полосой w = U"),
+            ("conformity", "−15,30 … 15,30 −3,9525 ± 0,0040 мg соответствует"),
+            ("authorised", "Утвердил A. Ivanova"),
+            ("item only", "Результаты относятся только к калиброванному объекту"),
+            ("end", "Конец сертификата"),
+        ],
+    );
+    pages_are_numbered(&text, "Сертификат № CL-2026-0117", |n, of| format!("стр. {n} из {of}"));
+    for english in ["Certificate no.", "page ", "Results", "Customer", "Bias", "conforms"] {
+        assert!(!text.contains(english), "{english}");
+    }
+}
+
+/// What the laboratory did, says and asks for changes the certificate accordingly.
+#[test]
+#[ignore = "needs pdftotext"]
+fn adjustment_and_decision() {
+    let adjusted = certificate("en", |text| {
+        text.replace("[method]", "adjustment = \"Bias of axis 2 set to zero before the calibration\"\n[method]")
+    });
+    has(&adjusted, &[("d", "Before and after adjustment Bias of axis 2 set to zero before the calibration")]);
+    assert!(!adjusted.contains("was not adjusted"));
+
+    // -0.0388 m/s^2 with U = 0.00004: inside by less than U, so simple acceptance alone accepts it.
+    let tight = |rule: &str| {
+        let rule = rule.to_owned();
+        certificate("en", move |text| {
+            text.replace("rule = \"guarded\"", &format!("rule = \"{rule}\"")).replacen(
+                "low = -0.15",
+                "low = -0.03878",
+                1,
+            )
+        })
+    };
+    let [simple, guarded] = ["simple", "guarded"].map(tight);
+    has(&simple, &[("rule", "simple acceptance"), ("verdict", "−3.9525 ± 0.0040 mg conforms")]);
+    has(&guarded, &[("rule", "guarded acceptance"), ("verdict", "−3.9525 ± 0.0040 mg does not conform")]);
+
+    let unasked = certificate("en", |text| text[..text.find("[decision]").unwrap()].to_owned());
+    assert!(!unasked.contains("conform"), "no statement that was not asked for");
+}
+
+/// Every font is in the file.
+#[test]
+#[ignore = "needs pdffonts"]
+fn fonts_are_embedded() {
+    let folder = documents("ru", |text| text);
+    let run = Command::new("pdffonts").arg(folder.path().join("certificate.pdf")).output().expect("poppler");
+    let table = String::from_utf8(run.stdout).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().skip(2).map(|line| line.split_whitespace().collect()).collect();
+    assert!(rows.len() >= 2, "{table}");
+    // Name, type (two words), encoding, emb.
+    assert!(rows.iter().all(|row| row[4] == "yes"), "{table}");
+}
