@@ -234,13 +234,21 @@ impl ErrorModel {
         f: &Vector3<f64>,
         mut each: impl FnMut(usize, f64),
     ) -> Expanded {
+        let table = [f.x, f.y, f.z].map(|x| [1.0, x, x * x, x * x * x]);
+        let power = |j: usize, n: u8| table[j].get(usize::from(n)).copied().unwrap_or_else(|| f[j].powi(n.into()));
+        let product = |[a, b, c]: [u8; 3], sign: f64| sign * power(0, a) * power(1, b) * power(2, c);
         let mut at = Expanded { reading: *f, gain: Matrix3::identity() };
         for (t, (term, c)) in self.terms.iter().zip(coefficients).enumerate() {
-            let value = term.monomial.value(f);
+            let Monomial { powers, .. } = term.monomial;
+            let sign = term.monomial.sign(f);
+            let value = product(powers, sign);
             each(t, value);
             at.reading[term.axis] += c * value;
-            let mut row = at.gain.row_mut(term.axis);
-            row += term.monomial.gradient(f).transpose() * *c;
+            for j in (0..3).filter(|&j| powers[j] > 0) {
+                let mut lower = powers;
+                lower[j] -= 1;
+                at.gain[(term.axis, j)] += f64::from(powers[j]) * product(lower, sign) * c;
+            }
         }
         at
     }

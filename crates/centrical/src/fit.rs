@@ -17,7 +17,9 @@ mod gain;
 /// The same estimates by a filter over plateaus, with the states that the order of the experiments asks for.
 pub mod recursive;
 
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use std::sync::OnceLock;
+
+use nalgebra::{DMatrix, DVector, Dyn, Matrix3, QR, Vector3};
 
 pub use self::gain::Gain;
 use crate::design::{Design, Observation, Whitener, total_covariance};
@@ -181,7 +183,7 @@ type Assemble = fn(&[f64], &MeasurementModel, &[Observation], &[Linearisation], 
 
 /// What a design sees and what it loses, decided on `H` at `X = 0`. It depends on the plateaus and their weights,
 /// never on the readings, and holds for any number of fits of one experiment.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Structure {
     observability: Observability,
     /// What the data see without the priors, when there are any.
@@ -191,6 +193,8 @@ pub struct Structure {
     typical: DVector<f64>,
     /// Of the observations at `X = 0`.
     linearisations: Vec<Linearisation>,
+    /// The equations at `X = 0`, null directions held, factored when the first fit starts from them.
+    start: OnceLock<QR<f64, Dyn, Dyn>>,
 }
 
 impl Structure {
@@ -223,7 +227,8 @@ impl Structure {
         let typical = DVector::from_iterator(columns, model.parameters().iter().map(|p| p.typical));
         let mut null_basis = observability.null_basis().clone();
         null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);
-        Ok(Self { observability, of_data, null_basis: orthonormal(null_basis), typical, linearisations })
+        let (null_basis, start) = (orthonormal(null_basis), OnceLock::new());
+        Ok(Self { observability, of_data, null_basis, typical, linearisations, start })
     }
 
     /// What the design sees.
@@ -272,6 +277,15 @@ impl<'a> Start<'a> {
         Ok(Self { assemble, model, observations, speed_uncertainty, structure, design, zero })
     }
 
+    /// The first step, from zero: every fit of one experiment has the same equations there, and its own misfit.
+    fn step(&self) -> Step<'a> {
+        let equations = || self.structure.equations(&self.design, &self.zero, 1.0 / NULL_HOLD);
+        let factored = self.structure.start.get_or_init(|| equations().rows.qr());
+        let lost = self.structure.null_basis.ncols();
+        let misfit = self.design.misfit.clone().resize_vertically(self.design.misfit.len() + lost, 0.0);
+        Step::of(factored, misfit, &self.structure.typical)
+    }
+
     /// Degrees of freedom left by the estimable combinations.
     fn degrees_of_freedom(&self) -> usize {
         let rows = 3 * self.observations.len() + self.model.priors().len();
@@ -280,7 +294,7 @@ impl<'a> Start<'a> {
 
     /// The linear fit: the residual of `Z - H X`.
     fn solve(self) -> Fit {
-        let step = self.structure.equations(&self.design, &self.zero, 1.0 / NULL_HOLD).solve();
+        let step = self.step();
         let covariance = step.covariance();
         let residuals = self
             .observations
@@ -313,6 +327,9 @@ impl<'a> Start<'a> {
     }
 }
 
+/// A point, and the linearisations there.
+type Place = (DVector<f64>, Vec<Linearisation>);
+
 /// The state of the Gauss-Newton iteration.
 struct Search<'a> {
     start: Start<'a>,
@@ -333,7 +350,7 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     fn from(start: Start<'a>, model: &'a MeasurementModel) -> Self {
         let hold = if start.structure.null_basis.ncols() > 0 { 1.0 / NULL_HOLD } else { 0.0 };
-        let x = start.structure.equations(&start.design, &start.zero, hold).solve().dx;
+        let x = start.step().dx;
         Self {
             start,
             model,
@@ -382,7 +399,8 @@ impl<'a> Search<'a> {
         if step.whitened_length <= CONVERGED + rounding {
             self.x += &step.dx;
             self.termination = (!self.let_go(&step)).then_some(Termination::Converged);
-        } else if self.descend(&step, (objective_norm + rounding).powi(2))? {
+        } else if let Some((x, linearisations)) = self.descend(&step, (objective_norm + rounding).powi(2))? {
+            (self.x, self.ahead) = (x, Some(linearisations));
             if self.iterations == ITERATION_LIMIT {
                 self.termination = Some(Termination::IterationLimit);
             }
@@ -405,17 +423,16 @@ impl<'a> Search<'a> {
         free
     }
 
-    /// Goes one step on, halved until the objective falls, and keeps the linearisations there; stays if it does not fall.
-    fn descend(&mut self, step: &Step, objective: f64) -> Result<bool, FitError> {
+    /// The point one step on, halved until the objective falls, and the linearisations there; none if it does not.
+    fn descend(&self, step: &Step, objective: f64) -> Result<Option<Place>, FitError> {
         for halvings in 0..HALVING_LIMIT {
             let x = &self.x + &step.dx * 0.5_f64.powi(halvings.cast_signed());
             let linearisations = linearised(self.model, self.start.observations, x.as_slice());
             if self.objective(&x, &linearisations)? <= objective {
-                (self.x, self.ahead) = (x, Some(linearisations));
-                return Ok(true);
+                return Ok(Some((x, linearisations)));
             }
         }
-        Ok(false)
+        Ok(None)
     }
 
     /// chi^2 of the exact model at `x`, where it reads as in `there`, with the weights of the present linearisation; and
@@ -464,17 +481,7 @@ struct Equations<'a> {
 impl<'a> Equations<'a> {
     /// Householder QR and back substitution.
     fn solve(self) -> Step<'a> {
-        let p = self.rows.ncols();
-        let qr = self.rows.qr();
-        let mut rotated = self.misfit;
-        qr.q_tr_mul(&mut rotated);
-        let head = rotated.rows(0, p).into_owned();
-        let (r, whitened_length, mut dx) = (qr.unpack_r(), head.norm(), head);
-        // Held null directions leave no zero on the diagonal.
-        let solved = r.solve_upper_triangular_mut(&mut dx);
-        debug_assert!(solved, "the held equations are of full rank");
-        dx.component_mul_assign(self.typical);
-        Step { dx, whitened_length, r, typical: self.typical }
+        Step::of(&self.rows.qr(), self.misfit, self.typical)
     }
 }
 
@@ -488,7 +495,19 @@ struct Step<'a> {
     typical: &'a DVector<f64>,
 }
 
-impl Step<'_> {
+impl<'a> Step<'a> {
+    /// Back substitution of `misfit` in the factored equations.
+    fn of(factored: &QR<f64, Dyn, Dyn>, mut misfit: DVector<f64>, typical: &'a DVector<f64>) -> Self {
+        factored.q_tr_mul(&mut misfit);
+        let head = misfit.rows(0, typical.len()).into_owned();
+        let (r, whitened_length, mut dx) = (factored.r(), head.norm(), head);
+        // Held null directions leave no zero on the diagonal.
+        let solved = r.solve_upper_triangular_mut(&mut dx);
+        debug_assert!(solved, "the held equations are of full rank");
+        dx.component_mul_assign(typical);
+        Step { dx, whitened_length, r, typical }
+    }
+
     /// `R^-1`, in typical units.
     fn inverse(&self) -> DMatrix<f64> {
         let mut inverse = DMatrix::identity(self.typical.len(), self.typical.len());
