@@ -200,7 +200,8 @@ impl Planning {
         let (experiment, weights) = self.candidates.experiment_of(&plan.schedule);
         let scenario = &self.candidates.scenarios[0];
         let model = scenario.model.in_experiment(experiment);
-        predict(&model, &weights, scenario.speed_uncertainty, &self.type_b)
+        let zero = vec![0.0; model.parameters().len()];
+        predict(&model, &weights, scenario.speed_uncertainty, &self.type_b, &zero)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })
     }
 
@@ -281,9 +282,9 @@ impl Planning {
         let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
         let points = frontier(&self.candidates, &self.criterion, &times, Effort::FAIR);
         let points = points.map_err(|source| self.failed(source))?;
-        let uniform = with_set_points(&self.candidates, uniform_set_points(self.candidates.experiment()));
+        let uniform = with_set_points(&self.candidates, &uniform_set_points(self.candidates.experiment()));
         let normalised =
-            with_set_points(&self.candidates, normalised_set_points(self.candidates.experiment(), &request.levels));
+            with_set_points(&self.candidates, &normalised_set_points(self.candidates.experiment(), &request.levels));
         let of = |candidates: &Candidates, time: f64| {
             let found = candidates.uniform(&self.criterion, time).map_err(|source| self.failed(source))?;
             Ok::<_, Error>(found.map(|(_, value)| value.sqrt()))
@@ -361,10 +362,10 @@ impl PlannedMounting {
 }
 
 /// The candidates with other plateaus in the same mountings.
-fn with_set_points(candidates: &Candidates, set_points: Vec<SetPoint>) -> Candidates {
+fn with_set_points(candidates: &Candidates, set_points: &[SetPoint]) -> Candidates {
     let mut other = candidates.clone();
     for scenario in &mut other.scenarios {
-        let experiment = Experiment { set_points: set_points.clone(), ..scenario.model.experiment().clone() };
+        let experiment = Experiment { set_points: set_points.to_vec(), ..scenario.model.experiment().clone() };
         scenario.model = scenario.model.in_experiment(experiment);
     }
     other

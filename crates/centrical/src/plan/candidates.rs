@@ -113,7 +113,9 @@ impl Candidates {
     pub fn time_of(&self, visits: &[Visit]) -> f64 {
         let experiment = self.experiment();
         let mut used = vec![false; experiment.mountings.len()];
-        visits.iter().for_each(|visit| used[experiment.set_points[visit.plateau].mounting] = true);
+        for visit in visits {
+            used[experiment.set_points[visit.plateau].mounting] = true;
+        }
         self.set_up_time(&used) + visits.iter().map(|visit| self.visit_time(visit)).sum::<f64>()
     }
 

@@ -124,7 +124,7 @@ impl Scene {
         debug_assert!(solved, "the hold makes every factor regular");
         let transposed = root.transpose();
         let mut seen = &transposed * &self.columns.k;
-        let goals = if self.columns.is_determinant { self.whiten(&mut seen) } else { self.sums(&seen) };
+        let goals = if self.columns.is_determinant { Self::whiten(&mut seen) } else { self.sums(&seen) };
         Factor { triangle, reach: root * seen, root: transposed, goals }
     }
 
@@ -135,7 +135,7 @@ impl Scene {
     }
 
     /// Makes the columns orthonormal and returns `det(K^T C K)^(1/s)`.
-    fn whiten(&self, seen: &mut DMatrix<f64>) -> Vec<f64> {
+    fn whiten(seen: &mut DMatrix<f64>) -> Vec<f64> {
         let s = seen.ncols();
         let qr = seen.clone().qr();
         let log: f64 = qr.r().diagonal().iter().map(|d| 2.0 * d.abs().ln()).sum();

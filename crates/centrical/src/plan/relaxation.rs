@@ -520,7 +520,9 @@ impl Worth<'_> {
         let mut far: Vec<(f64, usize)> = free.map(|x| (self.distance(x), x)).collect();
         far.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut near = far.split_off(far.len().min(FARTHEST));
-        near.iter_mut().for_each(|(order, x)| *order = self.net(*x).abs() / self.price(*x));
+        for (order, x) in &mut near {
+            *order = self.net(*x).abs() / self.price(*x);
+        }
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         near.truncate(NEAREST);
         let mut chosen: Vec<usize> = far.into_iter().chain(near).map(|(_, x)| x).collect();

@@ -275,7 +275,7 @@ impl<'a> Tree<'a> {
         self.exchange_mountings();
         self.open.push(root);
         while let Some(node) = self.next() {
-            self.divide(node);
+            self.divide(&node);
         }
         self.polish();
         self.into_plan()
@@ -322,8 +322,8 @@ impl<'a> Tree<'a> {
     }
 
     /// Two nodes that decide one thing more, or the end of this branch.
-    fn divide(&mut self, node: Node) {
-        let of_mountings = self.undecided(&node);
+    fn divide(&mut self, node: &Node) {
+        let of_mountings = self.undecided(node);
         let decided = match of_mountings {
             Some(m) if self.nodes < self.effort.mounting_nodes => {
                 let with = |set_up| {
@@ -334,11 +334,11 @@ impl<'a> Tree<'a> {
                 vec![with(true), with(false)]
             }
             None => {
-                self.seek(&node);
-                self.take_whole(&node);
+                self.seek(node);
+                self.take_whole(node);
                 let is_left =
                     self.nodes < self.effort.visit_nodes && node.relaxed.bound < self.incumbent() - self.same();
-                match self.split_visit(&node).filter(|_| is_left) {
+                match self.split_visit(node).filter(|_| is_left) {
                     Some((x, below, above)) => {
                         let (mut fewer, mut more) = (node.clone(), node.clone());
                         fewer.high[x] = below;
