@@ -69,7 +69,8 @@ impl Design {
     /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
     /// the experiment.
     fn prediction(&self) -> Result<PredictionReport, Error> {
-        let prediction = predict(&self.model, &self.weights, self.speed_uncertainty, &self.type_b)
+        let zero = vec![0.0; self.model.parameters().len()];
+        let prediction = predict(&self.model, &self.weights, self.speed_uncertainty, &self.type_b, &zero)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })?;
         let experiment = self.model.experiment();
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();

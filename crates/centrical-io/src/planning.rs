@@ -200,7 +200,8 @@ impl Planning {
         let (experiment, weights) = self.candidates.experiment_of(&plan.schedule);
         let scenario = &self.candidates.scenarios[0];
         let model = scenario.model.in_experiment(experiment);
-        predict(&model, &weights, scenario.speed_uncertainty, &self.type_b)
+        let zero = vec![0.0; model.parameters().len()];
+        predict(&model, &weights, scenario.speed_uncertainty, &self.type_b, &zero)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })
     }
 

@@ -124,7 +124,7 @@ impl Scene {
         debug_assert!(solved, "the hold makes every factor regular");
         let transposed = root.transpose();
         let mut seen = &transposed * &self.columns.k;
-        let goals = if self.columns.is_determinant { whiten(&mut seen) } else { self.sums(&seen) };
+        let goals = if self.columns.is_determinant { Self::whiten(&mut seen) } else { self.sums(&seen) };
         Factor { triangle, reach: root * seen, root: transposed, goals }
     }
 
@@ -132,6 +132,15 @@ impl Scene {
         let mut goals = vec![0.0; self.goals];
         seen.column_iter().zip(&self.columns.goal).for_each(|(column, goal)| goals[*goal] += column.norm_squared());
         goals
+    }
+
+    /// Makes the columns orthonormal and returns `det(K^T C K)^(1/s)`.
+    fn whiten(seen: &mut DMatrix<f64>) -> Vec<f64> {
+        let s = seen.ncols();
+        let qr = seen.clone().qr();
+        let log: f64 = qr.r().diagonal().iter().map(|d| 2.0 * d.abs().ln()).sum();
+        *seen = qr.q();
+        vec![(log / s as f64).exp()]
     }
 
     /// Logarithm of the criterion itself: of the worst goal, of the only one, of the determinant.
@@ -280,13 +289,4 @@ pub(super) fn trace_of_product(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
 /// Sum of the information of some visits of one plateau.
 pub(super) fn sum_of(parts: impl Iterator<Item = Matrix3<f64>>) -> Matrix3<f64> {
     parts.fold(Matrix3::zeros(), |sum, part| sum + part)
-}
-
-/// Makes the columns orthonormal and returns `det(K^T C K)^(1/s)`.
-fn whiten(seen: &mut DMatrix<f64>) -> Vec<f64> {
-    let s = seen.ncols();
-    let qr = seen.clone().qr();
-    let log: f64 = qr.r().diagonal().iter().map(|d| 2.0 * d.abs().ln()).sum();
-    *seen = qr.q();
-    vec![(log / s as f64).exp()]
 }

@@ -239,44 +239,13 @@ fn large_plans_are_certified() {
     for (number, time) in [(2, 6.0), (0, 8.0), (1, 8.0), (3, 8.0)] {
         let candidates = large(8, &[30.0, 60.0, 120.0]);
         let criterion = criterion(number, &candidates.scenarios[0].model);
-        let begun = std::time::Instant::now();
         let plan = best_for_time(&candidates, &criterion, time * 3600.0, Effort::usual(candidates.len())).unwrap();
-        println!(
-            "{number}: criterion {:e} bound gap {:.4}, continuous gap {:.2e} ({} models), rounding {:.4}, {} nodes, {} visits, {:.2} of {time} h, {:?}",
-            plan.criterion,
-            plan.gap(),
-            plan.continuous.gap(),
-            plan.continuous.models,
-            plan.rounding(),
-            plan.nodes,
-            plan.schedule.visits.len(),
-            plan.schedule.time / 3600.0,
-            begun.elapsed()
-        );
         assert!(schedule_is_sorted(&plan.schedule, &candidates));
-        assert!(plan.continuous.gap() < 0.01);
-    }
-}
-
-#[test]
-#[ignore = "timing"]
-fn five_hundred() {
-    let candidates = large(40, &[30.0, 60.0, 120.0]);
-    let criterion = criterion(2, &candidates.scenarios[0].model);
-    for effort in [Effort::QUICK, Effort::usual(candidates.len())] {
-        let begun = std::time::Instant::now();
-        let plan = best_for_time(&candidates, &criterion, 8.0 * 3600.0, effort).unwrap();
-        println!(
-            "criterion {:e} bound gap {:.4}, continuous gap {:.2e} ({} models), rounding {:.4}, {} nodes, {} visits, {:?}",
-            plan.criterion,
-            plan.gap(),
-            plan.continuous.gap(),
-            plan.continuous.models,
-            plan.rounding(),
-            plan.nodes,
-            plan.schedule.visits.len(),
-            begun.elapsed()
-        );
+        // The continuous design within 0.2 % of the optimum, the schedule within 0.2 % of it, and both of the best on any
+        // mountings within 1 %.
+        assert!(plan.continuous.gap() < 2e-3, "{number}: {}", plan.continuous.gap());
+        assert!(plan.rounding() < 2e-3, "{number}: {}", plan.rounding());
+        assert!(plan.gap() < 0.01, "{number}: {}", plan.gap());
     }
 }
 
@@ -297,8 +266,8 @@ fn predictions_are_what_monte_carlo_shows() {
     let (experiment, weights) = candidates.experiment_of(&schedule);
     let scenario = &candidates.scenarios[0];
     let model = scenario.model.in_experiment(experiment);
-    let prediction = predict(&model, &weights, scenario.speed_uncertainty, &STATED).unwrap();
     let zero = vec![0.0; model.parameters().len()];
+    let prediction = predict(&model, &weights, scenario.speed_uncertainty, &STATED, &zero).unwrap();
     let observations: Vec<Observation> = weights
         .iter()
         .map(|w| Observation {
@@ -346,33 +315,28 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     };
     let noise = Noise { density: 20e-6 * 9.80665, floor: 0.0 };
     let weights: Vec<Weight> = (0..model.experiment().set_points.len()).map(|n| noise.weight(n, 40.0)).collect();
-    let prediction = predict(&model, &weights, 1e-5, &TypeB::default()).unwrap();
+    let truth = truth(&model, 1.0, &mut Random::new(100));
+    let prediction = predict(&model, &weights, 1e-5, &TypeB::default(), &truth).unwrap();
     let p = model.parameters().len();
     let scale = nalgebra::DVector::from_fn(p, |j, _| prediction.budget().standard_uncertainty(j).unwrap());
+    let correlation = DMatrix::from_fn(p, p, |i, j| prediction.budget().correlation(i, j).unwrap());
+    let factor = correlation.cholesky().unwrap();
     let mut squares = nalgebra::DVector::zeros(p);
     let mut weighted = 0.0;
-    let mut stated = nalgebra::DVector::zeros(p);
     for seed in 0..SESSIONS {
-        let truth = truth(&model, 0.3, &mut Random::new(100 + seed));
         let observations = calibration_means(&model, &truth, &settings, seed);
         let fit = fit::exact(&model, &observations, 1e-5).unwrap();
         let error = nalgebra::DVector::from_fn(p, |j, _| (fit.value(j).unwrap() - truth[j]) / scale[j]);
         squares += error.component_mul(&error) / SESSIONS as f64;
-        // Correlations hang on the directions of the speed errors at the estimate, so they are the fit's own.
-        let covariance = DMatrix::from_fn(p, p, |i, j| fit.covariance(i, j).unwrap() / (scale[i] * scale[j]));
-        stated += nalgebra::DVector::from_fn(p, |j, _| covariance[(j, j)].sqrt() / SESSIONS as f64);
-        weighted += covariance.cholesky().unwrap().solve(&error).dot(&error);
+        weighted += factor.solve(&error).dot(&error);
     }
     let mean = weighted / SESSIONS as f64;
-    for j in 0..p {
-        println!("{} {:.2} {:.3}", model.parameters()[j].name, squares[j].sqrt(), stated[j]);
-    }
     println!(
         "weighted square {mean:.2} of {p}; by parameter {:.2} to {:.2}",
         squares.min().sqrt(),
         squares.max().sqrt()
     );
-    // chi^2 with p degrees of freedom in each session.
+    // chi^2 with p degrees of freedom in each session, four standard deviations.
     assert!((mean - p as f64).abs() < 4.0 * (2.0 * p as f64 / SESSIONS as f64).sqrt(), "{mean} of {p}");
     // One ratio scatters by 1 / sqrt(2 n); four of it over 49 parameters.
     for (j, square) in squares.iter().enumerate() {
@@ -419,7 +383,8 @@ fn reading_criterion_is_the_mean_over_forces() {
     let (candidates, schedule) = planned();
     let (experiment, weights) = candidates.experiment_of(&schedule);
     let model = candidates.scenarios[0].model.in_experiment(experiment);
-    let prediction = predict(&model, &weights, 1e-5, &TypeB::default()).unwrap();
+    let zero = vec![0.0; model.parameters().len()];
+    let prediction = predict(&model, &weights, 1e-5, &TypeB::default(), &zero).unwrap();
     let [_, cubature] = prediction.reading(RANGE).unwrap();
     let first = model.parameters().find("df_1").unwrap();
     let covariance = DMatrix::from_fn(21, 21, |i, j| prediction.budget().covariance(first + i, first + j).unwrap());
@@ -471,8 +436,10 @@ fn next_best_is_the_best() {
     let criterion = Criterion::Reading(RANGE);
     let gains = next_best(model, 1e-5, &criterion, taken, rest).unwrap();
     assert_eq!(gains.len(), 6);
-    let reading =
-        |weights: &[Weight]| predict(model, weights, 1e-5, &TypeB::default()).unwrap().reading(RANGE).unwrap()[1];
+    let zero = vec![0.0; model.parameters().len()];
+    let reading = |weights: &[Weight]| {
+        predict(model, weights, 1e-5, &TypeB::default(), &zero).unwrap().reading(RANGE).unwrap()[1]
+    };
     let before = reading(taken);
     for pair in gains.windows(2) {
         assert!(pair[0].factor <= pair[1].factor);
