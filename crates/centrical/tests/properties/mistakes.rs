@@ -70,7 +70,9 @@ fn the_sense_of_rotation_is_seen_in_the_ramps() {
     for stream in [Stream::default(), Stream { colour: (5e-3, 0.5), ramp: 10.0, ..Stream::default() }.rough()] {
         let record = stream.record();
         let mut schedule = stream.schedule();
-        schedule.iter_mut().for_each(|plateau| plateau.omega = -plateau.omega);
+        for plateau in &mut schedule {
+            plateau.omega = -plateau.omega;
+        }
         let error = reduce(&record, None, &schedule).expect_err("the record turns the other way");
         let ReductionError::Rotation { ramps, part } = error else { panic!("{error}") };
         assert_eq!(ramps, 5);

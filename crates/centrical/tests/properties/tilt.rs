@@ -62,8 +62,8 @@ fn comparison(tilt: [f64; 2], seed: u64, change: impl Fn(&mut [Vector3<f64>; 2])
 /// notwithstanding.
 #[test]
 fn the_tilt_seen_while_spinning_is_that_of_the_fit() {
-    let (mut of_difference, mut scatter, mut freedom) = (0.0, 0.0, 0.0);
     const SESSIONS: u64 = 12;
+    let (mut of_difference, mut scatter, mut freedom) = (0.0, 0.0, 0.0);
     for seed in 0..SESSIONS {
         let size = [1e-3, 2e-5, 0.0][seed as usize % 3];
         let found = comparison([0.6 * size, -0.8 * size], seed, |_| ());
