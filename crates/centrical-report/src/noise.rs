@@ -252,13 +252,13 @@ fn between(first: f64, last: f64) -> Vec<f64> {
 }
 
 /// A number to so many significant digits; with an exponent only where it would be long without.
-fn significant(value: f64, digits: usize) -> String {
-    let scientific = format!("{value:.*e}", digits - 1);
+fn significant(value: f64, digits: u8) -> String {
+    let scientific = format!("{value:.*e}", usize::from(digits) - 1);
     // The exponent as rounded: 9.9996 has a digit more before the point than 9.9994.
-    let exponent = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<isize>().ok());
+    let exponent = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i64>().ok());
     match exponent {
         Some(exponent @ -4..7) => {
-            format!("{value:.*}", usize::try_from(digits.cast_signed() - 1 - exponent).unwrap_or(0))
+            format!("{value:.*}", usize::try_from(i64::from(digits) - 1 - exponent).unwrap_or(0))
         }
         _ => scientific,
     }

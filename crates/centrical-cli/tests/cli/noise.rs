@@ -112,7 +112,7 @@ fn what_is_no_record_is_refused() {
     refused(&["noise", "nothing.csv"], "no such file");
     fs::write(
         copy.out().join("still.csv"),
-        "t,f1\n".to_owned() + &(0..200).map(|k| format!("{k},1\n")).collect::<Vec<_>>().concat(),
+        (0..200).fold("t,f1\n".to_owned(), |rows, k| rows + &k.to_string() + ",1\n"),
     )
     .unwrap();
     let output = copy.run(&["noise", "still.csv", "--readings", "f1"]);

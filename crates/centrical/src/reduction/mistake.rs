@@ -28,9 +28,9 @@ const FURTHER: f64 = 1e-2;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mistake {
     /// Newtonometer that reading `i` is really of.
-    pub source: [usize; 3],
+    pub source: [u8; 3],
     /// Its sign.
-    pub sign: [f64; 3],
+    pub sign: [i8; 3],
     /// Size of the readings over that of the expected ones.
     pub factor: f64,
 }
@@ -130,11 +130,11 @@ fn log_density(found: &Vector3<f64>, expected: &Vector3<f64>) -> f64 {
 impl Mistake {
     /// Every one but none.
     fn all() -> Vec<Self> {
-        const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
+        const ORDERS: [[u8; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
         let mut all = Vec::with_capacity(144);
         for source in ORDERS {
             for signs in 0..8_u8 {
-                let sign = [0, 1, 2].map(|axis| if signs >> axis & 1 == 1 { -1.0 } else { 1.0 });
+                let sign = [0, 1, 2].map(|axis| if signs >> axis & 1 == 1 { -1 } else { 1 });
                 for factor in [1.0, 1.0 / STANDARD_GRAVITY, STANDARD_GRAVITY] {
                     all.push(Self { source, sign, factor });
                 }
@@ -146,15 +146,15 @@ impl Mistake {
 
     /// Exchanges, reversed signs and wrong units.
     fn count(&self) -> i32 {
-        let moved = (0..3).filter(|axis| self.source[*axis] != *axis).count();
-        let reversed = self.sign.iter().filter(|sign| **sign < 0.0).count();
+        let moved = (0..3).filter(|axis| usize::from(self.source[*axis]) != *axis).count();
+        let reversed = self.sign.iter().filter(|sign| **sign < 0).count();
         let units = usize::from(self.factor != 1.0);
         i32::try_from(moved.saturating_sub(1) + reversed + units).unwrap_or(i32::MAX)
     }
 
     /// Whether the unit turned otherwise would read so: a proper rotation, in the right unit.
     fn is_turn(&self) -> bool {
-        let row = |i: usize| Vector3::ith(self.source[i], self.sign[i]);
+        let row = |i: usize| Vector3::ith(usize::from(self.source[i]), f64::from(self.sign[i]));
         self.factor == 1.0 && Matrix3::from_columns(&[row(0), row(1), row(2)]).determinant() > 0.0
     }
 
@@ -165,7 +165,7 @@ impl Mistake {
 
     /// What is read where `f_z` is expected.
     fn reading(&self, f_z: &Vector3<f64>) -> Vector3<f64> {
-        let row = |i: usize| Vector3::ith(self.source[i], self.factor * self.sign[i]);
+        let row = |i: usize| Vector3::ith(usize::from(self.source[i]), self.factor * f64::from(self.sign[i]));
         Matrix3::from_columns(&[row(0), row(1), row(2)]).transpose() * f_z
     }
 
@@ -176,7 +176,7 @@ impl Mistake {
 
 impl fmt::Display for Mistake {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let moved: Vec<usize> = (0..3).filter(|axis| self.source[*axis] != *axis).collect();
+        let moved: Vec<usize> = (0..3).filter(|axis| usize::from(self.source[*axis]) != *axis).collect();
         let mut parts = Vec::new();
         if let [i, j] = moved[..] {
             parts.push(format!("axes {0} and {1} exchanged (f{1} as f{0} and f{0} as f{1})", i + 1, j + 1));
@@ -184,7 +184,7 @@ impl fmt::Display for Mistake {
             let named = moved.iter().map(|i| format!("f{} as f{}", self.source[*i] + 1, i + 1));
             parts.push(format!("axes exchanged in turn ({})", named.collect::<Vec<_>>().join(", ")));
         }
-        for axis in (0..3).filter(|axis| self.sign[*axis] < 0.0) {
+        for axis in (0..3).filter(|axis| self.sign[*axis] < 0) {
             parts.push(format!("f{} with the sign reversed", axis + 1));
         }
         if self.factor < 1.0 {
