@@ -92,8 +92,9 @@ mod tests {
         };
         for _ in 0..200_000 {
             let (whole, decimals) = (below(8), below(8));
-            let mut digits =
-                |count: u64| -> String { (0..count).map(|_| char::from_digit(u32::try_from(below(10)).unwrap(), 10).unwrap()).collect() };
+            let mut digits = |count: u64| -> String {
+                (0..count).map(|_| char::from_digit(u32::try_from(below(10)).unwrap(), 10).unwrap()).collect()
+            };
             let whole = if whole == 0 { "0".to_owned() } else { digits(whole) };
             let part = if decimals == 0 { String::new() } else { format!(".{}", digits(decimals)) };
             let sign = if digits(1) < "5".to_owned() { "-" } else { "" };
