@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use centrical::uncertainty::{Method, MonteCarlo, Settings, monte_carlo};
+use centrical::uncertainty::{Method, MonteCarlo, Settings, TypeB, monte_carlo};
 use centrical::{FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight, fit};
 use centrical_io::{Error, Plan, Problem, Session};
 use centrical_report::monte_carlo_table;
@@ -36,57 +36,67 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let session = Session::read(&arguments.session)?;
-    let failed = |source| Error::Fit { file: session.file.clone(), source };
-    let has_data = session.plateaus.is_some() || session.mountings.iter().any(|m| m.record.is_some());
-    let (model, observations, truth) = if has_data {
-        let bar = progress::reading(&session);
-        let problem = Problem::of(&session, &|bytes| bar.inc(bytes))?;
-        bar.finish_and_clear();
-        let observations = problem.reduced.observations();
-        let fit = fit::exact(&problem.model, &observations, session.speed_uncertainty).map_err(failed)?;
-        (problem.model, observations, fit.state().to_vec())
-    } else {
-        planned(arguments, &session)?
+    let inside = arguments.session.join("experiment.toml");
+    let file = if arguments.session.is_dir() { &inside } else { &arguments.session };
+    let failed = |source| Error::Fit { file: file.clone(), source };
+    let case = match Plan::read(file)? {
+        Some(plan) => Case::planned(plan, arguments.noise),
+        None => Case::measured(&Session::read(file)?)?,
     };
-    let monte_carlo = draw(arguments, &session, &model, &observations, &truth).map_err(failed)?;
-    let text = monte_carlo_table(model.parameters(), &monte_carlo, arguments.coverage);
+    let monte_carlo = draw(arguments, &case).map_err(failed)?;
+    let text = monte_carlo_table(case.model.parameters(), &monte_carlo, arguments.coverage);
     let _ = io::stdout().write_all(text.as_bytes());
     Ok(Outcome::Done)
 }
 
-/// A plan: the experiment with the noise it reckons with, and a unit with no errors.
-fn planned(arguments: &Arguments, session: &Session) -> Result<(MeasurementModel, Vec<Observation>, Vec<f64>), Error> {
-    let model = session.model()?;
-    let weights = match (arguments.noise, Plan::read(&session.file)?) {
-        (None, Some(plan)) => plan.weights,
-        (noise, _) => {
-            let sigma = noise.unwrap_or(10.0) * 1e-6 * STANDARD_GRAVITY;
-            Weight::equal(model.experiment().set_points.len(), sigma)
-        }
-    };
-    let truth = vec![0.0; model.parameters().len()];
-    let observation = |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
-    Ok((model, weights.into_iter().map(observation).collect(), truth))
+/// What is drawn from.
+struct Case {
+    model: MeasurementModel,
+    /// Their means are not used.
+    observations: Vec<Observation>,
+    truth: Vec<f64>,
+    speed_uncertainty: f64,
+    stated: TypeB,
 }
 
-fn draw(
-    arguments: &Arguments,
-    session: &Session,
-    model: &MeasurementModel,
-    observations: &[Observation],
-    truth: &[f64],
-) -> Result<MonteCarlo, FitError> {
+impl Case {
+    /// A session: the estimates of its own calibration are true.
+    fn measured(session: &Session) -> Result<Self, Error> {
+        let bar = progress::reading(session);
+        let Problem { model, reduced } = Problem::of(session, &|bytes| bar.inc(bytes))?;
+        bar.finish_and_clear();
+        let observations = reduced.observations();
+        let fit = fit::exact(&model, &observations, session.speed_uncertainty)
+            .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
+        let (truth, speed_uncertainty) = (fit.state().to_vec(), session.speed_uncertainty);
+        Ok(Self { model, observations, truth, speed_uncertainty, stated: session.type_b })
+    }
+
+    /// A plan: every unknown is of typical size, signs in turn.
+    fn planned(plan: Plan, noise: Option<f64>) -> Self {
+        let Plan { model, weights, speed_uncertainty, type_b, .. } = plan;
+        let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
+        let weights = noise.map_or_else(|| weights.clone(), equal);
+        let observation =
+            |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
+        let sign = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let truth = model.parameters().iter().enumerate().map(|(j, p)| sign(j) * p.typical).collect();
+        let observations = weights.into_iter().map(observation).collect();
+        Self { model, observations, truth, speed_uncertainty, stated: type_b }
+    }
+}
+
+fn draw(arguments: &Arguments, case: &Case) -> Result<MonteCarlo, FitError> {
     let settings = Settings {
         runs: arguments.runs,
         seed: arguments.seed,
         coverage: arguments.coverage,
         method: if arguments.linear { Method::Linear } else { Method::Exact },
-        stated: session.type_b,
+        stated: case.stated,
     };
     let bar = progress::calibrations(arguments.runs);
     let done = |count: usize| bar.inc(count as u64);
-    let outcome = monte_carlo(model, truth, observations, session.speed_uncertainty, &settings, &done);
+    let outcome = monte_carlo(&case.model, &case.truth, &case.observations, case.speed_uncertainty, &settings, &done);
     bar.finish_and_clear();
     outcome
 }

@@ -44,6 +44,14 @@ fn montecarlo_repeats_itself() {
     assert_eq!(one, text(&with("3")));
 }
 
+/// A preset plan is drawn from as well.
+#[test]
+fn montecarlo_draws_from_a_preset_plan() {
+    let plan = example().join("../plans/normalised.toml");
+    let told = text(&run(&["montecarlo", plan.to_str().unwrap(), "--runs", "30"]));
+    assert!(told.contains("MONTE CARLO  30 calibrations"), "{told}");
+}
+
 #[test]
 fn models_recommends_what_the_example_was_made_with() {
     let told = text(&run(&["models", example().to_str().unwrap()]));
