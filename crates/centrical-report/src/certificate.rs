@@ -1,6 +1,8 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
-use centrical_io::{Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory};
+use centrical_io::{
+    Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory, ParameterEstimate,
+};
 
 use crate::conformity::conformity;
 use crate::customary::customary;
@@ -13,8 +15,14 @@ use crate::reading_error::{error_table, reading_errors};
 /// Coverage factor of the expanded uncertainties.
 const COVERAGE: f64 = 2.0;
 
-/// The certificate as the bytes of a PDF file. The same data give the same bytes.
-pub fn pdf_certificate(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> Vec<u8> {
+/// The certificate as the bytes of a PDF file, with the results `before` an adjustment beside those after it if the
+/// unit was adjusted. The same data give the same bytes.
+pub fn pdf_certificate(
+    result: &CalibrationResult,
+    before: Option<&CalibrationResult>,
+    laboratory: &Laboratory,
+    language: Language,
+) -> Vec<u8> {
     let messages = language.messages();
     let mut layout = Layout::new();
     layout.title(messages.certificate);
@@ -25,7 +33,7 @@ pub fn pdf_certificate(result: &CalibrationResult, laboratory: &Laboratory, lang
     conditions(&mut layout, result, laboratory, language);
     traceability(&mut layout, laboratory, language);
     results(&mut layout, result, language);
-    adjustment(&mut layout, result, laboratory, language);
+    adjustment(&mut layout, result, before, laboratory, language);
     if let Some(decision) = &laboratory.decision {
         conformity_statement(&mut layout, result, decision, language);
     }
@@ -185,10 +193,19 @@ fn results(layout: &mut Layout, result: &CalibrationResult, language: Language) 
 }
 
 /// 7.8.4.1 d.
-fn adjustment(layout: &mut Layout, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
+fn adjustment(
+    layout: &mut Layout,
+    result: &CalibrationResult,
+    before: Option<&CalibrationResult>,
+    laboratory: &Laboratory,
+    language: Language,
+) {
     let messages = language.messages();
     layout.heading(messages.adjustment, 90.0);
     layout.paragraph(laboratory.item.adjustment.as_deref().unwrap_or(messages.no_adjustment));
+    if let Some(before) = before {
+        results_before(layout, result, before, language);
+    }
     let Some(errors) = reading_errors(result) else { return };
     let rows = error_table(&errors, language)
         .map(|(name, cells)| std::iter::once(name.to_owned()).chain(cells).collect::<Vec<String>>());
@@ -197,6 +214,29 @@ fn adjustment(layout: &mut Layout, result: &CalibrationResult, laboratory: &Labo
         .map(|(share, align)| Column { share, align });
     layout.table(&columns, &["", &axes[0], &axes[1], &axes[2]], &rows);
     layout.paragraph(messages.residual_error_note);
+}
+
+/// The parameters of the instrument before its adjustment and after.
+fn results_before(layout: &mut Layout, result: &CalibrationResult, before: &CalibrationResult, language: Language) {
+    let messages = language.messages();
+    let terms: Vec<_> = result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect();
+    let shown = |parameter: Option<&ParameterEstimate>, factor: f64| {
+        let estimate = parameter.and_then(|p| Some((p.value?, p.standard_uncertainty?)));
+        let known = |(value, uncertainty)| language.plus_minus(value * factor, COVERAGE * uncertainty * factor);
+        estimate.map_or_else(|| messages.not_determined.to_owned(), known)
+    };
+    let rows: Vec<Vec<String>> = by_group(&terms)
+        .into_iter()
+        .map(|after| {
+            let (factor, unit) = customary(&after.unit, &after.group);
+            let was = shown(before.parameter(&after.name), factor);
+            vec![after.name.clone(), was, shown(Some(after), factor), language.unit(unit)]
+        })
+        .collect();
+    let columns = [(0.16, Align::Left), (0.34, Align::Right), (0.34, Align::Right), (0.16, Align::Left)]
+        .map(|(share, align)| Column { share, align });
+    let head = [messages.parameter, messages.before_adjustment, messages.after_adjustment, messages.unit];
+    layout.table(&columns, &head, &rows);
 }
 
 /// 7.8.4.1 e and 7.8.6.

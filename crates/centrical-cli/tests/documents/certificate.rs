@@ -1,9 +1,10 @@
 //! The certificate's text, item by item of ISO/IEC 17025:2017.
 
+use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::documents;
+use crate::{documents, example};
 
 /// Text of a PDF file, pages apart by form feeds.
 pub fn text_of(pdf: &Path) -> String {
@@ -131,6 +132,31 @@ fn adjustment_and_decision() {
     });
     has(&adjusted, &[("d", "Before and after adjustment Bias of axis 2 set to zero before the calibration")]);
     assert!(!adjusted.contains("was not adjusted"));
+
+    let folder = documents("en", |text| text.replace("[method]", "adjustment = \"Bias of axis 1 halved\"\n[method]"));
+    let before = fs::read_to_string(folder.path().join("result.json")).unwrap();
+    let mut before: serde_json::Value = serde_json::from_str(&before).unwrap();
+    let bias = before["parameters"].as_array_mut().unwrap().iter_mut().find(|p| p["name"] == "df_1").unwrap();
+    bias["value"] = (2.0 * bias["value"].as_f64().unwrap()).into();
+    fs::write(folder.path().join("before.json"), before.to_string()).unwrap();
+    let report = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+        command.args(["report", "result.json", "--pdf", "both.pdf", "--before", "before.json", "--laboratory"]);
+        command.args(arguments).current_dir(&folder).output().unwrap()
+    };
+    assert!(report(&["laboratory.toml"]).status.success());
+    let both = text_of(&folder.path().join("both.pdf"));
+    has(
+        &both,
+        &[
+            ("d, before and after", "Before adjustment, ± U After adjustment, ± U"),
+            ("d, what was adjusted", "df_1 −7.9051 ± 0.0040 −3.9525 ± 0.0040 mg"),
+            ("d, what was not", "df_2 −10.157 ± 0.020 −10.157 ± 0.020 mg"),
+        ],
+    );
+    let unsaid = report(&[example("laboratory.toml").to_str().unwrap()]);
+    let message = String::from_utf8_lossy(&unsaid.stderr).into_owned();
+    assert!(unsaid.status.code() == Some(2) && message.contains("[item] adjustment"), "{message}");
 
     // -0.0388 m/s^2 with U = 0.00004: inside by less than U, so simple acceptance alone accepts it.
     let tight = |rule: &str| {
