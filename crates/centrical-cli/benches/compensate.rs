@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use centrical_compensate::{Compensation, Term};
-use centrical_io::{Columns, Record, RecordBlock, RecordWriter, compensate_record};
+use centrical_io::{Columns, RecordSlice, RecordWriter, compensate_record, scan_record};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use tempfile::TempDir;
@@ -31,7 +31,7 @@ fn records() -> &'static Path {
                 let t: Vec<f64> = k().map(|k| 1e-4 * k).collect();
                 // Every digit of a reading, as noise would fill them.
                 let f = [1.0, 2.0, 3.0].map(|a| k().map(|k| 1500.0 * (1e-5 * k + a).sin()).collect::<Vec<f64>>());
-                writer.write(RecordBlock { t: &t, f: f.each_ref().map(Vec::as_slice) }).unwrap();
+                writer.write(RecordSlice { t: &t, f_z: f.each_ref().map(Vec::as_slice) }).unwrap();
             }
             writer.finish().unwrap();
         }
@@ -56,7 +56,7 @@ fn kozlov() -> Vec<Term> {
 fn reader_alone(bencher: Bencher, name: &str) {
     let file = records().join(name);
     bencher.counter(ItemsCount::new(rows())).bench_local(|| {
-        Record::scan(&file, &Columns::default(), &mut |block| _ = black_box(block)).unwrap();
+        scan_record(&file, &Columns::default(), &mut |block| _ = black_box(block)).unwrap();
     });
 }
 

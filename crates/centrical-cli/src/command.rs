@@ -7,6 +7,8 @@ pub mod compensate;
 pub mod models;
 pub mod montecarlo;
 pub mod observe;
+pub mod plan;
+pub mod reduce;
 pub mod report;
 pub mod simulate;
 pub mod watch;

@@ -23,6 +23,7 @@ const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the result is not acce
 #[derive(Debug, Subcommand)]
 enum Command {
     Calibrate(command::calibrate::Arguments),
+    Reduce(command::reduce::Arguments),
     Compensate(command::compensate::Arguments),
     Simulate(command::simulate::Arguments),
     Report(command::report::Arguments),
@@ -31,6 +32,7 @@ enum Command {
     Models(command::models::Arguments),
     Compare(command::compare::Arguments),
     Observe(command::observe::Arguments),
+    Plan(command::plan::Arguments),
     Watch(command::watch::Arguments),
 }
 
@@ -46,6 +48,7 @@ enum Outcome {
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Calibrate(arguments) => command::calibrate::run(&arguments),
+        Command::Reduce(arguments) => command::reduce::run(&arguments),
         Command::Compensate(arguments) => command::compensate::run(&arguments),
         Command::Simulate(arguments) => command::simulate::run(&arguments),
         Command::Report(arguments) => command::report::run(&arguments),
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
         Command::Models(arguments) => command::models::run(&arguments),
         Command::Compare(arguments) => command::compare::run(&arguments),
         Command::Observe(arguments) => command::observe::run(&arguments),
+        Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Watch(arguments) => command::watch::run(&arguments),
     };
     match outcome {

@@ -32,23 +32,29 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Reads and reduces a session. `done` is told the index of each mounting as it is reduced, from any thread.
+    /// Reads and reduces a session. `progress` is told of bytes of records as they are read, from any
+    /// thread, twice of nearly each.
     ///
     /// # Errors
     /// [`Error`] naming the file, the place, what was found and what was expected.
-    pub fn of(session: &Session, done: &(dyn Fn(usize) + Sync)) -> Result<Self, Error> {
-        let reduced = Reduced::of(session, done)?;
+    pub fn of(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
+        let reduced = Reduced::of(session, progress)?;
         let model = session.model()?;
         Ok(Self { model, reduced })
     }
 }
 
-/// Reads, reduces and fits a session. `done` is told the index of each mounting as it is reduced, from any thread.
+/// Reads, reduces and fits a session. `progress` is told of bytes of records as they are read, from any
+/// thread, twice of nearly each.
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
-pub fn calibrate(session: &Session, method: Method, done: &(dyn Fn(usize) + Sync)) -> Result<CalibrationResult, Error> {
-    calibrate_without(session, &[], method, done)
+pub fn calibrate(
+    session: &Session,
+    method: Method,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<CalibrationResult, Error> {
+    calibrate_without(session, &[], method, progress)
 }
 
 /// [`calibrate`] with some plateaus held out: reduced and shown with their residuals, but not fitted.
@@ -59,18 +65,20 @@ pub fn calibrate_without(
     session: &Session,
     held_out: &[PlateauName],
     method: Method,
-    done: &(dyn Fn(usize) + Sync),
+    progress: &(dyn Fn(u64) + Sync),
 ) -> Result<CalibrationResult, Error> {
-    let Problem { model, mut reduced } = Problem::of(session, done)?;
+    let Problem { model, mut reduced } = Problem::of(session, progress)?;
     reduced.held_out = held_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
     let estimate = match method {
         Method::Exact => fit::exact,
         Method::Recursive => fit::recursive::exact,
         Method::Linear => fit::linear,
     };
-    let fit = estimate(&model, &reduced.observations(), session.speed_uncertainty)
-        .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
-    let mut result = CalibrationResult::new(session, &model, &reduced, &fit);
+    let observations = reduced.observations();
+    let failed = |source| Error::Fit { file: session.file.clone(), source };
+    let fit = estimate(&model, &observations, session.speed_uncertainty).map_err(failed)?;
+    let result = CalibrationResult::new(session, &model, &reduced, &fit);
+    let mut result = result.with_trust(session, &model, &observations, &fit).map_err(failed)?;
     if method == Method::Recursive {
         "exact, recursive filter".clone_into(&mut result.fit.method);
     }

@@ -4,10 +4,11 @@ use std::path::Path;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
 
+use centrical::reduction::RecordSlice;
 use centrical_compensate::Compensation;
 
 use crate::error::{Error, Place};
-use crate::record::{Columns, Record, RecordBlock};
+use crate::record::{Columns, scan_record};
 use crate::record_writer::RecordWriter;
 
 /// What became of a record.
@@ -33,7 +34,7 @@ pub struct FirstOutside {
 /// Compensates the record in `input` into `output`, CSV or Parquet by its name. The same bytes on any machine.
 ///
 /// # Errors
-/// As [`Record::scan`] for `input` and [`RecordWriter`] for `output`, which is not touched then.
+/// As [`scan_record`] for `input` and [`RecordWriter`] for `output`, which is not touched then.
 pub fn compensate_record(
     compensation: &Compensation,
     input: &Path,
@@ -46,9 +47,9 @@ pub fn compensate_record(
     let (blocks, received) = sync_channel(AHEAD);
     thread::scope(|scope| {
         let written = scope.spawn(move || write(compensation, input, &received, writer));
-        let scanned = Record::scan(input, columns, &mut |block| {
+        let scanned = scan_record(input, columns, &mut |block| {
             // A writer that has failed no longer listens; its error is told below.
-            let _ = blocks.send((block.t.to_vec(), block.f.map(<[f64]>::to_vec)));
+            let _ = blocks.send((block.t.to_vec(), block.f_z.map(<[f64]>::to_vec)));
         });
         drop(blocks);
         let (compensated, writer) = written.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
@@ -78,7 +79,7 @@ fn write(
         sum.readings += t.len() as u64;
         sum.outside += outside.count as u64;
         sum.first_outside = sum.first_outside.or_else(first);
-        writer.write(RecordBlock { t: &t, f: f.each_ref().map(Vec::as_slice) })?;
+        writer.write(RecordSlice { t: &t, f_z: f.each_ref().map(Vec::as_slice) })?;
     }
     Ok((sum, writer))
 }

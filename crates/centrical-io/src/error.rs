@@ -63,6 +63,14 @@ pub enum Error {
         /// Why, and over what range it has one.
         source: centrical_compensate::NotInvertible,
     },
+    /// There is no plan.
+    #[error("{}: {source}", file.display())]
+    Planning {
+        /// The plan file.
+        file: PathBuf,
+        /// Why.
+        source: centrical::plan::PlanError,
+    },
     /// Nothing can be simulated of a truth.
     #[error("{}: {source}", file.display())]
     Simulation {

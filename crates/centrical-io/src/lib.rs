@@ -8,6 +8,7 @@
 //! |---|---|
 //! | text, also in gzip or Zstandard: any delimiter, decimal commas, comments | by name, or by number without a header |
 //! | Parquet (uncompressed, snappy, gzip, lz4, zstd) | by name or number |
+//! | Arrow IPC: files (Feather) and streams, plain, lz4 or zstd | by name or number |
 //! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number |
 //! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
 //! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
@@ -22,11 +23,14 @@ mod input;
 mod laboratory;
 mod observation;
 mod overview;
+mod planning;
 mod plateaus;
+mod prediction;
 mod quantity;
 mod record;
 mod record_writer;
 mod reduce;
+mod reduced_session;
 mod result;
 mod session;
 mod simulate;
@@ -35,6 +39,7 @@ mod watch;
 mod write;
 
 pub use calibration::{Method, PlateauName, Problem, calibrate, calibrate_without};
+pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use compensate::{Compensated, FirstOutside, compensate_record};
 pub use error::{Error, Place};
 pub use input::Input;
@@ -47,20 +52,27 @@ pub use observation::{
     ObservedParameter, PairReport, RemedyReport, SightReport, StepReport,
 };
 pub use overview::RecordOverview;
+pub use planning::{
+    FrontierRow, GoalReport, PlanReport, PlanRequest, PlannedMounting, PlannedPlateau, ReasonReport, USUAL_LEVELS,
+};
 pub use plateaus::{PlateauMean, read_plateaus, write_plateaus};
+pub use prediction::{PredictedParameter, PredictionReport};
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
-pub use record::{Column, Columns, Record, RecordBlock, Scale, Telemetry};
+pub use record::{Column, Columns, Scale, read_growing_record, read_record, read_telemetry, scan_record};
 pub use record_writer::RecordWriter;
 pub use reduce::{MountingFindings, Reduced, ReducedPlateau};
+pub use reduced_session::write_reduced;
 pub use result::{
-    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, ModelSummary, MountingSummary,
-    NoErrorModel, ObservabilitySummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program,
-    SCHEMA, SessionSummary, StabilityCurve, TermSummary,
+    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, ModelSummary,
+    MountingPrediction, MountingSummary, NoErrorModel, ObservabilitySummary, OutlyingPlateau, ParameterEstimate,
+    PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
+    TermSummary, ValiditySummary,
 };
-pub use session::{MountingFiles, Noise, Plan, PlateauTable, Session};
+pub use session::{MountingFiles, Noise, Plan, Planning, PlateauTable, Session};
 pub use simulate::{TableFormat, Truth, simulate_session};
 pub use table::ColumnName;
 pub use watch::{
     HistoryEntry, HistoryEstimate, InnovationSummary, Watch, WatchState, WatchedPlateau, append_history, keep_history,
+    read_history,
 };
 pub use write::{create_folder, write_whole};

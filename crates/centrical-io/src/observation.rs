@@ -3,17 +3,23 @@
 use std::path::{Path, PathBuf};
 
 use centrical::observability::{Condition, CorrelatedGroup, Need, Reason, Remedy};
-use centrical::{Combination, MeasurementModel, Study, Weight};
+use centrical::plan::{ReadingRange, predict};
+use centrical::uncertainty::TypeB;
+use centrical::{Combination, MeasurementModel, SetPoint, Study, Weight, linear};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
 use crate::error::{Error, Place};
+use crate::prediction::PredictionReport;
 use crate::reduce::Reduced;
 use crate::result::{PriorSummary, Program};
 use crate::session::{Plan, Session};
 
 /// Name of the schema's present version.
 pub const OBSERVATION_SCHEMA: &str = "centrical-observability/1";
+
+/// Probability that predicted expanded uncertainties are to cover.
+const COVERAGE: f64 = 0.95;
 
 /// A design with its weights: a plan, or a session with those of its data.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,23 +36,25 @@ pub struct Design {
     pub weights: Vec<Weight>,
     /// Relative standard uncertainty of the speed of a plateau.
     pub speed_uncertainty: f64,
+    /// Standard uncertainties that the data cannot show.
+    pub type_b: TypeB,
 }
 
 impl Design {
-    /// Reads a plan, or a session and the noise of its records. `done` is told the index of each mounting as it is
-    /// reduced, from any thread.
+    /// Reads a plan, or a session and the noise of its records. `progress` is told of bytes of records as
+    /// they are read, from any thread, twice of nearly each.
     ///
     /// # Errors
     /// [`Error`] naming the file, the place, what was found and what was expected.
-    pub fn read(path: &Path, done: &(dyn Fn(usize) + Sync)) -> Result<Self, Error> {
+    pub fn read(path: &Path, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
         match Plan::read(path)? {
             Some(plan) => Ok(plan.into()),
-            None => Self::of_session(&Session::read(path)?, done),
+            None => Self::of_session(&Session::read(path)?, progress),
         }
     }
 
-    fn of_session(session: &Session, done: &(dyn Fn(usize) + Sync)) -> Result<Self, Error> {
-        let reduced = Reduced::of(session, done)?;
+    fn of_session(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
+        let reduced = Reduced::of(session, progress)?;
         Ok(Self {
             file: session.file.clone(),
             title: session.title.clone(),
@@ -54,7 +62,19 @@ impl Design {
             model: session.model()?,
             weights: reduced.observations().iter().map(Weight::from).collect(),
             speed_uncertainty: session.speed_uncertainty,
+            type_b: session.type_b,
         })
+    }
+
+    /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
+    /// the experiment.
+    fn prediction(&self) -> Result<PredictionReport, Error> {
+        let prediction = predict(&self.model, &self.weights, self.speed_uncertainty, &self.type_b)
+            .map_err(|source| Error::Fit { file: self.file.clone(), source })?;
+        let experiment = self.model.experiment();
+        let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
+        let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
+        Ok(PredictionReport::of(&prediction, ReadingRange { force }, COVERAGE))
     }
 
     /// Studies the design at zero unknowns, where its structure is exact.
@@ -77,6 +97,7 @@ impl From<Plan> for Design {
             model: plan.model,
             weights: plan.weights,
             speed_uncertainty: plan.speed_uncertainty,
+            type_b: plan.type_b,
         }
     }
 }
@@ -120,6 +141,8 @@ pub struct ObservationReport {
     pub remedies: Vec<RemedyReport>,
     /// The combinations that were asked for.
     pub combinations: Vec<CombinationReport>,
+    /// Standard and expanded uncertainties to be expected, type A and B, of the parameters and of the compensated reading.
+    pub prediction: PredictionReport,
 }
 
 /// An unknown.
@@ -270,6 +293,7 @@ impl ObservationReport {
             conditions: study.conditions().into_iter().map(condition).collect(),
             remedies: study.remedies().iter().map(remedy).collect(),
             combinations: combinations.iter().map(parse).collect::<Result<_, _>>()?,
+            prediction: design.prediction()?,
         })
     }
 

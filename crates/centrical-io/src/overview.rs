@@ -1,5 +1,7 @@
 //! What a record looks like: few enough numbers to keep in a result and to draw.
 
+use centrical::reduction::Extremes;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Lowest and highest reading of each axis in equal steps of time.
@@ -21,21 +23,23 @@ impl RecordOverview {
     /// Steps of a record: about as many as a drawing across half a page can show apart.
     const STEPS: usize = 160;
 
-    /// Overview of the record of `mounting`, its time `t` [s] and readings `f` [m/s^2].
-    pub fn of(mounting: usize, t: &[f64], f: &[Vec<f64>; 3]) -> Self {
-        let start = t.first().copied().unwrap_or(0.0);
-        let length = t.last().map_or(0.0, |last| last - start);
+    /// Overview of the record of `mounting` from its extremes in equal short times.
+    pub(crate) fn of(mounting: usize, extremes: &[Extremes]) -> Self {
+        let start = extremes.first().map_or(0.0, |first| first.t);
+        let length = extremes.last().map_or(0.0, |last| last.t - start);
         let step = if length > 0.0 { length / Self::STEPS as f64 } else { 1.0 };
-        let [low, high] = [f64::min, f64::max].map(|pick| {
+        let steps = |reading: fn(&Extremes) -> &Vector3<f64>, pick: fn(f64, f64) -> f64| {
             [0, 1, 2].map(|axis| {
                 let mut steps = vec![None; Self::STEPS];
-                for (t, value) in t.iter().zip(&f[axis]) {
-                    let place = &mut steps[index((t - start) / step)];
-                    *place = Some(place.map_or(*value, |other| pick(other, *value)));
+                for extremes in extremes {
+                    let place = &mut steps[index((extremes.t - start) / step)];
+                    let value = reading(extremes)[axis];
+                    *place = Some(place.map_or(value, |other| pick(other, value)));
                 }
                 steps.into_iter().map(|value| value.map(rounded)).collect()
             })
-        });
+        };
+        let (low, high) = (steps(|e| &e.low, f64::min), steps(|e| &e.high, f64::max));
         Self { mounting, start, step, low, high }
     }
 }
@@ -53,14 +57,17 @@ fn rounded(value: f64) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::RecordOverview;
+    use super::*;
 
     #[test]
     fn extremes_are_kept_and_gaps_stay_gaps() {
-        let t: Vec<f64> = (0..3200).filter(|k| !(1000..1200).contains(k)).map(f64::from).collect();
-        let mut f = [t.clone(), vec![1.0; t.len()], vec![-1.0; t.len()]];
-        f[1][7] = 123.456_789;
-        let overview = RecordOverview::of(1, &t, &f);
+        let extremes = |k: i32| {
+            let t = f64::from(k);
+            let high = Vector3::new(t, if k == 7 { 123.456_789 } else { 1.0 }, -1.0);
+            Extremes { t, low: Vector3::new(t, 1.0, -1.0), high }
+        };
+        let extremes: Vec<Extremes> = (0..3200).filter(|k| !(1000..1200).contains(k)).map(extremes).collect();
+        let overview = RecordOverview::of(1, &extremes);
         assert_eq!(overview.high[1][0], Some(123.46));
         assert_eq!(overview.low[1][0], Some(1.0));
         assert_eq!(overview.high[0].len(), overview.low[2].len());

@@ -16,8 +16,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, Place};
 use crate::session::FASTEST;
+use crate::simulate::ParquetTable;
 use crate::table::{self, ColumnName, Field, Rule};
-use crate::write::write_whole;
+use crate::write::{write_stream, write_whole};
 
 /// The mean readings of one plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,6 +129,23 @@ pub fn write_plateaus(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error
         let _ = writeln!(text, "{},{},{angle},{m1},{m2},{m3},{upper},{}", p.mounting + 1, p.speed, p.samples);
     }
     write_whole(file, text.as_bytes())
+}
+
+/// As [`write_plateaus`], in Parquet.
+pub(crate) fn write_plateaus_parquet(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error> {
+    let row = |p: &PlateauMean| {
+        let angle = if p.speed == 0.0 { p.angle } else { f64::NAN };
+        let (c, [m1, m2, m3]) = (&p.covariance, p.mean.into());
+        let number = (p.mounting + 1) as f64;
+        [number, p.speed, angle, m1, m2, m3, c.m11, c.m12, c.m13, c.m22, c.m23, c.m33, p.samples as f64]
+    };
+    let rows: Vec<[f64; COLUMNS.len()]> = plateaus.iter().map(row).collect();
+    let columns: Vec<Vec<f64>> = (0..COLUMNS.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
+    write_stream(file, |output| {
+        let mut table = ParquetTable::new(output, &COLUMNS.map(|(name, _)| name.to_owned()))?;
+        table.write(&columns)?;
+        table.finish()
+    })
 }
 
 #[cfg(test)]

@@ -1,9 +1,14 @@
 //! Records of the unit and telemetry of the centrifuge, in SI.
 
+mod passes;
+
 use std::path::Path;
 
+use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+
+pub(crate) use self::passes::RecordFile;
 use crate::error::Error;
-use crate::table::{self, ColumnName, Extent, Field, Rule};
+use crate::table::{self, Block, ColumnName, Extent, Field, Index, Rule, Visitor};
 
 /// The columns of records and telemetry.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,33 +39,6 @@ pub struct Scale {
     pub offset: f64,
     /// SI per raw unit.
     pub factor: f64,
-}
-
-/// One continuous record of a mounting.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Record {
-    /// Time by the unit's clock [s].
-    pub t: Vec<f64>,
-    /// Readings of newtonometers 1, 2, 3 [m/s^2].
-    pub f: [Vec<f64>; 3],
-}
-
-/// A stretch of a record: slices of equal length.
-#[derive(Debug, Clone, Copy)]
-pub struct RecordBlock<'a> {
-    /// Time by the unit's clock [s].
-    pub t: &'a [f64],
-    /// Readings of newtonometers 1, 2, 3 [m/s^2].
-    pub f: [&'a [f64]; 3],
-}
-
-/// The centrifuge's own account of its speed.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Telemetry {
-    /// Time by the centrifuge's clock [s].
-    pub t: Vec<f64>,
-    /// Angular speed [rad/s], with the sign that the telemetry gives it.
-    pub omega: Vec<f64>,
 }
 
 impl Scale {
@@ -105,102 +83,135 @@ impl Column {
     }
 }
 
-impl Record {
-    /// Reads the whole record of `file`.
-    ///
-    /// # Errors
-    /// As [`Record::scan`].
-    pub fn read(file: &Path, columns: &Columns) -> Result<Self, Error> {
-        let mut record = Self::default();
-        Self::scan(file, columns, &mut |block| record.extend(block))?;
-        Ok(record)
-    }
+/// Reads the whole record of `file`.
+///
+/// # Errors
+/// As [`scan_record`].
+pub fn read_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
+    let mut record = Record::default();
+    scan_record(file, columns, &mut |stretch| record.extend(stretch))?;
+    Ok(record)
+}
 
-    /// Hands the record of `file` to `visit` block by block, in memory that does not grow with the record.
-    ///
-    /// Time never decreases from row to row; it may stand still, as real streams repeat samples.
-    ///
-    /// # Errors
-    /// If the file can not be read, has no rows, lacks a column, or a value is no finite number; if time runs
-    /// backwards.
-    pub fn scan(file: &Path, columns: &Columns, visit: &mut dyn FnMut(RecordBlock)) -> Result<(), Error> {
-        Self::scan_extent(file, Extent::Whole, columns, visit)
-    }
+/// Reads what has come of a record that is still being written: a last line that is not ended is left for the next
+/// time. A file of another format than text has to appear whole, by renaming.
+///
+/// # Errors
+/// As [`scan_record`].
+pub fn read_growing_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
+    let mut record = Record::default();
+    columns.of_record().scan(file, Extent::Growing, &mut |stretch| record.extend(stretch))?;
+    Ok(record)
+}
 
-    /// Reads what has come of a record that is still being written: a last line that is not ended is left for the next
-    /// time. A file of another format than text has to appear whole, by renaming.
-    ///
-    /// # Errors
-    /// As [`Record::scan`].
-    pub fn read_growing(file: &Path, columns: &Columns) -> Result<Self, Error> {
-        let mut record = Self::default();
-        Self::scan_extent(file, Extent::Growing, columns, &mut |block| record.extend(block))?;
-        Ok(record)
-    }
+/// Hands the record of `file` to `visit` stretch by stretch, in memory that does not grow with the record.
+///
+/// Time never decreases from row to row; it may stand still, as real streams repeat samples.
+///
+/// # Errors
+/// If the file can not be read, has no rows, lacks a column, or a value is no finite number; if time runs
+/// backwards.
+pub fn scan_record(file: &Path, columns: &Columns, visit: &mut dyn FnMut(RecordSlice)) -> Result<(), Error> {
+    columns.of_record().scan(file, Extent::Whole, visit)
+}
 
-    fn extend(&mut self, block: RecordBlock) {
-        self.t.extend_from_slice(block.t);
-        for (whole, piece) in self.f.iter_mut().zip(block.f) {
-            whole.extend_from_slice(piece);
-        }
-    }
+/// Reads the telemetry of `file`.
+///
+/// # Errors
+/// As [`scan_record`].
+pub fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Error> {
+    let mut telemetry = SpeedTrace::default();
+    let mut visit = |block: &Block| {
+        telemetry.t.extend_from_slice(&block[0]);
+        telemetry.omega.extend_from_slice(&block[1]);
+    };
+    Wanted { columns: vec![&columns.time, &columns.speed], expected: "telemetry" }.read(
+        file,
+        Extent::Whole,
+        &|_| {},
+        &mut |blocks| blocks.iter().for_each(&mut visit),
+    )?;
+    Ok(telemetry)
+}
 
-    fn scan_extent(
-        file: &Path,
-        extent: Extent,
-        columns: &Columns,
-        visit: &mut dyn FnMut(RecordBlock),
-    ) -> Result<(), Error> {
-        let [f1, f2, f3] = &columns.f;
-        read_scaled(file, extent, &[&columns.time, f1, f2, f3], "a record", &mut |block| {
-            visit(RecordBlock { t: &block[0], f: [&block[1], &block[2], &block[3]] });
-        })
+/// Columns to read, the first of them time.
+#[derive(Debug, Clone)]
+struct Wanted<'a> {
+    columns: Vec<&'a Column>,
+    /// What they are, for messages.
+    expected: &'static str,
+}
+
+impl Columns {
+    fn of_record(&self) -> Wanted<'_> {
+        let [f1, f2, f3] = &self.f;
+        Wanted { columns: vec![&self.time, f1, f2, f3], expected: "a record" }
     }
 }
 
-impl Telemetry {
-    /// Reads the telemetry of `file`.
-    ///
-    /// # Errors
-    /// As [`Record::scan`].
-    pub fn read(file: &Path, columns: &Columns) -> Result<Self, Error> {
-        let mut telemetry = Self::default();
-        read_scaled(file, Extent::Whole, &[&columns.time, &columns.speed], "telemetry", &mut |block| {
-            telemetry.t.extend_from_slice(&block[0]);
-            telemetry.omega.extend_from_slice(&block[1]);
-        })?;
-        Ok(telemetry)
-    }
+/// A block of a record, in SI.
+fn stretch(block: &Block) -> RecordSlice<'_> {
+    RecordSlice { t: &block[0], f_z: [&block[1], &block[2], &block[3]] }
 }
 
-/// Reads columns, the first of them time, and takes them to SI.
-fn read_scaled(
-    file: &Path,
-    extent: Extent,
-    columns: &[&Column],
-    expected: &str,
-    visit: &mut dyn FnMut(&[Vec<f64>]),
-) -> Result<(), Error> {
-    let time = columns[0];
-    // A row's number is not in the file; a stamp is in seconds, whatever the numbers would be in.
-    let counted = usize::from(time.name == ColumnName::Row);
-    let stamps = Rule::Ascending { stamps: time.scale == Scale::factor(1.0) };
-    let rule = |k| if k == 0 { stamps } else { Rule::Any };
-    let fields: Vec<Field> =
-        columns.iter().enumerate().map(|(k, column)| column.field(rule(k))).skip(counted).collect();
-    let mut scaled = vec![Vec::new(); columns.len()];
-    let mut rows = 0_u64;
-    table::read_extent(file, extent, &fields, expected, &mut |block| {
-        let first = rows;
-        rows += block[0].len() as u64;
-        if counted == 1 {
-            scaled[0] = (first..rows).map(|row| row as f64).collect();
+impl Wanted<'_> {
+    /// What of them is in a file: a row's number is not.
+    fn fields(&self) -> Vec<Field> {
+        let time = self.columns[0];
+        // A stamp is in seconds, whatever the numbers would be in.
+        let stamps = Rule::Ascending { stamps: time.scale == Scale::factor(1.0) };
+        let rule = |k| if k == 0 { stamps } else { Rule::Any };
+        let fields = self.columns.iter().enumerate().map(|(k, column)| column.field(rule(k)));
+        fields.skip(usize::from(self.rows_are_counted())).collect()
+    }
+
+    fn rows_are_counted(&self) -> bool {
+        self.columns[0].name == ColumnName::Row
+    }
+
+    /// Takes a block, whose first row has that number, to SI.
+    fn to_si(&self, first_row: u64, block: &mut Block) {
+        if self.rows_are_counted() {
+            let rows = first_row..first_row + block[0].len() as u64;
+            block.insert(0, rows.map(|row| row as f64).collect());
         }
-        scaled[counted..].swap_with_slice(block);
-        for (values, column) in scaled.iter_mut().zip(columns) {
+        for (values, column) in block.iter_mut().zip(&self.columns) {
             column.scale.apply(values);
         }
-        visit(&scaled);
-        scaled[counted..].swap_with_slice(block);
-    })
+    }
+
+    /// Makes room in a block for what comes next from the file.
+    fn give_back(&self, block: &mut Block) {
+        if self.rows_are_counted() {
+            block.remove(0);
+        }
+    }
+
+    /// Reads them, batch by batch, in SI.
+    fn read(
+        &self,
+        file: &Path,
+        extent: Extent,
+        progress: &(dyn Fn(u64) + Sync),
+        visit: &mut dyn FnMut(&[Block]),
+    ) -> Result<Option<Index>, Error> {
+        let mut rows = 0;
+        let mut to_si = |blocks: &mut [Block]| {
+            for block in blocks.iter_mut() {
+                let first = rows;
+                rows += block[0].len() as u64;
+                self.to_si(first, block);
+            }
+            visit(blocks);
+            blocks.iter_mut().for_each(|block| self.give_back(block));
+        };
+        let mut visitor = Visitor { visit: &mut to_si, progress };
+        table::read_batches(file, extent, &self.fields(), self.expected, &mut visitor)
+    }
+
+    /// Hands the stretches of a record over, one by one.
+    fn scan(&self, file: &Path, extent: Extent, visit: &mut dyn FnMut(RecordSlice)) -> Result<(), Error> {
+        let mut each = |blocks: &[Block]| blocks.iter().for_each(|block| visit(stretch(block)));
+        self.read(file, extent, &|_| {}, &mut each).map(|_| ())
+    }
 }

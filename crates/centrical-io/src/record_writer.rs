@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use self::parquet::ParquetTable;
 use self::text::TextTable;
 use crate::error::Error;
-use crate::record::RecordBlock;
+use centrical::reduction::RecordSlice;
 
 /// Writes `t` [s], `f1`, `f2`, `f3` [m/s^2] beside the file and renames at the end: whoever looks sees the whole
 /// record or none. Numbers read back as they were; NaN is written as such.
@@ -25,7 +25,7 @@ pub struct RecordWriter {
 /// A format.
 trait Table: Send {
     /// Adds rows.
-    fn write(&mut self, block: RecordBlock) -> io::Result<()>;
+    fn write(&mut self, block: RecordSlice) -> io::Result<()>;
 
     /// Writes what is left and sees it to the disk.
     fn finish(self: Box<Self>) -> io::Result<()>;
@@ -53,7 +53,7 @@ impl RecordWriter {
     ///
     /// # Errors
     /// [`Error::Io`] if it cannot be written.
-    pub fn write(&mut self, block: RecordBlock) -> Result<(), Error> {
+    pub fn write(&mut self, block: RecordSlice) -> Result<(), Error> {
         let written = self.table.as_mut().map_or(Ok(()), |table| table.write(block));
         written.map_err(|error| Error::writing(&self.file, error))
     }

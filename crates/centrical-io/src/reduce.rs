@@ -2,10 +2,8 @@
 
 use std::path::Path;
 
-use centrical::reduction::{
-    ClockOffset, NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, SpeedTrace, reduce,
-};
-use centrical::{Observation, linear};
+use centrical::reduction::{ClockOffset, NoiseModel, PlateauMean, RecordSlice, ReducedMounting, ScheduledPlateau};
+use centrical::{Observation, SetPoint, linear};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
@@ -13,6 +11,7 @@ use crate::error::Error;
 use crate::input::Input;
 use crate::overview::RecordOverview;
 use crate::plateaus::PlateauMean as TabledPlateau;
+use crate::record::RecordFile;
 use crate::session::Session;
 
 /// A session's plateau means, and the files they come from.
@@ -59,20 +58,41 @@ pub struct ReducedPlateau {
 }
 
 impl Reduced {
-    /// Reads and reduces the records of a session, or takes its plateau table. `done` is told the index of each
-    /// mounting as it is finished, from any thread; the outcome does not depend on their number.
+    /// Reads and reduces the records of a session, or takes its plateau table. `progress` is told of bytes of records as
+    /// they are read, from any thread, twice of nearly each; the outcome does not depend on the number of threads.
     ///
     /// # Errors
     /// [`Error`] naming the file, the place, what was found and what was expected.
-    pub fn of(session: &Session, done: &(dyn Fn(usize) + Sync)) -> Result<Self, Error> {
-        let mut reduced = match &session.plateaus {
-            Some(table) => Self::of_table(&table.rows),
-            None => from_records(session, done)?,
-        };
+    pub fn of(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
+        let mut reduced = Self::without_inputs(session, progress)?;
         let folder = session.file.parent().unwrap_or(Path::new(""));
         let inputs = session.files().into_par_iter().map(|file| Input::of(folder, file));
         reduced.inputs = inputs.collect::<Result<_, _>>()?;
         Ok(reduced)
+    }
+
+    /// The same without the hashes of the files, where nobody asks for them.
+    ///
+    /// # Errors
+    /// As [`Reduced::of`].
+    pub fn without_inputs(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
+        match &session.plateaus {
+            Some(table) => Ok(Self::of_table(&table.rows)),
+            None => from_records(session, progress),
+        }
+    }
+
+    /// The plateaus as a table, from which the session is calibrated to the same numbers.
+    pub fn table(&self, session: &Session) -> Vec<TabledPlateau> {
+        let row = |(plateau, set_point): (&ReducedPlateau, &SetPoint)| TabledPlateau {
+            mounting: set_point.mounting,
+            speed: set_point.omega.abs(),
+            angle: set_point.angle,
+            mean: plateau.mean,
+            covariance: plateau.covariance,
+            samples: plateau.samples,
+        };
+        self.plateaus.iter().zip(&session.experiment.set_points).map(row).collect()
     }
 
     /// Plateaus that came already averaged.
@@ -99,16 +119,11 @@ impl Reduced {
 }
 
 /// Every mounting by itself, then the noise of all of them together, then the covariances.
-fn from_records(session: &Session, done: &(dyn Fn(usize) + Sync)) -> Result<Reduced, Error> {
-    let mountings = 0..session.experiment.mountings.len();
-    let mountings: Vec<(ReducedMounting, RecordOverview)> = mountings
-        .into_par_iter()
-        .map(|mounting| {
-            let reduced = one_mounting(session, mounting);
-            done(mounting);
-            reduced
-        })
-        .collect::<Result<_, _>>()?;
+fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Reduced, Error> {
+    let mountings = (0..session.experiment.mountings.len()).into_par_iter();
+    // Gathered before the first error is taken: which one it is does not depend on the threads.
+    let mountings: Vec<_> = mountings.map(|mounting| one_mounting(session, mounting, progress)).collect();
+    let mountings: Vec<(ReducedMounting, RecordOverview)> = mountings.into_iter().collect::<Result<_, _>>()?;
     let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) = mountings.into_iter().unzip();
     let noise = NoiseModel::pool(&reduced);
     let means = reduced.iter().flat_map(|mounting| mounting.means(&noise));
@@ -123,21 +138,28 @@ fn from_records(session: &Session, done: &(dyn Fn(usize) + Sync)) -> Result<Redu
     })
 }
 
-fn one_mounting(session: &Session, mounting: usize) -> Result<(ReducedMounting, RecordOverview), Error> {
+/// Twice through the record: where the plateaus are, and what they read.
+fn one_mounting(
+    session: &Session,
+    mounting: usize,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<(ReducedMounting, RecordOverview), Error> {
     let experiment = &session.experiment;
     let schedule: Vec<ScheduledPlateau> = (experiment.set_points.iter())
         .filter(|set_point| set_point.mounting == mounting)
         .map(|set_point| ScheduledPlateau { omega: set_point.omega, nominal_z: linear::nominal(experiment, set_point) })
         .collect();
-    let crate::Record { t, f } = session.record(mounting)?;
-    let record = Record { t, f_z: f };
-    let telemetry = session.telemetry(mounting)?.map(|crate::Telemetry { t, omega }| SpeedTrace { t, omega });
-    let reduced = reduce(&record, telemetry.as_ref(), &schedule).map_err(|source| Error::Reduction {
-        file: session.mountings[mounting].record.clone().unwrap_or_default(),
-        mounting: mounting + 1,
-        source,
-    })?;
-    Ok((reduced, RecordOverview::of(mounting + 1, &record.t, &record.f_z)))
+    let file = session.record_file(mounting)?;
+    let refused = |source| Error::Reduction { file: file.to_owned(), mounting: mounting + 1, source };
+    let record = RecordFile::new(file, &session.columns, progress);
+    let (survey, index) = record.survey()?;
+    let telemetry = session.telemetry(mounting)?;
+    let located = survey.locate(telemetry.as_ref(), &schedule).map_err(refused)?;
+    let average = |plateau: usize, samples: RecordSlice| located.average(plateau, samples);
+    let averaged = record.windows(index.as_ref(), &located.windows(), &average)?;
+    let averaged = averaged.into_iter().collect::<Result<_, _>>().map_err(refused)?;
+    let overview = RecordOverview::of(mounting + 1, &survey.extremes().collect::<Vec<_>>());
+    Ok((located.into_mounting(averaged), overview))
 }
 
 impl From<PlateauMean> for ReducedPlateau {

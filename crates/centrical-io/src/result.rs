@@ -5,6 +5,7 @@
 //! no time of day, no absolute paths.
 
 mod error_terms;
+mod trust;
 
 use std::fs;
 use std::path::Path;
@@ -15,6 +16,9 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 pub use self::error_terms::NoErrorModel;
+pub use self::trust::{
+    BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
+};
 use crate::error::{Error, Place};
 use crate::input::Input;
 use crate::overview::RecordOverview;
@@ -40,7 +44,8 @@ pub struct CalibrationResult {
     pub model: ModelSummary,
     /// The unknowns in the order of the covariance.
     pub parameters: Vec<ParameterEstimate>,
-    /// Covariance of the estimates, SI; null where a parameter is not estimable.
+    /// Covariance of the estimates, SI; null where a parameter is not estimable. The combined one of the budget where the
+    /// session states uncertainties beyond what the fit weighs.
     pub covariance: Vec<Vec<Option<f64>>>,
     /// What the experiment sees.
     pub observability: ObservabilitySummary,
@@ -56,6 +61,9 @@ pub struct CalibrationResult {
     /// The uncertainties by their sources, if a budget was made.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub budget: Option<BudgetSummary>,
+    /// The checks of the fit, if they were made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub validity: Option<ValiditySummary>,
     /// Stability of the reading at rest, if it was computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<Vec<StabilityCurve>>,
@@ -266,24 +274,6 @@ pub struct ConvergenceSummary {
     pub standard_uncertainty: Vec<Vec<f64>>,
 }
 
-/// The uncertainties by their sources.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct BudgetSummary {
-    /// The sources.
-    pub sources: Vec<BudgetSource>,
-    /// Combined standard uncertainty, SI, in the order of the parameters; null where one is not estimable.
-    pub combined: Vec<Option<f64>>,
-}
-
-/// What one source leaves in the parameters.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct BudgetSource {
-    /// Its name.
-    pub name: String,
-    /// Standard uncertainty it leaves, SI, in the order of the parameters; null where one is not estimable.
-    pub standard_uncertainty: Vec<Option<f64>>,
-}
-
 /// Deviation of one axis against averaging time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StabilityCurve {
@@ -318,6 +308,7 @@ impl CalibrationResult {
             plateaus: plateaus(session, model, reduced, fit),
             convergence: Some(ConvergenceSummary::new(model, reduced, fit)),
             budget: None,
+            validity: None,
             stability: None,
             records: reduced.records.clone(),
         }

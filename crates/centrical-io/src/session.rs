@@ -5,6 +5,7 @@ mod attitude;
 mod columns;
 pub(crate) mod form;
 mod plan;
+mod planning;
 mod prior;
 mod schedule;
 mod terms;
@@ -14,18 +15,20 @@ mod unit;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 use centrical::uncertainty::TypeB;
 use centrical::{ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, SetPoint, Site};
 
 use self::at::At;
 use self::form::{Form, ModelTable, SiteTable};
 pub use self::plan::{Noise, Plan};
+pub use self::planning::Planning;
 use self::prior::PriorEntry;
 pub(crate) use self::schedule::FASTEST;
 use crate::error::{Error, Place, quoted};
 use crate::plateaus::{PlateauMean, read_plateaus};
 use crate::quantity::Dimension;
-use crate::record::{Columns, Record, RecordBlock, Telemetry};
+use crate::record::{Columns, read_record, read_telemetry, scan_record};
 
 /// Name of the experiment file in a session folder.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
@@ -66,6 +69,8 @@ pub struct Session {
     pub mountings: Vec<MountingFiles>,
     /// Plateaus already averaged, if the session brings them instead of records.
     pub plateaus: Option<PlateauTable>,
+    /// Duration that the schedule states for each set point, if it does [s].
+    pub durations: Vec<Option<f64>>,
     priors: Vec<PriorEntry>,
 }
 
@@ -105,6 +110,7 @@ impl Session {
             session.plateaus = Some(table);
         } else {
             session.experiment.set_points = schedule::set_points(&file, &form.mounting, sign)?;
+            session.durations = plan::durations(&file, &form)?;
         }
         if session.experiment.set_points.iter().all(SetPoint::is_rest) {
             let at = At::entry(&file, "mounting", 0);
@@ -161,6 +167,7 @@ impl Session {
                 .map(|m| MountingFiles { record: path(&m.record), telemetry: path(&m.telemetry) })
                 .collect(),
             plateaus: None,
+            durations: Vec::new(),
             priors: prior::entries(&form.prior),
         })
     }
@@ -168,26 +175,32 @@ impl Session {
     /// Reads the whole record of a mounting, by its index.
     ///
     /// # Errors
-    /// If the mounting has no record, or as [`Record::scan`].
+    /// If the mounting has no record, or as [`scan_record`].
     pub fn record(&self, mounting: usize) -> Result<Record, Error> {
-        Record::read(self.record_file(mounting)?, &self.columns)
+        read_record(self.record_file(mounting)?, &self.columns)
     }
 
     /// Hands the record of a mounting to `visit` block by block, in memory that does not grow with the record.
     ///
     /// # Errors
-    /// If the mounting has no record, or as [`Record::scan`].
-    pub fn scan_record(&self, mounting: usize, visit: &mut dyn FnMut(RecordBlock)) -> Result<(), Error> {
-        Record::scan(self.record_file(mounting)?, &self.columns, visit)
+    /// If the mounting has no record, or as [`scan_record`].
+    pub fn scan_record(&self, mounting: usize, visit: &mut dyn FnMut(RecordSlice)) -> Result<(), Error> {
+        scan_record(self.record_file(mounting)?, &self.columns, visit)
     }
 
     /// Reads the telemetry of a mounting, if it has any.
     ///
     /// # Errors
-    /// As [`Record::scan`].
-    pub fn telemetry(&self, mounting: usize) -> Result<Option<Telemetry>, Error> {
+    /// As [`scan_record`].
+    pub fn telemetry(&self, mounting: usize) -> Result<Option<SpeedTrace>, Error> {
         let file = self.mountings.get(mounting).and_then(|m| m.telemetry.as_ref());
-        file.map(|file| Telemetry::read(file, &self.columns)).transpose()
+        file.map(|file| read_telemetry(file, &self.columns)).transpose()
+    }
+
+    /// Size of the records [bytes]; zero for a session that comes already averaged, and of records that are not there.
+    pub fn record_bytes(&self) -> u64 {
+        let files = self.mountings.iter().filter(|_| self.plateaus.is_none()).filter_map(|m| m.record.as_ref());
+        files.filter_map(|file| fs::metadata(file).ok()).map(|metadata| metadata.len()).sum()
     }
 
     /// All files of the session in the order they are named: the experiment file first.
@@ -197,7 +210,8 @@ impl Session {
         std::iter::once(&self.file).chain(table).chain(of_mountings).map(PathBuf::as_path).collect()
     }
 
-    fn record_file(&self, mounting: usize) -> Result<&Path, Error> {
+    /// The file of a mounting's record.
+    pub(crate) fn record_file(&self, mounting: usize) -> Result<&Path, Error> {
         let record = self.mountings.get(mounting).and_then(|m| m.record.as_deref());
         record.ok_or_else(|| {
             At::entry(&self.file, "mounting", mounting).unexpected("record", "no record", "the path of one")
@@ -221,7 +235,7 @@ impl PlateauTable {
 }
 
 /// The text of the experiment file.
-fn read_text(file: &Path) -> Result<String, Error> {
+pub(crate) fn read_text(file: &Path) -> Result<String, Error> {
     let expected = "an experiment file, or the folder with its experiment.toml";
     let failed = |e| Error::reading(file, e, expected);
     let metadata = fs::metadata(file).map_err(failed)?;
@@ -264,17 +278,21 @@ fn rotation(file: &Path, text: &str) -> Result<f64, Error> {
 }
 
 fn extensions(file: &Path, table: &ModelTable) -> Result<Vec<Extension>, Error> {
+    named_extensions(&At::table(file, "model"), &table.extensions)
+}
+
+fn named_extensions(at: &At, names: &[String]) -> Result<Vec<Extension>, Error> {
     let mut extensions = Vec::new();
-    for name in &table.extensions {
+    for name in names {
         let found = quoted(name.as_bytes());
         let Some(extension) = Extension::named(name) else {
             let known: Vec<&str> = Extension::NAMED.iter().map(|(name, _)| *name).collect();
             let expected = format!("one of {}", known.join(", "));
-            return Err(At::table(file, "model").unexpected("extensions", found, expected));
+            return Err(at.unexpected("extensions", found, expected));
         };
         if extensions.contains(&extension) {
             let expected = "every extension once";
-            return Err(At::table(file, "model").unexpected("extensions", format!("{found} a second time"), expected));
+            return Err(at.unexpected("extensions", format!("{found} a second time"), expected));
         }
         extensions.push(extension);
     }

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 pub use truth::Truth;
 
 use self::csv::CsvTable;
-use self::parquet::ParquetTable;
+pub(crate) use self::parquet::ParquetTable;
 use crate::error::{Error, Place};
 use crate::record::Column;
 use crate::session::{EXPERIMENT_FILE, Session};
@@ -60,7 +60,11 @@ pub fn simulate_session(
     }
     let columns = Headers::of(plan)?;
     let text = plan::with_files(plan, format)?;
+    // Plateaus last as long as the plan says, or as the machine makes them.
+    let stated = plan.durations.iter().map(|duration| duration.unwrap_or(truth.settings.machine.plateau));
+    let durations: Vec<f64> = stated.collect();
     let simulation = Simulation::new(&truth.model, &truth.values, &truth.settings, seed)
+        .and_then(|simulation| simulation.with_durations(&durations))
         .map_err(|source| Error::Simulation { file: truth.file.clone(), source })?;
     create_folder(&folder.join("records"))?;
     create_folder(&folder.join("telemetry"))?;

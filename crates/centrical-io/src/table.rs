@@ -3,11 +3,13 @@
 //! The format is told by the first bytes of the file, not by its name.
 
 mod arrays;
+mod arrow;
 mod columnar;
 #[cfg(feature = "hdf5")]
 mod hdf5;
 mod mat;
 mod npy;
+mod panics;
 mod parquet;
 mod stamp;
 mod text;
@@ -15,11 +17,13 @@ mod text;
 use std::fmt;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
 
+use self::panics::caught;
+pub(crate) use self::text::Index;
+use self::text::{Packed, Plain};
 use crate::error::{Error, Place};
 
 /// Rows in a block: long enough that the cost of a block vanishes, short enough for the cache.
@@ -77,16 +81,28 @@ impl Rule {
     }
 }
 
-/// Reads `fields` of the table in `file` and hands them to `visit` in blocks: one slice of equal length per field.
+/// Rows of a table: the values of each field, in slices of equal length.
+pub(crate) type Block = Vec<Vec<f64>>;
+
+/// Reads `fields` of the table in `file` and hands them to `visit` in blocks.
 ///
 /// Memory stays bounded however long the table is.
 pub(crate) fn read(
     file: &Path,
     fields: &[Field],
     expected: &str,
-    visit: &mut dyn FnMut(&mut [Vec<f64>]),
+    visit: &mut dyn FnMut(&mut Block),
 ) -> Result<(), Error> {
-    read_extent(file, Extent::Whole, fields, expected, visit)
+    let mut each = |blocks: &mut [Block]| blocks.iter_mut().for_each(&mut *visit);
+    read_batches(file, Extent::Whole, fields, expected, &mut Visitor { visit: &mut each, progress: &|_| {} })
+        .map(|_| ())
+}
+
+/// Who is given the rows, several blocks at a time so that he may work on them in parallel, and told how many bytes of
+/// the file they took.
+pub(crate) struct Visitor<'a> {
+    pub visit: &'a mut dyn FnMut(&mut [Block]),
+    pub progress: &'a (dyn Fn(u64) + Sync),
 }
 
 /// How much of a file there is to read.
@@ -99,36 +115,45 @@ pub(crate) enum Extent {
     Growing,
 }
 
-/// [`read`] of what there is.
-pub(crate) fn read_extent(
+/// [`read`] of what there is, in batches of blocks. Of a text that is not packed the index is returned, by which any
+/// part of it can be read again.
+pub(crate) fn read_batches(
     file: &Path,
     extent: Extent,
     fields: &[Field],
     expected: &str,
-    visit: &mut dyn FnMut(&mut [Vec<f64>]),
-) -> Result<(), Error> {
+    visitor: &mut Visitor,
+) -> Result<Option<Index>, Error> {
     let mut input = open(file, expected)?;
     let bytes = input.metadata().map_err(|e| Error::reading(file, e, expected))?.len();
-    let mut rows = Rows::new(fields, bytes, visit);
+    let mut rows = Rows::new(fields, bytes, visitor);
+    let mut index = None;
     let magic = first_bytes(&mut input).map_err(|e| Error::reading(file, e, expected))?;
     if magic.is_empty() {
         return Err(Error::content(file, Place::Whole, "an empty file", expected));
     }
     let format = Format::of(&magic);
     match format {
-        Format::Text if extent == Extent::Growing => {
-            let ended = ended_lines(&mut input, bytes).map_err(|e| Error::reading(file, e, expected))?;
-            text::read(file, &mut input.take(ended), &mut rows)?;
+        Format::Text => {
+            let lines = Plain::open(file).map_err(|e| Error::reading(file, e, expected))?;
+            let mut lines = match extent {
+                Extent::Whole => lines,
+                Extent::Growing => {
+                    let ended = ended_lines(&mut input, bytes).map_err(|e| Error::reading(file, e, expected))?;
+                    lines.up_to(ended)
+                }
+            };
+            index = text::read(file, &mut lines, &mut rows)?;
         }
-        Format::Text => text::read(file, &mut input, &mut rows)?,
-        Format::Gzip => text::read(file, &mut MultiGzDecoder::new(input), &mut rows)?,
+        Format::Gzip => drop(text::read(file, &mut Packed::new(file, MultiGzDecoder::new(input)), &mut rows)?),
         Format::Zstd => {
-            let mut unpacked = zstd::Decoder::new(input).map_err(|e| Error::reading(file, e, expected))?;
-            text::read(file, &mut unpacked, &mut rows)?;
+            let unpacked = zstd::Decoder::new(input).map_err(|e| Error::reading(file, e, expected))?;
+            text::read(file, &mut Packed::new(file, unpacked), &mut rows)?;
         }
         Format::Parquet => parquet::read(file, input, &mut rows)?,
         Format::Npy => npy::read(file, &input, &mut rows)?,
         Format::Npz => npy::read_archive(file, input, &mut rows)?,
+        Format::Arrow => arrow::read(file, &input, &mut rows)?,
         Format::Mat => mat::read(file, &input, &mut rows)?,
         #[cfg(feature = "hdf5")]
         Format::Hdf5 | Format::MatHdf5 => hdf5::read(file, format == Format::MatHdf5, &mut rows)?,
@@ -138,11 +163,14 @@ pub(crate) fn read_extent(
             return Err(Error::content(file, Place::Whole, "HDF5", expected));
         }
     }
-    rows.flush();
+    rows.deliver_gathered();
+    if index.is_none() {
+        (rows.progress)(bytes);
+    }
     let found = match rows.count {
         0 => "a table without rows".to_owned(),
         _ if rows.is_too_long() => format!("a file of {bytes} bytes that unpacks to more than {} rows", rows.most),
-        _ => return Ok(()),
+        _ => return Ok(index),
     };
     Err(Error::content(file, Place::Whole, found, expected))
 }
@@ -156,6 +184,8 @@ enum Format {
     /// Text in Zstandard.
     Zstd,
     Parquet,
+    /// Arrow IPC, as a file or a stream.
+    Arrow,
     /// An array of NumPy.
     Npy,
     /// An archive of such arrays.
@@ -169,10 +199,12 @@ enum Format {
 
 impl Format {
     fn of(magic: &[u8]) -> Self {
-        const MAGIC: [(&[u8], Format); 8] = [
+        const MAGIC: [(&[u8], Format); 10] = [
             (b"\x1f\x8b", Format::Gzip),
             (b"\x28\xb5\x2f\xfd", Format::Zstd),
             (b"PAR1", Format::Parquet),
+            (b"ARROW1", Format::Arrow),
+            (&arrow::CONTINUATION, Format::Arrow),
             (b"\x93NUMPY", Format::Npy),
             (b"PK\x03\x04", Format::Npz),
             (b"MATLAB 5", Format::Mat),
@@ -181,12 +213,6 @@ impl Format {
         ];
         MAGIC.into_iter().find(|(start, _)| magic.starts_with(start)).map_or(Self::Text, |(_, format)| format)
     }
-}
-
-/// A call of a library whose panics on damaged files are errors: of tens of thousands of damaged Parquet files some
-/// made the decoders of bytes by stream and of dictionaries index out of bounds. Nothing half done is used again.
-fn caught<T, E>(call: impl FnOnce() -> Result<T, E>) -> Result<T, Option<E>> {
-    catch_unwind(AssertUnwindSafe(call)).map_or(Err(None), |result| result.map_err(Some))
 }
 
 /// Opens a regular file: a pipe or a device could keep the reader for ever.
@@ -227,16 +253,22 @@ fn ended_lines(input: &mut File, bytes: u64) -> std::io::Result<u64> {
     Ok(0)
 }
 
+/// Blocks that are gathered for the visitor.
+const BATCH: usize = 16;
+
 /// Rows on their way from a parser to the visitor.
 struct Rows<'a> {
     fields: &'a [Field],
-    block: Vec<Vec<f64>>,
+    /// The block in the making, and those that are made.
+    block: Block,
+    gathered: Vec<Block>,
     /// Last value of every field, to see that time does not run backwards.
     last: Vec<f64>,
     count: u64,
     /// Rows that the file can hold.
     most: u64,
-    visit: &'a mut dyn FnMut(&mut [Vec<f64>]),
+    visit: &'a mut dyn FnMut(&mut [Block]),
+    progress: &'a (dyn Fn(u64) + Sync),
 }
 
 /// A value that runs backwards: which field, and what was found.
@@ -246,25 +278,30 @@ struct Backwards {
 }
 
 impl<'a> Rows<'a> {
-    fn new(fields: &'a [Field], bytes: u64, visit: &'a mut dyn FnMut(&mut [Vec<f64>])) -> Self {
-        let block = vec![Vec::with_capacity(BLOCK); fields.len()];
-        let most = ROWS_OF_NOTHING + ROWS_PER_BYTE * bytes;
-        Self { fields, block, last: vec![f64::NEG_INFINITY; fields.len()], count: 0, most, visit }
+    fn new(fields: &'a [Field], bytes: u64, visitor: &'a mut Visitor) -> Self {
+        Self {
+            fields,
+            block: vec![Vec::with_capacity(BLOCK); fields.len()],
+            gathered: Vec::new(),
+            last: vec![f64::NEG_INFINITY; fields.len()],
+            count: 0,
+            most: ROWS_OF_NOTHING + ROWS_PER_BYTE * bytes,
+            visit: visitor.visit,
+            progress: visitor.progress,
+        }
     }
 
-    /// Adds one row, in the order of the fields.
-    fn push(&mut self, row: &[f64]) -> Result<(), Backwards> {
-        for (field, (column, value)) in self.block.iter_mut().zip(row).enumerate() {
-            if *value < self.last[field] && self.fields[field].rule.ascends() {
-                return Err(Backwards { field, found: format!("{value} after {}", self.last[field]) });
+    /// Counts the next rows, in which time does not run backwards, and sees that it did not before them.
+    fn next(&mut self, block: &Block) -> Option<Backwards> {
+        for (field, column) in block.iter().enumerate() {
+            let (first, last) = (column.first()?, column.last()?);
+            if *first < self.last[field] && self.fields[field].rule.ascends() {
+                return Some(Backwards { field, found: format!("{first} after {}", self.last[field]) });
             }
-            self.last[field] = *value;
-            column.push(*value);
+            self.last[field] = *last;
         }
-        if self.block[0].len() == BLOCK {
-            self.flush();
-        }
-        Ok(())
+        self.count += block[0].len() as u64;
+        None
     }
 
     /// Whether more rows came than the file can hold: a packed file can claim any number of them.
@@ -272,12 +309,27 @@ impl<'a> Rows<'a> {
         self.count > self.most
     }
 
-    /// Hands the rows gathered so far to the visitor.
+    /// Ends the block in the making.
     fn flush(&mut self) {
         if !self.block[0].is_empty() {
             self.count += self.block[0].len() as u64;
-            (self.visit)(&mut self.block);
-            self.block.iter_mut().for_each(Vec::clear);
+            let next = vec![Vec::with_capacity(BLOCK); self.fields.len()];
+            self.gathered.push(std::mem::replace(&mut self.block, next));
+            if self.gathered.len() == BATCH {
+                self.deliver_gathered();
+            }
+        }
+    }
+
+    fn deliver_gathered(&mut self) {
+        let mut gathered = std::mem::take(&mut self.gathered);
+        self.deliver(&mut gathered);
+    }
+
+    /// Hands blocks to the visitor.
+    fn deliver(&mut self, blocks: &mut [Block]) {
+        if blocks.iter().any(|block| !block[0].is_empty()) {
+            (self.visit)(blocks);
         }
     }
 }

@@ -7,22 +7,20 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-use centrical::reduction::{
-    NoiseModel, Record as Reducible, ReducedMounting, ReductionError, ScheduledPlateau, reduce,
-};
+use centrical::reduction::{NoiseModel, ReducedMounting, ReductionError, ScheduledPlateau, reduce};
 use centrical::{Observation, SetPoint, linear};
 
-pub use history::{HistoryEntry, HistoryEstimate, InnovationSummary, append_history, keep_history};
+pub use history::{HistoryEntry, HistoryEstimate, InnovationSummary, append_history, keep_history, read_history};
 pub use state::{WatchState, WatchedPlateau};
 
 use crate::error::Error;
-use crate::record::Record;
+use crate::record::read_growing_record;
 use crate::session::Session;
 
 /// A session folder that is looked into again and again.
 ///
-/// A plateau has come when the next one of its schedule has begun, or when the record of its mounting is finished: one of
-/// a later mounting is there, or it has been left alone for the time called quiet.
+/// A plateau has come when the next one of its schedule has begun, or when the record of its mounting is finished: it has
+/// been left alone for the time called quiet, or one of a later mounting is there and it shows its whole schedule.
 #[derive(Debug)]
 pub struct Watch<'s> {
     session: &'s Session,
@@ -41,7 +39,10 @@ pub struct Watch<'s> {
 struct Look {
     bytes: u64,
     changed: Option<SystemTime>,
-    finished: bool,
+    /// Unchanged for the time called quiet: what it is now it stays.
+    left_alone: bool,
+    /// A later mounting has a record: this one grows no more, but what was written may still be on its way.
+    followed: bool,
 }
 
 impl<'s> Watch<'s> {
@@ -63,10 +64,10 @@ impl<'s> Watch<'s> {
     /// Plateaus that have come since the last look, in the order of the schedule, each with the noise of its own and the
     /// earlier mountings as far as it was known.
     ///
-    /// A record that is still written and cannot be made out is waited for, with a [`Watch::note`].
+    /// A record that cannot be made out and has not been left alone yet is waited for, with a [`Watch::note`].
     ///
     /// # Errors
-    /// [`Error`] when the record of a finished mounting is wrong.
+    /// [`Error`] when a record that has been left alone is wrong.
     pub fn look(&mut self) -> Result<Vec<Observation>, Error> {
         if let Some(table) = &self.session.plateaus {
             let fresh = table.rows.iter().enumerate().skip(self.come);
@@ -100,14 +101,15 @@ impl<'s> Watch<'s> {
         }
         self.seen = Some(look);
         self.note = None;
-        let reduced = if look.finished { self.whole(mounting).map(Some) } else { self.begun(mounting, file) };
+        let finished = look.left_alone || look.followed;
+        let reduced = if finished { self.whole(mounting, file, look).map(Some) } else { self.begun(mounting, file) };
         match reduced {
-            Err(error) if !look.finished => self.note = Some(format!("not yet: {error}")),
+            Err(error) if !look.left_alone => self.note = Some(format!("not yet: {error}")),
             Err(error) => return Err(error),
             Ok(None) => {}
             Ok(Some((reduced, complete))) => {
                 self.arrive(mounting, &reduced, complete, arrivals);
-                if look.finished {
+                if finished {
                     self.finished.push(reduced);
                     (self.come, self.seen) = (0, None);
                     return Ok(true);
@@ -123,13 +125,18 @@ impl<'s> Watch<'s> {
         let changed = metadata.modified().ok();
         let left_alone = changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= self.quiet);
         let mut later = self.session.mountings[mounting + 1..].iter().filter_map(|m| m.record.as_deref());
-        Some(Look { bytes: metadata.len(), changed, finished: left_alone || later.any(Path::exists) })
+        Some(Look { bytes: metadata.len(), changed, left_alone, followed: later.any(Path::exists) })
     }
 
-    /// All plateaus of a finished mounting.
-    fn whole(&self, mounting: usize) -> Result<(ReducedMounting, usize), Error> {
+    /// All plateaus of a finished mounting. Unless it has been left alone a last line without end is not read: it may have
+    /// come in part.
+    fn whole(&self, mounting: usize, file: &Path, look: Look) -> Result<(ReducedMounting, usize), Error> {
         let schedule = self.schedule(mounting);
-        let record = reducible(self.session.record(mounting)?);
+        let record = if look.left_alone {
+            self.session.record(mounting)?
+        } else {
+            read_growing_record(file, &self.session.columns)?
+        };
         let reduced = reduce(&record, None, &schedule).map_err(|source| self.refused(mounting, source))?;
         Ok((reduced, schedule.len()))
     }
@@ -137,7 +144,7 @@ impl<'s> Watch<'s> {
     /// The plateaus that a growing record shows, and how many of them have come to their end.
     fn begun(&self, mounting: usize, file: &Path) -> Result<Option<(ReducedMounting, usize)>, Error> {
         let schedule = self.schedule(mounting);
-        let record = reducible(Record::read_growing(file, &self.session.columns)?);
+        let record = read_growing_record(file, &self.session.columns)?;
         let mut count = schedule.len();
         while count > 0 {
             match reduce(&record, None, &schedule[..count]) {
@@ -184,8 +191,4 @@ impl<'s> Watch<'s> {
         let file = self.session.mountings[mounting].record.clone().unwrap_or_default();
         Error::Reduction { file, mounting: mounting + 1, source }
     }
-}
-
-fn reducible(Record { t, f }: Record) -> Reducible {
-    Reducible { t, f_z: f }
 }

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use centrical::uncertainty::{Budget, Cleaned, CurvePoint, Degrees, Pattern, Trend, Validity, coverage_factor};
+use centrical::uncertainty::{Budget, Cleaned, CurvePoint, Degrees, Pattern, Validity, coverage_factor};
 use centrical::{Experiment, Fit, MeasurementModel, Parameters, STANDARD_GRAVITY};
+use centrical_io::{Follows, PatternSummary};
 
 use crate::customary::customary;
 
@@ -68,6 +69,26 @@ fn improvements(text: &mut String, parameters: &Parameters, budget: &Budget) {
     }
 }
 
+/// Correlations of the parameters of the instrument, the lower triangle with two decimals.
+pub fn correlation_table(parameters: &Parameters, budget: &Budget) -> String {
+    let own: Vec<usize> = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument()).collect();
+    let mut text = String::from("CORRELATION  of the parameters of the instrument\n");
+    for (n, &i) in own.iter().enumerate() {
+        let _ = write!(text, "  {:<12}", parameters[i].name);
+        for &j in &own[..=n] {
+            let _ = match budget.correlation(i, j) {
+                Some(r) => write!(text, "{r:>6.2}"),
+                None => write!(text, "{:>6}", "-"),
+            };
+        }
+        text.push('\n');
+    }
+    let _ = write!(text, "  {:<12}", "");
+    own.iter().for_each(|&j| _ = write!(text, "{:>6}", parameters[j].name));
+    text.push('\n');
+    text
+}
+
 /// chi^2, plateaus that stand out, hold-out by mounting, and patterns in words.
 pub fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[Pattern]) -> String {
     let mut text = String::from("VALIDITY\n");
@@ -110,7 +131,7 @@ pub fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[P
         );
     }
     for pattern in told {
-        let _ = writeln!(text, "  {}", pattern_in_words(experiment, pattern));
+        let _ = writeln!(text, "  {}", pattern_in_words(&PatternSummary::new(experiment, pattern)));
     }
     text
 }
@@ -150,31 +171,31 @@ fn plateau(experiment: &Experiment, index: usize) -> String {
 }
 
 /// "residuals of newtonometer 2 grow with the square of the speed in position 3 ...: an elastic turn or a loose seat".
-pub fn pattern_in_words(experiment: &Experiment, pattern: &Pattern) -> String {
-    let id = |k: usize| &experiment.positions[k].id;
-    let (what, cause) = match pattern.trend {
-        Trend::Position(k) => (format!("have a step in position {}", id(k)), "a seat that moved or a thermal shift"),
-        Trend::SpeedInPosition(k) => {
-            (format!("grow with the square of the speed in position {}", id(k)), "an elastic turn or a loose seat")
+pub fn pattern_in_words(pattern: &PatternSummary) -> String {
+    let (what, cause) = match &pattern.follows {
+        Follows::Position { position } => {
+            (format!("have a step in position {position}"), "a seat that moved or a thermal shift")
         }
-        Trend::SpeedOnSeat(seat) => {
-            let radius = experiment.mountings[seat].arm_y.x;
-            (
-                format!("grow with the square of the speed at radius {radius} m"),
-                "a wrong radius or a stretch of the arm",
-            )
+        Follows::SpeedInPosition { position } => {
+            (format!("grow with the square of the speed in position {position}"), "an elastic turn or a loose seat")
         }
-        Trend::Speed => ("grow with the square of the speed".to_owned(), "a wrong speed or a missing term"),
-        Trend::Load => ("grow with the load".to_owned(), "a missing term of the error model or an elastic arm"),
-        Trend::Mounting(m) => (format!("have a step in mounting {}", m + 1), "a drift of the bias or a loose mounting"),
-        Trend::Time => ("drift over the session".to_owned(), "a drift of the bias"),
+        Follows::SpeedOnSeat { radius } => (
+            format!("grow with the square of the speed at radius {radius} m"),
+            "a wrong radius or a stretch of the arm",
+        ),
+        Follows::Speed => ("grow with the square of the speed".to_owned(), "a wrong speed or a missing term"),
+        Follows::Load => ("grow with the load".to_owned(), "a missing term of the error model or an elastic arm"),
+        Follows::Mounting { mounting } => {
+            (format!("have a step in mounting {mounting}"), "a drift of the bias or a loose mounting")
+        }
+        Follows::Time => ("drift over the session".to_owned(), "a drift of the bias"),
     };
     format!(
         "residuals of newtonometer {} {what} ({} ± {} ug, probability {:.1e}): {cause}",
-        pattern.axis + 1,
+        pattern.axis,
         short(pattern.amplitude / STANDARD_GRAVITY * 1e6),
         short(pattern.standard_uncertainty / STANDARD_GRAVITY * 1e6),
-        pattern.family_wise
+        pattern.probability
     )
 }
 

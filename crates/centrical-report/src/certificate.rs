@@ -1,19 +1,15 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
-use centrical_io::{
-    Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory, ParameterEstimate,
-};
+use centrical_io::{Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory};
 
 use crate::conformity::conformity;
 use crate::customary::customary;
 use crate::equation::equations;
+use crate::expanded::expanded;
 use crate::groups::by_group;
 use crate::language::Language;
 use crate::pdf::{Align, Column, Furniture, Layout, write};
 use crate::reading_error::{error_table, reading_errors};
-
-/// Coverage factor of the expanded uncertainties.
-const COVERAGE: f64 = 2.0;
 
 /// The certificate as the bytes of a PDF file, with the results `before` an adjustment beside those after it if the
 /// unit was adjusted. The same data give the same bytes.
@@ -166,9 +162,9 @@ fn results(layout: &mut Layout, result: &CalibrationResult, language: Language) 
         .into_iter()
         .map(|parameter| {
             let (factor, unit) = customary(&parameter.unit, &parameter.group);
-            let [shown, si] = match (parameter.value, parameter.standard_uncertainty) {
-                (Some(value), Some(uncertainty)) => {
-                    let expanded = COVERAGE * uncertainty;
+            let [shown, si] = match (parameter.value, expanded(result, parameter)) {
+                (Some(value), Some(expanded)) => {
+                    let expanded = expanded.uncertainty;
                     let shown = language.plus_minus(value * factor, expanded * factor);
                     [shown, language.plus_minus_scientific(value, expanded)]
                 }
@@ -220,17 +216,17 @@ fn adjustment(
 fn results_before(layout: &mut Layout, result: &CalibrationResult, before: &CalibrationResult, language: Language) {
     let messages = language.messages();
     let terms: Vec<_> = result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect();
-    let shown = |parameter: Option<&ParameterEstimate>, factor: f64| {
-        let estimate = parameter.and_then(|p| Some((p.value?, p.standard_uncertainty?)));
-        let known = |(value, uncertainty)| language.plus_minus(value * factor, COVERAGE * uncertainty * factor);
+    let shown = |result: &CalibrationResult, name: &str, factor: f64| {
+        let estimate = result.parameter(name).and_then(|p| Some((p.value?, expanded(result, p)?.uncertainty)));
+        let known = |(value, expanded)| language.plus_minus(value * factor, expanded * factor);
         estimate.map_or_else(|| messages.not_determined.to_owned(), known)
     };
     let rows: Vec<Vec<String>> = by_group(&terms)
         .into_iter()
         .map(|after| {
             let (factor, unit) = customary(&after.unit, &after.group);
-            let was = shown(before.parameter(&after.name), factor);
-            vec![after.name.clone(), was, shown(Some(after), factor), language.unit(unit)]
+            let [was, is] = [before, result].map(|result| shown(result, &after.name, factor));
+            vec![after.name.clone(), was, is, language.unit(unit)]
         })
         .collect();
     let columns = [(0.16, Align::Left), (0.34, Align::Right), (0.34, Align::Right), (0.16, Align::Left)]

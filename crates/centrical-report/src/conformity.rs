@@ -2,8 +2,7 @@
 
 use centrical_io::{CalibrationResult, Decision, DecisionRule, Limit};
 
-/// Coverage factor of the guard band.
-const COVERAGE: f64 = 2.0;
+use crate::expanded::expanded;
 
 /// A limit and whether its parameter keeps it.
 #[derive(Debug, Clone, Copy)]
@@ -19,8 +18,7 @@ pub(crate) struct Judged<'d> {
 /// Every limit of a decision, judged. A parameter that is not determined does not conform.
 pub(crate) fn conformity<'d>(result: &CalibrationResult, decision: &'d Decision) -> Vec<Judged<'d>> {
     let judge = |limit: &'d Limit| {
-        let value =
-            result.parameter(&limit.parameter).and_then(|p| Some((p.value?, COVERAGE * p.standard_uncertainty?)));
+        let value = result.parameter(&limit.parameter).and_then(|p| Some((p.value?, expanded(result, p)?.uncertainty)));
         let conforms = value.is_some_and(|(value, expanded)| {
             let guard = match decision.rule {
                 DecisionRule::Simple => 0.0,

@@ -10,8 +10,8 @@ use centrical_io::{CalibrationResult, Laboratory};
 use crate::language::Language;
 use xml::Xml;
 
-/// Coverage factor and probability of the expanded uncertainties.
-const COVERAGE: (&str, f64, &str) = ("2", 2.0, "0.95");
+/// Probability that the expanded uncertainties cover.
+const COVERAGE: &str = "0.95";
 
 /// The certificate of a result. The same data give the same bytes.
 pub fn digital_certificate(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> String {

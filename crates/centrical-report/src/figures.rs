@@ -2,12 +2,15 @@
 
 mod correlation;
 mod fit;
+mod history;
+mod prediction;
 mod record;
 
 use centrical::Position;
 use centrical_io::CalibrationResult;
 use nalgebra::Matrix3;
 
+pub use self::history::history_figure;
 use crate::language::Language;
 use crate::plot::Plot;
 use crate::positions_figure::position_drawings;
@@ -32,6 +35,7 @@ pub fn figures(result: &CalibrationResult, language: Language) -> Vec<Figure> {
     let records = record::figure(result, language);
     of_fit
         .into_iter()
+        .chain(prediction::figure(result, language))
         .chain(correlation)
         .chain(fit::singular_values(result, language))
         .chain([fit::convergence(result, language), records, fit::stability(result, language)].into_iter().flatten())

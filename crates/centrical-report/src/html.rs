@@ -4,7 +4,7 @@ mod table;
 
 use std::fmt::Write;
 
-use centrical_io::CalibrationResult;
+use centrical_io::{CalibrationResult, ValiditySummary};
 
 use crate::figures::{Figure, figures, positions};
 use crate::groups::by_group;
@@ -19,6 +19,11 @@ const STYLE: &str = include_str!("html/style.css");
 
 /// The whole page. The same result gives the same bytes.
 pub fn html_report(result: &CalibrationResult, language: Language) -> String {
+    html_report_with(result, &[], language)
+}
+
+/// The page with `further` figures after those of the result.
+pub fn html_report_with(result: &CalibrationResult, further: &[Figure], language: Language) -> String {
     let messages = language.messages();
     let title = format!("{}: {}", messages.calibration_report, result.session.unit_model);
     let mut html = format!(
@@ -44,6 +49,7 @@ pub fn html_report(result: &CalibrationResult, language: Language) -> String {
                 null_directions(html, result, language);
             }
         }
+        further.iter().for_each(|figure| draw(html, figure, true));
     });
     inputs(&mut html, result, language);
     let _ = write!(
@@ -103,12 +109,38 @@ fn verdict(html: &mut String, result: &CalibrationResult, language: Language) {
         let ratio = language.fixed(fit.chi_squared / dof, 3);
         facts.row(messages.chi_squared, &[format!("{ratio} (1 ± {expected}; ν = {})", fit.degrees_of_freedom)]);
     }
+    if let Some(validity) = result.validity.as_ref().filter(|_| fit.degrees_of_freedom > 0) {
+        checks(&mut facts, validity, language);
+    }
     facts.row(messages.rank, &[format!("{} / {}", seen.rank, seen.columns)]);
     html.push_str(&facts.into_html());
     if let Some(errors) = reading_errors(result) {
         residual_error(html, &errors, language);
     }
     html.push_str("</section>\n");
+}
+
+/// What the residuals say of the model and of the weights.
+fn checks(facts: &mut Table, validity: &ValiditySummary, language: Language) {
+    let messages = language.messages();
+    let listed = |items: Vec<String>| if items.is_empty() { messages.none.to_owned() } else { items.join("; ") };
+    facts.row(messages.chi_squared_chance, &[language.fixed(validity.probability, 3)]);
+    let outlying = validity.outlying.iter().map(|p| format!("{}:{}", p.mounting, p.index + 1)).collect();
+    facts.row(&capitalised(messages.outlying_plateaus), &[listed(outlying)]);
+    let patterns = validity.patterns.iter().map(|pattern| messages.pattern(pattern, language)).collect();
+    facts.row(&capitalised(messages.patterns_found), &[listed(patterns)]);
+    if let Some(worst) = validity.mountings.iter().min_by(|a, b| a.probability.total_cmp(&b.probability)) {
+        let chance = (validity.mountings.len() as f64 * worst.probability).min(1.0);
+        let chi_squared = language.fixed(worst.chi_squared, 1);
+        let (nu, p) = (worst.degrees_of_freedom, language.fixed(chance, 3));
+        let shown = format!("{}: χ² = {chi_squared}; ν = {nu}; p = {p}", worst.mounting);
+        facts.row(messages.worst_mounting, &[shown]);
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn residual_error(html: &mut String, errors: &[ReadingError], language: Language) {
@@ -173,7 +205,7 @@ fn parameter_tables(html: &mut String, result: &CalibrationResult, language: Lan
             let shown = by_group(&shown);
             if !shown.is_empty() {
                 let _ = writeln!(html, "<h3>{title}</h3>");
-                html.push_str(&parameters(&shown, language));
+                html.push_str(&parameters(result, &shown, language));
             }
         }
     });
@@ -184,6 +216,9 @@ fn budget_section(html: &mut String, result: &CalibrationResult, language: Langu
     section(html, messages.budget, |html| match budget(result, language) {
         Some(table) => {
             paragraph(html, messages.budget_note);
+            if result.stated_sources().is_empty() {
+                paragraph(html, messages.no_budget);
+            }
             html.push_str(&table);
         }
         None => paragraph(html, messages.no_budget),

@@ -8,7 +8,10 @@ mod russian;
 pub(crate) use english::ENGLISH;
 pub(crate) use russian::RUSSIAN;
 
+use centrical_io::{Follows, PatternSummary};
+
 use crate::language::Language;
+use crate::reading_error::MICRO_G;
 use crate::verdict::Objection;
 
 /// What the documents say, in one language.
@@ -55,6 +58,11 @@ pub(crate) struct Messages {
     pub budget_note: &'static str,
     pub no_budget: &'static str,
     pub combined: &'static str,
+    pub degrees_word: &'static str,
+    pub chi_squared_chance: &'static str,
+    pub outlying_plateaus: &'static str,
+    pub patterns_found: &'static str,
+    pub worst_mounting: &'static str,
     pub positions: &'static str,
     pub positions_caption: &'static str,
     pub position: &'static str,
@@ -83,6 +91,11 @@ pub(crate) struct Messages {
     pub lost: &'static str,
     pub limit: &'static str,
     pub null_directions: &'static str,
+    pub prediction_title: &'static str,
+    pub prediction_axis: &'static str,
+    pub prediction_caption: &'static str,
+    pub history_title: &'static str,
+    pub history_caption: &'static str,
     pub convergence_title: &'static str,
     pub convergence_axis: &'static str,
     pub convergence_caption: &'static str,
@@ -176,6 +189,34 @@ impl Messages {
         self.words.iter().find(|(name, _)| *name == word).map_or(word, |(_, shown)| shown)
     }
 
+    /// A pattern in the residuals: newtonometer, what it follows, amplitude.
+    pub fn pattern(&self, pattern: &PatternSummary, language: Language) -> String {
+        let (follows, place) = match &pattern.follows {
+            Follows::Position { position } => ("step in position", position.clone()),
+            Follows::SpeedInPosition { position } => ("square of the speed in position", position.clone()),
+            Follows::SpeedOnSeat { radius } => (
+                "square of the speed at radius",
+                format!("{} {}", language.number(&radius.to_string()), language.unit("m")),
+            ),
+            Follows::Speed => ("square of the speed", String::new()),
+            Follows::Load => ("load", String::new()),
+            Follows::Mounting { mounting } => ("step in mounting", mounting.to_string()),
+            Follows::Time => ("drift", String::new()),
+        };
+        let [amplitude, uncertainty] =
+            [pattern.amplitude, pattern.standard_uncertainty].map(|a| language.significant(a / MICRO_G, 2));
+        let chance = language.number(&format!("{:.1e}", pattern.probability));
+        let follows = format!("{} {place}", self.word(follows));
+        format!(
+            "{} {}, {}: {amplitude} ± {uncertainty} {}, {} {chance}",
+            self.axis,
+            pattern.axis,
+            follows.trim_end(),
+            language.unit("ug"),
+            self.chance
+        )
+    }
+
     /// What speaks against a result.
     pub fn objection(&self, objection: &Objection, language: Language) -> String {
         match objection {
@@ -189,6 +230,14 @@ impl Messages {
                     "{}: χ² = {chi_squared}, {} {degrees_of_freedom}, {} {chance}",
                     self.residuals_too_large, self.degrees_of_freedom, self.chance
                 )
+            }
+            Objection::Outlying(plateaus, chance) => {
+                let chance = language.number(&format!("{chance:.1e}"));
+                format!("{}: {}, {} {chance}", self.outlying_plateaus, plateaus.join(", "), self.chance)
+            }
+            Objection::Patterns(patterns) => {
+                let told: Vec<String> = patterns.iter().map(|pattern| self.pattern(pattern, language)).collect();
+                format!("{}: {}", self.patterns_found, told.join("; "))
             }
             Objection::NotDetermined(names) => format!("{}: {}", self.lost_parameters, names.join(", ")),
         }

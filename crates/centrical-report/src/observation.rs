@@ -5,6 +5,7 @@ use std::fmt::Write;
 use centrical_io::{ConditionReport, ObservationReport, ObservedParameter, RemedyReport};
 
 use crate::customary::customary;
+use crate::plan::prediction_text;
 
 /// Remedies beyond these only raise the rank, and the list is long enough.
 const MOST_REMEDIES: usize = 8;
@@ -21,6 +22,8 @@ pub fn observation_text(report: &ObservationReport) -> String {
     conditions(&mut text, report);
     priors(&mut text, report);
     uncertainties(&mut text, report);
+    text.push('\n');
+    text.push_str(&prediction_text(&report.prediction));
     text
 }
 

@@ -70,7 +70,7 @@ fn of_speed(plateau: &PlateauSummary, residual: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// The unit's error model with its coefficients; none if one is not determined.
-fn error_model(result: &CalibrationResult) -> Option<(ErrorModel, Vec<f64>)> {
+pub(crate) fn error_model(result: &CalibrationResult) -> Option<(ErrorModel, Vec<f64>)> {
     let mut terms = Vec::new();
     let mut coefficients = Vec::new();
     for term in &result.model.error_model {

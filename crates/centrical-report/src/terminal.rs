@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use centrical_io::{CalibrationResult, ParameterEstimate, TermSummary};
 
+use crate::assessment::pattern_in_words;
 use crate::customary::{customary, with_uncertainty};
+use crate::verdict::Objection;
 
 /// Width of a column "value ± uncertainty".
 const CELL: usize = 24;
@@ -24,6 +26,8 @@ pub fn terminal_table(result: &CalibrationResult) -> String {
     priors(&mut text, result);
     plateaus(&mut text, result);
     fit(&mut text, result);
+    uncertainties(&mut text, result);
+    validity(&mut text, result);
     text
 }
 
@@ -32,7 +36,8 @@ fn heading(text: &mut String, result: &CalibrationResult) {
     let serial = if session.unit_serial.is_empty() { "not given" } else { &session.unit_serial };
     let _ = writeln!(text, "{}, serial {serial}", session.unit_model);
     let _ = writeln!(text, "{}, {}", session.title, session.date);
-    text.push_str("value ± standard uncertainty; 1 g = 9.80665 m/s^2\n");
+    let combined = if result.stated_sources().is_empty() { "" } else { "combined " };
+    let _ = writeln!(text, "value ± {combined}standard uncertainty; 1 g = 9.80665 m/s^2");
 }
 
 /// One row per monomial, one column per newtonometer.
@@ -227,4 +232,68 @@ fn fit(text: &mut String, result: &CalibrationResult) {
         fit.chi_squared / dof,
         fit.degrees_of_freedom
     );
+}
+
+/// What the uncertainties hold, and what they take as exact.
+fn uncertainties(text: &mut String, result: &CalibrationResult) {
+    let Some(budget) = &result.budget else { return };
+    let names: Vec<&str> = budget.sources.iter().map(|source| source.name.as_str()).collect();
+    let _ = writeln!(text, "FROM  {}", names.join(", "));
+    if result.stated_sources().is_empty() {
+        text.push_str(
+            "      the session states no [uncertainty]: gravity, radii, attitudes and the like count as exact\n",
+        );
+    }
+}
+
+/// What the residuals say of the model and of the weights.
+fn validity(text: &mut String, result: &CalibrationResult) {
+    let Some(validity) = result.validity.as_ref().filter(|_| result.fit.degrees_of_freedom > 0) else { return };
+    let _ = writeln!(
+        text,
+        "VALID chi^2 as large or larger comes by chance with a probability of {:.3}",
+        validity.probability
+    );
+    let fitted = result.plateaus.iter().filter(|plateau| !plateau.held_out).count();
+    if validity.outlying.is_empty() {
+        let _ = writeln!(text, "      none of the {fitted} plateaus stands out");
+    }
+    for plateau in &validity.outlying {
+        let [r_1, r_2, r_3] = plateau.standardised;
+        let _ = writeln!(
+            text,
+            "      plateau {}:{} STANDS OUT, standardised residuals {r_1:.1}, {r_2:.1}, {r_3:.1}, chance {:.1e}; --hold-out \
+             {0}:{1} leaves it out",
+            plateau.mounting,
+            plateau.index + 1,
+            plateau.probability
+        );
+    }
+    if validity.patterns.is_empty() {
+        let _ = writeln!(
+            text,
+            "      none of {} patterns against speed, position, radius and time in the residuals",
+            validity.patterns_tested
+        );
+    }
+    for pattern in &validity.patterns {
+        let _ = writeln!(text, "      {}", pattern_in_words(pattern));
+    }
+    let worst = validity.mountings.iter().min_by(|a, b| a.probability.total_cmp(&b.probability));
+    if let Some(worst) = worst {
+        let family_wise = (validity.mountings.len() as f64 * worst.probability).min(1.0);
+        let _ = writeln!(
+            text,
+            "      each mounting predicted from all others: the worst, {}, chi^2 {:.1} with {} degrees, chance {family_wise:.3}",
+            worst.mounting, worst.chi_squared, worst.degrees_of_freedom
+        );
+    }
+}
+
+/// The verdict in a line, or one for each objection.
+pub fn verdict_text(objections: &[Objection]) -> String {
+    if objections.is_empty() {
+        return "ACCEPTABLE  nothing speaks against this result\n".to_owned();
+    }
+    objections.iter().map(|objection| format!("NOT ACCEPTABLE  {objection}\n")).collect()
 }

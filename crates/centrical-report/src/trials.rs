@@ -84,7 +84,7 @@ pub fn selection_table(selection: &Selection) -> String {
         );
         if let Some(test) = &rival.against {
             let name = &selection.rivals[test.nested].name;
-            let _ = write!(text, "  {name}: {:.2} for {}, p = {:.1e}", test.f, test.further, test.probability);
+            let _ = write!(text, "  {name}: {:.2} for {}, p = {}", test.f, test.further, probability(test.probability));
         }
         text.push_str(if rival.converged { "\n" } else { "  did not converge\n" });
     }
@@ -96,6 +96,11 @@ pub fn selection_table(selection: &Selection) -> String {
     let _ = writeln!(text, "  terms that the data show, one by one: {}", of(true));
     let _ = writeln!(text, "  terms that they do not show: {}", of(false));
     text
+}
+
+/// One digit; what is too small for a double by its bound.
+fn probability(p: f64) -> String {
+    if p > 0.0 { format!("{p:.1e}") } else { "less than 1e-300".to_owned() }
 }
 
 /// Two decimals where they fit, an exponent where not.
@@ -110,20 +115,27 @@ fn reason(selection: &Selection) -> String {
     if let Some(test) = &best.against {
         let _ = write!(
             text,
-            "; its {} further unknowns over \"{}\" would all be zero with a probability of {:.1e}",
-            test.further, selection.rivals[test.nested].name, test.probability
+            "; its {} further unknowns over \"{}\" would all be zero with a probability of {}",
+            test.further,
+            selection.rivals[test.nested].name,
+            probability(test.probability)
         );
     }
     let others = selection.rivals.iter().enumerate().filter(|(n, _)| *n != selection.recommended).map(|(_, r)| r);
     if let Some(second) = others.min_by(|a, b| a.bic.total_cmp(&b.bic)) {
         let _ = write!(text, "; the next, \"{}\", is {:.1} behind", second.name, second.bic - best.bic);
     }
-    let holds = selection.rivals.iter().all(|r| r.hold_out_score >= best.hold_out_score);
-    text.push_str(if holds {
-        "; it predicts left-out mountings best as well\n"
-    } else {
-        "; another predicts left-out mountings better\n"
-    });
+    let sound = selection.rivals.iter().filter(|rival| rival.converged);
+    match sound.min_by(|a, b| a.hold_out_score.total_cmp(&b.hold_out_score)) {
+        Some(first) if first.hold_out_score < best.hold_out_score => {
+            let _ = writeln!(
+                text,
+                "; left-out mountings are predicted better by \"{}\", a score of {:.3} against {:.3}",
+                first.name, first.hold_out_score, best.hold_out_score
+            );
+        }
+        _ => text.push_str("; it predicts left-out mountings best as well\n"),
+    }
     text
 }
 

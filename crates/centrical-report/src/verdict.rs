@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use centrical_io::CalibrationResult;
+use centrical::uncertainty::chi_squared_tail;
+use centrical_io::{CalibrationResult, PatternSummary, ValiditySummary};
 
 use crate::language::Language;
 
@@ -28,6 +29,10 @@ pub enum Objection {
         /// Probability of so large a chi^2.
         chance: f64,
     },
+    /// Plateaus that stand out from the others, as `mounting:plateau` counted from 1, and the chance of the first.
+    Outlying(Vec<String>, f64),
+    /// Residuals follow something that the model does not have.
+    Patterns(Vec<PatternSummary>),
     /// Parameters of the instrument are not determined. Lost geometry alone is no objection.
     NotDetermined(Vec<String>),
 }
@@ -50,6 +55,7 @@ pub fn objections(result: &CalibrationResult) -> Vec<Objection> {
     if chance < CHANCE {
         objections.push(Objection::Residuals { chi_squared, degrees_of_freedom, chance });
     }
+    objections.extend(result.validity.iter().flat_map(of_validity));
     let names = result.model.error_model.iter().map(|term| &term.name);
     let lost: Vec<String> = names.filter(|name| result.parameter(name).is_none_or(|p| !p.estimable)).cloned().collect();
     if !lost.is_empty() {
@@ -58,10 +64,12 @@ pub fn objections(result: &CalibrationResult) -> Vec<Objection> {
     objections
 }
 
-/// Probability that chi^2 with `dof` degrees of freedom exceeds `chi_squared`; 1 without any.
-pub fn chi_squared_tail(chi_squared: f64, dof: usize) -> f64 {
-    if dof == 0 {
-        return 1.0;
-    }
-    statrs::function::gamma::gamma_ur(0.5 * dof as f64, 0.5 * chi_squared.max(0.0))
+/// Plateaus and patterns that come by chance less than once in ten thousand sessions.
+fn of_validity(validity: &ValiditySummary) -> Vec<Objection> {
+    let outlying: Vec<_> = validity.outlying.iter().filter(|plateau| plateau.probability < CHANCE).collect();
+    let patterns: Vec<_> = validity.patterns.iter().filter(|p| p.probability < CHANCE).cloned().collect();
+    let names = outlying.iter().map(|plateau| format!("{}:{}", plateau.mounting, plateau.index + 1)).collect();
+    let of_plateaus = outlying.first().map(|first| Objection::Outlying(names, first.probability));
+    let of_patterns = (!patterns.is_empty()).then_some(Objection::Patterns(patterns));
+    of_plateaus.into_iter().chain(of_patterns).collect()
 }

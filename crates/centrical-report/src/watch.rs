@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical::fit::recursive::Progress;
+use centrical::fit::recursive::{Lives, Progress};
 use centrical::{MeasurementModel, Parameter};
 use centrical_io::InnovationSummary;
 
@@ -23,6 +23,9 @@ pub struct WatchView<'a> {
     pub now: &'a Progress,
     /// The next plateau, and what will be known after it.
     pub next: Option<(String, &'a Progress)>,
+    /// What each plateau that remains would bring, the best first: its name, and the mean uncertainty of the compensated
+    /// reading with it over that without.
+    pub best: Vec<(String, f64)>,
     /// Wanted standard uncertainties: group, and value in its customary unit.
     pub targets: &'a [(String, f64)],
 }
@@ -56,8 +59,28 @@ pub fn watch_table(view: &WatchView) -> String {
     for group in &groups {
         group_row(&mut text, view, group);
     }
+    if !view.best.is_empty() {
+        let shown: Vec<String> = view.best.iter().map(|(name, factor)| format!("{name} (x {factor:.3})")).collect();
+        let _ = writeln!(text, "BEST NEXT for the compensated reading's mean uncertainty: {}", shown.join("; "));
+    }
     if !view.targets.is_empty() && view.targets.iter().all(|(group, target)| is_met(view, group, *target)) {
         text.push_str("Every target is met.\n");
+    }
+    text
+}
+
+/// How many states a filter carries at a time for `order`, and what an order costs that does not keep positions together.
+pub fn states_text(model: &MeasurementModel, order: &[usize]) -> String {
+    let lives = Lives::new(model, order);
+    let mut text = format!("{} states of {} unknowns at a time\n", lives.states(), lives.unknowns());
+    if lives.cost() > 0 {
+        let waiting: Vec<&str> = lives.waiting(model).iter().map(|&j| model.parameters()[j].name.as_str()).collect();
+        let _ = writeln!(
+            text,
+            "The order does not keep positions together, which costs {} states; waiting at the fullest: {}",
+            lives.cost(),
+            waiting.join(", ")
+        );
     }
     text
 }

@@ -24,6 +24,14 @@ pub struct Term {
     pub monomial: Monomial,
 }
 
+/// An error model about a specific force.
+pub(crate) struct Expanded {
+    /// `f'` [m/s^2].
+    pub reading: Vector3<f64>,
+    /// `d f' / d f`.
+    pub gain: Matrix3<f64>,
+}
+
 /// `f1^p1 f2^p2 f3^p3`, with a sign if it is odd: `|f_j| f_j` is the square of `f_j` with the sign of `f_j`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Monomial {
@@ -217,6 +225,24 @@ impl ErrorModel {
             reading[term.axis] += c * term.monomial.value(f);
         }
         reading
+    }
+
+    /// [`ErrorModel::reading`] and [`ErrorModel::gain`] at `f`; `each` is told the index and value of every monomial.
+    pub(crate) fn expanded(
+        &self,
+        coefficients: &[f64],
+        f: &Vector3<f64>,
+        mut each: impl FnMut(usize, f64),
+    ) -> Expanded {
+        let mut at = Expanded { reading: *f, gain: Matrix3::identity() };
+        for (t, (term, c)) in self.terms.iter().zip(coefficients).enumerate() {
+            let value = term.monomial.value(f);
+            each(t, value);
+            at.reading[term.axis] += c * value;
+            let mut row = at.gain.row_mut(term.axis);
+            row += term.monomial.gradient(f).transpose() * *c;
+        }
+        at
     }
 
     /// `d f' / d f` at `f`, dimensionless.

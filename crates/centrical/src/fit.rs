@@ -189,6 +189,8 @@ pub struct Structure {
     /// Orthonormal basis of the null space in typical units, `p x (p - rank)`.
     null_basis: DMatrix<f64>,
     typical: DVector<f64>,
+    /// Of the observations at `X = 0`.
+    linearisations: Vec<Linearisation>,
 }
 
 impl Structure {
@@ -221,7 +223,7 @@ impl Structure {
         let typical = DVector::from_iterator(columns, model.parameters().iter().map(|p| p.typical));
         let mut null_basis = observability.null_basis().clone();
         null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);
-        Ok(Self { observability, of_data, null_basis: orthonormal(null_basis), typical })
+        Ok(Self { observability, of_data, null_basis: orthonormal(null_basis), typical, linearisations })
     }
 
     /// What the design sees.
@@ -252,7 +254,6 @@ struct Start<'a> {
     observations: &'a [Observation],
     speed_uncertainty: f64,
     structure: &'a Structure,
-    linearisations: Vec<Linearisation>,
     design: Design,
     zero: DVector<f64>,
 }
@@ -266,10 +267,9 @@ impl<'a> Start<'a> {
         speed_uncertainty: f64,
     ) -> Result<Self, FitError> {
         check(model, observations)?;
-        let linearisations = linearised_at_zero(model, observations);
         let zero = DVector::zeros(model.parameters().len());
-        let design = assemble(zero.as_slice(), model, observations, &linearisations, speed_uncertainty)?;
-        Ok(Self { assemble, model, observations, speed_uncertainty, structure, linearisations, design, zero })
+        let design = assemble(zero.as_slice(), model, observations, &structure.linearisations, speed_uncertainty)?;
+        Ok(Self { assemble, model, observations, speed_uncertainty, structure, design, zero })
     }
 
     /// Degrees of freedom left by the estimable combinations.
@@ -285,7 +285,7 @@ impl<'a> Start<'a> {
         let residuals = self
             .observations
             .iter()
-            .zip(&self.linearisations)
+            .zip(&self.structure.linearisations)
             .map(|(o, l)| {
                 let predicted: Vector3<f64> = l.columns.iter().map(|(j, column)| column * step.dx[*j]).sum();
                 o.mean - l.reading - predicted
@@ -301,7 +301,11 @@ impl<'a> Start<'a> {
             iterations: 1,
             termination: Termination::Linear,
             residuals,
-            observation_covariances: total_covariances(self.observations, &self.linearisations, self.speed_uncertainty),
+            observation_covariances: total_covariances(
+                self.observations,
+                &self.structure.linearisations,
+                self.speed_uncertainty,
+            ),
             observability: self.structure.observability.clone(),
             of_data: self.structure.of_data.clone(),
             priors: self.model.priors().to_vec(),
@@ -315,6 +319,8 @@ struct Search<'a> {
     model: &'a MeasurementModel,
     x: DVector<f64>,
     linearisations: Vec<Linearisation>,
+    /// Those at `x`, where the step to it has made them already.
+    ahead: Option<Vec<Linearisation>>,
     design: Option<Design>,
     /// Weight with which null directions are held: one over [`NULL_HOLD`], then 0 when let go.
     hold: f64,
@@ -333,6 +339,7 @@ impl<'a> Search<'a> {
             model,
             x,
             linearisations: Vec::new(),
+            ahead: None,
             design: None,
             hold,
             iterations: 0,
@@ -354,10 +361,9 @@ impl<'a> Search<'a> {
     }
 
     fn linearise(&mut self) -> Result<(), FitError> {
+        let ahead = self.ahead.take();
         let (start, x) = (&self.start, self.x.as_slice());
-        let set_points = &self.model.experiment().set_points;
-        self.linearisations =
-            start.observations.iter().map(|o| self.model.linearise(&set_points[o.set_point], x)).collect();
+        self.linearisations = ahead.unwrap_or_else(|| linearised(self.model, start.observations, x));
         let assembled =
             (start.assemble)(x, self.model, start.observations, &self.linearisations, start.speed_uncertainty);
         self.design = Some(assembled?);
@@ -376,8 +382,8 @@ impl<'a> Search<'a> {
         if step.whitened_length <= CONVERGED + rounding {
             self.x += &step.dx;
             self.termination = (!self.let_go(&step)).then_some(Termination::Converged);
-        } else if let Some(x) = self.descend(&step, (objective_norm + rounding).powi(2))? {
-            self.x = x;
+        } else if let Some((x, linearisations)) = self.descend(&step, (objective_norm + rounding).powi(2))? {
+            (self.x, self.ahead) = (x, Some(linearisations));
             if self.iterations == ITERATION_LIMIT {
                 self.termination = Some(Termination::IterationLimit);
             }
@@ -400,26 +406,25 @@ impl<'a> Search<'a> {
         free
     }
 
-    fn descend(&self, step: &Step, objective: f64) -> Result<Option<DVector<f64>>, FitError> {
+    /// The point one step on, halved until the objective falls, and the linearisations there; none if it does not.
+    fn descend(&self, step: &Step, objective: f64) -> Result<Option<(DVector<f64>, Vec<Linearisation>)>, FitError> {
         for halvings in 0..HALVING_LIMIT {
             let x = &self.x + &step.dx * 0.5_f64.powi(halvings.cast_signed());
-            if self.objective(&x)? <= objective {
-                return Ok(Some(x));
+            let linearisations = linearised(self.model, self.start.observations, x.as_slice());
+            if self.objective(&x, &linearisations)? <= objective {
+                return Ok(Some((x, linearisations)));
             }
         }
         Ok(None)
     }
 
-    /// chi^2 of the exact model at `x` with the weights of the present linearisation, and the shares of the priors
-    /// and of the hold.
-    fn objective(&self, x: &DVector<f64>) -> Result<f64, FitError> {
+    /// chi^2 of the exact model at `x`, where it reads as in `there`, with the weights of the present linearisation; and
+    /// the shares of the priors and of the hold.
+    fn objective(&self, x: &DVector<f64>, there: &[Linearisation]) -> Result<f64, FitError> {
         let structure = self.start.structure;
         let held = structure.null_basis.transpose() * x.component_div(&structure.typical) * self.hold;
-        Ok(self.chi_squared(&self.residuals(x), x)? + held.norm_squared())
-    }
-
-    fn residuals(&self, x: &DVector<f64>) -> Vec<Vector3<f64>> {
-        residuals(self.model, self.start.observations, x)
+        let residuals: Vec<_> = self.start.observations.iter().zip(there).map(|(o, l)| o.mean - l.reading).collect();
+        Ok(self.chi_squared(&residuals, x)? + held.norm_squared())
     }
 
     fn chi_squared(&self, residuals: &[Vector3<f64>], x: &DVector<f64>) -> Result<f64, FitError> {
@@ -430,7 +435,7 @@ impl<'a> Search<'a> {
     /// The residuals at the last point, with the weights and the covariance of the last linearisation: on convergence
     /// less than a millionth of a standard uncertainty away.
     fn into_fit(self) -> Result<Fit, FitError> {
-        let residuals = self.residuals(&self.x);
+        let residuals = residuals(self.model, self.start.observations, &self.x);
         let (observations, speed_uncertainty) = (self.start.observations, self.start.speed_uncertainty);
         Ok(Fit {
             values: self.x.as_slice().to_vec(),
@@ -520,6 +525,12 @@ fn check(model: &MeasurementModel, observations: &[Observation]) -> Result<(), F
 fn linearised_at_zero(model: &MeasurementModel, observations: &[Observation]) -> Vec<Linearisation> {
     let set_points = &model.experiment().set_points;
     observations.iter().map(|o| model.linearise_at_zero(&set_points[o.set_point])).collect()
+}
+
+/// The exact model at `x`.
+fn linearised(model: &MeasurementModel, observations: &[Observation], x: &[f64]) -> Vec<Linearisation> {
+    let set_points = &model.experiment().set_points;
+    observations.iter().map(|o| model.linearise(&set_points[o.set_point], x)).collect()
 }
 
 /// Readings less those of the exact model at `x` [m/s^2].

@@ -10,7 +10,7 @@
 mod exact;
 pub mod linear;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 pub use exact::ArmMotion;
 pub(crate) use exact::Carried;
@@ -28,6 +28,8 @@ pub struct MeasurementModel {
     extensions: Vec<Extension>,
     parameters: Parameters,
     priors: Vec<Prior>,
+    /// Turns of the carousel over which a reading is meaned while spinning.
+    revolution: Vec<Matrix3<f64>>,
 }
 
 /// Reading of a plateau and its first derivatives at some `X`.
@@ -45,7 +47,8 @@ impl MeasurementModel {
     /// Model of `experiment` with the unknowns of [K5.4] and `extensions`.
     pub fn new(experiment: Experiment, error_model: ErrorModel, extensions: &[Extension]) -> Self {
         let parameters = Parameters::new(&experiment, &error_model, extensions);
-        Self { experiment, error_model, extensions: extensions.to_vec(), parameters, priors: Vec::new() }
+        let revolution = exact::revolution(&error_model);
+        Self { experiment, error_model, extensions: extensions.to_vec(), parameters, priors: Vec::new(), revolution }
     }
 
     /// The same unit, extensions and priors in another experiment. A prior on a parameter that the other experiment

@@ -1,86 +1,39 @@
-//! Plans of experiments: the source's normalised experiment [K5.5].
+//! Planning: the best experiment for the time on the centrifuge.
+//!
+//! Candidates are plateaus (a mounting, a speed or an angle at rest) with a list of durations; a mounting costs the time
+//! of its set-up, a plateau that of its ramp and its duration. Reading `i` of a plateau of duration `T` has the
+//! covariance `Sigma = (density^2 / 2T + floor^2) E + sigma^2 d d^T` (the speed's error does not fall with time), and a
+//! schedule the information `M = M_0 + sum J^T Sigma^-1 J`, `J` the three rows of `g H` [K5.3].
+//!
+//! - [`Criterion`]: what is made small, always about the instrument: D, A, I, or the worst of several targets;
+//! - [`relax`](relaxation): the continuous design (any plateau for any part of its visits) by sequential quadratic
+//!   programming, with the bound of the equivalence theorem (Kiefer and Wolfowitz 1960) as its certificate;
+//! - [`exchange`]: the schedule in whole visits, by rounding and exchange;
+//! - [`search`]: both under branch and bound over mountings, whose set-ups are costs of groups;
+//! - [`account`]: why each plateau is there; [`frontier`]: time against uncertainty; [`next_best`]: the best next plateau.
+//!
+//! **Unknowns that a schedule does not see** (turns of a position that is not mounted, lost combinations) are held by a
+//! standard deviation of ten typical magnitudes, as in a fit ([`crate::fit::NULL_HOLD`]): that is `M_0`, with the priors.
+//! Turns and shifts are free otherwise, and count only by what they leave in the instrument's parameters.
 
-use std::f64::consts::PI;
+mod account;
+mod candidates;
+mod criterion;
+mod exchange;
+mod frontier;
+mod information;
+mod next;
+mod normalised;
+mod prediction;
+mod relaxation;
+mod search;
 
-use nalgebra::{Matrix3, Vector3};
-
-use crate::experiment::{Experiment, Mounting, PairRelation, ReferencePoint, SetPoint, Site, Unit};
-use crate::position::{ThirdPosition, kozlov_2017};
-
-/// The normalised experiment [K5.5]: six positions, `R* Omega*^2 / g = 10`, speeds `Omega* sqrt(m)`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Normalised {
-    /// Which way newtonometer 1 points in positions 3 and 4.
-    pub third: ThirdPosition,
-    /// Relation of `dR` in a pair.
-    pub pair_relation: PairRelation,
-    /// `rho0` in units of `R*`.
-    pub rho: Matrix3<f64>,
-    /// Mounting radii in units of `R*`.
-    pub radii: Vec<f64>,
-    /// `m`: multiples of `Omega*^2`; 0 is rest.
-    pub levels: Vec<f64>,
-    /// Angles `alpha_3` at rest [rad].
-    pub rest_angles: Vec<f64>,
-    /// `R*` [m].
-    pub arm: f64,
-    /// `g` [m/s^2].
-    pub gravity: f64,
-}
-
-/// `R* Omega*^2 / g`.
-const LOAD: f64 = 10.0;
-
-impl Default for Normalised {
-    /// `m = 0..3`, radii `R*` and `R*/2`, rest at 0 and pi, the source's pair relation, no spread of proof masses,
-    /// `R* = 0.5 m`, standard gravity.
-    fn default() -> Self {
-        Self {
-            third: ThirdPosition::AxisOneUp,
-            pair_relation: PairRelation::Opposite,
-            rho: Matrix3::zeros(),
-            radii: vec![1.0, 0.5],
-            levels: vec![0.0, 1.0, 2.0, 3.0],
-            rest_angles: vec![0.0, PI],
-            arm: 0.5,
-            gravity: crate::STANDARD_GRAVITY,
-        }
-    }
-}
-
-impl Normalised {
-    /// `Omega*` [rad/s].
-    pub fn unit_speed(&self) -> f64 {
-        (LOAD * self.gravity / self.arm).sqrt()
-    }
-
-    /// The experiment in SI units, ordered by position, then radius, then speed.
-    pub fn experiment(&self) -> Experiment {
-        let positions = kozlov_2017(self.third);
-        let mountings: Vec<Mounting> = (0..positions.len())
-            .flat_map(|position| self.radii.iter().map(move |radius| (position, radius)))
-            .map(|(position, radius)| Mounting { position, arm_y: Vector3::x() * (radius * self.arm) })
-            .collect();
-        let set_points = (0..mountings.len()).flat_map(|mounting| self.schedule(mounting)).collect();
-        Experiment {
-            site: Site { gravity: self.gravity, latitude: None },
-            unit: Unit { rho_z: self.rho * self.arm, reference: ReferencePoint::FirstProofMass },
-            positions,
-            pair_relation: self.pair_relation,
-            mountings,
-            set_points,
-        }
-    }
-
-    fn schedule(&self, mounting: usize) -> Vec<SetPoint> {
-        let mut schedule = Vec::new();
-        for &m in &self.levels {
-            if m == 0.0 {
-                schedule.extend(self.rest_angles.iter().map(|&angle| SetPoint { mounting, omega: 0.0, angle }));
-            } else {
-                schedule.push(SetPoint { mounting, omega: self.unit_speed() * m.sqrt(), angle: 0.0 });
-            }
-        }
-        schedule
-    }
-}
+pub use account::{Account, Reason};
+pub use candidates::{Candidates, Costs, Noise, Scenario, Schedule, Visit};
+pub use criterion::{Criterion, Goal, ReadingRange};
+pub use frontier::{FrontierPoint, frontier};
+pub use next::{Gain, next_best};
+pub use normalised::Normalised;
+pub use prediction::{Prediction, predict};
+pub use relaxation::Relaxed;
+pub use search::{Effort, Plan, PlanError, best_for_time, shortest_for_goals};

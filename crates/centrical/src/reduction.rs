@@ -10,23 +10,30 @@
 //! its colour: it is pooled over all plateaus of the session ([`NoiseModel`]), and then gives every mean its
 //! covariance.
 //!
-//! Two passes, so that a record need never be worked on as a whole: the first sees block levels only
-//! and finds the windows; the second takes the samples of one window at a time.
+//! Two passes, so that a record need never be held as a whole: the first makes blocks of it and finds the windows
+//! ([`Survey`]); the second takes the samples of one window at a time ([`Located`]). [`reduce`] is both, for a record in
+//! memory.
 
 mod alignment;
+mod block;
 mod blocks;
 mod cells;
 mod clock;
 mod error;
 mod evidence;
+mod lanes;
 mod noise;
 mod path;
 mod plateau_fit;
+mod record;
 mod regression;
+mod revolution;
 mod rounding;
 mod settling;
 mod shape;
 mod stuck;
+mod survey;
+mod triangle;
 mod window;
 
 use nalgebra::{Matrix3, Vector3};
@@ -34,20 +41,11 @@ use nalgebra::{Matrix3, Vector3};
 pub use clock::{ClockOffset, SpeedTrace};
 pub use error::{ReductionError, Stretch};
 pub use noise::NoiseModel;
+pub use plateau_fit::PlateauFit;
+pub use record::{Record, RecordSlice};
+pub use survey::{Condensed, Extremes, Located, Survey};
 
-use blocks::Blocks;
-use plateau_fit::PlateauFit;
 use settling::TimeStep;
-use window::Window;
-
-/// One mounting's continuous record, instrument axes.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Record {
-    /// Time on the unit's clock [s], not decreasing.
-    pub t: Vec<f64>,
-    /// Readings of newtonometers 1, 2, 3 [m/s^2]; a reading that is not a number is a missing one.
-    pub f_z: [Vec<f64>; 3],
-}
 
 /// One plateau of a mounting's schedule.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,19 +103,14 @@ pub fn reduce(
     telemetry: Option<&SpeedTrace>,
     schedule: &[ScheduledPlateau],
 ) -> Result<ReducedMounting, ReductionError> {
-    let blocks = Blocks::summarise(record)?;
-    let cores = alignment::align(&blocks, schedule)?;
-    let clock_offset = telemetry.and_then(|telemetry| clock::offset(&blocks, schedule, &cores, telemetry));
-    let windows = window::refine(&blocks, schedule, &cores)?;
-    let plateaus = windows
-        .plateaus
-        .iter()
-        .enumerate()
-        .map(|(index, window)| PlateauFit::new(record, index, window, &blocks))
-        .collect::<Result<_, _>>()?;
-    let speed = |window: &Window| clock::median_speed(telemetry?, clock_offset.as_ref()?, window.span);
-    let speeds = windows.plateaus.iter().map(speed).collect();
-    Ok(ReducedMounting { plateaus, speeds, settling_time: windows.settling_time, clock_offset })
+    record.check()?;
+    let mut survey = Survey::new(&record.t);
+    survey.append(survey.condense(record.as_slice()));
+    survey.finish();
+    let located = survey.locate(telemetry, schedule)?;
+    let average = |plateau| located.average(plateau, record.as_slice());
+    let plateaus = (0..schedule.len()).map(average).collect::<Result<_, _>>()?;
+    Ok(located.into_mounting(plateaus))
 }
 
 impl ReducedMounting {

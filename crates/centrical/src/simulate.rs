@@ -35,6 +35,8 @@ pub struct Simulation<'a> {
     truth: &'a [f64],
     settings: &'a Settings,
     seed: u64,
+    /// Duration of each plateau in place of the machine's [s]; empty for none.
+    durations: &'a [f64],
 }
 
 /// One mounting of a simulated session.
@@ -73,13 +75,30 @@ impl<'a> Simulation<'a> {
         if let Some(j) = truth.iter().position(|value| !value.is_finite()) {
             return Err(SimulationError::Truth { name: parameters[j].name.clone(), found: truth[j] });
         }
-        Ok(Self { model, truth, settings, seed })
+        Ok(Self { model, truth, settings, seed, durations: &[] })
+    }
+
+    /// The session with a duration for every set point [s] in place of [`Machine::plateau`].
+    ///
+    /// # Errors
+    /// [`SimulationError`] when there is not one for each, or one of them is none.
+    pub fn with_durations(self, durations: &'a [f64]) -> Result<Self, SimulationError> {
+        let expected = self.model.experiment().set_points.len();
+        if durations.len() != expected {
+            return Err(SimulationError::Durations { found: durations.len(), expected });
+        }
+        for &plateau in durations {
+            Settings { machine: Machine { plateau, ..self.settings.machine }, ..*self.settings }.check()?;
+        }
+        Ok(Self { durations, ..self })
     }
 
     /// One mounting, by its index in the experiment.
     pub fn mounting(&self, mounting: usize) -> SimulatedMounting<'a> {
         let set_points = &self.model.experiment().set_points;
-        let schedule: Vec<SetPoint> = set_points.iter().filter(|s| s.mounting == mounting).copied().collect();
+        let duration = |n: usize| self.durations.get(n).copied().unwrap_or(self.settings.machine.plateau);
+        let there = set_points.iter().enumerate().filter(|(_, s)| s.mounting == mounting);
+        let schedule: Vec<(SetPoint, f64)> = there.map(|(n, s)| (*s, duration(n))).collect();
         let random = Draw::Motion.stream(self.seed, mounting);
         let motion = Motion::new(&schedule, &self.settings.machine, random);
         SimulatedMounting { simulation: *self, mounting, motion }

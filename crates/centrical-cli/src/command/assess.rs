@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use centrical::uncertainty::{Budget, Compensated, Validity, patterns, without_outliers};
 use centrical::{Fit, FitError, MeasurementModel, Observation, STANDARD_GRAVITY, fit, linear};
 use centrical_io::{Error, Problem, Session};
-use centrical_report::{budget_table, outliers_text, prediction_table, validity_text};
+use centrical_report::{budget_table, correlation_table, outliers_text, prediction_table, validity_text};
 use nalgebra::{DMatrix, Vector3};
 
 use crate::{Outcome, progress};
@@ -25,6 +25,9 @@ pub struct Arguments {
     /// Scale noise and speed of the plateaus by the residuals: for weights known up to a factor only
     #[arg(long)]
     scale_by_residuals: bool,
+    /// Show the correlations of the parameters of the instrument; all of them are in the covariance of result.json
+    #[arg(long)]
+    correlations: bool,
     /// Range of the specific force of the prediction, in g [default: the highest of the session]
     #[arg(long, value_name = "G")]
     range: Option<f64>,
@@ -39,8 +42,8 @@ pub fn probability(text: &str) -> Result<f64, String> {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
-    let bar = progress::mountings("reading", session.experiment.mountings.len());
-    let problem = Problem::of(&session, &|_| bar.inc(1))?;
+    let bar = progress::reading(&session);
+    let problem = Problem::of(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
     let text =
         assess(arguments, &session, &problem).map_err(|source| Error::Fit { file: session.file.clone(), source })?;
@@ -66,6 +69,10 @@ fn assess(arguments: &Arguments, session: &Session, problem: &Problem) -> Result
     let patterns = patterns(&fit, model, &observations, speed_uncertainty)?;
     text.push_str(&budget_table(model.parameters(), &budget, arguments.coverage));
     text.push('\n');
+    if arguments.correlations {
+        text.push_str(&correlation_table(model.parameters(), &budget));
+        text.push('\n');
+    }
     text.push_str(&validity_text(model.experiment(), &validity, &patterns));
     text.push('\n');
     let range = arguments.range.map_or_else(|| highest(model, &observations), |g| g * STANDARD_GRAVITY);

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use centrical_io::{CalibrationResult, Error, Method, PlateauName, Session, calibrate_without, create_folder};
-use centrical_report::{Objection, objections, terminal_table};
+use centrical_report::{Objection, objections, states_text, terminal_table, verdict_text};
 
 use crate::command::report::Documents;
 use crate::{Outcome, progress};
@@ -49,8 +49,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         FitMethod::Batch => Method::Exact,
         FitMethod::Recursive => Method::Recursive,
     };
-    let bar = progress::mountings("reading", session.experiment.mountings.len());
-    let result = calibrate_without(&session, &arguments.hold_out, method, &|_| bar.inc(1))?;
+    if method == Method::Recursive {
+        let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
+        eprint!("{}", states_text(&session.model()?, &order));
+    }
+    let bar = progress::reading(&session);
+    let result = calibrate_without(&session, &arguments.hold_out, method, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
     let file = match (&arguments.out, arguments.json) {
         (Some(folder), _) => {
@@ -74,8 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 }
 
 fn report(result: &CalibrationResult, objections: &[Objection], file: Option<&Path>) -> String {
-    let mut lines = vec![terminal_table(result)];
-    lines.extend(objections.iter().map(|objection| format!("NOT ACCEPTABLE  {objection}\n")));
+    let mut lines = vec![terminal_table(result), verdict_text(objections)];
     lines.extend(file.map(|file| format!("\nWritten to {}\n", file.display())));
     lines.concat()
 }

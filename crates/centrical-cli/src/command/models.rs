@@ -19,8 +19,8 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
-    let bar = progress::mountings("reading", session.experiment.mountings.len());
-    let problem = Problem::of(&session, &|_| bar.inc(1))?;
+    let bar = progress::reading(&session);
+    let problem = Problem::of(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
     let selection = select(&rivals_of(&problem.model), &problem.reduced.observations(), session.speed_uncertainty)
         .map_err(|source| Error::Fit { file: session.file.clone(), source })?;

@@ -4,10 +4,10 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical::uncertainty::{Method, MonteCarlo, Settings, monte_carlo};
-use centrical::{FitError, MeasurementModel, Observation, STANDARD_GRAVITY, fit};
-use centrical_io::{Error, Problem, Session};
+use centrical::{FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight, fit};
+use centrical_io::{Error, Plan, Problem, Session};
 use centrical_report::monte_carlo_table;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use super::assess::probability;
 use crate::{Outcome, progress};
@@ -29,9 +29,9 @@ pub struct Arguments {
     /// The linear fit of [K5.3] alone, to see its second-order error
     #[arg(long)]
     linear: bool,
-    /// White noise of the means of a plan, in ug
-    #[arg(long, value_name = "UG", default_value_t = 10.0)]
-    noise: f64,
+    /// White noise of the means of a plan, in ug, in place of its own noise and durations
+    #[arg(long, value_name = "UG")]
+    noise: Option<f64>,
 }
 
 /// Runs the command.
@@ -40,14 +40,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let failed = |source| Error::Fit { file: session.file.clone(), source };
     let has_data = session.plateaus.is_some() || session.mountings.iter().any(|m| m.record.is_some());
     let (model, observations, truth) = if has_data {
-        let bar = progress::mountings("reading", session.experiment.mountings.len());
-        let problem = Problem::of(&session, &|_| bar.inc(1))?;
+        let bar = progress::reading(&session);
+        let problem = Problem::of(&session, &|bytes| bar.inc(bytes))?;
         bar.finish_and_clear();
         let observations = problem.reduced.observations();
         let fit = fit::exact(&problem.model, &observations, session.speed_uncertainty).map_err(failed)?;
         (problem.model, observations, fit.state().to_vec())
     } else {
-        plan(session.model()?, arguments.noise * 1e-6 * STANDARD_GRAVITY)
+        planned(arguments, &session)?
     };
     let monte_carlo = draw(arguments, &session, &model, &observations, &truth).map_err(failed)?;
     let text = monte_carlo_table(model.parameters(), &monte_carlo, arguments.coverage);
@@ -55,13 +55,19 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     Ok(Outcome::Done)
 }
 
-/// A plan: the experiment with white noise of `sigma` [m/s^2] on the means, and a unit with no errors.
-fn plan(model: MeasurementModel, sigma: f64) -> (MeasurementModel, Vec<Observation>, Vec<f64>) {
-    let covariance = Matrix3::identity() * (sigma * sigma);
-    let count = model.experiment().set_points.len();
-    let observation = |set_point| Observation { set_point, mean: Vector3::zeros(), covariance };
+/// A plan: the experiment with the noise it reckons with, and a unit with no errors.
+fn planned(arguments: &Arguments, session: &Session) -> Result<(MeasurementModel, Vec<Observation>, Vec<f64>), Error> {
+    let model = session.model()?;
+    let weights = match (arguments.noise, Plan::read(&session.file)?) {
+        (None, Some(plan)) => plan.weights,
+        (noise, _) => {
+            let sigma = noise.unwrap_or(10.0) * 1e-6 * STANDARD_GRAVITY;
+            Weight::equal(model.experiment().set_points.len(), sigma)
+        }
+    };
     let truth = vec![0.0; model.parameters().len()];
-    (model, (0..count).map(observation).collect(), truth)
+    let observation = |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
+    Ok((model, weights.into_iter().map(observation).collect(), truth))
 }
 
 fn draw(

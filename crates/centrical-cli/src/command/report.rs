@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_io::{CalibrationResult, Error, Laboratory, Place, create_folder, write_whole};
+use centrical_io::{CalibrationResult, Error, Laboratory, Place, create_folder, read_history, write_whole};
 use centrical_report::codegen::{NamedTerm, compensation_source, heading};
-use centrical_report::{Language, digital_certificate, figures, html_report, objections, pdf_certificate};
+use centrical_report::{
+    Language, digital_certificate, figures, history_figure, html_report, html_report_with, objections, pdf_certificate,
+};
 use clap::ValueEnum;
 
 use crate::Outcome;
@@ -18,6 +20,9 @@ pub struct Arguments {
     /// Write the report to this file: one page, self-contained
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    /// Show in the report how the uncertainties shrank while the session was watched: the watch-history.jsonl of a watch
+    #[arg(long, value_name = "FILE", requires = "html")]
+    history: Option<PathBuf>,
     /// Write the calibration certificate (ISO/IEC 17025) to this file
     #[arg(long, value_name = "FILE", requires = "laboratory")]
     pdf: Option<PathBuf>,
@@ -68,7 +73,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let result = CalibrationResult::read(&arguments.result)?;
     let language = arguments.documents.language.into();
     if let Some(file) = &arguments.html {
-        write_whole(file, html_report(&result, language).as_bytes())?;
+        let history = arguments.history.as_deref().map(read_history).transpose()?.unwrap_or_default();
+        let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group.as_str());
+        let further = history_figure(&history, &group_of, language);
+        write_whole(file, html_report_with(&result, further.as_slice(), language).as_bytes())?;
     }
     if let Some(laboratory) = arguments.documents.laboratory()? {
         if let Some(file) = &arguments.pdf {

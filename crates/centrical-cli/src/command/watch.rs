@@ -7,13 +7,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use centrical::fit::recursive::{Follower, Lives, Progress};
-use centrical::{MeasurementModel, Observation};
+use centrical::fit::recursive::{Follower, Progress};
+use centrical::plan::{Criterion, Gain, ReadingRange, next_best};
+use centrical::{MeasurementModel, Observation, SetPoint, Weight, linear};
 use centrical_io::{
     Error, HistoryEntry, HistoryEstimate, Method, Place, PlateauName, Session, Watch, WatchState, WatchedPlateau,
-    append_history, calibrate_without, create_folder, keep_history,
+    append_history, calibrate_without, create_folder, keep_history, read_history, write_whole,
 };
-use centrical_report::{WatchView, WatchedTest, objections, terminal_table, watch_table};
+use centrical_report::{
+    Language, WatchView, WatchedTest, history_figure, objections, states_text, terminal_table, verdict_text,
+    watch_table,
+};
 
 use crate::Outcome;
 
@@ -23,7 +27,7 @@ use crate::Outcome;
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
-    /// Folder for watch.json (where it stands), watch-history.jsonl (a line per plateau) and result.json
+    /// Folder for watch.json (where it stands), watch-history.jsonl (a line per plateau), its plot and result.json
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// A wanted standard uncertainty in the unit that the table shows, e.g. --target bias=0.01; may be repeated
@@ -55,14 +59,15 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     create_folder(&arguments.out)?;
     let model = session.model()?;
     let mut following = Following::resume(arguments, &session, &model)?;
-    following.say_what_the_order_costs();
+    let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
+    eprint!("{}", states_text(&model, &order));
     let mut watch = Watch::new(&session, Duration::from_secs_f64(arguments.quiet));
     let stop = stopped_by_ctrl_c();
     let mut note = None;
     loop {
         for observation in watch.look()? {
             if stop.load(Ordering::Relaxed) {
-                return Ok(following.stopped());
+                return following.stopped();
             }
             following.arrived(&observation)?;
         }
@@ -76,7 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             }
         }
         if stop.load(Ordering::Relaxed) || arguments.once {
-            return Ok(following.stopped());
+            return following.stopped();
         }
         thread::sleep(Duration::from_secs_f64(arguments.interval));
     }
@@ -154,6 +159,7 @@ impl<'a> Following<'a> {
         let come = |set_point: &usize| self.state.plateaus.iter().any(|p| p.set_point == *set_point);
         let next = (0..all).find(|set_point| !come(set_point));
         let expected = next.map(|next| self.fitted(self.follower.expected(next, last.covariance))).transpose()?;
+        let best = self.best_next(last)?;
         let tests: Vec<WatchedTest> = self.state.plateaus.iter().map(|plateau| self.tested(plateau)).collect();
         let view = WatchView {
             title: &self.session.title,
@@ -162,6 +168,7 @@ impl<'a> Following<'a> {
             tests: &tests,
             now,
             next: next.map(|next| self.label(next)).zip(expected.as_ref()),
+            best,
             targets: &self.arguments.target,
         };
         // On a terminal the table stays in its place.
@@ -169,6 +176,28 @@ impl<'a> Following<'a> {
         // A reader that has seen enough (`| head`) is no failure.
         let _ = writeln!(io::stdout(), "{clear}{}", watch_table(&view));
         Ok(())
+    }
+
+    /// The plateaus that remain in the mounting on the arm, and those of later mountings, by what they would bring if they
+    /// were as noisy as the last one; the best of each.
+    fn best_next(&self, last: &Observation) -> Result<Vec<(String, f64)>, Error> {
+        let experiment = &self.session.experiment;
+        let come = |set_point: usize| self.state.plateaus.iter().any(|p| p.set_point == set_point);
+        let remaining: Vec<Weight> = (0..experiment.set_points.len())
+            .filter(|&set_point| !come(set_point))
+            .map(|set_point| Weight { set_point, covariance: last.covariance })
+            .collect();
+        let taken: Vec<Weight> = self.follower.taken().iter().map(Weight::from).collect();
+        let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
+        let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
+        let criterion = Criterion::Reading(ReadingRange { force });
+        let gains = next_best(self.model, self.session.speed_uncertainty, &criterion, &taken, &remaining)
+            .map_err(|source| Error::Planning { file: self.session.file.clone(), source })?;
+        let on_the_arm = experiment.set_points[last.set_point].mounting;
+        let is_here = |gain: &Gain| experiment.set_points[gain.set_point].mounting == on_the_arm;
+        let here = gains.iter().find(|gain| is_here(gain));
+        let elsewhere = gains.iter().find(|gain| !is_here(gain));
+        Ok(here.into_iter().chain(elsewhere).map(|gain| (self.label(gain.set_point), gain.factor)).collect())
     }
 
     fn tested(&self, plateau: &WatchedPlateau) -> WatchedTest {
@@ -192,29 +221,32 @@ impl<'a> Following<'a> {
         format!("{mounting}:{plateau}, {set}")
     }
 
-    fn say_what_the_order_costs(&self) {
-        let order: Vec<usize> = (0..self.session.experiment.set_points.len()).collect();
-        let lives = Lives::new(self.model, &order);
-        let waiting: Vec<String> =
-            lives.waiting(self.model).iter().map(|&j| self.model.parameters()[j].name.clone()).collect();
-        eprintln!("{} states of {} unknowns at a time", lives.states(), lives.unknowns());
-        if lives.cost() > 0 {
-            eprintln!(
-                "The order does not keep positions together, which costs {} states; waiting at the fullest: {}",
-                lives.cost(),
-                waiting.join(", ")
-            );
+    /// The history as a plot, beside it.
+    fn draw(&self) -> Result<(), Error> {
+        let folder = &self.arguments.out;
+        let history = folder.join("watch-history.jsonl");
+        if !history.exists() {
+            return Ok(());
+        }
+        let group_of = |name: &str| {
+            let parameters = self.model.parameters();
+            parameters.find(name).map(|j| parameters[j].group)
+        };
+        match history_figure(&read_history(&history)?, &group_of, Language::English) {
+            Some(figure) => write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes()),
+            None => Ok(()),
         }
     }
 
-    fn stopped(&self) -> Outcome {
+    fn stopped(&self) -> Result<Outcome, Error> {
+        self.draw()?;
         let file = self.arguments.out.join("watch.json");
         eprintln!(
             "Stopped after {} plateaus; the same command goes on from {}",
             self.state.plateaus.len(),
             file.display()
         );
-        Outcome::Done
+        Ok(Outcome::Done)
     }
 
     /// The calibration of the complete session, from its files anew.
@@ -224,9 +256,9 @@ impl<'a> Following<'a> {
         let result = calibrate_without(self.session, &held_out, Method::Recursive, &|_| {})?;
         let file = self.arguments.out.join("result.json");
         result.write(&file)?;
+        self.draw()?;
         let objections = objections(&result);
-        let mut lines = vec![terminal_table(&result)];
-        lines.extend(objections.iter().map(|objection| format!("NOT ACCEPTABLE  {objection}\n")));
+        let mut lines = vec![terminal_table(&result), verdict_text(&objections)];
         lines.push(format!("\nThe schedule is complete. Written to {}\n", file.display()));
         let _ = io::stdout().write_all(lines.concat().as_bytes());
         Ok(if objections.is_empty() { Outcome::Done } else { Outcome::NotAcceptable })

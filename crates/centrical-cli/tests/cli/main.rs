@@ -3,6 +3,7 @@
 mod calibrate;
 mod compensate;
 mod observe;
+mod reduce;
 mod refusal;
 mod report;
 mod session;

@@ -1,8 +1,12 @@
 //! The commands that say how far a calibration can be trusted, on the example.
 
+use std::fs;
+use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::session::example;
+use serde_json::Value;
+
+use crate::session::{Copy, example};
 
 fn run(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_centrical")).args(arguments).output().unwrap()
@@ -44,4 +48,130 @@ fn montecarlo_repeats_itself() {
 fn models_recommends_what_the_example_was_made_with() {
     let told = text(&run(&["models", example().to_str().unwrap()]));
     assert!(told.contains("recommended: \"as stated\""), "{told}");
+}
+
+/// What a laboratory states, all of it.
+const STATED: &str = r#"
+[uncertainty]
+gravity = "1e-6 m/s^2"
+latitude = "0.001 deg"
+radius = "20 um"
+radius_difference = "3 um"
+speed_scale = 1e-6
+plateau_speed = 1e-5
+rest_angle = "10 arcsec"
+proof_masses = "20 um"
+attitude = "20 urad"
+resolution = "1 ug"
+doubt = 0.25
+"#;
+
+fn result(copy: &Copy) -> Value {
+    serde_json::from_slice(&fs::read(copy.out().join("result.json")).unwrap()).unwrap()
+}
+
+/// A calibration says what its uncertainties hold, whether it can be believed, and the verdict.
+#[test]
+fn calibrate_tells_sources_validity_and_verdict() {
+    let copy = Copy::new();
+    let told = text(&copy.calibrate(&[]));
+    for part in [
+        "value ± standard uncertainty",
+        "FROM  noise, speed of each plateau\n",
+        "states no [uncertainty]",
+        "VALID chi^2 as large or larger comes by chance with a probability of 0.1",
+        "none of the 108 plateaus stands out",
+        "patterns against speed, position, radius and time in the residuals",
+        "each mounting predicted from all others",
+        "ACCEPTABLE  nothing speaks against this result",
+    ] {
+        assert!(told.contains(part), "{part} is not in\n{told}");
+    }
+    let result = result(&copy);
+    let (budget, validity) = (&result["budget"], &result["validity"]);
+    assert_eq!(budget["sources"].as_array().unwrap().len(), 2);
+    assert_eq!(validity["mountings"].as_array().unwrap().len(), 12);
+    for (parameter, combined) in
+        result["parameters"].as_array().unwrap().iter().zip(budget["combined"].as_array().unwrap())
+    {
+        let ratio = parameter["standard_uncertainty"].as_f64().unwrap() / combined.as_f64().unwrap();
+        assert!((ratio - 1.0).abs() < 1e-6, "{parameter}");
+    }
+}
+
+/// Where the session states uncertainties, those of the result, its covariance, the report and what is compared are the
+/// combined ones; the estimates stay what they were.
+#[test]
+fn stated_uncertainties_are_in_the_result() {
+    let copy = Copy::new();
+    text(&copy.calibrate(&["--out", "."]));
+    let without = result(&copy);
+    fs::rename(copy.out().join("result.json"), copy.out().join("without.json")).unwrap();
+    copy.edit("experiment.toml", |text| text + STATED);
+    let told = text(&copy.calibrate(&["--out", "."]));
+    assert!(told.contains("value ± combined standard uncertainty") && !told.contains("states no"), "{told}");
+    let with = result(&copy);
+    let names: Vec<&str> =
+        with["budget"]["sources"].as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
+    assert_eq!(names.len(), 11, "{names:?}");
+    let page = fs::read_to_string(copy.out().join("report.html")).unwrap();
+    for part in ["Scale of the speed", "Difference of radii", "Eff. degrees of freedom", "Plateaus that stand out"] {
+        assert!(page.contains(part), "{part} is not in the report");
+    }
+    for j in 0..49 {
+        let of = |result: &Value, key: &str| result["parameters"][j][key].as_f64().unwrap();
+        assert_eq!(of(&with, "value"), of(&without, "value"));
+        let combined = of(&with, "standard_uncertainty");
+        assert!(combined > of(&without, "standard_uncertainty"));
+        assert_eq!(combined, with["budget"]["combined"][j].as_f64().unwrap());
+        assert!((with["covariance"][j][j].as_f64().unwrap().sqrt() / combined - 1.0).abs() < 1e-12);
+        let parts = with["budget"]["sources"].as_array().unwrap().iter();
+        let sum: f64 = parts.map(|source| source["standard_uncertainty"][j].as_f64().unwrap().powi(2)).sum();
+        assert!((sum.sqrt() / combined - 1.0).abs() < 1e-12, "{j}");
+    }
+    // delta_1[5] is nearly all attitude, doubtful by a quarter: 8 degrees of freedom, so U = 2.37 u and not 2 u.
+    assert!(page.contains("750 ± 48") && !page.contains("750 ± 40"), "k of Student's distribution in the report");
+    // The source that shifts a parameter most: a common radius is dR_1 and nothing else.
+    let shift = with["parameters"].as_array().unwrap().iter().position(|p| p["name"] == "dR_1[A]").unwrap();
+    assert!(with["parameters"][shift]["standard_uncertainty"].as_f64().unwrap() > 19e-6);
+    let compared = text(&copy.run(&["compare", "without.json", "result.json"]));
+    assert!(compared.contains("probability 1.0e0"), "{compared}");
+}
+
+/// A plateau that is grossly off stands out by name, and the calibration is not acceptable; held out it is.
+#[test]
+fn an_outlying_plateau_is_named() {
+    let copy = Copy::new();
+    copy.edit("records/m05.csv", |text| crate::watch::disturbed(&text));
+    let run = copy.calibrate(&[]);
+    let told = String::from_utf8(run.stdout).unwrap();
+    assert_eq!(run.status.code(), Some(1), "{told}");
+    assert!(told.contains("plateau 5:9 STANDS OUT") && told.contains("--hold-out 5:9"), "{told}");
+    assert!(told.contains("NOT ACCEPTABLE  plateaus that stand out: 5:9"), "{told}");
+    assert!(text(&copy.calibrate(&["--hold-out", "5:9"])).contains("ACCEPTABLE  nothing speaks against"));
+    let cleaned = text(&copy.run(&["assess", copy.session().to_str().unwrap(), "--without-outliers"]));
+    assert!(cleaned.contains("OUTLIERS  1 plateaus left out\n  mounting 5, plateau 9"), "{cleaned}");
+    assert!(cleaned.contains("estimates that moved most"), "{cleaned}");
+}
+
+/// Two calibrations of one unit agree with themselves; of two units they do not, and the exit code says so.
+#[test]
+fn compare_tells_whether_two_calibrations_agree() {
+    let copy = Copy::new();
+    text(&copy.calibrate(&[]));
+    let file = copy.out().join("result.json");
+    let agree = |other: &Path| copy.run(&["compare", file.to_str().unwrap(), other.to_str().unwrap(), "--years", "2"]);
+    assert!(text(&agree(&file)).contains("all 21 together: chi^2 = 0.0 with 21 degrees of freedom"));
+    let mut moved = result(&copy);
+    let parameters = moved["parameters"].as_array_mut().unwrap();
+    let bias = parameters.iter_mut().find(|p| p["name"] == "df_1").unwrap();
+    let far = bias["value"].as_f64().unwrap() + 20.0 * bias["standard_uncertainty"].as_f64().unwrap();
+    bias["value"] = far.into();
+    let other = copy.out().join("moved.json");
+    fs::write(&other, moved.to_string()).unwrap();
+    let run = agree(&other);
+    let told = String::from_utf8(run.stdout).unwrap();
+    assert_eq!(run.status.code(), Some(1), "{told}");
+    let line = told.lines().find(|line| line.contains("df_1")).unwrap();
+    assert!(line.ends_with("DISAGREE") && line.contains("7.07"), "{line}");
 }

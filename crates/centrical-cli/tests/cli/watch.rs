@@ -28,6 +28,7 @@ fn a_complete_session_is_followed_to_its_calibration() {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
     assert!(!text.contains("DOES NOT FIT"), "{text}");
+    assert!(fs::read_to_string(copy.out().join("watch-history.svg")).unwrap().starts_with("<svg"));
     let history = history(&copy.out());
     assert_eq!(history.len(), 108);
     let rank: Vec<u64> = history.iter().map(|line| line["rank"].as_u64().unwrap()).collect();
@@ -102,8 +103,28 @@ fn a_plateau_that_does_not_fit_is_held_out() {
     assert!(watched == fs::read(copy.out().join("result.json")).unwrap());
 }
 
+/// An order that does not keep positions together is followed as well, and it is said what it costs.
+#[test]
+fn an_order_by_radius_is_told_its_cost() {
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| {
+        let (head, mountings) = text.split_once("[[mounting]]").unwrap();
+        let mountings: Vec<&str> = mountings.split("[[mounting]]").collect();
+        let ordered = (0..12).step_by(2).chain((1..12).step_by(2)).map(|n| format!("[[mounting]]{}\n", mountings[n]));
+        head.to_owned() + &ordered.collect::<String>()
+    });
+    let run = copy.calibrate(&["--method", "recursive"]);
+    assert_eq!(run.status.code(), Some(0));
+    let told = String::from_utf8(run.stderr).unwrap();
+    assert!(
+        told.starts_with("49 states of 49 unknowns at a time\nThe order does not keep positions together"),
+        "{told}"
+    );
+    assert!(told.contains("which costs 19 states; waiting at the fullest: delta_1[1]"), "{told}");
+}
+
 /// Adds 0.2 m/s^2 to the last 13 s of a record (rest and the end of the ramp down to it), all three readings.
-fn disturbed(text: &str) -> String {
+pub fn disturbed(text: &str) -> String {
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let time = |line: &str| line.split(',').next().and_then(|t| t.parse::<f64>().ok());
     let last = time(lines.last().unwrap()).unwrap();
@@ -115,6 +136,63 @@ fn disturbed(text: &str) -> String {
         }
     }
     lines.join("\n") + "\n"
+}
+
+/// Killed without warning again and again, whatever it is doing, and started again: history, state and result end with
+/// the bytes of a run that was never stopped.
+#[test]
+fn a_watch_killed_anywhere_ends_with_the_same_bytes() {
+    let through = averaged();
+    let run = through.run(&["watch", through.session().to_str().unwrap(), "--once"]);
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let stopped = averaged();
+    let mut stops = Vec::new();
+    for kill in 0.. {
+        assert!(kill < 1000, "no end in sight");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+        command.args(["watch", stopped.session().to_str().unwrap(), "--once"]).current_dir(stopped.out());
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let before = lines(&stopped.out());
+        // Killed when a plateau has come, and a little later each time.
+        until("a plateau", || lines(&stopped.out()) > before || child.try_wait().unwrap().is_some());
+        thread::sleep(Duration::from_micros(700 * (kill % 17)));
+        let _ = child.kill();
+        if child.wait().unwrap().code() == Some(0) {
+            break;
+        }
+        stops.push(lines(&stopped.out()));
+    }
+    stops.dedup();
+    assert!(stops.len() > 30, "killed after {stops:?} plateaus");
+    for name in ["watch-history.jsonl", "watch.json", "result.json", "watch-history.svg"] {
+        let [a, b] = [&through, &stopped].map(|copy| fs::read(copy.out().join(name)).unwrap());
+        assert!(a == b, "{name}");
+    }
+}
+
+/// The example already averaged: its start takes no time.
+fn averaged() -> Copy {
+    let copy = Copy::new();
+    let result: Value = serde_json::from_slice(&copy.calibrate(&["--json"]).stdout).unwrap();
+    let mut table =
+        String::from("mounting,speed,angle,mean_1,mean_2,mean_3,cov_11,cov_12,cov_13,cov_22,cov_23,cov_33,samples\n");
+    for plateau in result["plateaus"].as_array().unwrap() {
+        let c = &plateau["covariance"];
+        let angle = if plateau["angle"].is_null() { String::new() } else { plateau["angle"].to_string() };
+        let cells = [&plateau["mean"][0], &plateau["mean"][1], &plateau["mean"][2]];
+        let of_covariance = [&c[0][0], &c[0][1], &c[0][2], &c[1][1], &c[1][2], &c[2][2]];
+        let numbers: Vec<String> = cells.into_iter().chain(of_covariance).map(Value::to_string).collect();
+        let (mounting, speed, samples) = (&plateau["mounting"], &plateau["speed"], &plateau["samples"]);
+        table += &format!("{mounting},{speed},{angle},{},{samples}\n", numbers.join(","));
+    }
+    fs::write(copy.session().join("plateaus.csv"), table).unwrap();
+    copy.edit("experiment.toml", |text| format!("plateaus = \"plateaus.csv\"\n{text}"));
+    copy
+}
+
+/// Lines of the history that are whole.
+fn lines(out: &Path) -> usize {
+    fs::read(out.join("watch-history.jsonl")).unwrap_or_default().iter().filter(|byte| **byte == b'\n').count()
 }
 
 fn start(copy: &Copy) -> Child {

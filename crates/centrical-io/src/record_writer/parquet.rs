@@ -11,7 +11,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 
 use super::Table;
-use crate::record::RecordBlock;
+use centrical::reduction::RecordSlice;
 
 /// Rows in a row group: 32 MB, so that readers have pieces to share and the footer stays short.
 const GROUP: usize = 1 << 20;
@@ -36,8 +36,8 @@ impl ParquetTable {
 }
 
 impl Table for ParquetTable {
-    fn write(&mut self, block: RecordBlock) -> io::Result<()> {
-        let [f1, f2, f3] = block.f;
+    fn write(&mut self, block: RecordSlice) -> io::Result<()> {
+        let [f1, f2, f3] = block.f_z;
         for (column, values) in self.group.iter_mut().zip([block.t, f1, f2, f3]) {
             column.extend_from_slice(values);
         }

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Write};
 
 use super::Table;
-use crate::record::RecordBlock;
+use centrical::reduction::RecordSlice;
 
 /// A CSV file in the making.
 pub(super) struct TextTable {
@@ -21,10 +21,10 @@ impl TextTable {
 }
 
 impl Table for TextTable {
-    fn write(&mut self, block: RecordBlock) -> io::Result<()> {
+    fn write(&mut self, block: RecordSlice) -> io::Result<()> {
         let mut number = zmij::Buffer::new();
         self.lines.clear();
-        let [f1, f2, f3] = block.f;
+        let [f1, f2, f3] = block.f_z;
         for (((t, f1), f2), f3) in block.t.iter().zip(f1).zip(f2).zip(f3) {
             for (value, end) in [(t, b','), (f1, b','), (f2, b','), (f3, b'\n')] {
                 self.lines.extend_from_slice(if value.is_nan() { "nan" } else { number.format(*value) }.as_bytes());

@@ -19,6 +19,14 @@ pub(super) struct Form {
     pub plateaus: Option<String>,
     /// What is planned, where nothing is measured yet.
     pub plan: Option<PlanTable>,
+    /// What a plan is chosen from, what it costs, what it is for, and what it must be good for.
+    pub candidates: Option<CandidatesTable>,
+    #[serde(default)]
+    pub cost: CostTable,
+    #[serde(default)]
+    pub target: TargetTable,
+    #[serde(default)]
+    pub robust: RobustTable,
     #[serde(default)]
     pub session: SessionTable,
     pub site: SiteTable,
@@ -45,6 +53,70 @@ pub(super) struct PlanTable {
     pub noise: Option<Quantity>,
     pub floor: Option<Quantity>,
     pub duration: Option<Quantity>,
+}
+
+/// What a plan is chosen from.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CandidatesTable {
+    /// Radii of the seats, R0_1.
+    pub radii: Vec<Quantity>,
+    /// Ids of positions; all if there is none.
+    #[serde(default)]
+    pub positions: Vec<String>,
+    pub speeds: Option<Steps>,
+    /// Loads at the largest radius, in place of speeds or beside them.
+    pub loads: Option<Steps>,
+    #[serde(default)]
+    pub rest_angles: Vec<Quantity>,
+    pub durations: Vec<Quantity>,
+    pub repeats: Option<usize>,
+    pub max_speed: Option<Quantity>,
+    pub max_load: Option<Quantity>,
+}
+
+/// Values one by one, or so many at equal steps.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Steps {
+    List(Vec<Quantity>),
+    Range(StepsTable),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StepsTable {
+    pub from: Quantity,
+    pub to: Quantity,
+    pub count: usize,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct CostTable {
+    pub position: Option<Quantity>,
+    pub seat: Option<Quantity>,
+    pub ramp: Option<Quantity>,
+    pub turn: Option<Quantity>,
+    pub run_up: Option<Quantity>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct TargetTable {
+    pub criterion: Option<String>,
+    pub range: Option<Quantity>,
+    pub time: Option<Quantity>,
+    /// Wanted standard uncertainties by parameter, group or "reading".
+    pub uncertainty: BTreeMap<String, Quantity>,
+}
+
+/// States of affairs besides the expected one.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RobustTable {
+    pub noise: Vec<Quantity>,
+    pub extensions: Vec<String>,
 }
 
 /// A plan of a preset experiment: the whole file.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
+use centrical::uncertainty::TypeB;
 use centrical::{MeasurementModel, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;
@@ -38,6 +39,8 @@ pub struct Plan {
     pub speed_uncertainty: f64,
     /// The noise that is reckoned with.
     pub noise: Noise,
+    /// Standard uncertainties that the data will not show, as stated in `[uncertainty]`.
+    pub type_b: TypeB,
 }
 
 /// White noise down to a floor: the variance of the mean of a plateau of duration `T` is `density^2 / (2 T) + floor^2`.
@@ -106,14 +109,7 @@ impl Plan {
         let table = form.plan.as_ref();
         let of_table = |key: fn(&form::PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
         let noise = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;
-        let mut durations = Vec::with_capacity(session.experiment.set_points.len());
-        for (m, mounting) in form.mounting.iter().enumerate() {
-            let at = At::entry(file, "mounting", m);
-            for (index, plateau) in mounting.plateaus.iter().enumerate() {
-                let key = format!("plateaus {} duration", index + 1);
-                durations.push(duration(&at, &key, plateau.duration.as_ref())?.unwrap_or(noise.duration));
-            }
-        }
+        let durations = durations(file, form)?.into_iter().map(|duration| duration.unwrap_or(noise.duration)).collect();
         Ok(Self {
             file: file.to_owned(),
             title: session.title.clone(),
@@ -121,6 +117,7 @@ impl Plan {
             weights: weights(&noise, durations),
             speed_uncertainty: session.speed_uncertainty,
             noise,
+            type_b: session.type_b,
         })
     }
 
@@ -151,8 +148,22 @@ impl Plan {
             weights,
             speed_uncertainty,
             noise,
+            type_b: TypeB::default(),
         })
     }
+}
+
+/// Duration stated for each plateau [s], in the order of the set points.
+pub(super) fn durations(file: &Path, form: &Form) -> Result<Vec<Option<f64>>, Error> {
+    let mut durations = Vec::new();
+    for (m, mounting) in form.mounting.iter().enumerate() {
+        let at = At::entry(file, "mounting", m);
+        for (index, plateau) in mounting.plateaus.iter().enumerate() {
+            let key = format!("plateaus {} duration", index + 1);
+            durations.push(duration(&at, &key, plateau.duration.as_ref())?);
+        }
+    }
+    Ok(durations)
 }
 
 /// The normalised experiment with what the table says otherwise.
@@ -202,7 +213,7 @@ fn list(at: &At, key: &str, values: &[f64], (low, high): (f64, f64), meaning: &s
     }
 }
 
-fn noise(
+pub(super) fn noise(
     file: &Path,
     density: Option<&Quantity>,
     floor: Option<&Quantity>,
@@ -222,7 +233,7 @@ fn noise(
     Ok(noise)
 }
 
-fn duration(at: &At, key: &str, quantity: Option<&Quantity>) -> Result<Option<f64>, Error> {
+pub(super) fn duration(at: &At, key: &str, quantity: Option<&Quantity>) -> Result<Option<f64>, Error> {
     let bounded = |q| at.bounded(key, q, Dimension::Time, DURATIONS, "a duration from 1 ms to 1e7 s");
     quantity.map(bounded).transpose()
 }

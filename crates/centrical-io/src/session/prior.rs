@@ -39,6 +39,17 @@ pub(super) fn with_priors(
     Ok(model)
 }
 
+/// A standard uncertainty of what `name` selects, in the unit of its parameters.
+pub(super) fn uncertainty_of(at: &At, model: &MeasurementModel, name: &str, quantity: &Quantity) -> Result<f64, Error> {
+    let entry = PriorEntry { name: name.to_owned(), standard_uncertainty: quantity.clone() };
+    let value = in_si(at, model, &entry)?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(at.unexpected(name, quantity.to_string(), "a standard uncertainty above 0"))
+    }
+}
+
 /// The uncertainty in the unit of the parameters that are meant.
 fn in_si(at: &At, model: &MeasurementModel, entry: &PriorEntry) -> Result<f64, Error> {
     let Some(first) = model.parameters().select(&entry.name).first().map(|&j| &model.parameters()[j]) else {

@@ -14,7 +14,7 @@ use parquet::schema::types::Type;
 const GROUP: usize = 1 << 17;
 
 /// A table that is written row group by row group.
-pub(super) struct ParquetTable<'a> {
+pub(crate) struct ParquetTable<'a> {
     file: SerializedFileWriter<&'a mut (dyn Write + Send)>,
     columns: Vec<Vec<f64>>,
 }

@@ -5,6 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use flate2::read::{DeflateDecoder, ZlibDecoder};
+use lz4_flex::frame::FrameDecoder;
 
 use super::columnar::Column;
 use super::{BLOCK, ColumnName, Field};
@@ -53,6 +54,9 @@ pub(super) enum Packing {
     Plain,
     Deflate,
     Zlib,
+    /// A frame of LZ4.
+    Lz4,
+    Zstd,
 }
 
 /// A type of numbers.
@@ -122,7 +126,11 @@ fn contents(arrays: &[Array]) -> String {
 }
 
 /// A reader of one column.
-fn column<'a>(file: &'a Path, (array, place): (&Array, &ArrayColumn), field: &'a Field) -> Result<Column<'a>, Error> {
+pub(super) fn column<'a>(
+    file: &'a Path,
+    (array, place): (&Array, &ArrayColumn),
+    field: &'a Field,
+) -> Result<Column<'a>, Error> {
     let failed = move |e: io::Error| {
         let place = Place::Column(field.name.to_string());
         let expected = "an array as long as it says";
@@ -160,6 +168,8 @@ impl Bytes {
             Packing::Plain => Box::new(input),
             Packing::Deflate => Box::new(DeflateDecoder::new(input)),
             Packing::Zlib => Box::new(ZlibDecoder::new(input)),
+            Packing::Lz4 => Box::new(FrameDecoder::new(input)),
+            Packing::Zstd => Box::new(zstd::Decoder::with_buffer(input)?),
         };
         let skip = self.skip.saturating_add(start);
         if io::copy(&mut unpacked.by_ref().take(skip), &mut io::sink())? < skip {

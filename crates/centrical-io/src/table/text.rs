@@ -3,63 +3,310 @@
 //! The delimiter (`;`, tab, `,` or blanks) is told by the first line; any order of columns, more columns than
 //! asked for, quoted fields, CRLF, lines starting with `#` and blank lines are welcome. Where the comma does not
 //! divide the fields it is the decimal comma.
+//!
+//! A text is read in pieces of whole lines, several at a time on all threads.
 
 mod layout;
+mod number;
+mod piece;
 
-use std::io::Read;
 use std::path::Path;
 
-use memchr::{memchr, memrchr};
+use memchr::memchr;
+use rayon::prelude::*;
 
 use self::layout::{Fault, Layout, Prologue};
-use super::{ASCENDING, Rows};
-use crate::error::{Error, Place, quoted};
+pub(super) use self::piece::{Lines, Packed, Plain};
+use super::{ASCENDING, Block, Field, Rows};
+use crate::error::{Error, Place};
 
-/// Bytes read at a time, and so the longest line.
-const CHUNK: usize = 1 << 20;
+/// Pieces read at a time.
+const PIECES: usize = 16;
 
-/// Reads the table of `file` from `input`.
-pub(super) fn read(file: &Path, input: &mut dyn Read, rows: &mut Rows) -> Result<(), Error> {
-    let mut chunks = Chunks { file, input, buffer: vec![0; CHUNK], filled: 0, used: 0, lines: 0 };
-    let mut prologue = Prologue::default();
-    let mut layout = None;
-    let mut row = vec![0.0; rows.fields.len()];
-    while !rows.is_too_long()
-        && let Some(chunk) = chunks.next()?
-    {
-        let (mut text, mut number) = (chunk.text, chunk.first_line);
-        while !text.is_empty() {
-            let line;
-            (line, text) = split_line(text);
-            if is_data(line) {
-                let fail = |fault: Fault| located(file, number, fault);
-                if let Some(layout) = &layout {
-                    one_row(layout, line, &mut row, rows).map_err(fail)?;
-                } else {
-                    let first = prologue.first_line(line, rows.fields).map_err(fail)?;
-                    if !first.is_header {
-                        one_row(&first.layout, line, &mut row, rows).map_err(fail)?;
-                    }
-                    layout = Some(first.layout);
-                }
-            } else if layout.is_none() {
-                prologue.comment(line);
-            }
-            number += 1;
-        }
-    }
-    Ok(())
+/// Where the rows of a text stand in it, for a second look.
+#[derive(Debug, Clone)]
+pub(crate) struct Index {
+    layout: Layout,
+    pieces: Vec<IndexedPiece>,
 }
 
-/// Reads one row.
-#[inline]
-fn one_row(layout: &Layout, line: &[u8], row: &mut [f64], rows: &mut Rows) -> Result<(), Fault> {
-    layout.row(line, row, rows.fields)?;
-    rows.push(row).map_err(|backwards| Fault {
-        column: Some(rows.fields[backwards.field].name.to_string()),
-        found: backwards.found,
-        expected: ASCENDING.to_owned(),
-    })
+/// A piece that has rows.
+#[derive(Debug, Clone, Copy)]
+struct IndexedPiece {
+    number: u64,
+    /// Number of its first row, from 0.
+    first_row: u64,
+    /// The first field in its first and last row, or the numbers of these rows where it is no time.
+    range: [f64; 2],
+}
+
+/// A piece on its way from the file to the rows.
+#[derive(Default)]
+pub(super) struct Piece {
+    text: Vec<u8>,
+    /// Lines read without a fault.
+    lines: u64,
+    /// The line of the first row, counted within the piece from 0.
+    first_row: u64,
+    /// What stands wrong, and in which line of the piece.
+    fault: Option<(u64, Fault)>,
+    /// Lines of the text's second half whose rows are read before their time, and these rows.
+    later: (u64, Block),
+}
+
+/// Reads the table of `file` from its `lines`.
+pub(super) fn read(file: &Path, lines: &mut dyn Lines, rows: &mut Rows) -> Result<Option<Index>, Error> {
+    let fields = rows.fields;
+    let mut prologue = Prologue::default();
+    let mut index: Option<Index> = None;
+    let mut pieces: Vec<Piece> = (0..PIECES).map(|_| Piece::default()).collect();
+    let mut blocks: Vec<Block> = vec![vec![Vec::new(); fields.len()]; PIECES];
+    let (mut number, mut line) = (0, 1);
+    loop {
+        // The first piece alone: it tells how the others are to be read.
+        let count = if index.is_some() { PIECES } else { 1 };
+        let filled = lines.fill(number, &mut pieces[..count])?;
+        if filled == 0 {
+            return Ok(index);
+        }
+        let (pieces, blocks) = (&mut pieces[..filled], &mut blocks[..filled]);
+        let mut skipped = 0;
+        if index.is_none() {
+            let start = match piece::endless_line(&pieces[0].text) {
+                Some((at, found)) => Err((at, Fault::no_table(found))),
+                None => prologue.read(&pieces[0].text, fields),
+            };
+            let (layout, skip) = start.map_err(|(at, fault)| located(file, line + at, fault))?;
+            index = layout.map(|layout| Index { layout, pieces: Vec::new() });
+            skipped = skip;
+        }
+        let Some(index) = &mut index else {
+            // Nothing but comments so far.
+            line += pieces[0].text.iter().filter(|byte| **byte == b'\n').count() as u64;
+            number += 1;
+            continue;
+        };
+        let layout = &index.layout;
+        pieces.par_iter_mut().zip(blocks.par_iter_mut()).for_each(|(piece, block)| {
+            piece.read(layout, skipped, fields, block);
+        });
+        for (piece, block) in pieces.iter_mut().zip(blocks.iter()) {
+            let backwards = rows.next(block);
+            if let Some(fault) = backwards.map(|backwards| backwards.fault(fields)) {
+                return Err(located(file, line + piece.first_row, fault));
+            }
+            if let Some((at, fault)) = piece.fault.take() {
+                return Err(located(file, line + at, fault));
+            }
+            if let (Some(first), Some(last)) = (block[0].first(), block[0].last()) {
+                let first_row = rows.count - block[0].len() as u64;
+                let of_rows = [first_row as f64, (rows.count - 1) as f64];
+                let range = if fields[0].rule.ascends() { [*first, *last] } else { of_rows };
+                index.pieces.push(IndexedPiece { number, first_row, range });
+            }
+            line += piece.lines;
+            number += 1;
+        }
+        rows.deliver(blocks);
+        (rows.progress)(pieces.iter().map(|piece| piece.text.len() as u64).sum());
+        if rows.is_too_long() {
+            return Ok(None);
+        }
+    }
+}
+
+impl Index {
+    /// Reads again the pieces in which the time, or the number of the row where no field is the time, is between two
+    /// values.
+    ///
+    /// `visit` is given the number of the first row of a piece with its columns.
+    pub fn read(
+        &self,
+        file: &Path,
+        fields: &[Field],
+        [from, to]: [f64; 2],
+        visit: &mut dyn FnMut(u64, &mut Block),
+    ) -> Result<(), Error> {
+        let mut plain = Plain::open(file).map_err(|e| Error::reading(file, e, "a table of numbers as text"))?;
+        let mut piece = Piece::default();
+        let mut block = vec![Vec::new(); fields.len()];
+        let wanted = self.pieces.iter().filter(|piece| piece.range[0] <= to && from <= piece.range[1]);
+        for (k, wanted) in wanted.enumerate() {
+            plain.read(wanted.number, &mut piece.text).map_err(|e| Error::reading(file, e, "a table of numbers"))?;
+            let mut skipped = 0;
+            if wanted.first_row == 0 && k == 0 {
+                let start = Prologue::default().read(&piece.text, fields);
+                skipped = start.map_or(0, |(_, skipped)| skipped);
+            }
+            piece.read(&self.layout, skipped, fields, &mut block);
+            if piece.fault.is_some() {
+                let found = "another text than a moment ago";
+                return Err(Error::content(file, Place::Whole, found, "a file that nobody writes to"));
+            }
+            visit(wanted.first_row, &mut block);
+        }
+        Ok(())
+    }
+
+    /// Bytes that [`Index::read`] reads for two values.
+    pub fn bytes(&self, [from, to]: [f64; 2]) -> u64 {
+        let wanted = self.pieces.iter().filter(|piece| piece.range[0] <= to && from <= piece.range[1]);
+        wanted.count() as u64 * piece::SIZE
+    }
+}
+
+impl Piece {
+    /// Reads the rows of the text after its first `skipped` lines, up to the first fault.
+    fn read(&mut self, layout: &Layout, skipped: u64, fields: &[Field], block: &mut Block) {
+        block.iter_mut().for_each(Vec::clear);
+        let whole = std::mem::take(&mut self.text);
+        let mut text = whole.as_slice();
+        for _ in 0..skipped {
+            text = split_line(text).1;
+        }
+        (self.lines, self.first_row, self.fault) = (skipped, skipped, None);
+        if let Err((at, column, found)) = piece::check_utf8(text) {
+            self.fault = Some((skipped + at, Fault { column, found, expected: "text in UTF-8".to_owned() }));
+            text = &text[..piece::before_line(text, at)];
+        }
+        if let Some((at, found)) = piece::endless_line(text) {
+            self.fault = Some((skipped + at, Fault::no_table(found)));
+            text = &text[..piece::before_line(text, at)];
+        }
+        let rest = self.read_side_by_side(text, layout, block);
+        for text in rest {
+            if let Err(fault) = self.read_rows(text, layout, fields, block) {
+                self.fault = Some(fault);
+                break;
+            }
+            // The second half begins where the first one ends.
+            self.lines += self.later.0;
+            block.iter_mut().zip(&mut self.later.1).for_each(|(column, later)| column.append(later));
+            self.later.0 = 0;
+        }
+        self.text = whole;
+        self.check_times(skipped, fields, block);
+    }
+
+    /// Reads bare numbers from both halves of a text at once, as far as there are no other lines: a row is a chain of
+    /// steps each of which waits for the one before, and a processor has room for two chains. What is left of the halves is
+    /// returned; the rows of the second wait in `later`.
+    fn read_side_by_side<'t>(&mut self, text: &'t [u8], layout: &Layout, block: &mut Block) -> [&'t [u8]; 2] {
+        let half = text.len() / 2;
+        let middle = memchr(b'\n', &text[half..]).map_or(text.len(), |end| half + end + 1);
+        let (mut first, mut second) = text.split_at(middle);
+        let mut rows = [vec![0.0; block.len()], vec![0.0; block.len()]];
+        let (_, later) = &mut self.later;
+        later.resize(block.len(), Vec::new());
+        later.iter_mut().for_each(Vec::clear);
+        let mut count = 0;
+        while !second.is_empty()
+            && let Some(of_first) = layout.plain_row(first, &mut rows[0])
+            && let Some(of_second) = layout.plain_row(second, &mut rows[1])
+        {
+            first = &first[of_first..];
+            second = &second[of_second..];
+            block.iter_mut().zip(&rows[0]).for_each(|(column, value)| column.push(*value));
+            later.iter_mut().zip(&rows[1]).for_each(|(column, value)| column.push(*value));
+            count += 1;
+        }
+        self.lines += count;
+        self.later.0 = count;
+        [first, second]
+    }
+
+    /// Reads the rows of a text one by one, up to the first fault.
+    fn read_rows(
+        &mut self,
+        mut text: &[u8],
+        layout: &Layout,
+        fields: &[Field],
+        block: &mut Block,
+    ) -> Result<(), (u64, Fault)> {
+        let mut row = vec![0.0; fields.len()];
+        while !text.is_empty() {
+            let (line, rest) = split_line(text);
+            if let Some(length) = layout.plain_row(text, &mut row) {
+                text = &text[length..];
+            } else if is_data(line) {
+                layout.row(line, &mut row, fields).map_err(|fault| (self.lines, fault))?;
+                text = rest;
+            } else {
+                self.first_row += u64::from(block[0].is_empty());
+                self.lines += 1;
+                text = rest;
+                continue;
+            }
+            self.lines += 1;
+            block.iter_mut().zip(&row).for_each(|(column, value)| column.push(*value));
+        }
+        Ok(())
+    }
+
+    /// Sees that what should ascend does, row after row.
+    fn check_times(&mut self, skipped: u64, fields: &[Field], block: &Block) {
+        for (field, column) in fields.iter().zip(block).filter(|(field, _)| field.rule.ascends()) {
+            if let Some(row) = column.windows(2).position(|pair| pair[1] < pair[0]) {
+                let found = format!("{} after {}", column[row + 1], column[row]);
+                let fault = Fault { column: Some(field.name.to_string()), found, expected: ASCENDING.to_owned() };
+                self.fault = Some((self.line_of(row + 1, skipped), fault));
+            }
+        }
+    }
+
+    /// The line of a row, both counted from 0.
+    #[cold]
+    fn line_of(&self, row: usize, skipped: u64) -> u64 {
+        let (mut text, mut line) = (self.text.as_slice(), 0);
+        let mut left = row;
+        while !text.is_empty() {
+            let (this, rest) = split_line(text);
+            if line >= skipped && is_data(this) {
+                if left == 0 {
+                    break;
+                }
+                left -= 1;
+            }
+            (text, line) = (rest, line + 1);
+        }
+        line
+    }
+}
+
+impl super::Backwards {
+    fn fault(self, fields: &[Field]) -> Fault {
+        let column = Some(fields[self.field].name.to_string());
+        Fault { column, found: self.found, expected: ASCENDING.to_owned() }
+    }
+}
+
+impl Fault {
+    fn no_table(found: String) -> Self {
+        Self { column: None, found, expected: piece::TABLE.to_owned() }
+    }
+}
+
+impl Prologue {
+    /// Reads the lines before the first row: the layout of the rows and how many lines to skip; no layout if there are
+    /// only comments.
+    fn read(&mut self, text: &[u8], fields: &[Field]) -> Result<(Option<Layout>, u64), (u64, Fault)> {
+        let mut rest = text;
+        let mut number = 0;
+        while !rest.is_empty() {
+            let line;
+            (line, rest) = split_line(rest);
+            if is_data(line) {
+                if let Err((_, column, found)) = piece::check_utf8(line) {
+                    return Err((number, Fault { column, found, expected: "text in UTF-8".to_owned() }));
+                }
+                let first = self.first_line(line, fields).map_err(|fault| (number, fault))?;
+                return Ok((Some(first.layout), number + u64::from(first.is_header)));
+            }
+            self.comment(line);
+            number += 1;
+        }
+        Ok((None, number))
+    }
 }
 
 /// A fault on a line of a file.
@@ -85,72 +332,4 @@ fn is_data(line: &[u8]) -> bool {
         Some(b' ' | b'\t') => !matches!(line.trim_ascii_start().first(), None | Some(b'#')),
         Some(_) => true,
     }
-}
-
-/// A text in pieces of whole lines.
-struct Chunks<'a> {
-    file: &'a Path,
-    input: &'a mut dyn Read,
-    buffer: Vec<u8>,
-    /// Bytes in the buffer, of which `used` were handed out.
-    filled: usize,
-    used: usize,
-    /// Lines handed out.
-    lines: u64,
-}
-
-/// Whole lines.
-struct Chunk<'a> {
-    text: &'a [u8],
-    /// Number of the first line, from 1.
-    first_line: u64,
-}
-
-impl Chunks<'_> {
-    /// The next whole lines, or nothing at the end of the file.
-    fn next(&mut self) -> Result<Option<Chunk<'_>>, Error> {
-        self.buffer.copy_within(self.used..self.filled, 0);
-        self.filled -= self.used;
-        let at_end = self.fill()?;
-        let first_line = self.lines + 1;
-        self.used = match memrchr(b'\n', &self.buffer[..self.filled]) {
-            _ if at_end => self.filled,
-            Some(end) => end + 1,
-            None => {
-                let place = Place::Line { line: first_line, column: None };
-                let found = format!("a line longer than {CHUNK} bytes");
-                return Err(Error::content(self.file, place, found, "a table of numbers as text"));
-            }
-        };
-        let mut text = &self.buffer[..self.used];
-        check_utf8(self.file, text, first_line)?;
-        self.lines += memchr::memchr_iter(b'\n', text).count() as u64;
-        if first_line == 1 {
-            text = text.strip_prefix("\u{feff}".as_bytes()).unwrap_or(text);
-        }
-        Ok((self.used > 0).then_some(Chunk { text, first_line }))
-    }
-
-    /// Fills the buffer; whether the file ended.
-    fn fill(&mut self) -> Result<bool, Error> {
-        while self.filled < self.buffer.len() {
-            match self.input.read(&mut self.buffer[self.filled..]) {
-                Ok(0) => return Ok(true),
-                Ok(read) => self.filled += read,
-                Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
-                Err(e) => return Err(Error::unpacking(self.file, e, "a table of numbers as text")),
-            }
-        }
-        Ok(false)
-    }
-}
-
-/// Text must be UTF-8: in any other encoding the names of columns would not be found.
-fn check_utf8(file: &Path, text: &[u8], first_line: u64) -> Result<(), Error> {
-    let Err(error) = std::str::from_utf8(text) else { return Ok(()) };
-    let bad = error.valid_up_to();
-    let line = first_line + memchr::memchr_iter(b'\n', &text[..bad]).count() as u64;
-    let start = memrchr(b'\n', &text[..bad]).map_or(0, |end| end + 1);
-    let found = format!("byte 0x{:02x} after {}", text[bad], quoted(&text[start..bad]));
-    Err(Error::content(file, Place::Line { line, column: None }, found, "text in UTF-8"))
 }

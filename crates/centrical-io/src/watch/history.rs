@@ -9,7 +9,7 @@ use centrical::MeasurementModel;
 use centrical::fit::recursive::{Innovation, Progress};
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
+use crate::error::{Error, Place};
 use crate::write::write_whole;
 
 /// What was known after a plateau.
@@ -88,15 +88,34 @@ pub fn append_history(file: &Path, entry: &HistoryEntry) -> Result<(), Error> {
     written.map_err(|error| Error::writing(file, error))
 }
 
-/// Keeps the first lines of the history and drops what a broken run may have written after them.
+/// Reads a history.
+///
+/// # Errors
+/// [`Error`] when the file cannot be read or a line of it is no state.
+pub fn read_history(file: &Path) -> Result<Vec<HistoryEntry>, Error> {
+    let expected = "the history of a watch";
+    let text = fs::read_to_string(file).map_err(|error| Error::reading(file, error, expected))?;
+    let entry = |(n, line): (usize, &str)| {
+        serde_json::from_str(line).map_err(|error| Error::Form {
+            file: file.to_owned(),
+            place: Place::Character { line: n + 1, column: error.column() },
+            message: format!("found {error}, expected {expected}"),
+        })
+    };
+    text.lines().enumerate().map(entry).collect()
+}
+
+/// Keeps the lines of the first `plateaus` and drops what a broken run may have written after them.
 ///
 /// # Errors
 /// [`Error::Io`] when the file can be neither read nor written.
-pub fn keep_history(file: &Path, lines: usize) -> Result<(), Error> {
+pub fn keep_history(file: &Path, plateaus: usize) -> Result<(), Error> {
     if !file.exists() {
         return Ok(());
     }
     let text = fs::read_to_string(file).map_err(|error| Error::reading(file, error, "the history of a watch"))?;
-    let kept: String = text.split_inclusive('\n').take(lines).collect();
+    // One plateau may have no line: while nothing is taken up there is nothing to tell.
+    let is_of = |line: &&str| serde_json::from_str::<HistoryEntry>(line).is_ok_and(|entry| entry.plateau <= plateaus);
+    let kept: String = text.split_inclusive('\n').take_while(is_of).collect();
     if kept == text { Ok(()) } else { write_whole(file, kept.as_bytes()) }
 }

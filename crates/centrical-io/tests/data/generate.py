@@ -1,6 +1,8 @@
 """Writes the records in this folder, the same 300 rows in every format, with the programs laboratories use.
 
-    pip install h5py numpy pyarrow scipy && python generate.py
+    pip install h5py numpy pandas polars pyarrow scipy && python generate.py [FOLDER]
+
+`.ci/run generated` writes them anew into another folder and has the tests read those.
 
 `record.csv` is the reference: every other file holds the same numbers to the last bit (or, where the name says
 float32 or counts, what that type makes of them). The numbers are drawn from a fixed seed.
@@ -8,15 +10,19 @@ float32 or counts, what that type makes of them). The numbers are drawn from a f
 
 import datetime
 import gzip
+import sys
 from pathlib import Path
 
 import h5py
 import numpy as np
+import pandas as pd
+import polars as pl
 import pyarrow as pa
+import pyarrow.feather as feather
 import pyarrow.parquet as pq
 import scipy.io
 
-HERE = Path(__file__).parent
+HERE = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent
 
 
 def rows():
@@ -35,6 +41,8 @@ def main():
     write_parquet(t, f)
     write_arrays(t, f)
     write_hdf5(t, f)
+    write_arrow(t, f)
+    write_frames(t, f)
 
 
 def write_text(t, f):
@@ -136,6 +144,43 @@ def write_parquet(t, f):
     pq.write_table(nan, HERE / "nan.parquet", row_group_size=100)
     back = table.set_column(0, "t", pa.array(np.where(np.arange(300) == 150, -9.0, t)))
     pq.write_table(back, HERE / "backwards.parquet", row_group_size=150)
+
+
+def write_arrow(t, f):
+    table = pa.table({"t": t, "f1": f[:, 0], "f2": f[:, 1], "f3": f[:, 2]})
+    for compression in ["uncompressed", "lz4", "zstd"]:
+        feather.write_feather(table, HERE / f"{compression}.feather", compression=compression, chunksize=97)
+    others = {"note": pa.array(["x"] * 300), "pair": pa.array([[1.0, 2.0]] * 300), "on": pa.array([True] * 300)}
+    kinds = pa.array(["a", "b"] * 150).dictionary_encode()
+    wide = pa.table({**others, "kind": kinds, "f3": f[:, 2], "f1": pa.array(f[:, 0], pa.float32()), "t": t, "f2": f[:, 1]})
+    write_stream("wide.arrows", wide)
+    write_stream("plain.arrows", table)
+    counts = pa.table({"t": pa.array(t, pa.float32()), **{f"f{i + 1}": pa.array((f[:, i] * 8192).astype(kind)) for i, kind in enumerate(["i4", "i8", "u4"])}})
+    feather.write_feather(counts, HERE / "counts.feather")
+    start = np.datetime64("2026-10-05T10:00:00", "us")
+    stamps = start + np.round(t * 1e6).astype("timedelta64[us]")
+    feather.write_feather(table.set_column(0, "t", pa.array(stamps)), HERE / "stamps.feather")
+    holes = table.set_column(2, "f2", pa.array([None if i == 7 else float(v) for i, v in enumerate(f[:, 1])]))
+    feather.write_feather(holes, HERE / "null.feather")
+    write_stream("text.arrows", table.set_column(2, "f2", pa.array([str(v) for v in f[:, 1]])))
+
+
+def write_stream(name, table):
+    with pa.OSFile(str(HERE / name), "wb") as file, pa.ipc.new_stream(file, table.schema) as writer:
+        writer.write_table(table, max_chunksize=64)
+
+
+def write_frames(t, f):
+    columns = {"t": t, "f1": f[:, 0], "f2": f[:, 1], "f3": f[:, 2]}
+    pandas = pd.DataFrame(columns)
+    pandas.to_csv(HERE / "pandas.csv")
+    pandas.to_parquet(HERE / "pandas.parquet")
+    pandas.to_feather(HERE / "pandas.feather")
+    polars = pl.DataFrame(columns)
+    polars.write_csv(HERE / "polars.csv")
+    polars.write_parquet(HERE / "polars.parquet")
+    polars.write_ipc(HERE / "polars.arrow", compression="zstd")
+    polars.write_ipc_stream(HERE / "polars.arrows", compression="lz4")
 
 
 if __name__ == "__main__":

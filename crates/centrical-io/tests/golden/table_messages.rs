@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use centrical_io::{Columns, Record, Session, Telemetry, read_plateaus};
+use centrical_io::{Columns, Session, read_plateaus, read_record, read_telemetry};
 
 use crate::sample::{EXPERIMENT, Sample};
 
@@ -10,7 +10,7 @@ use crate::sample::{EXPERIMENT, Sample};
 fn message(content: impl AsRef<[u8]>) -> String {
     let sample = Sample::new("");
     let file = sample.file("m01.csv", content);
-    let error = Record::read(&file, &Columns::default()).expect_err("the record is wrong");
+    let error = read_record(&file, &Columns::default()).expect_err("the record is wrong");
     sample.relative(&error.to_string())
 }
 
@@ -91,7 +91,7 @@ fn what_is_no_file() {
     fs::create_dir_all(sample.path().join("records/m01.csv")).unwrap();
     let folder = session.record(0).unwrap_err();
     assert_eq!(sample.relative(&folder.to_string()), "records/m01.csv: found a folder, expected a record");
-    let telemetry = Telemetry::read(&sample.file("telemetry.csv", "t,rpm\n0,0\n"), &session.columns).unwrap_err();
+    let telemetry = read_telemetry(&sample.file("telemetry.csv", "t,rpm\n0,0\n"), &session.columns).unwrap_err();
     assert_eq!(
         sample.relative(&telemetry.to_string()),
         "telemetry.csv, line 1, omega: found columns \"t, rpm\", expected a column of this name"

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use centrical_io::{ColumnName, Columns, Record};
+use centrical_io::{ColumnName, Columns, read_record};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
@@ -12,7 +12,7 @@ fn message(name: &str, content: &[u8], columns: &Columns) -> String {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join(name);
     fs::write(&file, content).unwrap();
-    let error = Record::read(&file, columns).expect_err("the file can not be right");
+    let error = read_record(&file, columns).expect_err("the file can not be right");
     error.to_string().replace(&format!("{}/", folder.path().display()), "")
 }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use centrical_io::{Columns, Record, Session, read_plateaus};
+use centrical_io::{Columns, Session, read_plateaus, read_record};
 
 /// Damaged copies of every file.
 const COPIES: u64 = 200;
@@ -34,9 +34,9 @@ fn damaged_files_are_read_or_refused() {
 
 /// Whatever a file is, as everything that it could be.
 fn read(file: &Path) {
-    if let Ok(record) = Record::read(file, &Columns::default()) {
+    if let Ok(record) = read_record(file, &Columns::default()) {
         assert!(record.t.is_sorted(), "time runs backwards");
-        assert!(record.f.iter().flatten().all(|f| f.is_finite()), "a reading is no number");
+        assert!(record.f_z.iter().flatten().all(|f| f.is_finite()), "a reading is no number");
     }
     let _ = read_plateaus(file, 12);
     if file.extension().is_some_and(|extension| extension == "toml") {

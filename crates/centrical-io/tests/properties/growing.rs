@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use centrical_io::{Columns, Record};
+use centrical_io::{Columns, read_growing_record, read_record};
 use tempfile::TempDir;
 
 /// Cut anywhere, a text gives the rows whose lines are ended and no other, with both ends of lines.
@@ -16,14 +16,14 @@ fn a_text_cut_anywhere_gives_its_ended_lines() {
             text.extend([format!("{}.125,-9.8{k},0.00{k}e1,1234.5{k}{end}", 10 + k)]);
         }
         fs::write(&file, &text).unwrap();
-        let whole = Record::read(&file, &Columns::default()).unwrap();
+        let whole = read_record(&file, &Columns::default()).unwrap();
         for cut in 0..=text.len() {
             fs::write(&file, &text[..cut]).unwrap();
             let rows = text[..cut].matches('\n').count().saturating_sub(1);
-            match Record::read_growing(&file, &Columns::default()) {
+            match read_growing_record(&file, &Columns::default()) {
                 Ok(record) => {
                     assert_eq!((record.t.len(), &record.t[..]), (rows, &whole.t[..rows]), "cut at {cut}");
-                    (0..3).for_each(|i| assert_eq!(record.f[i], whole.f[i][..rows], "cut at {cut}"));
+                    (0..3).for_each(|i| assert_eq!(record.f_z[i], whole.f_z[i][..rows], "cut at {cut}"));
                 }
                 Err(error) => assert_eq!(rows, 0, "cut at {cut}: {error}"),
             }
@@ -38,9 +38,9 @@ fn a_parquet_file_in_part_is_refused() {
     let file = folder.path().join("record.parquet");
     let bytes = fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/zstd.parquet")).unwrap();
     fs::write(&file, &bytes).unwrap();
-    assert!(Record::read_growing(&file, &Columns::default()).is_ok());
+    assert!(read_growing_record(&file, &Columns::default()).is_ok());
     for cut in (0..bytes.len()).step_by(7) {
         fs::write(&file, &bytes[..cut]).unwrap();
-        assert!(Record::read_growing(&file, &Columns::default()).is_err(), "cut at {cut}");
+        assert!(read_growing_record(&file, &Columns::default()).is_err(), "cut at {cut}");
     }
 }

@@ -5,3 +5,4 @@ mod damage;
 mod growing;
 mod record_writer;
 mod session_forms;
+mod watched;

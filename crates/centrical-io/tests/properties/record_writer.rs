@@ -1,17 +1,13 @@
 use std::fs;
 
 use centrical_compensate::{Compensation, Term};
-use centrical_io::{Columns, Compensated, Record, RecordBlock, RecordWriter, compensate_record};
+use centrical_io::{Columns, Compensated, Record, RecordWriter, compensate_record, read_record};
 use proptest::prelude::*;
 
 /// A record of `rows` rows whose numbers need all their digits.
 fn record(rows: usize, seed: f64) -> Record {
     let column = |phase: f64| (0..rows).map(|k| 100.0 * (seed + phase * k as f64).sin()).collect();
-    Record { t: (0..rows).map(|k| k as f64 / 3.0).collect(), f: [column(1.1), column(1.2), column(1.3)] }
-}
-
-fn block(record: &Record) -> RecordBlock<'_> {
-    RecordBlock { t: &record.t, f: record.f.each_ref().map(Vec::as_slice) }
+    Record { t: (0..rows).map(|k| k as f64 / 3.0).collect(), f_z: [column(1.1), column(1.2), column(1.3)] }
 }
 
 proptest! {
@@ -25,10 +21,10 @@ proptest! {
         for name in ["record.csv", "record.parquet"] {
             let file = folder.path().join(name);
             let mut writer = RecordWriter::create(&file).unwrap();
-            writer.write(block(&record)).unwrap();
+            writer.write(record.as_slice()).unwrap();
             prop_assert!(!file.exists(), "not before it is whole");
             writer.finish().unwrap();
-            prop_assert!(Record::read(&file, &Columns::default()).unwrap() == record, "{}", name);
+            prop_assert!(read_record(&file, &Columns::default()).unwrap() == record, "{}", name);
         }
     }
 
@@ -41,12 +37,12 @@ proptest! {
         let mut record = record(rows, seed);
         let [input, output] = ["in.csv", "out.parquet"].map(|name| folder.path().join(name));
         let mut writer = RecordWriter::create(&input).unwrap();
-        writer.write(block(&record)).unwrap();
+        writer.write(record.as_slice()).unwrap();
         writer.finish().unwrap();
         let compensated = compensate_record(&compensation, &input, &Columns::default(), &output).unwrap();
         prop_assert_eq!(compensated, Compensated { readings: rows as u64, outside: 0, first_outside: None });
-        compensation.apply_all(record.f.each_mut().map(Vec::as_mut_slice)).unwrap();
-        prop_assert!(Record::read(&output, &Columns::default()).unwrap() == record);
+        compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
+        prop_assert!(read_record(&output, &Columns::default()).unwrap() == record);
     }
 }
 
@@ -56,7 +52,7 @@ fn nothing_is_left_of_half_a_record() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("half.csv");
     let mut writer = RecordWriter::create(&file).unwrap();
-    writer.write(block(&record(10, 0.5))).unwrap();
+    writer.write(record(10, 0.5).as_slice()).unwrap();
     drop(writer);
     let input = folder.path().join("bad.csv");
     fs::write(&input, "t,f1,f2,f3\n0,1,2,3\n1,1,oops,3\n").unwrap();

@@ -5,7 +5,7 @@ mod simulate;
 
 use std::path::PathBuf;
 
-use centrical_io::{Column, ColumnName, Columns, Record, Scale, Session};
+use centrical_io::{Column, ColumnName, Columns, Scale, Session, read_record};
 
 fn data(session: &str) -> PathBuf {
     let shared = std::env::var_os("CENTRICAL_SHARED").expect("CENTRICAL_SHARED is not set");
@@ -27,7 +27,7 @@ fn sessions_are_read_whole() {
             let (first, last) = (record.t[0], record.t[record.t.len() - 1]);
             let full = (last - first) * rate;
             assert!(record.t.len() as f64 > 0.98 * full, "{name} {mounting}: {} of {full}", record.t.len());
-            assert!(record.f.iter().all(|f| f.len() == record.t.len()));
+            assert!(record.f_z.iter().all(|f| f.len() == record.t.len()));
             let fastest = telemetry.omega.iter().copied().fold(0.0, f64::max);
             let of_mounting = session.experiment.set_points.iter().filter(|p| p.mounting == mounting);
             let set = of_mounting.map(|p| p.omega).fold(0.0, f64::max);
@@ -46,10 +46,10 @@ fn a_real_record_of_counts_without_a_header() {
         column(j + 2, "counts", Scale { offset: bias, factor: 1.0 / counts })
     });
     let columns = Columns { time: column(1, "s", Scale::factor(1.0)), f, ..Columns::default() };
-    let record = Record::read(&data("xsens-tumble").join("xsens_acc.txt"), &columns).unwrap();
+    let record = read_record(&data("xsens-tumble").join("xsens_acc.txt"), &columns).unwrap();
     assert_eq!(record.t.len(), 51_175);
     let mut norms: Vec<f64> =
-        (0..record.t.len()).map(|i| record.f.iter().map(|f| f[i] * f[i]).sum::<f64>().sqrt()).collect();
+        (0..record.t.len()).map(|i| record.f_z.iter().map(|f| f[i] * f[i]).sum::<f64>().sqrt()).collect();
     norms.sort_by(f64::total_cmp);
     // Mostly at rest under 9.81744 m/s^2; the factory's misalignments of 0.01 change the norm by less than 2 %.
     let median = norms[norms.len() / 2];

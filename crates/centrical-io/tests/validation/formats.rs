@@ -3,10 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use centrical_io::{Column, ColumnName, Columns, Record, Scale};
+use centrical_io::{Column, ColumnName, Columns, Record, Scale, read_record};
 
+/// A file as it is kept or, with `CENTRICAL_GENERATED`, as those programs wrote it just now into that folder.
 fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+    let kept = || Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    std::env::var_os("CENTRICAL_GENERATED").map_or_else(kept, PathBuf::from).join(name)
 }
 
 /// The reference, by the standard library's own parser.
@@ -16,7 +18,7 @@ fn reference() -> Record {
     for line in text.lines().skip(1) {
         let row: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
         record.t.push(row[0]);
-        (0..3).for_each(|j| record.f[j].push(row[j + 1]));
+        (0..3).for_each(|j| record.f_z[j].push(row[j + 1]));
     }
     assert_eq!(record.t.len(), 300);
     record
@@ -31,13 +33,51 @@ fn counts() -> Columns {
 
 #[test]
 fn text_is_read_to_the_last_bit() {
-    assert_eq!(Record::read(&data("record.csv"), &Columns::default()).unwrap(), reference());
+    assert_eq!(read_record(&data("record.csv"), &Columns::default()).unwrap(), reference());
 }
 
 #[test]
 fn text_of_every_kind() {
     for name in ["record.csv.gz", "record.csv.zst", "comma.csv", "savetxt.txt", "extra.csv"] {
-        assert_eq!(Record::read(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
+        assert_eq!(read_record(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
+    }
+}
+
+#[test]
+fn frames_of_pandas_and_polars() {
+    let names = [
+        "pandas.csv",
+        "pandas.parquet",
+        "pandas.feather",
+        "polars.csv",
+        "polars.parquet",
+        "polars.arrow",
+        "polars.arrows",
+    ];
+    for name in names {
+        assert_eq!(read_record(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
+    }
+}
+
+#[test]
+fn arrow_files_and_streams() {
+    for name in ["uncompressed.feather", "lz4.feather", "zstd.feather", "wide.arrows", "plain.arrows"] {
+        assert_eq!(read_record(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
+    }
+    assert_eq!(read_record(&data("plain.arrows"), &numbered()).unwrap(), reference());
+    assert_eq!(read_record(&data("counts.feather"), &counts()).unwrap(), reference());
+}
+
+#[test]
+fn arrow_that_is_no_record() {
+    let cases = [
+        ("null.feather", ", f2: found 1 values missing, expected a value in every row"),
+        ("text.arrows", ", f2: found a column without numbers, expected a number in m/s^2"),
+    ];
+    for (name, expected) in cases {
+        let file = data(name);
+        let error = read_record(&file, &Columns::default()).unwrap_err();
+        assert_eq!(error.to_string(), format!("{}{expected}", file.display()));
     }
 }
 
@@ -52,28 +92,28 @@ fn numbered() -> Columns {
 #[test]
 fn text_without_a_header() {
     for name in ["headerless.txt", "headerless.tsv"] {
-        assert_eq!(Record::read(&data(name), &numbered()).unwrap(), reference(), "{name}");
+        assert_eq!(read_record(&data(name), &numbered()).unwrap(), reference(), "{name}");
     }
 }
 
 #[test]
 fn arrays_with_names() {
     for name in ["record.npy", "plain.npz", "packed.npz", "plain.mat", "packed.mat"] {
-        assert_eq!(Record::read(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
+        assert_eq!(read_record(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
     }
 }
 
 #[test]
 fn matrices() {
     for name in ["rows.npy", "columns.npy", "big_endian.npy", "matrix.npz", "matrix.mat"] {
-        assert_eq!(Record::read(&data(name), &numbered()).unwrap(), reference(), "{name}");
+        assert_eq!(read_record(&data(name), &numbered()).unwrap(), reference(), "{name}");
     }
 }
 
 #[test]
 fn arrays_of_integer_counts() {
     for name in ["counts.npz", "counts.mat"] {
-        assert_eq!(Record::read(&data(name), &counts()).unwrap(), reference(), "{name}");
+        assert_eq!(read_record(&data(name), &counts()).unwrap(), reference(), "{name}");
     }
 }
 
@@ -81,17 +121,17 @@ fn arrays_of_integer_counts() {
 #[cfg(feature = "hdf5")]
 fn hdf5() {
     for name in ["named.h5", "matlab73.mat"] {
-        assert_eq!(Record::read(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
+        assert_eq!(read_record(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
     }
-    assert_eq!(Record::read(&data("matrix.h5"), &numbered()).unwrap(), reference());
-    assert_eq!(Record::read(&data("counts.h5"), &counts()).unwrap(), reference());
+    assert_eq!(read_record(&data("matrix.h5"), &numbered()).unwrap(), reference());
+    assert_eq!(read_record(&data("counts.h5"), &counts()).unwrap(), reference());
 }
 
 #[test]
 #[cfg(not(feature = "hdf5"))]
 fn hdf5_is_a_feature() {
     let file = data("named.h5");
-    let error = Record::read(&file, &Columns::default()).unwrap_err();
+    let error = read_record(&file, &Columns::default()).unwrap_err();
     let expected = "found HDF5, expected another format (this program was built without the feature hdf5)";
     assert_eq!(error.to_string(), format!("{}: {expected}", file.display()));
 }
@@ -110,11 +150,11 @@ fn arrays_that_are_no_record() {
     ];
     for (name, expected) in cases {
         let file = data(name);
-        let error = Record::read(&file, &Columns::default()).unwrap_err();
+        let error = read_record(&file, &Columns::default()).unwrap_err();
         assert_eq!(error.to_string(), format!("{}, {expected}", file.display()));
     }
     let file = data("plain.npz");
-    let error = Record::read(&file, &numbered()).unwrap_err();
+    let error = read_record(&file, &numbered()).unwrap_err();
     let expected =
         "column 1: found columns \"t, f1, f2, f3, other (no numbers)\", expected one array, or [columns] by name";
     assert_eq!(error.to_string(), format!("{}, {expected}", file.display()));
@@ -125,10 +165,10 @@ fn time_as_a_count_of_samples() {
     let name = ColumnName::Name("n".to_owned());
     let time = Column { name, unit: "samples".to_owned(), scale: Scale::factor(1.0 / 128.0) };
     let mut columns = Columns { time, ..Columns::default() };
-    assert_eq!(Record::read(&data("counter.csv"), &columns).unwrap(), reference());
+    assert_eq!(read_record(&data("counter.csv"), &columns).unwrap(), reference());
     columns.time.name = ColumnName::Row;
-    let record = Record::read(&data("counter.csv"), &columns).unwrap();
-    assert_eq!(record.f, reference().f);
+    let record = read_record(&data("counter.csv"), &columns).unwrap();
+    assert_eq!(record.f_z, reference().f_z);
     assert!(record.t.iter().enumerate().all(|(row, t)| *t == row as f64 / 128.0));
 }
 
@@ -136,9 +176,9 @@ fn time_as_a_count_of_samples() {
 fn time_as_stamps() {
     // 2026-10-05T10:00:00Z, by `date -d 2026-10-05T10:00:00Z +%s`; stamps carry microseconds.
     const START: f64 = 1_791_194_400.0;
-    for name in ["stamps.csv", "stamps.parquet"] {
-        let record = Record::read(&data(name), &Columns::default()).unwrap();
-        assert_eq!(record.f, reference().f, "{name}");
+    for name in ["stamps.csv", "stamps.parquet", "stamps.feather"] {
+        let record = read_record(&data(name), &Columns::default()).unwrap();
+        assert_eq!(record.f_z, reference().f_z, "{name}");
         for (t, reference) in record.t.iter().zip(reference().t) {
             assert!((t - START - reference).abs() < 1.5e-6, "{name}: {t} for {reference}");
         }
@@ -148,7 +188,7 @@ fn time_as_stamps() {
 #[test]
 fn parquet_of_every_compression_and_encoding() {
     for name in ["snappy", "zstd", "gzip", "lz4", "required", "split", "wide"] {
-        let record = Record::read(&data(&format!("{name}.parquet")), &Columns::default()).unwrap();
+        let record = read_record(&data(&format!("{name}.parquet")), &Columns::default()).unwrap();
         assert_eq!(record, reference(), "{name}");
     }
 }
@@ -156,7 +196,7 @@ fn parquet_of_every_compression_and_encoding() {
 #[test]
 fn parquet_of_integer_counts() {
     for name in ["counts_int32", "counts_int64"] {
-        let record = Record::read(&data(&format!("{name}.parquet")), &counts()).unwrap();
+        let record = read_record(&data(&format!("{name}.parquet")), &counts()).unwrap();
         assert_eq!(record, reference(), "{name}");
     }
 }
@@ -171,13 +211,13 @@ fn parquet_that_is_no_record() {
     ];
     for (name, expected) in cases {
         let file = data(&format!("{name}.parquet"));
-        let error = Record::read(&file, &Columns::default()).unwrap_err();
+        let error = read_record(&file, &Columns::default()).unwrap_err();
         assert_eq!(error.to_string(), format!("{}{expected}", file.display()));
     }
     let mut columns = Columns::default();
     columns.f[1] = Column::si("g2", "m/s^2");
     let file = data("snappy.parquet");
-    let error = Record::read(&file, &columns).unwrap_err();
+    let error = read_record(&file, &columns).unwrap_err();
     let expected = "g2: found columns \"t, f1, f2, f3\", expected one column of this name";
     assert_eq!(error.to_string(), format!("{}, {expected}", file.display()));
 }

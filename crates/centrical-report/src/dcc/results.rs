@@ -9,6 +9,7 @@ use super::COVERAGE;
 use super::administrative::{identification, software};
 use super::unit::Unit;
 use super::xml::Xml;
+use crate::expanded::{Expanded, expanded};
 use crate::language::Language;
 use crate::reading_error::{ReadingError, reading_errors};
 
@@ -111,17 +112,17 @@ fn influence(xml: &mut Xml, (kind, name): (&str, &str), language: Language, data
 }
 
 /// A number of D-SI with its expanded uncertainty.
-fn real(xml: &mut Xml, value: f64, unit: &str, expanded: Option<f64>) {
+fn real(xml: &mut Xml, value: f64, unit: &str, expanded: Option<Expanded>) {
     xml.element("si:real", |xml| {
         xml.leaf("si:value", &number(value));
         xml.leaf("si:unit", unit);
         if let Some(expanded) = expanded {
             xml.element("si:measurementUncertaintyUnivariate", |xml| {
                 xml.element("si:expandedMU", |xml| {
-                    xml.leaf("si:valueExpandedMU", &number(expanded));
-                    xml.leaf("si:coverageFactor", COVERAGE.0);
-                    xml.leaf("si:coverageProbability", COVERAGE.2);
-                    xml.leaf("si:distribution", "normal");
+                    xml.leaf("si:valueExpandedMU", &number(expanded.uncertainty));
+                    xml.leaf("si:coverageFactor", &expanded.factor.to_string());
+                    xml.leaf("si:coverageProbability", COVERAGE);
+                    xml.leaf("si:distribution", if expanded.factor == 2.0 { "normal" } else { "t-distribution" });
                 });
             });
         }
@@ -136,21 +137,21 @@ fn parameters(xml: &mut Xml, result: &CalibrationResult, language: Language) {
         xml.element("dcc:data", |xml| {
             xml.element("dcc:list", |xml| {
                 for parameter in &result.parameters {
-                    xml.element("dcc:quantity", |xml| one_parameter(xml, parameter, language));
+                    xml.element("dcc:quantity", |xml| one_parameter(xml, result, parameter, language));
                 }
             });
         });
     });
 }
 
-fn one_parameter(xml: &mut Xml, parameter: &ParameterEstimate, language: Language) {
+fn one_parameter(xml: &mut Xml, result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) {
     let messages = language.messages();
     xml.content("dcc:name", &parameter.name, language);
     xml.content("dcc:description", messages.word(&parameter.group), language);
-    match (parameter.value, parameter.standard_uncertainty) {
-        (Some(value), Some(uncertainty)) => {
+    match (parameter.value, expanded(result, parameter)) {
+        (Some(value), Some(expanded)) => {
             let unit = Unit::parse(&parameter.unit).to_string();
-            real(xml, value, &unit, Some(COVERAGE.1 * uncertainty));
+            real(xml, value, &unit, Some(expanded));
         }
         // Never a number that looks like a result.
         _ => xml.content("dcc:noQuantity", messages.not_determined, language),
@@ -189,7 +190,7 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                                 }
                             });
                             xml.leaf("si:coverageFactorXMLList", &ellipsoid_factor(shown.len()));
-                            xml.leaf("si:coverageProbabilityXMLList", COVERAGE.2);
+                            xml.leaf("si:coverageProbabilityXMLList", COVERAGE);
                             xml.leaf("si:distributionXMLList", "normal");
                         });
                     });
@@ -229,7 +230,7 @@ fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                     column(messages.specific_force, |e| e.force);
                     column(messages.before, |e| e.before);
                     column(messages.after, |e| e.after);
-                    column(messages.compensation_uncertainty, |e| COVERAGE.1 * e.prediction);
+                    column(messages.compensation_uncertainty, |e| 2.0 * e.prediction);
                 });
             }
         });

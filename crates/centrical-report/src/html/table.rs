@@ -2,14 +2,15 @@
 
 use std::fmt::Write;
 
-use centrical_io::{CalibrationResult, ParameterEstimate};
+use centrical_io::{BudgetSource, CalibrationResult, ParameterEstimate};
 
 use crate::customary::customary;
+use crate::expanded::expanded;
 use crate::language::Language;
 use crate::plot::Escaped;
 
-/// Coverage factor of the expanded uncertainties.
-const COVERAGE: f64 = 2.0;
+/// What a source leaves is not shown below this part of the combined uncertainty.
+const NEGLIGIBLE: f64 = 1e-3;
 
 /// A table that grows row by row.
 pub(super) struct Table {
@@ -42,7 +43,7 @@ impl Table {
 }
 
 /// Estimates with expanded uncertainties, in customary units and in SI, group by group.
-pub(super) fn parameters(shown: &[&ParameterEstimate], language: Language) -> String {
+pub(super) fn parameters(result: &CalibrationResult, shown: &[&ParameterEstimate], language: Language) -> String {
     let messages = language.messages();
     let head = [messages.parameter, messages.value, messages.unit, messages.value_si, messages.unit];
     let mut table = Table::new("parameters").with_head(&head.map(str::to_owned));
@@ -53,18 +54,18 @@ pub(super) fn parameters(shown: &[&ParameterEstimate], language: Language) -> St
             let name = Escaped(messages.word(group));
             let _ = write!(table.html, "<tr class=\"group\"><th colspan=\"5\" scope=\"rowgroup\">{name}</th></tr>");
         }
-        table.row(&parameter.name, &cells(parameter, language));
+        table.row(&parameter.name, &cells(result, parameter, language));
     }
     table.into_html()
 }
 
-fn cells(parameter: &ParameterEstimate, language: Language) -> [String; 4] {
+fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) -> [String; 4] {
     let (factor, unit) = customary(&parameter.unit, &parameter.group);
-    let (Some(value), Some(uncertainty)) = (parameter.value, parameter.standard_uncertainty) else {
+    let (Some(value), Some(expanded)) = (parameter.value, expanded(result, parameter)) else {
         let unknown = language.messages().not_determined.to_owned();
         return [unknown, language.unit(unit), String::new(), language.unit(&parameter.unit)];
     };
-    let expanded = COVERAGE * uncertainty;
+    let expanded = expanded.uncertainty;
     [
         language.plus_minus(value * factor, expanded * factor),
         language.unit(unit),
@@ -78,15 +79,23 @@ pub(super) fn budget(result: &CalibrationResult, language: Language) -> Option<S
     let messages = language.messages();
     let budget = result.budget.as_ref()?;
     let mut head = vec![messages.parameter.to_owned(), messages.unit.to_owned()];
-    head.extend(budget.sources.iter().map(|source| source.name.clone()));
-    head.push(messages.combined.to_owned());
+    head.extend(budget.sources.iter().map(|source| messages.word(&source.name).to_owned()));
+    head.extend([messages.combined, messages.degrees_word].map(str::to_owned));
     let mut table = Table::new("numbers").with_head(&head);
     for (j, parameter) in result.parameters.iter().enumerate() {
         let (factor, unit) = customary(&parameter.unit, &parameter.group);
         let shown = |value: Option<f64>| value.map_or(String::new(), |value| language.significant(value * factor, 2));
         let mut cells = vec![language.unit(unit)];
-        cells.extend(budget.sources.iter().map(|source| shown(source.standard_uncertainty.get(j).copied().flatten())));
-        cells.push(shown(budget.combined.get(j).copied().flatten()));
+        let combined = budget.combined.get(j).copied().flatten();
+        let negligible = NEGLIGIBLE * combined.unwrap_or(0.0);
+        let of_source = |source: &BudgetSource| {
+            let value = source.standard_uncertainty.get(j).copied().flatten();
+            if value.is_some_and(|value| value < negligible) { "–".to_owned() } else { shown(value) }
+        };
+        cells.extend(budget.sources.iter().map(of_source));
+        let degrees = budget.degrees_of_freedom.get(j).copied().flatten();
+        let degrees = degrees.map_or("∞".to_owned(), |nu| language.fixed(nu, 0));
+        cells.extend([shown(combined), combined.map_or(String::new(), |_| degrees)]);
         table.row(&parameter.name, &cells);
     }
     Some(table.into_html())

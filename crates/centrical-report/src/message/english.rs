@@ -38,7 +38,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     number_sign: "No.",
     parameters: "Parameters",
     parameters_note: "Value ± expanded uncertainty U = k·u with coverage factor k = 2, which for a normal \
-        distribution is a level of confidence of about 95 %. 1 g = 9.80665 m/s².",
+        distribution is a level of confidence of about 95 %; where the effective degrees of freedom are finite, k is that of Student’s \
+        distribution. 1 g = 9.80665 m/s².",
     instrument: "Instrument",
     mounting: "Geometry of the experiment",
     parameter: "Parameter",
@@ -47,10 +48,16 @@ pub(crate) const ENGLISH: Messages = Messages {
     value_si: "Value ± U, SI",
     not_determined: "not determined",
     budget: "Uncertainty budget",
-    budget_note: "Standard uncertainty by source, in the customary unit of each parameter.",
-    no_budget: "The stated uncertainties hold the noise of the plateau means and the error of each plateau’s speed, \
-        as the fit weighs them. A budget with further sources was not made for this result.",
+    budget_note: "Standard uncertainty by source, in the customary unit of each parameter; – is less than a \
+        thousandth of the combined one.",
+    no_budget: "The session states no uncertainties of gravity, radii, attitudes and the like: they count as exact, and \
+        the uncertainties hold what the fit weighs.",
     combined: "combined",
+    degrees_word: "Eff. degrees of freedom",
+    chi_squared_chance: "Chance of so large a χ²",
+    outlying_plateaus: "plateaus that stand out",
+    patterns_found: "patterns in the residuals",
+    worst_mounting: "Worst of the mountings, each predicted from all others",
     positions: "Mounting positions",
     positions_caption: "Where the three sensitive axes point in each position: the arm goes to the right, the \
         rotation axis up.",
@@ -89,6 +96,13 @@ pub(crate) const ENGLISH: Messages = Messages {
     lost: "not seen",
     limit: "limit",
     null_directions: "The readings do not change along",
+    prediction_title: "Uncertainty of a compensated reading",
+    prediction_axis: "standard uncertainty, µg",
+    prediction_caption: "Standard uncertainty that the calibration leaves in a compensated reading, for a force along each \
+        axis alone; the noise of the reading itself comes on top.",
+    history_title: "Uncertainty as the session was watched",
+    history_caption: "Largest standard uncertainty of each group over that after the last plateau, as it stood when each \
+        plateau had come. A curve begins where all of its group that was determined in the end was determined first.",
     convergence_title: "Uncertainty as the session goes on",
     convergence_axis: "standard uncertainty over the final one",
     convergence_caption: "The worst-known parameter of each group, against its final uncertainty: a curve that has \
@@ -150,7 +164,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     results_model: "Error model of the reading f′ of axis i at the specific force f:",
     uncertainty_statement: "The expanded uncertainty U is the standard uncertainty multiplied by the coverage \
         factor k = 2, which for a normal distribution corresponds to a coverage probability of approximately 95 %. \
-        It was evaluated in accordance with JCGM 100 (GUM). 1 g = 9.80665 m/s².",
+        Where the effective degrees of freedom are finite, k is that of Student’s distribution for the same \
+        probability. It was evaluated in accordance with JCGM 100 (GUM). 1 g = 9.80665 m/s².",
     adjustment: "Before and after adjustment",
     before_adjustment: "Before adjustment, ± U",
     after_adjustment: "After adjustment, ± U",
@@ -194,6 +209,25 @@ pub(crate) const ENGLISH: Messages = Messages {
         ("turn", "Turn of the unit"),
         ("shift", "Shift of the unit"),
         ("proof mass", "Place of a proof mass"),
+        ("noise", "Noise"),
+        ("speed of each plateau", "Speed of each plateau"),
+        ("priors", "Priors"),
+        ("gravity", "Gravity"),
+        ("latitude", "Latitude"),
+        ("radius", "Radius"),
+        ("difference of radii", "Difference of radii"),
+        ("scale of the speed", "Scale of the speed"),
+        ("angle at rest", "Angle at rest"),
+        ("proof masses", "Proof masses"),
+        ("attitudes", "Attitudes"),
+        ("resolution", "Resolution"),
+        ("step in position", "step in position"),
+        ("square of the speed in position", "square of the speed in position"),
+        ("square of the speed at radius", "square of the speed at radius"),
+        ("square of the speed", "square of the speed"),
+        ("load", "load"),
+        ("step in mounting", "step in mounting"),
+        ("drift", "drift over the session"),
         ("elastic turn", "Elastic turn"),
         ("arm stretch", "Stretch of the arm"),
     ],

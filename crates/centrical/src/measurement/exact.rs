@@ -9,12 +9,15 @@
 
 mod instant;
 
+use std::borrow::Cow;
+
 use nalgebra::{Matrix3, Matrix3x2, Vector3};
 
 pub use instant::ArmMotion;
 pub(crate) use instant::Carried;
 
 use super::{Linearisation, MeasurementModel};
+use crate::error_model::ErrorModel;
 use crate::experiment::SetPoint;
 use crate::frame::{carousel, hat, rotation, rotation_rate};
 use crate::parameter::Kind;
@@ -25,21 +28,21 @@ impl MeasurementModel {
         let geometry = self.geometry(set_point, x);
         let pull = geometry.pull();
         let coefficients = self.parameters.coefficients(x);
-        let angles = self.angles(set_point);
-        let sum: Vector3<f64> = angles
+        let turns = self.turns(set_point);
+        let sum: Vector3<f64> = turns
             .iter()
-            .map(|&alpha_3| self.error_model.reading(coefficients, &(pull + geometry.weight_of(alpha_3) * geometry.up)))
+            .map(|turn| self.error_model.reading(coefficients, &(pull + geometry.weight_of(turn) * geometry.up)))
             .sum();
-        sum / angles.len() as f64
+        sum / turns.len() as f64
     }
 
     /// Mean specific force `f` [m/s^2] along the three sensitive axes on a plateau at the unknowns `x`: what an
     /// instrument without errors would read.
     pub fn specific_force(&self, set_point: &SetPoint, x: &[f64]) -> Vector3<f64> {
         let geometry = self.geometry(set_point, x);
-        let angles = self.angles(set_point);
-        let weight: Vector3<f64> = angles.iter().map(|&alpha_3| geometry.weight_of(alpha_3) * geometry.up).sum();
-        geometry.pull() + weight / angles.len() as f64
+        let turns = self.turns(set_point);
+        let weight: Vector3<f64> = turns.iter().map(|turn| geometry.weight_of(turn) * geometry.up).sum();
+        geometry.pull() + weight / turns.len() as f64
     }
 
     /// Mean reading of a plateau with its analytic first derivatives by `x` and by the logarithm of the speed.
@@ -47,8 +50,8 @@ impl MeasurementModel {
         let geometry = self.geometry(set_point, x);
         let pull = geometry.pull();
         let coefficients = self.parameters.coefficients(x);
-        let angles = self.angles(set_point);
-        let share = 1.0 / angles.len() as f64;
+        let turns = self.turns(set_point);
+        let share = 1.0 / turns.len() as f64;
 
         let mut reading = Vector3::zeros();
         let mut gain_mean = Matrix3::zeros();
@@ -56,18 +59,16 @@ impl MeasurementModel {
         let mut by_weight_turn = Matrix3::zeros();
         let mut monomials = vec![0.0; self.error_model.terms.len()];
         let up_by_tilt = geometry.up_by_tilt();
-        for &alpha_3 in &angles {
-            let weight_of = geometry.weight_of(alpha_3);
+        for turn in turns.iter() {
+            let weight_of = geometry.weight_of(turn);
             let weight = weight_of * geometry.up;
-            let f = pull + weight;
-            let gain = share * self.error_model.gain(coefficients, &f);
-            reading += share * self.error_model.reading(coefficients, &f);
+            let at =
+                self.error_model.expanded(coefficients, &(pull + weight), |t, value| monomials[t] += share * value);
+            let gain = share * at.gain;
+            reading += share * at.reading;
             gain_mean += gain;
             by_tilt += gain * (weight_of * up_by_tilt);
             by_weight_turn += gain * turned(&weight);
-            for (mean, term) in monomials.iter_mut().zip(&self.error_model.terms) {
-                *mean += share * term.monomial.value(&f);
-            }
         }
         let partials = Partials {
             tilt: by_tilt,
@@ -139,15 +140,9 @@ impl MeasurementModel {
         }
     }
 
-    /// Angles `alpha_3` whose mean is the mean of the reading: the known one at rest; while spinning so many
-    /// equal steps that the mean over a revolution of every monomial is exact (one more than its degree).
-    fn angles(&self, set_point: &SetPoint) -> Vec<f64> {
-        if set_point.is_rest() {
-            return vec![set_point.angle];
-        }
-        let degree = self.error_model.terms.iter().map(|t| t.monomial.degree()).max().unwrap_or(0).max(2);
-        let steps = f64::from(degree) + 1.0;
-        (0..=degree).map(|n| std::f64::consts::TAU * f64::from(n) / steps).collect()
+    /// Turns of the carousel whose mean is the mean of the reading: the known one at rest, [`revolution`] while spinning.
+    fn turns(&self, set_point: &SetPoint) -> Cow<'_, [Matrix3<f64>]> {
+        if set_point.is_rest() { Cow::Owned(vec![carousel(set_point.angle)]) } else { Cow::Borrowed(&self.revolution) }
     }
 
     /// `d f' / d ln Omega`: through the rate and through every deformation that grows with its square.
@@ -199,6 +194,14 @@ impl MeasurementModel {
     }
 }
 
+/// So many equal steps of the carousel that the mean over a revolution of every monomial is exact: one more than its
+/// degree.
+pub(super) fn revolution(error_model: &ErrorModel) -> Vec<Matrix3<f64>> {
+    let degree = error_model.terms.iter().map(|t| t.monomial.degree()).max().unwrap_or(0).max(2);
+    let steps = f64::from(degree) + 1.0;
+    (0..=degree).map(|n| carousel(std::f64::consts::TAU * f64::from(n) / steps)).collect()
+}
+
 /// How one unit of an extension's parameter enters the geometry.
 pub(super) enum Share {
     /// Not in this plateau.
@@ -243,8 +246,8 @@ struct Geometry {
 
 impl Geometry {
     /// `g B carousel(alpha_3)`: takes the vertical to gravity's reaction.
-    fn weight_of(&self, alpha_3: f64) -> Matrix3<f64> {
-        self.c_zy * carousel(alpha_3) * self.gravity
+    fn weight_of(&self, turn: &Matrix3<f64>) -> Matrix3<f64> {
+        self.c_zy * turn * self.gravity
     }
 
     /// `d rotation(alpha) e_3 / d (alpha_1, alpha_2)`.

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::regression::{Regression, dot};
+use super::lanes::dot;
+use super::triangle::Triangle;
 
 /// Cells in a window.
 pub(super) const CELLS: usize = 128;
@@ -30,25 +31,24 @@ pub(super) struct Weights {
 }
 
 impl Cells {
-    /// Cells without samples yet.
-    pub fn empty(regression: &Regression, width: f64, interval: f64) -> Self {
-        let columns = regression.q.len();
+    /// Cells without samples yet, of a fit with that triangle.
+    pub fn empty(triangle: &Triangle, terms: usize, width: f64, interval: f64) -> Self {
         Self {
             width,
             interval,
             counts: vec![0.0; CELLS],
             residuals: vec![Vector3::zeros(); CELLS],
-            q: vec![vec![0.0; CELLS]; columns],
-            mean_scale: regression.r[columns - 1][columns - 1],
+            q: vec![vec![0.0; CELLS]; terms],
+            mean_scale: triangle.r[terms - 1][terms - 1],
         }
     }
 
-    /// Adds a good sample.
-    pub fn add(&mut self, cell: usize, residual: &Vector3<f64>, row: impl Iterator<Item = f64>) {
-        self.counts[cell] += 1.0;
-        self.residuals[cell] += residual;
-        for (sums, q) in self.q.iter_mut().zip(row) {
-            sums[cell] += q;
+    /// Fills a cell: how many good samples, their residuals and orthonormal columns summed.
+    pub fn fill(&mut self, cell: usize, count: usize, residuals: Vector3<f64>, q: &[f64]) {
+        self.counts[cell] = count as f64;
+        self.residuals[cell] = residuals;
+        for (sums, q) in self.q.iter_mut().zip(q) {
+            sums[cell] = *q;
         }
     }
 
@@ -70,6 +70,16 @@ impl Cells {
         }
         let product = function.iter().zip(&self.residuals).map(|(v, r)| r * *v).sum();
         (Weights { by_cell, squares }, product)
+    }
+
+    /// `function` less as much of `other` as makes its contrast orthogonal to that of `other`, both slow functions of time,
+    /// one value a cell.
+    pub fn free_of(&self, function: &[f64], other: &[f64]) -> Vec<f64> {
+        let (weights, _) = self.contrast(other);
+        let share = dot(&weights.by_cell, function) / weights.squares;
+        // What the fit has taken up wholly is not there to be taken out.
+        let share = if share.is_finite() { share } else { 0.0 };
+        function.iter().zip(other).map(|(f, o)| f - share * o).collect()
     }
 
     /// The slope of the readings [m/s^3], with the weights that give it.

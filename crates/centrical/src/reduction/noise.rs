@@ -3,7 +3,8 @@
 //! Model: white noise and first-order Markov processes, each with a 3x3 spectral density; it is the usual model
 //! of inertial sensors (IEEE Std 952), and a sum of a few follows any falling spectrum. What the
 //! plateaus tell of it: products of the readings with cosines of whole half-periods in the window, taken orthogonal to
-//! everything that was fitted, so that they do not depend on it and their expectation is known exactly.
+//! everything that was fitted and to the time constant of the settling, so that they do not depend on it and their
+//! expectation is known exactly.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, SQRT_2, TAU};
@@ -13,6 +14,7 @@ use nalgebra::Matrix3;
 use super::ReducedMounting;
 use super::blocks::whole;
 use super::cells::{CELLS, Cells, Weights};
+use super::plateau_fit::PlateauFit;
 use super::regression::dot;
 
 /// Cosines of nearly the same frequency are pooled: groups per octave.
@@ -42,10 +44,9 @@ impl NoiseModel {
     /// Components are taken in one by one, the likeliest first, for as long as Schwarz's criterion says that they are
     /// seen.
     pub fn pool<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> Self {
-        let plateaus = mountings.into_iter().flat_map(|mounting| &mounting.plateaus);
-        let cells: Vec<&Cells> = plateaus.map(|plateau| &plateau.cells).collect();
-        let times = correlation_times(&cells);
-        let groups = grouped_contrasts(&cells, &times);
+        let plateaus: Vec<&PlateauFit> = mountings.into_iter().flat_map(|mounting| &mounting.plateaus).collect();
+        let times = correlation_times(&plateaus);
+        let groups = grouped_contrasts(&plateaus, &times);
         let contrasts: f64 = groups.iter().map(|group| group.count).sum();
         if contrasts == 0.0 {
             return Self { components: Vec::new() };
@@ -86,8 +87,8 @@ impl NoiseModel {
 
 /// Quarter-octaves from an eighth of a cell of the shortest window to a quarter of the longest: noise slower than
 /// that is drift.
-fn correlation_times(cells: &[&Cells]) -> Vec<f64> {
-    let widths = cells.iter().map(|cells| cells.width);
+fn correlation_times(plateaus: &[&PlateauFit]) -> Vec<f64> {
+    let widths = plateaus.iter().map(|plateau| plateau.cells.width);
     let (shortest, longest) = widths.fold((f64::INFINITY, 0.0_f64), |(a, b), width| (a.min(width), b.max(width)));
     let mut times = Vec::new();
     let mut time = 0.125 * shortest;
@@ -152,17 +153,21 @@ struct Group {
     gains: Vec<f64>,
 }
 
-fn grouped_contrasts(all: &[&Cells], times: &[f64]) -> Vec<Group> {
-    let longest = all.iter().map(|cells| cells.width).fold(0.0, f64::max);
+fn grouped_contrasts(plateaus: &[&PlateauFit], times: &[f64]) -> Vec<Group> {
+    let longest = plateaus.iter().map(|plateau| plateau.cells.width).fold(0.0, f64::max);
     let cosines: Vec<(usize, Vec<f64>)> = half_periods().into_iter().map(|number| (number, cosine(number))).collect();
     let mut groups = BTreeMap::new();
-    for cells in all {
+    for plateau in plateaus {
+        let cells = &plateau.cells;
         let markov = Markov::new(times, cells.width);
+        // The time constant of the settling has not had its last step yet: what it is off by is no noise.
+        let rate = plateau.settling_rate();
         for (number, cosine) in &cosines {
             let frequency = *number as f64 * longest / cells.width;
             let key = whole((frequency.log2() * PER_OCTAVE).round());
             let empty = || Group { count: 0.0, power: Matrix3::zeros(), gains: vec![0.0; 1 + times.len()] };
-            groups.entry(key).or_insert_with(empty).add(cells, cosine, &markov);
+            let function = rate.as_ref().map(|rate| cells.free_of(cosine, rate));
+            groups.entry(key).or_insert_with(empty).add(cells, function.as_ref().unwrap_or(cosine), &markov);
         }
     }
     groups.into_values().map(Group::averaged).collect()
@@ -179,8 +184,8 @@ fn cosine(half_periods: usize) -> Vec<f64> {
 }
 
 impl Group {
-    fn add(&mut self, cells: &Cells, cosine: &[f64], markov: &Markov) {
-        let (weights, y) = cells.contrast(cosine);
+    fn add(&mut self, cells: &Cells, function: &[f64], markov: &Markov) {
+        let (weights, y) = cells.contrast(function);
         let white = gain(None, &weights, cells);
         if white <= 0.0 {
             return;

@@ -1,21 +1,26 @@
 //! Second pass: the mean of one plateau from its samples.
 
+use std::borrow::Cow;
+use std::ops::Range;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::blocks::{Blocks, MAD, cut, median, whole};
 use super::cells::{CELLS, Cells};
+use super::lanes::{dot, subtract, sum};
 use super::noise::NoiseModel;
 use super::regression::Regression;
 use super::rounding::bias_variance;
 use super::settling::TimeStep;
 use super::shape::Shape;
 use super::stuck::stuck_on_any_axis;
+use super::triangle::{TERMS, Triangle};
 use super::window::Window;
-use super::{PlateauMean, Record, ReductionError};
+use super::{PlateauMean, RecordSlice, ReductionError};
 
 /// One plateau, fitted; what its covariance needs is kept in cells.
 #[derive(Debug, Clone)]
-pub(super) struct PlateauFit {
+pub struct PlateauFit {
     window: [f64; 2],
     samples: usize,
     rejected: usize,
@@ -27,16 +32,22 @@ pub(super) struct PlateauFit {
     /// Variance of a sample about the fit [m^2/s^4].
     variance: Vector3<f64>,
     /// Settling at the start of the window [m/s^2].
-    pub settling: Vector3<f64>,
+    pub(super) settling: Vector3<f64>,
     /// Residuals and design, condensed.
-    pub cells: Cells,
+    pub(super) cells: Cells,
 }
 
 impl PlateauFit {
     /// Fits the plateau `index` in its window.
-    pub fn new(record: &Record, index: usize, window: &Window, blocks: &Blocks) -> Result<Self, ReductionError> {
+    pub(super) fn new(
+        record: RecordSlice,
+        index: usize,
+        window: &Window,
+        blocks: &Blocks,
+    ) -> Result<Self, ReductionError> {
         let samples = Samples::cut_out(record, window, blocks);
-        let mut good = samples.without_outliers(&samples.residuals_of_medians());
+        let mut good = samples.without_outliers(&samples.fit_of_medians());
+        let mut strips = Strips::new(&samples, &good);
         let mut first = true;
         loop {
             let (all, left) = (good.len(), good.iter().filter(|good| **good).count());
@@ -45,18 +56,16 @@ impl PlateauFit {
             }
             let (omega, interval) = (window.shape.omega, blocks.interval);
             let aliased = ReductionError::RevolutionAliased { index, omega, interval };
-            let regression = Regression::new(samples.columns_of(&good)).ok_or(aliased)?;
-            let coefficients = regression.solve(&kept(&samples.f_z, &good));
-            let residuals = samples.residuals(&coefficients);
-            let mut still_good = samples.without_outliers(&residuals);
+            let (triangle, coefficients) = strips.solve().ok_or(aliased)?;
+            let mut still_good = samples.without_outliers(&coefficients);
             if !first {
                 // From the second fit on, once out is out: the set shrinks, and the loop ends.
                 still_good.iter_mut().zip(&good).for_each(|(still, before)| *still &= *before);
             }
             if still_good == good {
-                let cells = samples.cells(&good, &residuals, &regression, interval);
-                return Ok(Self::from_fit(&samples, &good, &coefficients, cells, &kept(&residuals, &good)));
+                return Ok(Self::from_fit(&samples, &good, &coefficients, &triangle, interval));
             }
+            strips.renew(&samples, &good, &still_good);
             (good, first) = (still_good, false);
         }
     }
@@ -65,11 +74,12 @@ impl PlateauFit {
         samples: &Samples,
         good: &[bool],
         coefficients: &[Vector3<f64>],
-        cells: Cells,
-        residuals: &[Vector3<f64>],
+        triangle: &Triangle,
+        interval: f64,
     ) -> Self {
-        let kept = residuals.len();
-        let variance = residuals.iter().map(|r| r.component_mul(r)).sum::<Vector3<f64>>() / kept as f64;
+        let residuals = samples.good_residuals(coefficients, good);
+        let kept = good.iter().filter(|good| **good).count();
+        let variance = Vector3::from_fn(|axis, _| dot(&residuals[axis], &residuals[axis]) / kept as f64);
         let Window { span, shape } = samples.window;
         let columns = coefficients.len();
         let zero = Vector3::zeros();
@@ -83,23 +93,23 @@ impl PlateauFit {
             shape: *shape,
             digit: *samples.digit,
             variance,
-            cells,
+            cells: samples.cells(good, &residuals, triangle, interval),
         }
     }
 
     /// Derivative of the settling's law by the logarithm of its time constant, one value a cell.
-    pub fn settling_rate(&self) -> Option<Vec<f64>> {
+    pub(super) fn settling_rate(&self) -> Option<Vec<f64>> {
         let settling = self.shape.settling?;
         Some((0..CELLS).map(|cell| settling.rate((cell as f64 + 0.5) * self.cells.width)).collect())
     }
 
     /// Variance of a sample about the fit [m^2/s^4].
-    pub fn variance(&self) -> Vector3<f64> {
+    pub(super) fn variance(&self) -> Vector3<f64> {
         self.variance
     }
 
     /// The plateau's mean, with its covariance under the noise.
-    pub fn mean(&self, noise: &NoiseModel, step: &TimeStep, quietest: &Vector3<f64>) -> PlateauMean {
+    pub(super) fn mean(&self, noise: &NoiseModel, step: &TimeStep, quietest: &Vector3<f64>) -> PlateauMean {
         let rounding = self.digit.zip_map(quietest, bias_variance);
         let (weights, drift) = self.cells.slope();
         let (correction, of_correction) = step.effect(self);
@@ -124,86 +134,208 @@ struct Samples<'a> {
     window: &'a Window,
     /// Last digit of the readings [m/s^2].
     digit: &'a Vector3<f64>,
-    t: Vec<f64>,
-    f_z: Vec<Vector3<f64>>,
-    stuck: Vec<bool>,
+    t: Cow<'a, [f64]>,
+    f_z: [Cow<'a, [f64]>; 3],
+    /// The stuck ones, if there are any.
+    stuck: Option<Vec<bool>>,
     columns: Vec<Vec<f64>>,
 }
 
 impl<'a> Samples<'a> {
     /// The samples of a record in a window, without repeated stamps.
-    fn cut_out(record: &Record, window: &'a Window, blocks: &'a Blocks) -> Self {
-        let from = record.t.partition_point(|t| *t < window.span[0]);
-        let to = record.t.partition_point(|t| *t <= window.span[1]);
-        let first_of_stamp = |i: &usize| *i == from || record.t[*i] > record.t[*i - 1];
-        let reading = |i: usize| Vector3::new(record.f_z[0][i], record.f_z[1][i], record.f_z[2][i]);
-        let (t, f_z): (Vec<f64>, Vec<Vector3<f64>>) =
-            (from..to).filter(first_of_stamp).map(|i| (record.t[i], reading(i))).unzip();
+    fn cut_out(record: RecordSlice<'a>, window: &'a Window, blocks: &'a Blocks) -> Self {
+        let RecordSlice { t, f_z } = record.between(window.span);
+        let (t, f_z) = if t.windows(2).all(|pair| pair[0] < pair[1]) {
+            (Cow::from(t), f_z.map(Cow::from))
+        } else {
+            let first_of_stamp = |i: &usize| *i == 0 || t[*i] > t[*i - 1];
+            let pick = |values: &[f64]| -> Cow<[f64]> {
+                (0..t.len()).filter(first_of_stamp).map(|i| values[i]).collect::<Vec<f64>>().into()
+            };
+            (pick(t), f_z.map(pick))
+        };
         let columns = window.shape.columns(&t);
-        let stuck = stuck_on_any_axis(&f_z, &blocks.repeat_rate);
+        let stuck = stuck_on_any_axis(f_z.each_ref().map(|f| &**f), &blocks.repeat_rate);
         Self { window, digit: &blocks.digit, t, f_z, stuck, columns }
     }
 
-    fn columns_of(&self, good: &[bool]) -> Vec<Vec<f64>> {
-        self.columns.iter().map(|column| kept(column, good)).collect()
-    }
-
-    /// Cell of each sample.
-    fn cell_of(&self, i: usize) -> usize {
+    /// Samples of each cell: the times do not decrease.
+    fn cells_of_samples(&self) -> Vec<Range<usize>> {
         let [from, to] = self.window.span;
-        whole((self.t[i] - from) / (to - from) * CELLS as f64).min(CELLS - 1)
+        let cell = |t: f64| whole((t - from) / (to - from) * CELLS as f64).min(CELLS - 1);
+        let mut start = 0;
+        let end_of = |k: usize| self.t.partition_point(|t| cell(*t) <= k);
+        (0..CELLS).map(|k| std::mem::replace(&mut start, end_of(k))..end_of(k)).collect()
     }
 
-    /// Residuals about a fit through the medians of the cells, which no spike moves. The once-per-revolution term is
-    /// left in them: cells may be longer than a revolution.
-    fn residuals_of_medians(&self) -> Vec<Vector3<f64>> {
+    /// A fit through the medians of the cells, which no spike moves. The once-per-revolution term is not in it: cells
+    /// may be longer than a revolution. A cell of many samples shows its median by some of them.
+    fn fit_of_medians(&self) -> Vec<Vector3<f64>> {
+        const SHOWN: usize = 256;
         let [from, to] = self.window.span;
         let shape = Shape { omega: 0.0, ..self.window.shape };
         let (mut middles, mut medians) = (Vec::new(), Vec::new());
-        let indices: Vec<usize> = (0..self.t.len()).collect();
-        for cell in indices.chunk_by(|a, b| self.cell_of(*a) == self.cell_of(*b)) {
-            let readings = |axis: usize| cell.iter().map(move |i| self.f_z[*i][axis]).filter(|f| f.is_finite());
-            middles.push(from + (self.cell_of(cell[0]) as f64 + 0.5) * (to - from) / CELLS as f64);
-            medians.push(Vector3::from_fn(|axis, _| median(&mut readings(axis).collect::<Vec<f64>>())));
+        for (cell, range) in self.cells_of_samples().into_iter().enumerate().filter(|(_, range)| !range.is_empty()) {
+            let readings = |axis: usize| {
+                let shown = spread_out(range.len(), SHOWN).map(|i| self.f_z[axis][range.start + i]);
+                median(&mut shown.filter(|f| f.is_finite()).collect::<Vec<f64>>())
+            };
+            middles.push(from + (cell as f64 + 0.5) * (to - from) / CELLS as f64);
+            medians.push(Vector3::from_fn(|axis, _| readings(axis)));
         }
-        let fit = Regression::new(shape.columns(&middles)).map_or(vec![], |regression| regression.solve(&medians));
-        self.residuals(&fit)
+        Regression::new(shape.columns(&middles)).map_or(vec![], |regression| regression.solve(&medians))
     }
 
-    /// Residuals about the terms that have coefficients: all, or the last.
-    fn residuals(&self, coefficients: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
-        let mut residuals = self.f_z.clone();
-        for (column, b) in self.columns.iter().rev().zip(coefficients.iter().rev()) {
-            residuals.iter_mut().zip(column).for_each(|(r, x)| *r -= b * *x);
+    /// The columns of the terms that have coefficients: all, or the last.
+    fn columns_with<'s>(
+        &'s self,
+        coefficients: &'s [Vector3<f64>],
+    ) -> impl Iterator<Item = (&'s [f64], &'s Vector3<f64>)> {
+        let without = self.columns.len() - coefficients.len();
+        self.columns[without..].iter().map(Vec::as_slice).zip(coefficients)
+    }
+
+    /// Residuals of some samples on one axis.
+    fn residuals(&self, coefficients: &[Vector3<f64>], axis: usize, range: Range<usize>, residuals: &mut Vec<f64>) {
+        residuals.clear();
+        residuals.extend_from_slice(&self.f_z[axis][range.clone()]);
+        for (column, b) in self.columns_with(coefficients) {
+            subtract(residuals, b[axis], &column[range.clone()]);
         }
-        residuals
+    }
+
+    /// Residuals of the good samples, zero for the others.
+    fn good_residuals(&self, coefficients: &[Vector3<f64>], good: &[bool]) -> [Vec<f64>; 3] {
+        [0, 1, 2].map(|axis| {
+            let mut residuals = Vec::new();
+            self.residuals(coefficients, axis, 0..self.t.len(), &mut residuals);
+            residuals.iter_mut().zip(good).for_each(|(r, good)| *r = if *good { *r } else { 0.0 });
+            residuals
+        })
+    }
+
+    /// How large a residual of a good sample may be. The spread is seen by some thousands of them.
+    fn limits(&self, coefficients: &[Vector3<f64>]) -> [f64; 3] {
+        const SEEN: usize = 1 << 14;
+        let cut = cut(self.t.len());
+        [0, 1, 2].map(|axis| {
+            let residual = |i: usize| {
+                let fitted: f64 = self.columns_with(coefficients).map(|(column, b)| b[axis] * column[i]).sum();
+                self.f_z[axis][i] - fitted
+            };
+            let sizes = spread_out(self.t.len(), SEEN).map(|i| residual(i).abs()).filter(|r| r.is_finite());
+            // Rounding moves a reading by a digit at most, and may leave no spread to see.
+            cut * MAD * median(&mut sizes.collect::<Vec<f64>>()) + self.digit[axis]
+        })
     }
 
     /// Which samples are no spikes and not stuck in any axis. Symmetric, so that the mean of good samples is not
     /// biased.
-    fn without_outliers(&self, residuals: &[Vector3<f64>]) -> Vec<bool> {
-        let cut = cut(residuals.len());
-        let limit = [0, 1, 2].map(|axis| {
-            let sizes = residuals.iter().map(|r| r[axis].abs()).filter(|r| r.is_finite());
-            // Rounding moves a reading by a digit at most, and may leave no spread to see.
-            cut * MAD * median(&mut sizes.collect::<Vec<f64>>()) + self.digit[axis]
-        });
-        // A reading that is not a number is within no limit.
-        let good = |(r, stuck): (&Vector3<f64>, &bool)| !stuck && (0..3).all(|axis| r[axis].abs() <= limit[axis]);
-        residuals.iter().zip(&self.stuck).map(good).collect()
+    fn without_outliers(&self, coefficients: &[Vector3<f64>]) -> Vec<bool> {
+        let limits = self.limits(coefficients);
+        let mut good = vec![true; self.t.len()];
+        let mut residuals = Vec::with_capacity(STRIP);
+        for range in strips(self.t.len()) {
+            for axis in 0..3 {
+                self.residuals(coefficients, axis, range.clone(), &mut residuals);
+                // A reading that is not a number is within no limit.
+                let good = good[range.clone()].iter_mut().zip(&residuals);
+                good.for_each(|(good, r)| *good &= r.abs() <= limits[axis]);
+            }
+        }
+        if let Some(stuck) = &self.stuck {
+            good.iter_mut().zip(stuck).for_each(|(good, stuck)| *good &= !stuck);
+        }
+        good
     }
 
-    fn cells(&self, good: &[bool], residuals: &[Vector3<f64>], regression: &Regression, interval: f64) -> Cells {
+    fn cells(&self, good: &[bool], residuals: &[Vec<f64>; 3], triangle: &Triangle, interval: f64) -> Cells {
         let [from, to] = self.window.span;
-        let mut cells = Cells::empty(regression, (to - from) / CELLS as f64, interval);
-        let good = (0..self.t.len()).filter(|i| good[*i]);
-        for (row, i) in good.enumerate() {
-            cells.add(self.cell_of(i), &residuals[i], regression.q.iter().map(|q| q[row]));
+        let terms = self.columns.len();
+        let mut cells = Cells::empty(triangle, terms, (to - from) / CELLS as f64, interval);
+        for (cell, range) in self.cells_of_samples().into_iter().enumerate() {
+            let good = &good[range.clone()];
+            let count = good.iter().filter(|good| **good).count();
+            let sum_of = |column: &[f64]| {
+                let column = &column[range.clone()];
+                let all = sum(column, |x| x);
+                // Few are not good: they are taken out again.
+                let bad = good.iter().zip(column).filter(|(good, _)| !**good);
+                all - if count == good.len() { 0.0 } else { bad.map(|(_, x)| x).sum() }
+            };
+            let mut sums = [0.0; TERMS];
+            sums.iter_mut().zip(&self.columns).for_each(|(sum, column)| *sum = sum_of(column));
+            let residuals = Vector3::from_fn(|axis, _| sum(&residuals[axis][range.clone()], |r| r));
+            cells.fill(cell, count, residuals, &triangle.orthonormal(sums, terms)[..terms]);
         }
         cells
     }
 }
 
-fn kept<T: Copy>(values: &[T], good: &[bool]) -> Vec<T> {
-    values.iter().zip(good).filter(|value| *value.1).map(|value| *value.0).collect()
+/// Samples of a strip: their design stays in the fastest memory.
+const STRIP: usize = 512;
+
+fn strips(samples: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..samples).step_by(STRIP).map(move |from| from..(from + STRIP).min(samples))
+}
+
+/// The triangles of a plateau's strips.
+struct Strips {
+    triangles: Vec<Triangle>,
+    terms: usize,
+    /// Near the readings: less of them is left to rounding.
+    reference: Vector3<f64>,
+}
+
+impl Strips {
+    fn new(samples: &Samples, good: &[bool]) -> Self {
+        let near = |axis: usize| samples.f_z[axis].iter().copied().find(|f| f.is_finite()).unwrap_or(0.0);
+        let reference = Vector3::from_fn(|axis, _| near(axis));
+        let mut of = Self { triangles: Vec::new(), terms: samples.columns.len(), reference };
+        of.triangles = strips(good.len()).map(|range| of.triangle(samples, good, range)).collect();
+        of
+    }
+
+    /// Those of the strips whose good samples are others now.
+    fn renew(&mut self, samples: &Samples, before: &[bool], good: &[bool]) {
+        for (k, range) in strips(good.len()).enumerate() {
+            if before[range.clone()] != good[range.clone()] {
+                self.triangles[k] = self.triangle(samples, good, range);
+            }
+        }
+    }
+
+    /// The triangle of the good samples of a strip; the others are rows of zeros.
+    fn triangle(&self, samples: &Samples, good: &[bool], range: Range<usize>) -> Triangle {
+        let good = &good[range.clone()];
+        let mut terms = [[0.0; STRIP]; TERMS];
+        let mut readings = [[0.0; STRIP]; 3];
+        for (term, column) in terms.iter_mut().zip(&samples.columns) {
+            for ((term, x), good) in term.iter_mut().zip(&column[range.clone()]).zip(good) {
+                *term = if *good { *x } else { 0.0 };
+            }
+        }
+        for ((reading, f), reference) in readings.iter_mut().zip(&samples.f_z).zip(&self.reference) {
+            for ((reading, f), good) in reading.iter_mut().zip(&f[range.clone()]).zip(good) {
+                *reading = if *good { f - reference } else { 0.0 };
+            }
+        }
+        let mut terms = terms.each_mut().map(|term| &mut term[..range.len()]);
+        Triangle::of(&mut terms[..self.terms], &mut readings.each_mut().map(|f| &mut f[..range.len()]))
+    }
+
+    /// The triangle of all strips, and the coefficients.
+    fn solve(&self) -> Option<(Triangle, Vec<Vector3<f64>>)> {
+        let triangle = Triangle::joined(&self.triangles, self.terms);
+        let mut coefficients = triangle.solve(self.terms)?;
+        coefficients[self.terms - 1] += self.reference;
+        Some((triangle, coefficients))
+    }
+}
+
+/// `count` of the numbers up to `all`, or all of them: one in each of equal ranges, here and there in it, so that nothing
+/// periodic is always seen at the same phase.
+fn spread_out(all: usize, count: usize) -> impl Iterator<Item = usize> {
+    let step = all.div_ceil(count).max(1);
+    (0..all).step_by(step).enumerate().map(move |(k, i)| (i + k * 7919 % step).min(all - 1))
 }

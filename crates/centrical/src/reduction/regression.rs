@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+pub(super) use super::lanes::dot;
+
 /// `X = Q R`: columns orthonormalised one after another (modified Gram-Schmidt), the constant last.
 #[derive(Debug, Clone)]
 pub(super) struct Regression {
@@ -67,11 +69,6 @@ impl Regression {
     pub fn leverage(&self, i: usize) -> f64 {
         self.q.iter().map(|q| q[i] * q[i]).sum()
     }
-}
-
-/// Scalar product.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn norm(a: &[f64]) -> f64 {

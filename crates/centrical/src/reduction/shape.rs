@@ -1,5 +1,7 @@
 //! The shape of a plateau's reading in time: the columns of its design.
 
+use super::revolution::cos_sin;
+
 /// Which terms a plateau has: `[cos, sin,] [settling,] 1`. The constant stands last.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
@@ -47,10 +49,16 @@ impl Shape {
     pub fn columns(&self, t: &[f64]) -> Vec<Vec<f64>> {
         let mut columns = Vec::with_capacity(4);
         if self.omega != 0.0 {
-            let (sin, cos) = t.iter().map(|t| (self.omega * (t - self.start)).sin_cos()).unzip();
+            let (cos, sin) = cos_sin(self.omega, self.start, t);
             columns.extend([cos, sin]);
         }
-        columns.extend(self.settling.map(|settling| t.iter().map(|t| settling.value(t - self.start)).collect()));
+        columns.extend(self.settling.map(|settling| {
+            // Beyond forty time constants less is left of the settling than rounding leaves of a reading.
+            let over = t.partition_point(|t| t - self.start < 40.0 * settling.time);
+            let mut column: Vec<f64> = t[..over].iter().map(|t| settling.value(t - self.start)).collect();
+            column.resize(t.len(), 0.0);
+            column
+        }));
         columns.push(vec![1.0; t.len()]);
         columns
     }

@@ -1,48 +1,62 @@
 //! Readings that repeat themselves for longer than noise lets them: a stuck sensor, a saturated one, a logger that
 //! holds.
 
-use nalgebra::Vector3;
-
-/// Share of readings equal to the one before, of those whose own predecessor was different: a long run counts once.
-pub(super) fn repeat_rate(f: &[f64]) -> f64 {
-    let fresh = f.windows(3).filter(|w| w[0] != w[1]);
-    let (all, repeats) = fresh.fold((0_usize, 0_usize), |(all, n), w| (all + 1, n + usize::from(w[1] == w[2])));
-    // Rule of succession: a rate is never known to be 0 or 1.
-    (repeats as f64 + 1.0) / (all as f64 + 2.0)
+/// Which samples are stuck on any axis, by the axes' repeat rates; none if not one is.
+pub(super) fn stuck_on_any_axis(f_z: [&[f64]; 3], repeat_rate: &[f64; 3]) -> Option<Vec<bool>> {
+    let mut stuck: Option<Vec<bool>> = None;
+    for (f, rate) in f_z.into_iter().zip(repeat_rate) {
+        let longest = longest_run(f.len(), *rate);
+        if run_is_longer(f, longest) {
+            let stuck = stuck.get_or_insert_with(|| vec![false; f.len()]);
+            let mut from = 0;
+            for run in f.chunk_by(f64::eq) {
+                let range = from..from + run.len();
+                from = range.end;
+                if run.len() as f64 > longest {
+                    stuck[range].fill(true);
+                }
+            }
+        }
+    }
+    stuck
 }
 
-/// Which samples are stuck on any axis, by the axes' repeat rates.
-pub(super) fn stuck_on_any_axis(f_z: &[Vector3<f64>], repeat_rate: &[f64; 3]) -> Vec<bool> {
-    let on = [0, 1, 2].map(|axis| stuck(&f_z.iter().map(|f| f[axis]).collect::<Vec<f64>>(), repeat_rate[axis]));
-    (0..f_z.len()).map(|i| on.iter().any(|on| on[i])).collect()
-}
-
-/// Which readings stand in a run that `n` readings of that repeat rate have less than once in a million times.
-fn stuck(f: &[f64], repeat_rate: f64) -> Vec<bool> {
+/// The longest run of equal readings that chance makes: `n` readings of that repeat rate have a longer one less than once
+/// in a million times.
+fn longest_run(n: usize, repeat_rate: f64) -> f64 {
     const CHANCE: f64 = 1e-6;
-    let longest = 1.0 + (CHANCE / f.len() as f64).ln() / repeat_rate.ln();
-    let runs = f.chunk_by(f64::eq);
-    runs.flat_map(|run| std::iter::repeat_n(run.len() as f64 > longest, run.len())).collect()
+    1.0 + (CHANCE / n as f64).ln() / repeat_rate.ln()
+}
+
+fn run_is_longer(f: &[f64], longest: f64) -> bool {
+    let longer = |run: u32, pair: &[f64]| if pair[0] == pair[1] { run + 1 } else { 1 };
+    let runs = f.windows(2).scan(1, |run, pair| {
+        *run = longer(*run, pair);
+        Some(*run)
+    });
+    runs.max().is_some_and(|run| f64::from(run) > longest)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{repeat_rate, stuck};
+    use super::stuck_on_any_axis;
+
+    fn stuck(f: &[f64], rate: f64) -> Option<Vec<bool>> {
+        stuck_on_any_axis([f, &[], &[]], &[rate; 3])
+    }
 
     #[test]
     fn a_held_reading_is_stuck_and_chance_repeats_are_not() {
         let mut f: Vec<f64> = (0..1000).map(|i| f64::from(i * 7919 % 31)).collect();
         f[500..520].fill(3.0);
         f[700] = f[699];
-        let rate = repeat_rate(&f);
-        let found = stuck(&f, rate);
-        assert!(rate < 0.01);
+        let found = stuck(&f, 1.0 / 1000.0).unwrap();
         assert!((0..1000).all(|i| found[i] == (500..520).contains(&i)));
     }
 
     #[test]
     fn coarse_digits_are_not_stuck() {
         let f: Vec<f64> = (0..1000).map(|i| f64::from(u8::from(i * i % 97 > 80))).collect();
-        assert!(!stuck(&f, repeat_rate(&f)).contains(&true));
+        assert!(stuck(&f, 0.8).is_none());
     }
 }

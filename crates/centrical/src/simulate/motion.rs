@@ -42,15 +42,16 @@ enum Law {
 }
 
 impl Motion {
-    /// The motion through `schedule`, with durations and speed errors drawn from `random`.
-    pub fn new(schedule: &[SetPoint], machine: &Machine, mut random: Random) -> Self {
+    /// The motion through `schedule`, plateaus with their durations [s], with what is random of these and speed errors drawn
+    /// from `random`.
+    pub fn new(schedule: &[(SetPoint, f64)], machine: &Machine, mut random: Random) -> Self {
         let first_angle = match schedule.first() {
-            Some(first) if first.is_rest() => first.angle,
+            Some((first, _)) if first.is_rest() => first.angle,
             _ => TAU * random.uniform(),
         };
         let mut path = Path { machine, segments: Vec::with_capacity(2 * schedule.len()), end: 0.0, angle: first_angle };
-        for (k, set_point) in schedule.iter().enumerate() {
-            let duration = machine.plateau + machine.plateau_spread * random.uniform();
+        for (k, (set_point, plateau)) in schedule.iter().enumerate() {
+            let duration = plateau + machine.plateau_spread * random.uniform();
             let speed_error = machine.speed_error * random.normal();
             if k > 0 {
                 path.reach(set_point, speed_error);

@@ -156,6 +156,14 @@ pub enum SimulationError {
         /// Its value.
         found: f64,
     },
+    /// There is not a duration for each plateau.
+    #[error("durations: found {found}, expected one for each of {expected} plateaus")]
+    Durations {
+        /// Given.
+        found: usize,
+        /// Set points of the experiment.
+        expected: usize,
+    },
     /// A setting is out of its bounds.
     #[error("{setting}: found {found}, expected {expected}")]
     Setting {

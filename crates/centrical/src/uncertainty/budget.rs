@@ -178,7 +178,7 @@ impl Contribution {
     }
 
     /// Covariance that the source leaves, `S S^T`.
-    pub(super) fn covariance(&self) -> DMatrix<f64> {
+    pub(crate) fn covariance(&self) -> DMatrix<f64> {
         &self.changes * self.changes.transpose()
     }
 

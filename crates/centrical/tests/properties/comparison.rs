@@ -1,4 +1,4 @@
-use centrical::uncertainty::{Compensated, Estimates, compare};
+use centrical::uncertainty::{Compensated, Estimates, chi_squared_tail, compare};
 use centrical::{ErrorModel, fit};
 use nalgebra::{DMatrix, Vector3};
 
@@ -56,6 +56,18 @@ fn only_what_both_have_is_compared() {
     assert_eq!(found, [("a", 0.0), ("c", 2.0)]);
     assert!((comparison.differences[1].e_n - 0.5 * 2.0_f64.sqrt()).abs() < 1e-15);
     assert!((comparison.chi_squared.unwrap() - 2.0).abs() < 1e-12);
+}
+
+/// A calibration against itself: nothing has changed, for certain. The ends of chi^2 are probabilities too.
+#[test]
+fn a_calibration_agrees_with_itself() {
+    let own = calibrate(&truth(&source_model(), 1.0, &mut Random::new(32)), &mut Random::new(34));
+    let comparison = compare(&own, &own);
+    assert_eq!((comparison.chi_squared, comparison.probability), (Some(0.0), Some(1.0)));
+    for (chi_squared, probability) in [(0.0, 1.0), (-1e-9, 1.0), (f64::INFINITY, 0.0), (f64::NAN, 0.0)] {
+        assert_eq!(chi_squared_tail(chi_squared, 21), probability);
+    }
+    assert_eq!(chi_squared_tail(1e9, 21), 0.0);
 }
 
 /// The uncertainty of a compensated reading against the scatter of readings compensated with drawn coefficients.

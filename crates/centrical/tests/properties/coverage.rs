@@ -60,7 +60,7 @@ fn check(runs: usize, tolerance: &Tolerance) {
             }
             assert!((mean - 275.0).abs() < 5.0 * (2.0 * 275.0 / runs as f64).sqrt(), "chi^2 {mean}");
         }
-        let linear = case.monte_carlo(runs, stated, Method::Linear);
+        let linear = case.monte_carlo(runs.min(10_000), stated, Method::Linear);
         assert!(fault(&linear, tolerance).is_some(), "the linear fit should fail");
     }
 }
@@ -72,9 +72,10 @@ fn intervals_cover() {
 }
 
 /// 95 % intervals within 0.7, bias within 0.05 sigma, the budget within 3 % of the scatter, the weighted square within
-/// 0.5: three to seven standard deviations of chance at 10,000 runs.
+/// 0.5. Four times ten thousand runs: in ten thousand 0.7 is 3.2 standard deviations of chance, which one of 98 intervals
+/// is beyond once in eight times (with this seed `dR_2[C]` is, by 0.74, and by 0.13 in forty thousand); now it is 6.4.
 #[test]
-#[ignore = "long: 40,000 calibrations"]
-fn intervals_cover_over_ten_thousand_runs() {
-    check(10_000, &Tolerance { coverage: 0.007, bias: 0.05, spread: 0.03, weighted_square: 0.5 });
+#[ignore = "long: 80,000 calibrations and 20,000 linear ones"]
+fn intervals_cover_over_four_times_ten_thousand_runs() {
+    check(40_000, &Tolerance { coverage: 0.007, bias: 0.05, spread: 0.03, weighted_square: 0.5 });
 }

@@ -14,6 +14,7 @@ mod measurement;
 mod noise;
 mod noise_source;
 mod observability;
+mod plan;
 mod prior;
 mod recursive;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]

@@ -1,7 +1,7 @@
 //! Reduction of simulated records: plateaus found where they are, means right to their own uncertainty, and plain
 //! words where a plateau is not there.
 
-use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, reduce};
+use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, Survey, reduce};
 use nalgebra::Vector3;
 
 use crate::stream::{Random, Stream};
@@ -105,6 +105,20 @@ fn means_are_right_to_their_own_uncertainty() {
     }
 }
 
+/// What the time constant of the settling is off by is no slow noise: the settling starts at a thousand times the white
+/// noise, and the pooled density at zero frequency stays that of the white noise alone. The bound is that of
+/// [`means_are_right_to_their_own_uncertainty`].
+#[test]
+fn settling_is_not_taken_for_noise() {
+    let stream = Stream { colour: (0.0, 0.5), settling: (1e-3, 0.4), ..Stream::default() };
+    let white = stream.white * stream.white / stream.rate;
+    for seed in 50..62 {
+        let density = pooled(&session(&stream, seed)).density(0.0).diagonal() / white;
+        println!("{seed}: {density:?}");
+        assert!(density.iter().all(|ratio| (ratio - 1.0).abs() < 0.22), "session {seed}: {density:?}");
+    }
+}
+
 /// Spikes are left out: with and without them the means differ by less than a tenth of their standard error on average.
 #[test]
 fn spikes_do_not_move_means() {
@@ -204,6 +218,30 @@ fn the_same_record_gives_the_same_bits() {
         reduced.means(&NoiseModel::pool([&reduced]))
     });
     assert_eq!(twice[0], twice[1]);
+}
+
+/// A record in stretches of any length, cut anywhere, gives the bits that it gives whole.
+#[test]
+fn in_stretches_as_whole() {
+    let stream = Stream { colour: (1e-3, 0.5), repeats: 0.01, ..Stream::default() }.rough();
+    let (record, schedule) = (stream.record(), stream.schedule());
+    let whole = reduce(&record, None, &schedule).expect("plateaus are there");
+    let noise = NoiseModel::pool([&whole]);
+    for length in [1, 7, 64, 1000, 4099] {
+        let mut survey = Survey::new(&record.t);
+        let mut from = 0;
+        while from < record.t.len() {
+            let to = (from + length).min(record.t.len());
+            survey.append(survey.condense(record.as_slice().part(from..to)));
+            from = to;
+        }
+        survey.finish();
+        let located = survey.locate(None, &schedule).expect("plateaus are there");
+        let windows = located.windows();
+        let average = |k: usize| located.average(k, record.as_slice().between(windows[k])).expect("a steady plateau");
+        let averaged = (0..windows.len()).map(average).collect();
+        assert_eq!(located.into_mounting(averaged).means(&noise), whole.means(&noise), "stretches of {length}");
+    }
 }
 
 /// Two plateaus at rest with a short turn between them, which nobody scheduled.

@@ -1,6 +1,7 @@
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::uncertainty::{Budget, Degrees, Method, MonteCarlo, Settings, Source, TypeB, monte_carlo};
-use centrical::{Fit, MeasurementModel, Observation, PairRelation, fit};
+use centrical::{Experiment, Fit, MeasurementModel, Observation, PairRelation, fit, rotation};
+use nalgebra::Vector3;
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
 
@@ -70,12 +71,63 @@ fn budget_of_the_weights_is_the_covariance_of_the_fit() {
     }
 }
 
+/// One quantity of the experiment, off by so many standard uncertainties.
+type Influence = Box<dyn Fn(&mut Experiment, f64)>;
+
+/// Every source that the budget knows and the independent influences that it is made of, written anew.
+fn sources(experiment: &Experiment) -> Vec<(Source, Vec<Influence>)> {
+    fn influence(change: impl Fn(&mut Experiment, f64) + 'static) -> Influence {
+        Box::new(change)
+    }
+    let one = |change: fn(&mut Experiment, f64)| vec![influence(change)];
+    let difference = STATED.radius_difference.unwrap();
+    let plateaus = |rest: bool| (0..experiment.set_points.len()).filter(move |n| (n % 9 == 0 || n % 9 == 1) == rest);
+    assert!(plateaus(true).all(|n| experiment.set_points[n].is_rest()));
+    assert!(plateaus(false).all(|n| !experiment.set_points[n].is_rest()));
+    let of_plateau = |n: usize| influence(move |e, sign| e.set_points[n].omega *= 1.0 + sign * SPEED);
+    let of_rest = |n: usize| influence(move |e, sign| e.set_points[n].angle += sign * STATED.rest_angle);
+    let of_seat = |radius: f64| {
+        influence(move |e, sign| {
+            let on_seat = e.mountings.iter_mut().filter(|m| (m.arm_y.x - radius).abs() < 0.1);
+            on_seat.for_each(|m| m.arm_y.x += sign * difference / 2.0_f64.sqrt());
+        })
+    };
+    // Proof mass 1 is the reference; the own coordinates of 2 and 3 are unknowns of the fit.
+    let of_mass = |(i, j): (usize, usize)| influence(move |e, sign| e.unit.rho_z[(i, j)] += sign * STATED.proof_masses);
+    let of_attitude = |k: usize, axis: usize| {
+        influence(move |e, sign| {
+            let turn = rotation(&Vector3::ith(axis, sign * STATED.attitude));
+            e.positions[k].p_zy = turn * e.positions[k].p_zy;
+        })
+    };
+    vec![
+        (Source::PlateauSpeed, plateaus(false).map(of_plateau).collect()),
+        (Source::Gravity, one(|e, sign| e.site.gravity += sign * STATED.gravity)),
+        (Source::Latitude, one(|e, sign| e.site.latitude = e.site.latitude.map(|l| l + sign * STATED.latitude))),
+        (
+            Source::Radius,
+            one(|e, sign| {
+                let common = STATED.radius.powi(2) - 0.5 * STATED.radius_difference.unwrap().powi(2);
+                e.mountings.iter_mut().for_each(|m| m.arm_y.x += sign * common.sqrt());
+            }),
+        ),
+        (Source::RadiusDifference, [0.5, 0.25].map(of_seat).into()),
+        (
+            Source::SpeedScale,
+            one(|e, sign| e.set_points.iter_mut().for_each(|s| s.omega *= 1.0 + sign * STATED.speed_scale)),
+        ),
+        (Source::RestAngle, plateaus(true).map(of_rest).collect()),
+        (Source::ProofMasses, [(0, 1), (2, 1), (0, 2), (1, 2)].map(of_mass).into()),
+        (Source::Attitude, (0..6).flat_map(|k| (0..3).map(move |axis| of_attitude(k, axis))).collect()),
+    ]
+}
+
 /// A contribution is what really happens to the estimates: the plateaus of an experiment that is off by one standard
-/// uncertainty are fitted as if it were not.
+/// uncertainty are fitted as if it were not, for every influence of every source.
 #[test]
 fn contributions_are_what_a_refit_shows() {
     let case = Case::new(PairRelation::Common);
-    let shift = |change: &dyn Fn(&mut centrical::Experiment, f64)| -> Vec<f64> {
+    let shift = |change: &Influence| -> Vec<f64> {
         let estimate = |sign: f64| {
             let mut experiment = case.model.experiment().clone();
             change(&mut experiment, sign);
@@ -84,23 +136,24 @@ fn contributions_are_what_a_refit_shows() {
         };
         estimate(1.0).iter().zip(estimate(-1.0)).map(|(up, down)| 0.5 * (up - down)).collect()
     };
-    let gravity = |e: &mut centrical::Experiment, sign: f64| e.site.gravity += sign * STATED.gravity;
-    let scale = |e: &mut centrical::Experiment, sign: f64| {
-        e.set_points.iter_mut().for_each(|s| s.omega *= 1.0 + sign * STATED.speed_scale);
-    };
-    let common = (STATED.radius.powi(2) - 0.5 * STATED.radius_difference.unwrap().powi(2)).sqrt();
-    let radius = |e: &mut centrical::Experiment, sign: f64| {
-        e.mountings.iter_mut().for_each(|m| m.arm_y.x += sign * common);
-    };
-    let cases: [(Source, Vec<f64>); 3] =
-        [(Source::Gravity, shift(&gravity)), (Source::SpeedScale, shift(&scale)), (Source::Radius, shift(&radius))];
     let budget = case.budget(&STATED);
-    for (source, shifts) in cases {
-        let contribution = budget.contributions().iter().find(|c| c.source == source).unwrap();
-        for (j, shift) in shifts.iter().enumerate() {
-            let (stated, u) = (contribution.standard_uncertainty(j), budget.standard_uncertainty(j).unwrap());
-            assert!((stated - shift.abs()).abs() < 1e-4 * u, "{source:?} {j}: {stated:e} {shift:e} of {u:e}");
+    let of = |source: Source| budget.contributions().iter().find(|c| c.source == source).unwrap();
+    let sources = sources(case.model.experiment());
+    // All that there are but noise and resolution (below) and priors, which this model has none of.
+    assert_eq!(sources.len() + 2, budget.contributions().len());
+    assert_eq!(sources.len() + 3, Source::ALL.len());
+    for (source, influences) in sources {
+        let shifts: Vec<Vec<f64>> = influences.iter().map(shift).collect();
+        for j in 0..49 {
+            let shifted = shifts.iter().map(|shift| shift[j].powi(2)).sum::<f64>().sqrt();
+            let (stated, u) = (of(source).standard_uncertainty(j), budget.standard_uncertainty(j).unwrap());
+            assert!((stated - shifted).abs() < 1e-4 * u, "{source:?} {j}: {stated:e} {shifted:e} of {u:e}");
         }
+    }
+    // Resolution is a rectangular error of each mean, whose noise is 1e-4 m/s^2 here.
+    for j in 0..49 {
+        let ratio = of(Source::Resolution).standard_uncertainty(j) / of(Source::Noise).standard_uncertainty(j);
+        assert!((ratio / (STATED.resolution / 12.0_f64.sqrt() / 1e-4) - 1.0).abs() < 1e-9, "{j}: {ratio}");
     }
 }
 

@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-use memchr::{memchr, memchr2};
+use memchr::{memchr, memchr3};
 
+use super::number::plain;
 use crate::error::quoted;
 use crate::table::{ColumnName, Field, LARGEST, Rule, stamp};
 
@@ -30,6 +31,7 @@ pub(super) struct FirstLine {
 }
 
 /// Where the wanted numbers stand in a line.
+#[derive(Debug, Clone)]
 pub(super) struct Layout {
     delimiter: Delimiter,
     /// For every column of the file, the wanted field that it is.
@@ -119,34 +121,40 @@ impl Field {
 
 impl Layout {
     /// Reads the wanted numbers of a line into `row`, in the order of the fields.
-    #[inline]
     pub fn row(&self, line: &[u8], row: &mut [f64], fields: &[Field]) -> Result<(), Fault> {
         match self.plain_row(line, row) {
-            Some(()) => Ok(()),
+            Some(_) => Ok(()),
             None => self.any_row(line, row, fields),
         }
     }
 
-    /// The row of a line of bare numbers; nothing where a line is anything else, right or wrong.
+    /// The row of bare numbers that a text begins with, and the length of its line; nothing where the line is anything
+    /// else, right or wrong.
     #[inline]
-    fn plain_row(&self, line: &[u8], row: &mut [f64]) -> Option<()> {
+    pub fn plain_row(&self, text: &[u8], row: &mut [f64]) -> Option<usize> {
         let Delimiter::Byte(delimiter) = self.delimiter else { return None };
-        let mut rest = line;
+        let mut at = 0;
         for (i, wanted) in self.wanted.iter().enumerate() {
             if i > 0 {
-                rest = rest.strip_prefix(&[delimiter])?;
+                (*text.get(at)? == delimiter).then_some(())?;
+                at += 1;
             }
-            let end = match wanted {
+            let rest = text.get(at..)?;
+            at += match wanted {
                 Some(k) => {
-                    let (number, end) = fast_float2::parse_partial(rest).ok()?;
-                    row[*k] = plausible(number)?;
-                    end
+                    let (number, length) = plain(rest).or_else(|| any_number(rest))?;
+                    row[*k] = number;
+                    length
                 }
-                None => memchr2(delimiter, b'"', rest).unwrap_or(rest.len()),
+                None => memchr3(delimiter, b'"', b'\n', rest).unwrap_or(rest.len()),
             };
-            rest = &rest[end..];
         }
-        rest.is_empty().then_some(())
+        match &text[at..] {
+            [] | [b'\r'] => Some(text.len()),
+            [b'\n', ..] => Some(at + 1),
+            [b'\r', b'\n', ..] => Some(at + 2),
+            _ => None,
+        }
     }
 
     /// The row of any line: quotes, blanks, decimal commas, empty fields.
@@ -251,6 +259,12 @@ fn unquoted(field: &[u8]) -> Cow<'_, [u8]> {
         }
         None => Cow::Borrowed(field),
     }
+}
+
+/// The number in a record that a text starts with, and its length.
+fn any_number(text: &[u8]) -> Option<(f64, usize)> {
+    let (number, length) = fast_float2::parse_partial(text).ok()?;
+    Some((plausible(number)?, length))
 }
 
 /// A number that can stand in a record: finite, and of a size that can be squared.

@@ -12,7 +12,7 @@ use super::filtered;
 use super::innovation::{Innovation, Unexplained};
 use crate::design::{Design, Observation};
 use crate::error::FitError;
-use crate::fit::{Equations, HALVING_LIMIT, NULL_HOLD, Structure, check, chi_squared, residuals};
+use crate::fit::{Equations, HALVING_LIMIT, NULL_HOLD, Structure, check, chi_squared, linearised, residuals};
 use crate::measurement::{Linearisation, MeasurementModel};
 
 /// A point is close enough when the last step was below this many standard uncertainties: what the step after it would
@@ -182,8 +182,7 @@ impl<'m> Follower<'m> {
     }
 
     fn linearised(&self) -> Vec<Linearisation> {
-        let set_points = &self.model.experiment().set_points;
-        self.taken.iter().map(|o| self.model.linearise(&set_points[o.set_point], self.point())).collect()
+        linearised(self.model, &self.taken, self.point())
     }
 
     fn design(&self) -> Result<Design, FitError> {

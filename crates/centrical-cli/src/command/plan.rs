@@ -1,0 +1,66 @@
+//! `centrical plan PLAN.toml`: the best experiment for the time, or the shortest for wanted uncertainties.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use centrical_io::{Error, PlanRequest, Planning, USUAL_LEVELS, write_whole};
+use centrical_report::{frontier_plot, plan_text};
+
+use super::assess::probability;
+use crate::Outcome;
+
+/// Plan the best experiment for the time on the centrifuge, or the shortest for wanted uncertainties.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// What to choose from, what it costs and what is wanted: a session's form with [candidates], [cost], [target]
+    plan: PathBuf,
+    /// Write the schedule as a plan file for observe, montecarlo and simulate
+    #[arg(long, value_name = "TOML")]
+    out: Option<PathBuf>,
+    /// Plan for other times too, and show time against uncertainty beside a uniform plan and [K5.5]
+    #[arg(long)]
+    frontier: bool,
+    /// Draw time against uncertainty
+    #[arg(long, value_name = "SVG", requires = "frontier")]
+    svg: Option<PathBuf>,
+    /// Levels m of [K5.5] on the frontier
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = USUAL_LEVELS, value_parser = level)]
+    levels: Vec<f64>,
+    /// Probability that expanded uncertainties are to cover
+    #[arg(long, default_value_t = 0.95, value_parser = probability)]
+    coverage: f64,
+    /// Print the plan as JSON instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+/// Times of the frontier over that of the plan.
+const FACTORS: [f64; 8] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0];
+
+/// Runs the command. Not acceptable: a parameter of the instrument is not determined, or a goal is missed.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let planning = Planning::read(&arguments.plan)?;
+    let plan = planning.plan()?;
+    let request = PlanRequest {
+        frontier: if arguments.frontier { FACTORS.to_vec() } else { Vec::new() },
+        levels: arguments.levels.clone(),
+        coverage: arguments.coverage,
+    };
+    let report = planning.report(&plan, &request)?;
+    if let Some(file) = &arguments.out {
+        write_whole(file, report.session_text(&arguments.plan)?.as_bytes())?;
+    }
+    if let Some(file) = &arguments.svg {
+        write_whole(file, frontier_plot(&report).as_bytes())?;
+    }
+    let text = if arguments.json { report.to_json() } else { plan_text(&report) };
+    // A reader that has seen enough (`| head`) is no failure.
+    let _ = io::stdout().write_all(text.as_bytes());
+    let is_missed = report.goals.iter().any(|goal| goal.combined.is_none_or(|u| u > goal.wanted * (1.0 + 1e-6)));
+    Ok(if is_missed || report.prediction.reading.is_none() { Outcome::NotAcceptable } else { Outcome::Done })
+}
+
+fn level(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse().ok().filter(|value| (0.0..=1e6).contains(value));
+    value.ok_or_else(|| format!("found {text:?}, expected a multiple of Omega*^2, zero or more"))
+}

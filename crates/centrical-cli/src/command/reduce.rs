@@ -1,0 +1,43 @@
+//! `centrical reduce SESSION --out DIR`: from gigabytes of records to a session of plateau means.
+
+use std::path::PathBuf;
+
+use centrical_io::{Error, Reduced, Session, TableFormat, write_reduced};
+
+use crate::{Outcome, progress};
+
+/// Reduce a session's records to plateau means: a session of a few kilobytes, calibrated to the same numbers.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// The session folder, or its experiment.toml
+    session: PathBuf,
+    /// Folder for experiment.toml and the table of plateaus, made if it is not there
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// How the table of plateaus is written: plateaus.csv or plateaus.parquet
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
+enum Format {
+    #[default]
+    Csv,
+    Parquet,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let session = Session::read(&arguments.session)?;
+    let format = match arguments.format {
+        Format::Csv => TableFormat::Csv,
+        Format::Parquet => TableFormat::Parquet,
+    };
+    let bar = progress::reading(&session);
+    let reduced = Reduced::without_inputs(&session, &|bytes| bar.inc(bytes))?;
+    bar.finish_and_clear();
+    write_reduced(&session, &reduced, format, &arguments.out)?;
+    let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();
+    println!("{} plateaus of {samples} samples written to {}", reduced.plateaus.len(), arguments.out.display());
+    Ok(Outcome::Done)
+}

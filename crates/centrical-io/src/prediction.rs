@@ -1,0 +1,82 @@
+//! What a plan will know, as data for documents.
+
+use centrical::plan::{Prediction, ReadingRange};
+use centrical::uncertainty::{Degrees, coverage_factor};
+use serde::Serialize;
+
+/// Points of the curve of the compensated reading, from 0 to the range.
+const POINTS: usize = 5;
+
+/// Uncertainties before the experiment.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PredictionReport {
+    /// Probability that expanded uncertainties are to cover.
+    pub coverage: f64,
+    /// Sources that leave anything.
+    pub sources: Vec<&'static str>,
+    /// The unknowns in order.
+    pub parameters: Vec<PredictedParameter>,
+    /// Largest specific force of the range [m/s^2].
+    pub range: f64,
+    /// Root of the mean variance of the compensated reading over the range, by noise, speeds and priors alone, and by all
+    /// sources [m/s^2]; null where a coefficient is not determined.
+    pub reading: Option<[f64; 2]>,
+    /// Along each instrument axis: specific force, and standard uncertainty of the compensated reading [m/s^2].
+    pub curves: Vec<[f64; 4]>,
+}
+
+/// An unknown before the experiment, SI; null where it is not determined.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PredictedParameter {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// bias, scale, misalignment, ...
+    pub group: &'static str,
+    /// Standard uncertainty by noise, speeds and priors.
+    pub type_a: Option<f64>,
+    /// Combined standard uncertainty.
+    pub combined: Option<f64>,
+    /// Expanded uncertainty.
+    pub expanded: Option<f64>,
+    /// Effective degrees of freedom; null when infinite.
+    pub degrees_of_freedom: Option<f64>,
+}
+
+impl PredictionReport {
+    /// The report of a prediction.
+    pub fn of(prediction: &Prediction, range: ReadingRange, coverage: f64) -> Self {
+        let budget = prediction.budget();
+        let parameters = prediction.model().parameters();
+        let parameter = |j: usize| {
+            let degrees = budget.degrees_of_freedom(j);
+            let combined = budget.standard_uncertainty(j);
+            PredictedParameter {
+                name: parameters[j].name.clone(),
+                unit: parameters[j].unit.clone(),
+                group: parameters[j].group,
+                type_a: prediction.type_a(j),
+                combined,
+                expanded: combined.zip(degrees).map(|(u, degrees)| u * coverage_factor(coverage, degrees)),
+                degrees_of_freedom: degrees.and_then(|degrees| match degrees {
+                    Degrees::Finite(nu) => Some(nu),
+                    Degrees::Infinite => None,
+                }),
+            }
+        };
+        // The curve is symmetric but for rounding: the half from 0 on is shown.
+        let curves = prediction.curves(range.force, 2 * POINTS - 1).map_or_else(Vec::new, |[a, b, c]| {
+            let rows = a.iter().zip(&b).zip(&c).skip(POINTS - 1);
+            rows.map(|((a, b), c)| [a.force, a.along, b.along, c.along]).collect()
+        });
+        Self {
+            coverage,
+            sources: budget.contributions().iter().map(|c| c.source.name()).collect(),
+            parameters: (0..parameters.len()).map(parameter).collect(),
+            range: range.force,
+            reading: prediction.reading(range),
+            curves,
+        }
+    }
+}

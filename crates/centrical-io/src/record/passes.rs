@@ -1,0 +1,118 @@
+//! The two passes of a reduction over the record in a file, in memory that does not grow with it.
+
+use std::path::Path;
+
+use centrical::reduction::{Record, RecordSlice, Survey};
+use rayon::prelude::*;
+
+use super::{Columns, Wanted, stretch};
+use crate::error::Error;
+use crate::table::{Block, Extent, Index};
+
+/// The record in a file.
+pub(crate) struct RecordFile<'a> {
+    file: &'a Path,
+    wanted: Wanted<'a>,
+    /// Told of bytes as they are read.
+    progress: &'a (dyn Fn(u64) + Sync),
+}
+
+impl<'a> RecordFile<'a> {
+    pub fn new(file: &'a Path, columns: &'a Columns, progress: &'a (dyn Fn(u64) + Sync)) -> Self {
+        Self { file, wanted: columns.of_record(), progress }
+    }
+
+    /// First pass: all of the record, its stretches condensed on all threads; and where its times stand, if the file
+    /// can be read from anywhere.
+    pub fn survey(&self) -> Result<(Survey, Option<Index>), Error> {
+        let mut beginning = Record::default();
+        let mut survey: Option<Survey> = None;
+        let index = self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks: &[Block]| {
+            if let Some(survey) = &mut survey {
+                let condensed: Vec<_> = blocks.par_iter().map(|block| survey.condense(stretch(block))).collect();
+                condensed.into_iter().for_each(|stretch| survey.append(stretch));
+            } else {
+                blocks.iter().for_each(|block| beginning.extend(stretch(block)));
+                if beginning.t.len() >= Survey::BEGINNING {
+                    survey = Some(begin(&std::mem::take(&mut beginning)));
+                }
+            }
+        })?;
+        let mut survey = survey.unwrap_or_else(|| begin(&beginning));
+        survey.finish();
+        Ok((survey, index))
+    }
+
+    /// Second pass: calls `average` with the number of each window, from and to [s], in ascending order, and its samples.
+    pub fn windows<T: Send>(
+        &self,
+        index: Option<&Index>,
+        windows: &[[f64; 2]],
+        average: &(dyn Fn(usize, RecordSlice) -> T + Sync),
+    ) -> Result<Vec<T>, Error> {
+        match index {
+            Some(index) => {
+                let one = |(k, window): (usize, &[f64; 2])| {
+                    self.samples(index, *window).map(|samples| average(k, samples.as_slice()))
+                };
+                let averaged: Vec<Result<T, Error>> = windows.par_iter().enumerate().map(one).collect();
+                averaged.into_iter().collect()
+            }
+            None => self.windows_in_order(windows, average),
+        }
+    }
+
+    /// The samples of one window.
+    fn samples(&self, index: &Index, window: [f64; 2]) -> Result<Record, Error> {
+        let raw = self.raw_range(window);
+        let mut samples = Record::default();
+        index.read(self.file, &self.wanted.fields(), raw, &mut |first_row, block| {
+            self.wanted.to_si(first_row, block);
+            samples.extend(stretch(block).between(window));
+            self.wanted.give_back(block);
+        })?;
+        (self.progress)(index.bytes(raw));
+        Ok(samples)
+    }
+
+    /// What the first column has in a window. The rounding of its scale is made up for by a part in 10^12.
+    fn raw_range(&self, window: [f64; 2]) -> [f64; 2] {
+        let [from, to] = window.map(|t| self.wanted.columns[0].scale.raw(t));
+        let slack = 1e-12 * from.abs().max(to.abs());
+        [from - slack, to + slack]
+    }
+
+    fn windows_in_order<T>(
+        &self,
+        windows: &[[f64; 2]],
+        average: &(dyn Fn(usize, RecordSlice) -> T + Sync),
+    ) -> Result<Vec<T>, Error> {
+        let mut averaged = Vec::with_capacity(windows.len());
+        let mut samples = vec![Record::default(); windows.len()];
+        let mut visit = |stretch: RecordSlice| {
+            for (window, samples) in windows.iter().zip(&mut samples).skip(averaged.len()) {
+                samples.extend(stretch.between(*window));
+            }
+            // A window is full once a later sample has come.
+            while let Some([_, to]) = windows.get(averaged.len())
+                && stretch.t.last().is_some_and(|last| last > to)
+            {
+                let k = averaged.len();
+                averaged.push(average(k, std::mem::take(&mut samples[k]).as_slice()));
+            }
+        };
+        self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks| {
+            blocks.iter().for_each(|block| visit(stretch(block)));
+        })?;
+        for k in averaged.len()..windows.len() {
+            averaged.push(average(k, samples[k].as_slice()));
+        }
+        Ok(averaged)
+    }
+}
+
+fn begin(beginning: &Record) -> Survey {
+    let mut survey = Survey::new(&beginning.t);
+    survey.append(survey.condense(beginning.as_slice()));
+    survey
+}

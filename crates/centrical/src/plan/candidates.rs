@@ -1,0 +1,170 @@
+//! What can be measured, what it costs, and what is chosen of it.
+
+use nalgebra::Matrix3;
+
+use super::search::PlanError;
+use crate::design::Weight;
+use crate::experiment::Experiment;
+use crate::measurement::MeasurementModel;
+
+/// White noise down to a floor: the variance of the mean of a plateau of duration `T` is `density^2 / 2T + floor^2`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Square root of the one-sided spectral density [m/s^2/sqrt(Hz)].
+    pub density: f64,
+    /// What longer averaging does not get below [m/s^2].
+    pub floor: f64,
+}
+
+impl Noise {
+    /// Variance of the mean of a plateau of `duration` [s], each axis [m^2/s^4].
+    pub fn variance(&self, duration: f64) -> f64 {
+        self.density * self.density / (2.0 * duration) + self.floor * self.floor
+    }
+
+    /// How well the mean of a plateau of `duration` [s] will be known.
+    pub fn weight(&self, set_point: usize, duration: f64) -> Weight {
+        Weight { set_point, covariance: Matrix3::identity() * self.variance(duration) }
+    }
+}
+
+/// One state of affairs that the plan must be good for: noise, unknowns, priors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scenario {
+    /// The unit's model. Its experiment has all candidate mountings, and the candidate plateaus as set points.
+    pub model: MeasurementModel,
+    /// The noise that is reckoned with.
+    pub noise: Noise,
+    /// Relative standard uncertainty of the speed of a plateau.
+    pub speed_uncertainty: f64,
+    /// Its weight among the scenarios; they are divided by their sum.
+    pub weight: f64,
+}
+
+/// Times that the machine and its operators take [s].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Costs {
+    /// Change of the position of the unit on the arm, its first mounting included: paid once for each position used.
+    pub position: f64,
+    /// Re-seating of the unit at another radius in the same position.
+    pub seat: f64,
+    /// Ramp to a speed and settling, once for each visit of a plateau while spinning.
+    pub ramp: f64,
+    /// Turn to an angle at rest, once for each visit.
+    pub turn: f64,
+    /// Run up from rest and back, once for each mounting.
+    pub run_up: f64,
+}
+
+/// All that can be chosen from. The scenarios share their experiment but not their unknowns; the first is the one that
+/// predictions are made for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidates {
+    /// What the plan must be good for; at least one.
+    pub scenarios: Vec<Scenario>,
+    /// Durations of a plateau [s], rising.
+    pub durations: Vec<f64>,
+    /// How often one plateau may be visited: each visit has its own speed error.
+    pub repeats: usize,
+    /// Times beside the durations.
+    pub costs: Costs,
+}
+
+/// One stay at a plateau.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Visit {
+    /// Index of the plateau among the set points of the candidates.
+    pub plateau: usize,
+    /// Duration [s].
+    pub duration: f64,
+}
+
+/// What is chosen, in the order of the candidates' mountings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Schedule {
+    /// The stays.
+    pub visits: Vec<Visit>,
+    /// Time of all of it, set-ups included [s].
+    pub time: f64,
+}
+
+impl Candidates {
+    /// The experiment with all candidates.
+    pub fn experiment(&self) -> &Experiment {
+        self.scenarios[0].model.experiment()
+    }
+
+    /// Number of plateaus to choose from.
+    pub fn len(&self) -> usize {
+        self.experiment().set_points.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Time of one visit [s], without the set-up of its mounting.
+    pub fn visit_time(&self, visit: &Visit) -> f64 {
+        self.overhead(visit.plateau) + visit.duration
+    }
+
+    /// Time of a list of visits with the set-ups of the mountings they use [s].
+    pub fn time_of(&self, visits: &[Visit]) -> f64 {
+        let experiment = self.experiment();
+        let mut used = vec![false; experiment.mountings.len()];
+        visits.iter().for_each(|visit| used[experiment.set_points[visit.plateau].mounting] = true);
+        self.set_up_time(&used) + visits.iter().map(|visit| self.visit_time(visit)).sum::<f64>()
+    }
+
+    /// A schedule of these visits, ordered by mounting, rest first, then by rising speed.
+    pub fn schedule(&self, mut visits: Vec<Visit>) -> Schedule {
+        let set_points = &self.experiment().set_points;
+        let key = |visit: &Visit| (set_points[visit.plateau].mounting, set_points[visit.plateau].omega.abs());
+        visits.sort_by(|a, b| {
+            let ((m, u), (n, v)) = (key(a), key(b));
+            m.cmp(&n).then(u.total_cmp(&v)).then(a.plateau.cmp(&b.plateau)).then(a.duration.total_cmp(&b.duration))
+        });
+        Schedule { time: self.time_of(&visits), visits }
+    }
+
+    /// Set-ups of the mountings in use [s]: `position` for each position, `seat` for each further mounting in it, and the
+    /// run-up of each.
+    pub(super) fn set_up_time(&self, used: &[bool]) -> f64 {
+        let experiment = self.experiment();
+        let mut positions = vec![false; experiment.positions.len()];
+        let mut time = 0.0;
+        for (mounting, _) in experiment.mountings.iter().zip(used).filter(|(_, used)| **used) {
+            let first = !std::mem::replace(&mut positions[mounting.position], true);
+            time += self.costs.run_up + if first { self.costs.position } else { self.costs.seat };
+        }
+        time
+    }
+
+    /// Ramp or turn before a plateau [s].
+    pub(super) fn overhead(&self, plateau: usize) -> f64 {
+        if self.experiment().set_points[plateau].is_rest() { self.costs.turn } else { self.costs.ramp }
+    }
+
+    /// Refuses what no plan can be made of.
+    pub(super) fn check(&self) -> Result<(), PlanError> {
+        let Some(first) = self.scenarios.first() else { return Err(PlanError::Nothing("scenarios")) };
+        if first.model.experiment().set_points.is_empty() {
+            return Err(PlanError::Nothing("candidate plateaus"));
+        }
+        if self.durations.is_empty() || self.repeats == 0 {
+            return Err(PlanError::Nothing("durations or visits"));
+        }
+        let positive = |value: &f64| *value > 0.0 && value.is_finite();
+        let costs = &self.costs;
+        let times = [costs.position, costs.seat, costs.ramp, costs.turn, costs.run_up];
+        if !self.durations.iter().all(positive) || times.iter().any(|time| !(*time >= 0.0 && time.is_finite())) {
+            return Err(PlanError::Time);
+        }
+        if costs.seat > costs.position {
+            return Err(PlanError::SeatAbovePosition);
+        }
+        let same = |s: &Scenario| s.model.experiment() == first.model.experiment();
+        if self.scenarios.iter().all(same) { Ok(()) } else { Err(PlanError::Experiments) }
+    }
+}

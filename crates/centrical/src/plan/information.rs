@@ -1,0 +1,292 @@
+//! The information of a design, as a triangular factor, and how the criterion answers to more of it.
+//!
+//! Unknowns are in units of ten typical magnitudes, so the hold is the identity: `M = E + priors + sum N`, each visit
+//! adding `J^T N J`, `N = Sigma^-1`. With `M = R^T R` by QR of the stacked rows and `P = R^-1`, the covariance is `P P^T` and
+//! is never formed. A change `dN` at plateau `c` changes it by `-C J^T Q J C`, `Q = dN (E + A dN)^-1`, `A = J C J^T`, so a
+//! goal `r = sum |P^T k|^2` changes by `-tr(Q G)`, `G = sum (J C k)(J C k)^T`: all in 3x3.
+
+use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix3xX, Vector3};
+
+use super::candidates::{Candidates, Scenario};
+use super::criterion::{Columns, Criterion};
+use super::search::PlanError;
+use crate::design::{Weight, total_covariance};
+use crate::fit::NULL_HOLD;
+use crate::measurement::MeasurementModel;
+
+/// A scenario made ready: rows of all plateaus, precisions of all visits, what is judged.
+#[derive(Debug, Clone)]
+pub(super) struct Scene {
+    /// Its part among the scenarios; they sum to 1.
+    pub weight: f64,
+    /// By plateau: non-zero columns of `J`, scaled.
+    jacobians: Vec<Vec<(usize, Vector3<f64>)>>,
+    /// By atom (plateau, then duration): `Sigma^-1`.
+    precisions: Vec<Matrix3<f64>>,
+    /// Roots of the diagonal of `M_0`.
+    prior: Vec<f64>,
+    columns: Columns,
+    goals: usize,
+}
+
+/// A design's information in one scene.
+#[derive(Debug, Clone)]
+pub(super) struct Factor {
+    triangle: DMatrix<f64>,
+    /// `P^T = R^-T`: its columns are the unknowns.
+    root: DMatrix<f64>,
+    /// `C K`, with `K` whitened by its own covariance for a determinant, `p x m`.
+    reach: DMatrix<f64>,
+    /// `r_j`; for a determinant its `s`-th root.
+    pub goals: Vec<f64>,
+}
+
+/// How a smooth criterion weighs the columns: its logarithm changes by `-sum_c tr(N_c sum_m v_m f_m f_m^T)`.
+#[derive(Debug, Clone)]
+pub(super) struct Smooth {
+    /// Logarithm of the smooth criterion.
+    pub value: f64,
+    /// The same with the weights of the goals as they are: what the bound of the true criterion starts from.
+    pub support: f64,
+    /// `v` by column.
+    pub columns: Vec<f64>,
+    /// Parts of the goals, which sum to 1.
+    pub parts: Vec<f64>,
+}
+
+impl Scene {
+    /// The scenario with its criterion; `total` is the sum of the weights of all.
+    pub fn new(
+        scenario: &Scenario,
+        candidates: &Candidates,
+        criterion: &Criterion,
+        total: f64,
+    ) -> Result<Self, PlanError> {
+        let model = &scenario.model;
+        let mut precisions = Vec::with_capacity(candidates.len() * candidates.durations.len());
+        for n in 0..candidates.len() {
+            for &duration in &candidates.durations {
+                precisions.push(precision(model, &scenario.noise.weight(n, duration), scenario.speed_uncertainty)?);
+            }
+        }
+        Ok(Self { weight: scenario.weight / total, precisions, ..Self::of(model, criterion)? })
+    }
+
+    /// The rows of all plateaus of `model` and what is judged, without precisions.
+    pub fn of(model: &MeasurementModel, criterion: &Criterion) -> Result<Self, PlanError> {
+        let scale: Vec<f64> = model.parameters().iter().map(|p| NULL_HOLD * p.typical).collect();
+        let jacobian = |set_point| {
+            let columns = model.linearise_at_zero(set_point).columns.into_iter();
+            columns.map(|(j, column)| (j, column * scale[j])).collect::<Vec<_>>()
+        };
+        let jacobians: Vec<_> = model.experiment().set_points.iter().map(jacobian).collect();
+        let mut squares = vec![1.0; scale.len()];
+        for prior in model.priors() {
+            squares[prior.parameter] += (scale[prior.parameter] / prior.standard_uncertainty).powi(2);
+        }
+        let mut columns = criterion.columns(model)?;
+        columns.k.row_iter_mut().zip(&scale).for_each(|(mut row, scale)| row *= *scale);
+        let goals = columns.goal.iter().max().map_or(0, |last| last + 1);
+        let prior = squares.into_iter().map(f64::sqrt).collect();
+        Ok(Self { weight: 1.0, jacobians, precisions: Vec::new(), prior, columns, goals })
+    }
+
+    /// `N` of an atom.
+    pub fn precision(&self, atom: usize) -> &Matrix3<f64> {
+        &self.precisions[atom]
+    }
+
+    /// The factor of `M_0` and so much information at some plateaus.
+    pub fn factor(&self, information: &[(usize, Matrix3<f64>)]) -> Factor {
+        let p = self.prior.len();
+        self.stacked(&DMatrix::from_fn(p, p, |i, j| if i == j { self.prior[i] } else { 0.0 }), information)
+    }
+
+    /// The factor with more information at some plateaus.
+    pub fn with(&self, factor: &Factor, information: &[(usize, Matrix3<f64>)]) -> Factor {
+        self.stacked(&factor.triangle, information)
+    }
+
+    fn stacked(&self, triangle: &DMatrix<f64>, information: &[(usize, Matrix3<f64>)]) -> Factor {
+        let p = self.prior.len();
+        let mut rows = triangle.clone().resize_vertically(p + 3 * information.len(), 0.0);
+        for (n, (plateau, precision)) in information.iter().enumerate() {
+            // What is no information adds no rows.
+            let Some(half) = Cholesky::new(*precision).map(|factor| factor.l().transpose()) else { continue };
+            for (column, derivative) in &self.jacobians[*plateau] {
+                rows.fixed_view_mut::<3, 1>(p + 3 * n, *column).copy_from(&(half * derivative));
+            }
+        }
+        let triangle = if information.is_empty() { rows } else { rows.qr().unpack_r() };
+        let mut root = DMatrix::identity(p, p);
+        // The hold leaves no zero on the diagonal.
+        let solved = triangle.solve_upper_triangular_mut(&mut root);
+        debug_assert!(solved, "the hold makes every factor regular");
+        let transposed = root.transpose();
+        let mut seen = &transposed * &self.columns.k;
+        let goals = if self.columns.is_determinant { self.whiten(&mut seen) } else { self.sums(&seen) };
+        Factor { triangle, reach: root * seen, root: transposed, goals }
+    }
+
+    fn sums(&self, seen: &DMatrix<f64>) -> Vec<f64> {
+        let mut goals = vec![0.0; self.goals];
+        seen.column_iter().zip(&self.columns.goal).for_each(|(column, goal)| goals[*goal] += column.norm_squared());
+        goals
+    }
+
+    /// Makes the columns orthonormal and returns `det(K^T C K)^(1/s)`.
+    fn whiten(&self, seen: &mut DMatrix<f64>) -> Vec<f64> {
+        let s = seen.ncols();
+        let qr = seen.clone().qr();
+        let log: f64 = qr.r().diagonal().iter().map(|d| 2.0 * d.abs().ln()).sum();
+        *seen = qr.q();
+        vec![(log / s as f64).exp()]
+    }
+
+    /// Logarithm of the criterion itself: of the worst goal, of the only one, of the determinant.
+    pub fn value(factor: &Factor) -> f64 {
+        factor.goals.iter().copied().fold(f64::MIN_POSITIVE, f64::max).ln()
+    }
+
+    /// The criterion with the worst goal replaced by the `exponent`-norm of all, `(sum r_j^q)^(1/q)`.
+    pub fn smooth(&self, factor: &Factor, exponent: f64) -> Smooth {
+        let s = self.columns.goal.len() as f64;
+        if self.columns.is_determinant {
+            let value = factor.goals[0].ln();
+            return Smooth { value, support: value, columns: vec![1.0 / s; self.columns.goal.len()], parts: vec![1.0] };
+        }
+        let worst = factor.goals.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let powers: Vec<f64> = factor.goals.iter().map(|r| (r / worst).powf(exponent)).collect();
+        let sum: f64 = powers.iter().sum();
+        let parts: Vec<f64> = powers.iter().map(|power| power / sum).collect();
+        let of_goal: Vec<f64> =
+            parts.iter().zip(&factor.goals).map(|(part, r)| part / r.max(f64::MIN_POSITIVE)).collect();
+        // Weights lambda_j in proportion to part_j / r_j make sum lambda_j r_j = 1 / sum (part_j / r_j).
+        let support = -of_goal.iter().sum::<f64>().ln();
+        Smooth {
+            value: worst.ln() + sum.ln() / exponent,
+            support,
+            columns: self.columns.goal.iter().map(|&j| of_goal[j]).collect(),
+            parts,
+        }
+    }
+
+    /// `f_m = J C k_m` of a plateau, `3 x m`.
+    pub fn response(&self, factor: &Factor, plateau: usize) -> Matrix3xX<f64> {
+        let mut response = Matrix3xX::zeros(factor.reach.ncols());
+        for (column, derivative) in &self.jacobians[plateau] {
+            for (m, reach) in factor.reach.row(*column).iter().enumerate() {
+                let mut target = response.column_mut(m);
+                target += derivative * *reach;
+            }
+        }
+        response
+    }
+
+    /// `J P` of some plateaus, `p x 3` each, side by side.
+    pub fn views(&self, factor: &Factor, plateaus: &[usize]) -> DMatrix<f64> {
+        let p = self.prior.len();
+        let mut views = DMatrix::zeros(p, 3 * plateaus.len());
+        for (n, &plateau) in plateaus.iter().enumerate() {
+            for (column, derivative) in &self.jacobians[plateau] {
+                for i in 0..3 {
+                    if derivative[i] != 0.0 {
+                        views.column_mut(3 * n + i).axpy(derivative[i], &factor.root.column(*column), 1.0);
+                    }
+                }
+            }
+        }
+        views
+    }
+
+    /// `G = sum v_m f_m f_m^T`.
+    pub fn weighed(response: &Matrix3xX<f64>, weights: &[f64]) -> Matrix3<f64> {
+        let mut sum = Matrix3::zeros();
+        for (f, weight) in response.column_iter().zip(weights) {
+            sum += f * f.transpose() * *weight;
+        }
+        sum
+    }
+
+    /// Goal by column.
+    pub fn goal_of(&self, column: usize) -> usize {
+        self.columns.goal[column]
+    }
+
+    /// Number of goals.
+    pub fn goals(&self) -> usize {
+        self.goals
+    }
+
+    /// Whether the criterion is a determinant.
+    pub fn is_determinant(&self) -> bool {
+        self.columns.is_determinant
+    }
+
+    /// All that a change at one plateau needs to be judged.
+    pub fn insight(&self, factor: &Factor, plateau: usize) -> Insight {
+        let view = self.views(factor, &[plateau]);
+        let response = self.response(factor, plateau);
+        let mut by_goal = vec![Matrix3::zeros(); self.goals];
+        for (m, f) in response.column_iter().enumerate() {
+            by_goal[self.columns.goal[m]] += f * f.transpose();
+        }
+        let a = view.transpose() * &view;
+        Insight { a: Matrix3::from_fn(|i, j| a[(i, j)]), by_goal }
+    }
+
+    /// Logarithm of the criterion after a change `dn` of the information at a plateau; infinite if it would take away what
+    /// is not there.
+    pub fn value_after(&self, factor: &Factor, insight: &Insight, dn: &Matrix3<f64>) -> f64 {
+        let system = Matrix3::identity() + insight.a * dn;
+        // Positive for any gain; a loss of nearly all that is known along a direction is no number to rely on.
+        if system.determinant() < 1e-9 {
+            return f64::INFINITY;
+        }
+        let Some(q) = system.try_inverse().map(|inverse| dn * inverse) else { return f64::INFINITY };
+        if self.columns.is_determinant {
+            let rest = (Matrix3::identity() - q * insight.by_goal[0]).determinant();
+            return factor.goals[0].ln() + rest.max(f64::MIN_POSITIVE).ln() / self.columns.goal.len() as f64;
+        }
+        let after = factor.goals.iter().zip(&insight.by_goal).map(|(r, g)| r - trace_of_product(&q, g));
+        after.fold(f64::MIN_POSITIVE, f64::max).ln()
+    }
+
+    /// Part of the priors and the hold in the sensitivities: `sum v_m |M_0^(1/2) C k_m|^2`.
+    pub fn prior_part(&self, factor: &Factor, weights: &[f64]) -> f64 {
+        let column = |m: usize| {
+            factor.reach.column(m).iter().zip(&self.prior).map(|(reach, prior)| (reach * prior).powi(2)).sum::<f64>()
+        };
+        weights.iter().enumerate().map(|(m, weight)| weight * column(m)).sum()
+    }
+}
+
+/// What a change at one plateau needs to be judged: `A` and `G` by goal.
+#[derive(Debug, Clone)]
+pub(super) struct Insight {
+    a: Matrix3<f64>,
+    by_goal: Vec<Matrix3<f64>>,
+}
+
+/// `Sigma^-1` of a plateau's mean, its speed error included.
+pub(super) fn precision(
+    model: &MeasurementModel,
+    weight: &Weight,
+    speed_uncertainty: f64,
+) -> Result<Matrix3<f64>, PlanError> {
+    let set_points = &model.experiment().set_points;
+    let speed = model.linearise_at_zero(&set_points[weight.set_point]).speed;
+    let total = total_covariance(&weight.covariance, &speed, speed_uncertainty);
+    let precision = total.cholesky().map(|factor| factor.inverse());
+    precision.filter(|p| p.iter().all(|v| v.is_finite())).ok_or(PlanError::Noise { plateau: weight.set_point })
+}
+
+/// `tr(A B)` of two matrices, the second symmetric.
+pub(super) fn trace_of_product(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
+    a.component_mul(b).sum()
+}
+
+/// Sum of the information of some visits of one plateau.
+pub(super) fn sum_of(parts: impl Iterator<Item = Matrix3<f64>>) -> Matrix3<f64> {
+    parts.fold(Matrix3::zeros(), |sum, part| sum + part)
+}

@@ -1,0 +1,132 @@
+//! Uncertainties before anything spins: type A from the planned noise, type B as stated.
+//!
+//! The budget of a fit of perfect readings of a unit without errors, with the covariances that the plateaus are expected to
+//! have: the same computation that a calibration makes of its data, so that what is predicted is what will be stated.
+
+use nalgebra::{DMatrix, Vector3};
+
+use super::candidates::{Candidates, Schedule};
+use super::criterion::ReadingRange;
+use crate::design::{Observation, Weight};
+use crate::error::FitError;
+use crate::experiment::{Experiment, Mounting};
+use crate::fit;
+use crate::measurement::MeasurementModel;
+use crate::uncertainty::{Budget, Compensated, CurvePoint, TypeB};
+
+/// What a plan will know.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    model: MeasurementModel,
+    budget: Budget,
+}
+
+/// Predicts the budget of a calibration of `model` with the plateaus' `weights`.
+///
+/// # Errors
+/// [`FitError`] when a weight cannot be one.
+pub fn predict(
+    model: &MeasurementModel,
+    weights: &[Weight],
+    speed_uncertainty: f64,
+    stated: &TypeB,
+) -> Result<Prediction, FitError> {
+    let zero = vec![0.0; model.parameters().len()];
+    let observation = |weight: &Weight| Observation {
+        set_point: weight.set_point,
+        mean: model
+            .experiment()
+            .set_points
+            .get(weight.set_point)
+            .map_or_else(Vector3::zeros, |s| model.reading(s, &zero)),
+        covariance: weight.covariance,
+    };
+    let observations: Vec<Observation> = weights.iter().map(observation).collect();
+    let fit = fit::exact(model, &observations, speed_uncertainty)?;
+    let budget = Budget::new(&fit, model, &observations, speed_uncertainty, stated)?;
+    Ok(Prediction { model: model.clone(), budget })
+}
+
+impl Prediction {
+    /// The model it is for.
+    pub fn model(&self) -> &MeasurementModel {
+        &self.model
+    }
+
+    /// The budget by source: standard and expanded uncertainties of the parameters.
+    pub fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
+    /// Standard uncertainty of parameter `j` by what the fit weighs alone, noise, speeds and priors, if it is determined
+    /// [its unit].
+    pub fn type_a(&self, j: usize) -> Option<f64> {
+        let weighed = self.budget.contributions().iter().filter(|c| c.source.is_weighed());
+        let variance: f64 = weighed.map(|c| c.standard_uncertainty(j).powi(2)).sum();
+        self.budget.standard_uncertainty(j).map(|_| variance.sqrt())
+    }
+
+    /// Root of the mean variance of the compensated reading over a range, by what the fit weighs and by all sources
+    /// [m/s^2]; `None` if a coefficient is not determined.
+    pub fn reading(&self, range: ReadingRange) -> Option<[f64; 2]> {
+        let all = self.covariance()?;
+        let weighed = self.budget.contributions().iter().filter(|c| c.source.is_weighed());
+        let p = self.model.parameters().len();
+        let sum = weighed.fold(DMatrix::zeros(p, p), |sum, c| sum + c.covariance());
+        let (first, count) = (self.model.parameters().first_term(), all.nrows());
+        let weighed = sum.view((first, first), (count, count)).into_owned();
+        Some([weighed, all].map(|covariance| range.standard_uncertainty(&self.model, &covariance)))
+    }
+
+    /// Uncertainty of the compensated reading along each instrument axis from `-range` to `range` [m/s^2]; `None` if a
+    /// coefficient is not determined.
+    pub fn curves(&self, range: f64, points: usize) -> Option<[Vec<CurvePoint>; 3]> {
+        let covariance = self.covariance()?;
+        let coefficients = vec![0.0; covariance.nrows()];
+        let compensated = Compensated::new(self.model.error_model().clone(), coefficients, covariance)?;
+        Some([0, 1, 2].map(|axis| compensated.curve(&Vector3::ith(axis, 1.0), range, points)))
+    }
+
+    /// Combined covariance of the coefficients in the order of the terms.
+    fn covariance(&self) -> Option<DMatrix<f64>> {
+        let (first, count) = (self.model.parameters().first_term(), self.model.error_model().terms.len());
+        let mut covariance = DMatrix::zeros(count, count);
+        for i in 0..count {
+            for j in 0..count {
+                covariance[(i, j)] = self.budget.covariance(first + i, first + j)?;
+            }
+        }
+        Some(covariance)
+    }
+}
+
+impl Candidates {
+    /// The experiment that a schedule makes: the positions and mountings it uses, its visits as set points; and for each
+    /// visit its weight in the first scenario.
+    pub fn experiment_of(&self, schedule: &Schedule) -> (Experiment, Vec<Weight>) {
+        let all = self.experiment();
+        let used: Vec<usize> = (0..all.mountings.len())
+            .filter(|&m| schedule.visits.iter().any(|v| all.set_points[v.plateau].mounting == m))
+            .collect();
+        let kept: Vec<usize> =
+            (0..all.positions.len()).filter(|&k| used.iter().any(|&m| all.mountings[m].position == k)).collect();
+        let place = |list: &[usize], index: usize| list.iter().position(|i| *i == index).unwrap_or(0);
+        let mounting = |m: &usize| {
+            let Mounting { position, arm_y } = all.mountings[*m];
+            Mounting { position: place(&kept, position), arm_y }
+        };
+        let set_point = |visit: &super::Visit| {
+            let mut set_point = all.set_points[visit.plateau];
+            set_point.mounting = place(&used, set_point.mounting);
+            set_point
+        };
+        let experiment = Experiment {
+            positions: kept.iter().map(|&k| all.positions[k].clone()).collect(),
+            mountings: used.iter().map(mounting).collect(),
+            set_points: schedule.visits.iter().map(set_point).collect(),
+            ..all.clone()
+        };
+        let weight = |(n, visit): (usize, &super::Visit)| self.scenarios[0].noise.weight(n, visit.duration);
+        (experiment, schedule.visits.iter().enumerate().map(weight).collect())
+    }
+}

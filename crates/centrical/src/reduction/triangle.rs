@@ -1,0 +1,144 @@
+//! Least squares over many samples by strips: each strip's design is orthogonalised by itself, and the triangles that
+//! this leaves are orthogonalised together (tall and skinny QR; Demmel, Grigori, Hoemmen, Langou 2012). A strip that
+//! loses a sample is done again alone.
+
+use nalgebra::Vector3;
+
+use super::lanes::{dot, subtract};
+
+/// Columns of a design: two of the revolution, settling, constant.
+pub(super) const TERMS: usize = 4;
+
+/// What is left of a column of that length is rounding, for all that the coefficients are asked for.
+const ROUNDING: f64 = 1e-12;
+
+/// `X = Q R` and `Z = Q^T F` of a strip or of all: what its samples say of the coefficients.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Triangle {
+    /// Upper triangle: `r[j][i]`, i <= j, so that `x_j = sum_i q_i r[j][i]`.
+    pub r: [[f64; TERMS]; TERMS],
+    /// `q_j^T f`, per axis.
+    pub z: [[f64; 3]; TERMS],
+}
+
+impl Triangle {
+    /// The triangle of some rows: `terms` columns of a design and three of readings, which are spent.
+    pub fn of(terms: &mut [&mut [f64]], readings: &mut [&mut [f64]; 3]) -> Self {
+        let mut triangle = Self::default();
+        for j in 0..terms.len() {
+            let (done, rest) = terms.split_at_mut(j);
+            let column = &mut *rest[0];
+            let length = dot(column, column).sqrt();
+            for (i, q) in done.iter().enumerate() {
+                let projection = dot(q, column);
+                subtract(column, projection, q);
+                triangle.r[j][i] = projection;
+            }
+            let left = dot(column, column).sqrt();
+            // What hangs on the columns before it within a strip adds no direction, and rounding must not make one up.
+            let left = if left > ROUNDING * length { left } else { 0.0 };
+            triangle.r[j][j] = left;
+            let scale = if left > 0.0 { 1.0 / left } else { 0.0 };
+            column.iter_mut().for_each(|c| *c *= scale);
+            for (axis, f) in readings.iter_mut().enumerate() {
+                let projection = dot(column, f);
+                subtract(f, projection, column);
+                triangle.z[j][axis] = projection;
+            }
+        }
+        triangle
+    }
+
+    /// The triangle of all rows from those of the strips.
+    pub fn joined(strips: &[Self], terms: usize) -> Self {
+        let mut columns = vec![vec![0.0; strips.len() * terms]; terms];
+        let mut readings = [const { Vec::new() }; 3];
+        for (s, strip) in strips.iter().enumerate() {
+            for (j, column) in columns.iter_mut().enumerate() {
+                column[s * terms..s * terms + j + 1].copy_from_slice(&strip.r[j][..=j]);
+            }
+            for (axis, z) in readings.iter_mut().enumerate() {
+                z.extend((0..terms).map(|j| strip.z[j][axis]));
+            }
+        }
+        let mut columns: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
+        Self::of(&mut columns, &mut readings.each_mut().map(Vec::as_mut_slice))
+    }
+
+    /// Coefficients per axis. `None` if a column hangs on those before it to within `1e-6` of its length.
+    pub fn solve(&self, terms: usize) -> Option<Vec<Vector3<f64>>> {
+        // Half the digits of f64: below this a column is rounding.
+        const DEPENDENT: f64 = 1e-6;
+        let mut b: Vec<Vector3<f64>> = self.z[..terms].iter().map(|z| Vector3::from(*z)).collect();
+        for j in (0..terms).rev() {
+            let (own, length) = (self.r[j][j], dot(&self.r[j], &self.r[j]).sqrt());
+            if own.is_nan() || own <= DEPENDENT * length {
+                return None;
+            }
+            b[j] /= own;
+            for i in 0..j {
+                let known = b[j] * self.r[j][i];
+                b[i] -= known;
+            }
+        }
+        Some(b)
+    }
+
+    /// Sums of the orthonormal columns over some rows from the sums of the design's columns: `R^-T` of them.
+    pub fn orthonormal(&self, mut sums: [f64; TERMS], terms: usize) -> [f64; TERMS] {
+        for j in 0..terms {
+            for i in 0..j {
+                sums[j] -= sums[i] * self.r[j][i];
+            }
+            sums[j] /= self.r[j][j];
+        }
+        sums
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The coefficients and the triangle of all rows at once, and by strips.
+    #[test]
+    fn strips_are_the_whole() {
+        let rows = 1000;
+        let x: [Vec<f64>; 3] = [
+            (0..rows).map(|i| (0.37 * i as f64).cos()).collect(),
+            (0..rows).map(|i| (-0.05 * i as f64).exp()).collect(),
+            vec![1.0; rows],
+        ];
+        let f = [0, 1, 2].map(|a| -> Vec<f64> {
+            let noise = |i: usize| ((i * i * 7919 + a) % 101) as f64 / 101.0;
+            (0..rows).map(|i| 3.0 * x[0][i] - 0.5 * x[1][i] + a as f64 + noise(i)).collect()
+        });
+        let of = |range: std::ops::Range<usize>| {
+            let (mut x, mut f) =
+                (x.clone().map(|x| x[range.clone()].to_vec()), f.clone().map(|f| f[range.clone()].to_vec()));
+            Triangle::of(&mut x.each_mut().map(Vec::as_mut_slice), &mut f.each_mut().map(Vec::as_mut_slice))
+        };
+        let whole = of(0..rows);
+        // The settling is over in the later strips: a column that rounds to the span of the others.
+        let strips: Vec<Triangle> = (0..10).map(|s| of(100 * s..100 * s + 100)).collect();
+        let joined = Triangle::joined(&strips, 3);
+        for j in 0..3 {
+            for i in 0..=j {
+                assert!((joined.r[j][i].abs() - whole.r[j][i].abs()).abs() < 1e-12 * rows as f64);
+            }
+        }
+        let (a, b) = (whole.solve(3).unwrap(), joined.solve(3).unwrap());
+        for (a, b) in a.iter().zip(&b) {
+            assert!((a - b).amax() < 1e-12, "{a} {b}");
+        }
+        assert!((a[0].x - 3.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn dependent_columns_are_refused() {
+        let (mut a, mut b) = (vec![1.0, 2.0, 3.0], vec![2.0, 4.0, 6.0]);
+        let mut f = [vec![1.0; 3], vec![2.0; 3], vec![3.0; 3]];
+        let triangle = Triangle::of(&mut [&mut a, &mut b], &mut f.each_mut().map(Vec::as_mut_slice));
+        assert!(triangle.solve(2).is_none());
+    }
+}

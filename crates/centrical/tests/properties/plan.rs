@@ -1,0 +1,512 @@
+use centrical::plan::{
+    Account, Candidates, Costs, Criterion, Effort, Goal, Noise, PlanError, ReadingRange, Scenario, Schedule, Visit,
+    best_for_time, next_best, predict, shortest_for_goals,
+};
+use centrical::position::{ThirdPosition, kozlov_2017};
+use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, reduce};
+use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
+use centrical::uncertainty::{Compensated, Method, Settings, TypeB, monte_carlo};
+use centrical::{
+    ErrorModel, Experiment, MeasurementModel, Monomial, Mounting, Observation, PairRelation, ReferencePoint, SetPoint,
+    Site, Term, Unit, Weight, fit, linear,
+};
+use nalgebra::{DMatrix, Matrix3, Vector3};
+
+use crate::common::{Random, spread, truth};
+
+/// What a good laboratory states.
+const STATED: TypeB = TypeB {
+    gravity: 1e-6,
+    latitude: 1e-5,
+    radius: 20e-6,
+    radius_difference: Some(3e-6),
+    speed_scale: 1e-6,
+    rest_angle: 5e-5,
+    proof_masses: 20e-6,
+    attitude: 2e-5,
+    resolution: 1e-5,
+    doubt: 0.0,
+};
+
+/// A few plateaus of one to three mountings, a unit of four to six coefficients, costs and durations by chance.
+fn small(random: &mut Random) -> Candidates {
+    let positions = kozlov_2017(ThirdPosition::AxisOneUp);
+    let count = 1 + random.below(3);
+    let mountings: Vec<Mounting> = (0..count)
+        .map(|m| Mounting { position: m / 2, arm_y: Vector3::x() * (0.2 + 0.5 * random.uniform()) })
+        .collect();
+    let used = mountings.iter().map(|m| m.position + 1).max().unwrap();
+    let set_points: Vec<SetPoint> = (0..mountings.len())
+        .flat_map(|mounting| (0..5 - count.min(3)).map(move |n| (mounting, n)))
+        .map(|(mounting, n)| match n {
+            0 => SetPoint { mounting, omega: 0.0, angle: 6.0 * random.uniform() },
+            _ => SetPoint { mounting, omega: 10.0 + 40.0 * random.uniform(), angle: 0.0 },
+        })
+        .collect();
+    let experiment = Experiment {
+        site: Site { gravity: 9.81, latitude: None },
+        unit: Unit { rho_z: spread() * 0.5, reference: ReferencePoint::FirstProofMass },
+        positions: positions[..used].to_vec(),
+        pair_relation: PairRelation::Common,
+        mountings,
+        set_points,
+    };
+    let mut terms = vec![Term::new(0, Monomial::ONE), Term::new(0, Monomial::power(0, 1))];
+    for _ in 0..2 + random.below(3) {
+        terms
+            .push(Term::new(random.below(3), Monomial::power(random.below(3), u8::try_from(random.below(4)).unwrap())));
+    }
+    terms.dedup();
+    let model = MeasurementModel::new(experiment, ErrorModel { terms }, &[]);
+    let noise = Noise { density: 1e-4 * (1.0 + random.uniform()), floor: 1e-5 * random.uniform() };
+    let position = 300.0 * random.uniform();
+    Candidates {
+        scenarios: vec![Scenario { model, noise, speed_uncertainty: 1e-5 * random.uniform(), weight: 1.0 }],
+        durations: vec![20.0 + 40.0 * random.uniform(), 100.0 + 100.0 * random.uniform()],
+        repeats: 1,
+        costs: Costs {
+            position,
+            seat: position * random.uniform(),
+            ramp: 60.0 * random.uniform(),
+            turn: 20.0 * random.uniform(),
+            run_up: 30.0 * random.uniform(),
+        },
+    }
+}
+
+/// The covariance by one factorisation of all rows in typical units, each visit by itself: another way to the same numbers.
+fn covariance(candidates: &Candidates, visits: &[Visit]) -> DMatrix<f64> {
+    let scenario = &candidates.scenarios[0];
+    let model = &scenario.model;
+    let p = model.parameters().len();
+    let mut rows = DMatrix::zeros(p + 3 * visits.len(), p);
+    rows.fill_diagonal(1.0 / fit::NULL_HOLD);
+    for (n, visit) in visits.iter().enumerate() {
+        let l = model.linearise_at_zero(&model.experiment().set_points[visit.plateau]);
+        let shift = l.speed * scenario.speed_uncertainty;
+        let sigma = Matrix3::identity() * scenario.noise.variance(visit.duration) + shift * shift.transpose();
+        let whitener = sigma.cholesky().unwrap().l().try_inverse().unwrap();
+        for (j, column) in &l.columns {
+            let typical = model.parameters()[*j].typical;
+            rows.fixed_view_mut::<3, 1>(p + 3 * n, *j).copy_from(&(whitener * column * typical));
+        }
+    }
+    let root = rows.qr().r().try_inverse().unwrap();
+    let typical =
+        DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(p, model.parameters().iter().map(|p| p.typical)));
+    let root = typical * root;
+    &root * root.transpose()
+}
+
+/// The criterion from its definition.
+fn value(criterion: &Criterion, candidates: &Candidates, visits: &[Visit]) -> f64 {
+    let model = &candidates.scenarios[0].model;
+    let all = covariance(candidates, visits);
+    let instrument: Vec<usize> = (0..all.nrows()).filter(|&j| model.parameters()[j].is_of_instrument()).collect();
+    let c = all.select_rows(&instrument).select_columns(&instrument);
+    let typical = |n: usize| model.parameters()[instrument[n]].typical;
+    let s = instrument.len();
+    let reading = |range: &ReadingRange| range.standard_uncertainty(model, &c).powi(2);
+    match criterion {
+        Criterion::Determinant => {
+            let scaled = DMatrix::from_fn(s, s, |i, j| c[(i, j)] / (typical(i) * typical(j)));
+            scaled.determinant().powf(1.0 / s as f64)
+        }
+        Criterion::Average => (0..s).map(|n| c[(n, n)] / typical(n).powi(2)).sum::<f64>() / s as f64,
+        Criterion::Reading(range) => reading(range),
+        Criterion::Worst(goals) => goals
+            .iter()
+            .map(|goal| match goal {
+                Goal::Parameter { name, uncertainty } => {
+                    let j = model.parameters().find(name).unwrap();
+                    all[(j, j)] / (uncertainty * uncertainty)
+                }
+                Goal::Reading { range, uncertainty } => reading(range) / (uncertainty * uncertainty),
+            })
+            .fold(0.0, f64::max),
+    }
+}
+
+/// All sets of visits, one of each plateau at most, that fit into the time.
+fn enumerated(candidates: &Candidates, time: f64, visit: &mut dyn FnMut(&[Visit])) {
+    let options = candidates.durations.len() + 1;
+    let count = options.pow(u32::try_from(candidates.len()).unwrap());
+    for code in 0..count {
+        let mut rest = code;
+        let mut visits = Vec::new();
+        for plateau in 0..candidates.len() {
+            if rest % options > 0 {
+                visits.push(Visit { plateau, duration: candidates.durations[rest % options - 1] });
+            }
+            rest /= options;
+        }
+        if !visits.is_empty() && candidates.time_of(&visits) <= time {
+            visit(&visits);
+        }
+    }
+}
+
+const RANGE: ReadingRange = ReadingRange { force: 500.0 };
+
+fn criterion(number: usize, model: &MeasurementModel) -> Criterion {
+    let goal = |p: &centrical::Parameter| Goal::Parameter { name: p.name.clone(), uncertainty: 1e-3 * p.typical };
+    match number {
+        0 => Criterion::Determinant,
+        1 => Criterion::Average,
+        2 => Criterion::Reading(RANGE),
+        _ => {
+            let mut goals: Vec<Goal> = model.parameters().iter().filter(|p| p.is_of_instrument()).map(goal).collect();
+            goals.push(Goal::Reading { range: RANGE, uncertainty: 1e-3 });
+            Criterion::Worst(goals)
+        }
+    }
+}
+
+/// On small cases the plan is the best of all that there are.
+#[test]
+fn small_plans_are_the_best_of_all() {
+    let mut random = Random::new(11);
+    let mut enumerated_plans = 0;
+    let mut proven = 0;
+    for case in 0..60 {
+        let candidates = small(&mut random);
+        let criterion = criterion(case % 4, &candidates.scenarios[0].model);
+        let all: Vec<Visit> =
+            (0..candidates.len()).map(|plateau| Visit { plateau, duration: candidates.durations[1] }).collect();
+        let time = candidates.time_of(&all) * (0.4 + 0.5 * random.uniform());
+        let mut best = (f64::INFINITY, Vec::new());
+        enumerated(&candidates, time, &mut |visits| {
+            enumerated_plans += 1;
+            let value = value(&criterion, &candidates, visits);
+            if value < best.0 {
+                best = (value, visits.to_vec());
+            }
+        });
+        if best.1.is_empty() {
+            continue;
+        }
+        let plan = best_for_time(&candidates, &criterion, time, Effort::EXHAUSTIVE).unwrap();
+        let found = value(&criterion, &candidates, &plan.schedule.visits);
+        assert!((plan.criterion / found - 1.0).abs() < 1e-6, "case {case}: {} {found}", plan.criterion);
+        assert!(plan.schedule.time <= time * (1.0 + 1e-12) && plan.bound <= best.0 * (1.0 + 1e-6), "case {case}");
+        assert!(
+            found <= best.0 * (1.0 + 1e-6),
+            "case {case}, {criterion:?}: found {found:e}, best {:e}\n{:?}\n{:?}",
+            best.0,
+            plan,
+            best.1
+        );
+        proven += 1;
+    }
+    println!("{proven} cases, {enumerated_plans} plans enumerated");
+    assert!(proven >= 55, "{proven}");
+}
+
+fn schedule_is_sorted(schedule: &Schedule, candidates: &Candidates) -> bool {
+    let mounting = |v: &Visit| candidates.experiment().set_points[v.plateau].mounting;
+    schedule.visits.windows(2).all(|w| mounting(&w[0]) <= mounting(&w[1]))
+}
+
+/// A machine's worth of candidates: six positions, two radii, speeds by load.
+pub fn large(speeds: usize, durations: &[f64]) -> Candidates {
+    let mut experiment = crate::common::experiment(ThirdPosition::AxisOneUp, PairRelation::Common, &[1.0, 0.5]);
+    let top = (200.0 * 9.80665 / 0.5_f64).sqrt();
+    experiment.set_points = (0..experiment.mountings.len())
+        .flat_map(|mounting| {
+            let rest =
+                (0..2).map(move |n| SetPoint { mounting, omega: 0.0, angle: std::f64::consts::PI * f64::from(n) });
+            let spin = (1..=speeds).map(move |n| SetPoint {
+                mounting,
+                omega: top * (n as f64 / speeds as f64).sqrt(),
+                angle: 0.0,
+            });
+            rest.chain(spin)
+        })
+        .collect();
+    let model = MeasurementModel::new(experiment, ErrorModel::kozlov_2017(), &[]);
+    let noise = Noise { density: 20e-6 * 9.80665, floor: 1e-6 * 9.80665 };
+    Candidates {
+        scenarios: vec![Scenario { model, noise, speed_uncertainty: 1e-5, weight: 1.0 }],
+        durations: durations.to_vec(),
+        repeats: 2,
+        costs: Costs { position: 1200.0, seat: 600.0, ramp: 30.0, turn: 10.0, run_up: 60.0 },
+    }
+}
+
+#[test]
+fn large_plans_are_certified() {
+    for (number, time) in [(2, 6.0), (0, 8.0), (1, 8.0), (3, 8.0)] {
+        let candidates = large(8, &[30.0, 60.0, 120.0]);
+        let criterion = criterion(number, &candidates.scenarios[0].model);
+        let begun = std::time::Instant::now();
+        let plan = best_for_time(&candidates, &criterion, time * 3600.0, Effort::usual(candidates.len())).unwrap();
+        println!(
+            "{number}: criterion {:e} bound gap {:.4}, continuous gap {:.2e} ({} models), rounding {:.4}, {} nodes, {} visits, {:.2} of {time} h, {:?}",
+            plan.criterion,
+            plan.gap(),
+            plan.continuous.gap(),
+            plan.continuous.models,
+            plan.rounding(),
+            plan.nodes,
+            plan.schedule.visits.len(),
+            plan.schedule.time / 3600.0,
+            begun.elapsed()
+        );
+        assert!(schedule_is_sorted(&plan.schedule, &candidates));
+        assert!(plan.continuous.gap() < 0.01);
+    }
+}
+
+#[test]
+#[ignore = "timing"]
+fn five_hundred() {
+    let candidates = large(40, &[30.0, 60.0, 120.0]);
+    let criterion = criterion(2, &candidates.scenarios[0].model);
+    for effort in [Effort::QUICK, Effort::usual(candidates.len())] {
+        let begun = std::time::Instant::now();
+        let plan = best_for_time(&candidates, &criterion, 8.0 * 3600.0, effort).unwrap();
+        println!(
+            "criterion {:e} bound gap {:.4}, continuous gap {:.2e} ({} models), rounding {:.4}, {} nodes, {} visits, {:?}",
+            plan.criterion,
+            plan.gap(),
+            plan.continuous.gap(),
+            plan.continuous.models,
+            plan.rounding(),
+            plan.nodes,
+            plan.schedule.visits.len(),
+            begun.elapsed()
+        );
+    }
+}
+
+/// A plan of two durations for the tests of what is predicted.
+fn planned() -> (Candidates, Schedule) {
+    let candidates = large(5, &[20.0, 40.0]);
+    let criterion = Criterion::Reading(ReadingRange { force: 200.0 * 9.80665 });
+    let plan = best_for_time(&candidates, &criterion, 5.5 * 3600.0, Effort::QUICK).unwrap();
+    (candidates, plan.schedule)
+}
+
+/// What is predicted of a plan, type A and B, is what repeated calibrations show: within 3 % and four standard deviations of
+/// chance in every parameter, and 3 % in the mean.
+#[test]
+fn predictions_are_what_monte_carlo_shows() {
+    const RUNS: usize = 2500;
+    let (candidates, schedule) = planned();
+    let (experiment, weights) = candidates.experiment_of(&schedule);
+    let scenario = &candidates.scenarios[0];
+    let model = scenario.model.in_experiment(experiment);
+    let prediction = predict(&model, &weights, scenario.speed_uncertainty, &STATED).unwrap();
+    let zero = vec![0.0; model.parameters().len()];
+    let observations: Vec<Observation> = weights
+        .iter()
+        .map(|w| Observation {
+            set_point: w.set_point,
+            mean: model.reading(&model.experiment().set_points[w.set_point], &zero),
+            covariance: w.covariance,
+        })
+        .collect();
+    let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact, stated: STATED };
+    let shown = monte_carlo(&model, &zero, &observations, scenario.speed_uncertainty, &settings, &|_| {}).unwrap();
+    let mut ratios = Vec::new();
+    for (j, statistics) in shown.parameters.iter().enumerate() {
+        let (Some(statistics), Some(u)) = (statistics, prediction.budget().standard_uncertainty(j)) else { continue };
+        let ratio = statistics.standard_deviation / u;
+        // The standard deviation of one ratio is 1 / sqrt(2 runs), 1.4 %.
+        assert!((ratio - 1.0).abs() < 4.0 / (2.0 * RUNS as f64).sqrt(), "{}: {ratio}", model.parameters()[j].name);
+        ratios.push(ratio);
+    }
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    let (least, most) = ratios.iter().fold((f64::MAX, 0.0_f64), |(a, b), r| (a.min(*r), b.max(*r)));
+    println!("{} parameters: ratio {mean:.4}, {least:.4} to {most:.4}", ratios.len());
+    assert_eq!(ratios.len(), 49);
+    assert!((mean - 1.0).abs() < 0.03);
+}
+
+/// What is predicted of a plan is the scatter of calibrations of whole simulated sessions about the truth, within their
+/// sampling error.
+#[test]
+fn predictions_are_the_scatter_of_simulated_sessions() {
+    const SESSIONS: u64 = 24;
+    const RATE: f64 = 50.0;
+    let (mut candidates, _) = planned();
+    candidates.durations = vec![40.0];
+    candidates.repeats = 1;
+    let every = (0..candidates.len()).map(|plateau| Visit { plateau, duration: 40.0 }).collect();
+    let (experiment, _) = candidates.experiment_of(&candidates.schedule(every));
+    let model = candidates.scenarios[0].model.in_experiment(experiment);
+    // Noise of 20 ug/sqrt(Hz) at this rate.
+    let white = 20e-6 * 9.80665 * (0.5 * RATE).sqrt();
+    let settings = centrical::simulate::Settings {
+        machine: Machine { plateau: 40.0, speed_error: 1e-5, ..Machine::default() },
+        sensor: Sensor { white, ..Sensor::default() },
+        recorder: Recorder { rate: RATE, ..Recorder::default() },
+        ..Default::default()
+    };
+    let noise = Noise { density: 20e-6 * 9.80665, floor: 0.0 };
+    let weights: Vec<Weight> = (0..model.experiment().set_points.len()).map(|n| noise.weight(n, 40.0)).collect();
+    let prediction = predict(&model, &weights, 1e-5, &TypeB::default()).unwrap();
+    let p = model.parameters().len();
+    let covariance = DMatrix::from_fn(p, p, |i, j| prediction.budget().covariance(i, j).unwrap());
+    let scale = nalgebra::DVector::from_fn(p, |j, _| covariance[(j, j)].sqrt());
+    let correlation = DMatrix::from_fn(p, p, |i, j| covariance[(i, j)] / (scale[i] * scale[j]));
+    let factor = correlation.cholesky().unwrap();
+    let mut squares = nalgebra::DVector::zeros(p);
+    let mut weighted = 0.0;
+    for seed in 0..SESSIONS {
+        let truth = truth(&model, 0.3, &mut Random::new(100 + seed));
+        let observations = calibration_means(&model, &truth, &settings, seed);
+        let fit = fit::exact(&model, &observations, 1e-5).unwrap();
+        let error = nalgebra::DVector::from_fn(p, |j, _| (fit.value(j).unwrap() - truth[j]) / scale[j]);
+        squares += error.component_mul(&error) / SESSIONS as f64;
+        weighted += factor.solve(&error).dot(&error);
+    }
+    let mean = weighted / SESSIONS as f64;
+    println!(
+        "weighted square {mean:.2} of {p}; by parameter {:.2} to {:.2}",
+        squares.min().sqrt(),
+        squares.max().sqrt()
+    );
+    // chi^2 with p degrees of freedom in each session.
+    assert!((mean - p as f64).abs() < 4.0 * (2.0 * p as f64 / SESSIONS as f64).sqrt(), "{mean} of {p}");
+    // One ratio scatters by 1 / sqrt(2 n); four of it over 49 parameters.
+    for (j, square) in squares.iter().enumerate() {
+        let ratio = square.sqrt();
+        assert!((ratio - 1.0).abs() < 4.0 / (2.0 * SESSIONS as f64).sqrt(), "{}: {ratio}", model.parameters()[j].name);
+    }
+}
+
+/// The plateau means of a simulated session, from its records.
+fn calibration_means(
+    model: &MeasurementModel,
+    truth: &[f64],
+    settings: &centrical::simulate::Settings,
+    seed: u64,
+) -> Vec<Observation> {
+    let simulation = Simulation::new(model, truth, settings, seed).unwrap();
+    let experiment = model.experiment();
+    let reduced: Vec<_> = (0..experiment.mountings.len())
+        .map(|m| {
+            let record = simulation.mounting(m).records().fold(Record::default(), |mut whole, stretch| {
+                whole.t.extend(stretch.t);
+                whole.f_z.iter_mut().zip(stretch.f_z).for_each(|(column, values)| column.extend(values));
+                whole
+            });
+            let there = experiment.set_points.iter().filter(|s| s.mounting == m);
+            let scheduled =
+                |s: &SetPoint| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) };
+            reduce(&record, None, &there.map(scheduled).collect::<Vec<_>>()).unwrap()
+        })
+        .collect();
+    let pooled = NoiseModel::pool(&reduced);
+    let means = reduced.iter().flat_map(|mounting| mounting.means(&pooled));
+    let observation = |(set_point, mean): (usize, centrical::reduction::PlateauMean)| Observation {
+        set_point,
+        mean: mean.mean,
+        covariance: mean.covariance,
+    };
+    means.enumerate().map(observation).collect()
+}
+
+/// The mean over the range is the mean over forces drawn by chance, and the worst goal weighs it as stated.
+#[test]
+fn reading_criterion_is_the_mean_over_forces() {
+    let (candidates, schedule) = planned();
+    let (experiment, weights) = candidates.experiment_of(&schedule);
+    let model = candidates.scenarios[0].model.in_experiment(experiment);
+    let prediction = predict(&model, &weights, 1e-5, &TypeB::default()).unwrap();
+    let [_, cubature] = prediction.reading(RANGE).unwrap();
+    let first = model.parameters().find("df_1").unwrap();
+    let covariance = DMatrix::from_fn(21, 21, |i, j| prediction.budget().covariance(first + i, first + j).unwrap());
+    let compensated = Compensated::new(ErrorModel::kozlov_2017(), vec![0.0; 21], covariance).unwrap();
+    let mut random = Random::new(9);
+    let draws = 40_000;
+    let mut squares = Vec::with_capacity(draws);
+    for _ in 0..draws {
+        let direction = Vector3::from_fn(|_, _| random.normal()).normalize();
+        let force = direction * (RANGE.force * random.uniform());
+        squares.push(compensated.covariance(&force).unwrap().trace() / 3.0);
+    }
+    let mean = squares.iter().sum::<f64>() / draws as f64;
+    let scatter =
+        (squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / draws as f64).sqrt() / (draws as f64).sqrt();
+    assert!((cubature * cubature - mean).abs() < 4.0 * scatter, "{} {mean} {scatter}", cubature * cubature);
+    assert!(scatter < 0.02 * mean);
+}
+
+/// The shortest plan keeps every goal, and no continuous design does in a time shorter by its gap.
+#[test]
+fn shortest_plans_keep_their_goals() {
+    let candidates = large(5, &[30.0, 120.0]);
+    let of_reading = Criterion::Reading(ReadingRange { force: 200.0 * 9.80665 });
+    let known = best_for_time(&candidates, &of_reading, 6.0 * 3600.0, Effort::QUICK).unwrap();
+    let goal = |factor: f64| {
+        Criterion::Worst(vec![Goal::Reading {
+            range: ReadingRange { force: 200.0 * 9.80665 },
+            uncertainty: factor * known.criterion.sqrt(),
+        }])
+    };
+    // What six hours reach is reached in six hours, and no less by more than the search's resolution and gaps.
+    let shortest = shortest_for_goals(&candidates, &goal(1.0), 0.01, Effort::QUICK).unwrap();
+    assert!(shortest.criterion <= 1.0, "{}", shortest.criterion);
+    let hours = shortest.schedule.time / 3600.0;
+    assert!(hours < 6.0 * 1.02 && hours > 5.0, "{hours} h");
+    let error = shortest_for_goals(&candidates, &goal(0.1), 0.01, Effort::QUICK).unwrap_err();
+    assert!(matches!(error, PlanError::OutOfReach { factor } if factor > 1.0), "{error}");
+}
+
+/// The plateau that is said to be the best next one is that after which the uncertainty is least, by a design of its own.
+#[test]
+fn next_best_is_the_best() {
+    let candidates = large(4, &[60.0]);
+    let model = &candidates.scenarios[0].model;
+    let noise = &candidates.scenarios[0].noise;
+    let all: Vec<Weight> = (0..candidates.len()).map(|n| noise.weight(n, 60.0)).collect();
+    let (taken, rest) = all.split_at(candidates.len() - 6);
+    let criterion = Criterion::Reading(RANGE);
+    let gains = next_best(model, 1e-5, &criterion, taken, rest).unwrap();
+    assert_eq!(gains.len(), 6);
+    let reading =
+        |weights: &[Weight]| predict(model, weights, 1e-5, &TypeB::default()).unwrap().reading(RANGE).unwrap()[1];
+    let before = reading(taken);
+    for pair in gains.windows(2) {
+        assert!(pair[0].factor <= pair[1].factor);
+    }
+    for gain in &gains {
+        let with: Vec<Weight> = taken.iter().copied().chain([all[gain.set_point]]).collect();
+        let factor = reading(&with) / before;
+        assert!((factor - gain.factor).abs() < 1e-4, "{}: {factor} {}", gain.set_point, gain.factor);
+        assert!(gain.factor < 1.0);
+    }
+}
+
+/// An account says what a plan without the visit is worth.
+#[test]
+fn accounts_are_what_is_lost() {
+    let (candidates, schedule) = planned();
+    let criterion = Criterion::Average;
+    let account = Account::of(&candidates, &criterion, &schedule).unwrap();
+    assert_eq!(account.visits.len(), schedule.visits.len());
+    let with = value(&criterion, &candidates, &schedule.visits);
+    for n in (0..schedule.visits.len()).step_by(7) {
+        let mut without = schedule.visits.clone();
+        without.remove(n);
+        let rise = value(&criterion, &candidates, &without) / with - 1.0;
+        let reason = &account.visits[n];
+        assert!((reason.rise - rise).abs() < 1e-6 * (1.0 + rise), "{n}: {} {rise}", reason.rise);
+        assert!(reason.rise > 0.0 && reason.factor >= 1.0);
+        assert!(candidates.scenarios[0].model.parameters()[reason.parameter].is_of_instrument());
+    }
+}
+
+/// A plan's bound is one, whatever is left to chance: a uniform plan and [K5.5] in the same time are above it.
+#[test]
+fn no_usual_plan_is_below_the_bound() {
+    let candidates = large(6, &[30.0, 60.0, 120.0]);
+    let criterion = Criterion::Reading(RANGE);
+    let time = 7.0 * 3600.0;
+    let plan = best_for_time(&candidates, &criterion, time, Effort::usual(candidates.len())).unwrap();
+    let (schedule, uniform) = candidates.uniform(&criterion, time).unwrap().unwrap();
+    assert!((schedule.time - time).abs() < 1e-6);
+    assert!(plan.bound <= plan.criterion && plan.criterion < uniform, "{} {} {uniform}", plan.bound, plan.criterion);
+}
