@@ -69,18 +69,23 @@ impl Compensation<'_> {
     #[inline(always)]
     fn sweep_blocks(&self, f: [&mut [f64]; 3]) -> Outside {
         let mut outside = Outside::default();
-        let [f1, f2, f3] = f.map(|f| f.chunks_mut(LANES));
-        for (n, ((f1, f2), f3)) in f1.zip(f2).zip(f3).enumerate() {
-            let mut lanes = Lanes([[0.0; LANES]; 3]);
-            let length = f1.len();
-            for (lane, f) in lanes.0.iter_mut().zip([&*f1, &*f2, &*f3]) {
-                lane[..length].copy_from_slice(f);
-            }
+        let [f1, f2, f3] = f.map(|f| f.as_chunks_mut::<LANES>());
+        let rest_from = LANES * f1.0.len();
+        for (n, ((f1, f2), f3)) in f1.0.iter_mut().zip(f2.0).zip(f3.0).enumerate() {
+            let mut lanes = Lanes([*f1, *f2, *f3]);
             self.invert(&mut lanes.0);
-            for (lane, f) in lanes.0.iter().zip([f1, f2, f3]) {
-                f.copy_from_slice(&lane[..length]);
-            }
-            outside = outside.and(Outside::of(&lanes.0[0][..length]).after(n * LANES));
+            [*f1, *f2, *f3] = lanes.0;
+            outside = outside.and(Outside::of(&lanes.0[0]).after(n * LANES));
+        }
+        let rest = [f1.1, f2.1, f3.1];
+        let mut lanes = Lanes([[0.0; LANES]; 3]);
+        for (lane, f) in lanes.0.iter_mut().zip(&rest) {
+            lane[..f.len()].copy_from_slice(f);
+        }
+        self.invert(&mut lanes.0);
+        outside = outside.and(Outside::of(&lanes.0[0][..rest[0].len()]).after(rest_from));
+        for (lane, f) in lanes.0.iter().zip(rest) {
+            f.copy_from_slice(&lane[..f.len()]);
         }
         outside
     }

@@ -11,8 +11,14 @@ use crate::language::Language;
 use crate::pdf::{Align, Column, Furniture, Layout, write};
 use crate::reading_error::{error_table, reading_errors};
 
-/// The certificate as the bytes of a PDF file. The same data give the same bytes.
-pub fn pdf_certificate(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> Vec<u8> {
+/// The certificate as the bytes of a PDF file, with the results `before` an adjustment beside those after it if the
+/// unit was adjusted. The same data give the same bytes.
+pub fn pdf_certificate(
+    result: &CalibrationResult,
+    before: Option<&CalibrationResult>,
+    laboratory: &Laboratory,
+    language: Language,
+) -> Vec<u8> {
     let messages = language.messages();
     let mut layout = Layout::new();
     layout.title(messages.certificate);
@@ -23,7 +29,7 @@ pub fn pdf_certificate(result: &CalibrationResult, laboratory: &Laboratory, lang
     conditions(&mut layout, result, laboratory, language);
     traceability(&mut layout, laboratory, language);
     results(&mut layout, result, language);
-    adjustment(&mut layout, result, laboratory, language);
+    adjustment(&mut layout, result, before, laboratory, language);
     if let Some(decision) = &laboratory.decision {
         conformity_statement(&mut layout, result, decision, language);
     }
@@ -183,10 +189,19 @@ fn results(layout: &mut Layout, result: &CalibrationResult, language: Language) 
 }
 
 /// 7.8.4.1 d.
-fn adjustment(layout: &mut Layout, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
+fn adjustment(
+    layout: &mut Layout,
+    result: &CalibrationResult,
+    before: Option<&CalibrationResult>,
+    laboratory: &Laboratory,
+    language: Language,
+) {
     let messages = language.messages();
     layout.heading(messages.adjustment, 90.0);
     layout.paragraph(laboratory.item.adjustment.as_deref().unwrap_or(messages.no_adjustment));
+    if let Some(before) = before {
+        results_before(layout, result, before, language);
+    }
     let Some(errors) = reading_errors(result) else { return };
     let rows = error_table(&errors, language)
         .map(|(name, cells)| std::iter::once(name.to_owned()).chain(cells).collect::<Vec<String>>());
@@ -195,6 +210,29 @@ fn adjustment(layout: &mut Layout, result: &CalibrationResult, laboratory: &Labo
         .map(|(share, align)| Column { share, align });
     layout.table(&columns, &["", &axes[0], &axes[1], &axes[2]], &rows);
     layout.paragraph(messages.residual_error_note);
+}
+
+/// The parameters of the instrument before its adjustment and after.
+fn results_before(layout: &mut Layout, result: &CalibrationResult, before: &CalibrationResult, language: Language) {
+    let messages = language.messages();
+    let terms: Vec<_> = result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect();
+    let shown = |result: &CalibrationResult, name: &str, factor: f64| {
+        let estimate = result.parameter(name).and_then(|p| Some((p.value?, expanded(result, p)?.uncertainty)));
+        let known = |(value, expanded)| language.plus_minus(value * factor, expanded * factor);
+        estimate.map_or_else(|| messages.not_determined.to_owned(), known)
+    };
+    let rows: Vec<Vec<String>> = by_group(&terms)
+        .into_iter()
+        .map(|after| {
+            let (factor, unit) = customary(&after.unit, &after.group);
+            let [was, is] = [before, result].map(|result| shown(result, &after.name, factor));
+            vec![after.name.clone(), was, is, language.unit(unit)]
+        })
+        .collect();
+    let columns = [(0.16, Align::Left), (0.34, Align::Right), (0.34, Align::Right), (0.16, Align::Left)]
+        .map(|(share, align)| Column { share, align });
+    let head = [messages.parameter, messages.before_adjustment, messages.after_adjustment, messages.unit];
+    layout.table(&columns, &head, &rows);
 }
 
 /// 7.8.4.1 e and 7.8.6.

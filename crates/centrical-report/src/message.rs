@@ -151,6 +151,8 @@ pub(crate) struct Messages {
     pub results_model: &'static str,
     pub uncertainty_statement: &'static str,
     pub adjustment: &'static str,
+    pub before_adjustment: &'static str,
+    pub after_adjustment: &'static str,
     pub no_adjustment: &'static str,
     pub conformity: &'static str,
     pub specification: &'static str,

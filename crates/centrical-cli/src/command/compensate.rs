@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical::STANDARD_GRAVITY;
-use centrical_compensate::Compensation;
+use centrical_compensate::{Certificate, Compensation};
 use centrical_io::{
     CalibrationResult, Columns, Compensated, Dimension, Error, NotThatQuantity, Quantity, Session, compensate_record,
 };
@@ -42,13 +42,23 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         None => Columns::default(),
     };
     let compensated = compensate_record(&compensation, &arguments.record, &columns, &arguments.out)?;
-    tell(&compensated, compensation.certificate().range, &arguments.out);
+    tell(&compensated, compensation.certificate(), &arguments.out);
     Ok(if compensated.outside == 0 { Outcome::Done } else { Outcome::NotAcceptable })
 }
 
-fn tell(compensated: &Compensated, range: f64, out: &Path) {
+fn tell(compensated: &Compensated, certificate: &Certificate, out: &Path) {
     let g = |f: f64| format!("{:.6} g", f / STANDARD_GRAVITY);
-    println!("{} readings compensated, range {}", compensated.readings, g(range));
+    let Certificate { range, margin, .. } = *certificate;
+    let farthest = if margin.is_finite() {
+        format!("up to {:.0} g", margin * range / STANDARD_GRAVITY)
+    } else {
+        "anywhere".to_owned()
+    };
+    println!(
+        "{} readings compensated, range {} on each axis; the inverse is unique there, and could be asked for {farthest}",
+        compensated.readings,
+        g(range)
+    );
     if let Some(first) = &compensated.first_outside {
         let reading = first.reading.map(g).join(", ");
         println!(

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_io::{CalibrationResult, Error, Laboratory, create_folder, read_history, write_whole};
+use centrical_io::{CalibrationResult, Error, Laboratory, Place, create_folder, read_history, write_whole};
 use centrical_report::codegen::{NamedTerm, compensation_source, heading};
 use centrical_report::{
     Language, digital_certificate, figures, history_figure, html_report, html_report_with, objections, pdf_certificate,
@@ -26,6 +26,9 @@ pub struct Arguments {
     /// Write the calibration certificate (ISO/IEC 17025) to this file
     #[arg(long, value_name = "FILE", requires = "laboratory")]
     pdf: Option<PathBuf>,
+    /// Show in the certificate the results before the unit was adjusted too: the result.json of that calibration
+    #[arg(long, value_name = "RESULT", requires = "pdf")]
+    before: Option<PathBuf>,
     /// Write the digital calibration certificate (DCC XML 3.3.0) to this file
     #[arg(long, value_name = "FILE", requires = "laboratory")]
     dcc: Option<PathBuf>,
@@ -77,7 +80,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     if let Some(laboratory) = arguments.documents.laboratory()? {
         if let Some(file) = &arguments.pdf {
-            write_whole(file, &pdf_certificate(&result, &laboratory, language))?;
+            let before = arguments.before.as_deref().map(|file| before(file, &result, &laboratory)).transpose()?;
+            write_whole(file, &pdf_certificate(&result, before.as_ref(), &laboratory, language))?;
         }
         if let Some(file) = &arguments.dcc {
             write_whole(file, digital_certificate(&result, &laboratory, language).as_bytes())?;
@@ -87,6 +91,23 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         write_source(&result, &arguments.result, folder)?;
     }
     Ok(if objections(&result).is_empty() { Outcome::Done } else { Outcome::NotAcceptable })
+}
+
+/// The result before an adjustment, which has to be of the same unit, and the laboratory has to say what it adjusted.
+fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Result<CalibrationResult, Error> {
+    let before = CalibrationResult::read(file)?;
+    let unit = |result: &CalibrationResult| format!("{} {}", result.session.unit_model, result.session.unit_serial);
+    let refuse = |found: String, expected: String| {
+        Err(Error::Content { file: file.to_owned(), place: Place::Whole, found, expected })
+    };
+    if unit(&before) != unit(after) {
+        return refuse(format!("a result of {}", unit(&before)), format!("one of {}", unit(after)));
+    }
+    if laboratory.item.adjustment.is_none() {
+        let expected = "[item] adjustment in the laboratory's file, what was adjusted between the two calibrations";
+        return refuse("a result before an adjustment".to_owned(), expected.to_owned());
+    }
+    Ok(before)
 }
 
 /// Writes the compensation as source code.
@@ -112,7 +133,7 @@ impl Documents {
         let language = self.language.into();
         write_whole(&folder.join("report.html"), html_report(result, language).as_bytes())?;
         if let Some(laboratory) = self.laboratory()? {
-            write_whole(&folder.join("certificate.pdf"), &pdf_certificate(result, &laboratory, language))?;
+            write_whole(&folder.join("certificate.pdf"), &pdf_certificate(result, None, &laboratory, language))?;
             let dcc = digital_certificate(result, &laboratory, language);
             write_whole(&folder.join("certificate.xml"), dcc.as_bytes())?;
         }

@@ -43,6 +43,14 @@ fn readings_are_explained() {
     let result = centrical_io::CalibrationResult::read(&copy.out().join("result.json")).unwrap();
     let terms = result.error_terms().unwrap();
     assert_eq!(terms.len(), 21);
+    // The region where the inverse is unique: the range asked for, and how far it could be.
+    let range = result.compensation_range(&terms).unwrap();
+    let margin = centrical_compensate::Compensation::new(&terms, range).unwrap().certificate().margin;
+    let [range, farthest] = [range, margin * range].map(|f| f / centrical::STANDARD_GRAVITY);
+    let said = format!(
+        "range {range:.6} g on each axis; the inverse is unique there, and could be asked for up to {farthest:.0} g"
+    );
+    assert!(text(&output).contains(&said), "{said}: {}", text(&output));
     let before = columns(&fs::read_to_string(copy.session().join("records/m01.csv")).unwrap());
     let after = columns(&fs::read_to_string(copy.out().join("f.csv")).unwrap());
     assert_eq!(before.len(), after.len());

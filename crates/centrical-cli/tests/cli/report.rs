@@ -37,7 +37,7 @@ fn calibrate_writes_everything_and_report_writes_the_same() {
     let copy = calibrated("en");
     let files = contents(&copy.out());
     let mut expected = vec!["certificate.pdf".to_owned(), "certificate.xml".to_owned()];
-    let whole = ["convergence", "correlation", "normalised", "residuals", "singular-values"];
+    let whole = ["convergence", "correlation", "normalised", "prediction", "residuals", "singular-values"];
     expected.extend(whole.map(|plot| format!("plots/{plot}.svg")));
     let parts = [("after", 3), ("before", 3), ("records", 12)];
     expected.extend(parts.iter().flat_map(|(plot, n)| (1..=*n).map(move |k| format!("plots/{plot}-{k:02}.svg"))));
@@ -121,8 +121,8 @@ fn the_page_is_whole_and_alone() {
         "nothing but the SVG name space"
     );
     assert!(!page.contains("<script"));
-    assert_eq!(page.matches("<figure").count(), 9);
-    assert_eq!(page.matches("<figcaption>").count(), 9);
+    assert_eq!(page.matches("<figure").count(), 10);
+    assert_eq!(page.matches("<figcaption>").count(), 10);
     for name in ["delta_3[6]", "G2_33", "drho_22"] {
         place(name);
     }

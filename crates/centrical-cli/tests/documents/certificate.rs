@@ -1,9 +1,10 @@
 //! The certificate's text, item by item of ISO/IEC 17025:2017.
 
+use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::documents;
+use crate::{documents, example};
 
 /// Text of a PDF file, pages apart by form feeds.
 pub fn text_of(pdf: &Path) -> String {
@@ -62,8 +63,8 @@ fn the_certificate_has_every_item() {
             ("i, performance", "Calibrated 2026-10-05 – 2026-10-07"),
             ("j, issue", "Issued 2026-10-09"),
             ("l, item only", "The results relate only to the item calibrated"),
-            ("m, a result with sign and unit", "df_1 Bias −3.9525 ± 0.0040 mg (−3.8761 ± 0.0039)·10⁻² m/s²"),
-            ("m, the last result", "G2_33 Cubic −0.00011 ± 0.00053 µg/g³"),
+            ("m, a result with sign and unit", "df_1 Bias −3.9524 ± 0.0040 mg (−3.8760 ± 0.0039)·10⁻² m/s²"),
+            ("m, the last result", "G2_33 Cubic −0.00010 ± 0.00053 µg/g³"),
             ("m, what the results mean", "f1′ = f1 + df_1 + G0_11·f1 + G1_11·f1²"),
             ("n, deviations", "Additions, deviations, exclusions None"),
             ("o, authorised", "Authorised by A. Ivanova"),
@@ -80,10 +81,10 @@ fn the_certificate_has_every_item() {
             ("c, its certificate", "DL-2026-0031"),
             ("d, adjustment", "The unit was not adjusted or repaired"),
             ("d, before", "Before compensation 185 (1499) mg"),
-            ("d, after", "After compensation 857 (4182) µg"),
+            ("d, after", "After compensation 858 (4213) µg"),
             ("d, what remains uncertain", "Uncertainty of compensation, k = 2"),
             ("e, specification", "TA-200 data sheet, table 3"),
-            ("e, conformity", "df_1 −15.30 … 15.30 −3.9525 ± 0.0040 mg conforms"),
+            ("e, conformity", "df_1 −15.30 … 15.30 −3.9524 ± 0.0040 mg conforms"),
             ("7.8.6, rule", "guarded acceptance with guard band w = U"),
         ],
     );
@@ -106,11 +107,11 @@ fn in_russian() {
             ("method", "по методу А. В. Козлова"),
             ("conditions", "Температура воздуха 20,3 ± 0,5 °C"),
             ("pressure", "100,9 ± 0,4 кПа"),
-            ("a result", "df_1 Смещение нуля −3,9525 ± 0,0040 мg (−3,8761 ± 0,0039)·10⁻² м/с²"),
+            ("a result", "df_1 Смещение нуля −3,9524 ± 0,0040 мg (−3,8760 ± 0,0039)·10⁻² м/с²"),
             ("uncertainty", "коэффициент охвата k = 2"),
             ("adjustment", "Прибор не юстировался и не ремонтировался"),
             ("rule", "приёмка с защитной полосой w = U"),
-            ("conformity", "−15,30 … 15,30 −3,9525 ± 0,0040 мg соответствует"),
+            ("conformity", "−15,30 … 15,30 −3,9524 ± 0,0040 мg соответствует"),
             ("authorised", "Утвердил A. Ivanova"),
             ("item only", "Результаты относятся только к калиброванному объекту"),
             ("end", "Конец сертификата"),
@@ -132,6 +133,31 @@ fn adjustment_and_decision() {
     has(&adjusted, &[("d", "Before and after adjustment Bias of axis 2 set to zero before the calibration")]);
     assert!(!adjusted.contains("was not adjusted"));
 
+    let folder = documents("en", |text| text.replace("[method]", "adjustment = \"Bias of axis 1 halved\"\n[method]"));
+    let before = fs::read_to_string(folder.path().join("result.json")).unwrap();
+    let mut before: serde_json::Value = serde_json::from_str(&before).unwrap();
+    let bias = before["parameters"].as_array_mut().unwrap().iter_mut().find(|p| p["name"] == "df_1").unwrap();
+    bias["value"] = (2.0 * bias["value"].as_f64().unwrap()).into();
+    fs::write(folder.path().join("before.json"), before.to_string()).unwrap();
+    let report = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+        command.args(["report", "result.json", "--pdf", "both.pdf", "--before", "before.json", "--laboratory"]);
+        command.args(arguments).current_dir(&folder).output().unwrap()
+    };
+    assert!(report(&["laboratory.toml"]).status.success());
+    let both = text_of(&folder.path().join("both.pdf"));
+    has(
+        &both,
+        &[
+            ("d, before and after", "Before adjustment, ± U After adjustment, ± U"),
+            ("d, what was adjusted", "df_1 −7.9049 ± 0.0040 −3.9524 ± 0.0040 mg"),
+            ("d, what was not", "df_2 −10.157 ± 0.020 −10.157 ± 0.020 mg"),
+        ],
+    );
+    let unsaid = report(&[example("laboratory.toml").to_str().unwrap()]);
+    let message = String::from_utf8_lossy(&unsaid.stderr).into_owned();
+    assert!(unsaid.status.code() == Some(2) && message.contains("[item] adjustment"), "{message}");
+
     // -0.0388 m/s^2 with U = 0.00004: inside by less than U, so simple acceptance alone accepts it.
     let tight = |rule: &str| {
         let rule = rule.to_owned();
@@ -144,8 +170,8 @@ fn adjustment_and_decision() {
         })
     };
     let [simple, guarded] = ["simple", "guarded"].map(tight);
-    has(&simple, &[("rule", "simple acceptance"), ("verdict", "−3.9525 ± 0.0040 mg conforms")]);
-    has(&guarded, &[("rule", "guarded acceptance"), ("verdict", "−3.9525 ± 0.0040 mg does not conform")]);
+    has(&simple, &[("rule", "simple acceptance"), ("verdict", "−3.9524 ± 0.0040 mg conforms")]);
+    has(&guarded, &[("rule", "guarded acceptance"), ("verdict", "−3.9524 ± 0.0040 mg does not conform")]);
 
     let unasked = certificate("en", |text| text[..text.find("[decision]").unwrap()].to_owned());
     assert!(!unasked.contains("conform"), "no statement that was not asked for");

@@ -10,12 +10,13 @@ use crate::documents;
 
 /// Figures of the example's page in their order, with how many drawings each has: a panel for each position, a panel
 /// for each newtonometer, a strip for each record.
-const FIGURES: [(&str, usize); 9] = [
+const FIGURES: [(&str, usize); 10] = [
     ("positions", 6),
     ("before", 3),
     ("after", 3),
     ("residuals", 1),
     ("normalised", 1),
+    ("prediction", 1),
     ("correlation", 1),
     ("singular-values", 1),
     ("convergence", 1),

@@ -167,6 +167,8 @@ pub(crate) const ENGLISH: Messages = Messages {
         Where the effective degrees of freedom are finite, k is that of Student’s distribution for the same \
         probability. It was evaluated in accordance with JCGM 100 (GUM). 1 g = 9.80665 m/s².",
     adjustment: "Before and after adjustment",
+    before_adjustment: "Before adjustment, ± U",
+    after_adjustment: "After adjustment, ± U",
     no_adjustment: "The unit was not adjusted or repaired. Readings as received carry the error “before”; \
         compensated with the parameters above they carry the error “after”.",
     conformity: "Statement of conformity",
