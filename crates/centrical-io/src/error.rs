@@ -53,7 +53,7 @@ pub enum Error {
         /// The result.
         file: PathBuf,
         /// Which coefficient, and why.
-        source: crate::result::NoErrorModel,
+        source: NoErrorModel,
     },
     /// The error model of a result has no certain inverse over the range asked for.
     #[error("{}: {source}", file.display())]
@@ -201,4 +201,21 @@ pub(crate) fn quoted(text: &[u8]) -> String {
     const READABLE: usize = 60;
     let shown = String::from_utf8_lossy(&text[..text.len().min(READABLE)]);
     if text.len() > READABLE { format!("{:?}...", shown.trim_end_matches('\u{fffd}')) } else { format!("{shown:?}") }
+}
+
+/// Why a result does not say how to compensate.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoErrorModel {
+    /// The data did not determine a coefficient.
+    #[error("{name}: found no value, the data do not determine it; expected a number to compensate with")]
+    NotEstimable {
+        /// Name of the coefficient.
+        name: String,
+    },
+    /// A term is of no axis.
+    #[error("{name}: found an axis that is not 1, 2 or 3")]
+    Axis {
+        /// Name of the coefficient.
+        name: String,
+    },
 }

@@ -24,6 +24,7 @@ mod laboratory;
 mod noise;
 mod observation;
 mod overview;
+mod parquet_table;
 mod planning;
 mod plateaus;
 mod prediction;
@@ -43,7 +44,7 @@ mod write;
 pub use calibration::{Method, PlateauName, Problem, calibrate, calibrate_without};
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use compensate::{Compensated, FirstOutside, compensate_record};
-pub use error::{Error, Place};
+pub use error::{Error, NoErrorModel, Place};
 pub use input::Input;
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
@@ -67,9 +68,9 @@ pub use reduce::{MountingFindings, Reduced, ReducedPlateau};
 pub use reduced_session::write_reduced;
 pub use result::{
     BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, ModelSummary,
-    MountingPrediction, MountingSummary, NoErrorModel, ObservabilitySummary, OutlyingPlateau, ParameterEstimate,
-    PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
-    TermSummary, ValiditySummary,
+    MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, ParameterEstimate, PatternSummary,
+    PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve, TermSummary,
+    ValiditySummary,
 };
 pub use session::{MountingFiles, Noise, Plan, Planning, PlateauTable, Session};
 pub use simulate::{TableFormat, Truth, simulate_session};

@@ -15,8 +15,8 @@ use std::path::Path;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, Place};
+use crate::parquet_table::ParquetTable;
 use crate::session::FASTEST;
-use crate::simulate::ParquetTable;
 use crate::table::{self, ColumnName, Field, Rule};
 use crate::write::{write_stream, write_whole};
 

@@ -15,7 +15,6 @@ use centrical::{Fit, MeasurementModel, Mounting, Position, PriorUse, SetPoint, T
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-pub use self::error_terms::NoErrorModel;
 pub use self::trust::{
     BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
 };

@@ -2,7 +2,6 @@
 //! laboratory has.
 
 mod csv;
-mod parquet;
 mod plan;
 mod report;
 mod truth;
@@ -15,8 +14,8 @@ use rayon::prelude::*;
 pub use truth::Truth;
 
 use self::csv::CsvTable;
-pub(crate) use self::parquet::ParquetTable;
 use crate::error::{Error, Place};
+use crate::parquet_table::ParquetTable;
 use crate::record::Column;
 use crate::session::{EXPERIMENT_FILE, Session};
 use crate::table::ColumnName;

@@ -1,26 +1,9 @@
 //! The error model that a result holds, as compensation takes it.
 
 use centrical_compensate::{Compensation, NotInvertible, Term};
-use thiserror::Error;
 
 use super::{CalibrationResult, TermSummary};
-
-/// Why a result does not say how to compensate.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum NoErrorModel {
-    /// The data did not determine a coefficient.
-    #[error("{name}: found no value, the data do not determine it; expected a number to compensate with")]
-    NotEstimable {
-        /// Name of the coefficient.
-        name: String,
-    },
-    /// A term is of no axis.
-    #[error("{name}: found an axis that is not 1, 2 or 3")]
-    Axis {
-        /// Name of the coefficient.
-        name: String,
-    },
-}
+use crate::error::NoErrorModel;
 
 impl CalibrationResult {
     /// The terms of the error model with their estimated coefficients, in the order of the model.

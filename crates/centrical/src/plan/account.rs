@@ -4,8 +4,9 @@ use nalgebra::Matrix3;
 
 use super::candidates::{Candidates, Schedule};
 use super::criterion::{Criterion, Goal};
+use super::error::PlanError;
 use super::information::{Factor, Scene, sum_of};
-use super::search::{PlanError, Problem};
+use super::search::Problem;
 
 /// What a part of a schedule is there for.
 #[derive(Debug, Clone, PartialEq)]

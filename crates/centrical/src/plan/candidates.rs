@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::search::PlanError;
+use super::error::PlanError;
 use crate::design::Weight;
 use crate::experiment::Experiment;
 use crate::measurement::MeasurementModel;

@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::search::PlanError;
+use super::error::PlanError;
 use crate::measurement::MeasurementModel;
 
 /// What a plan makes small.

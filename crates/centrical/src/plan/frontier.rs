@@ -2,7 +2,8 @@
 
 use super::candidates::{Candidates, Schedule, Visit};
 use super::criterion::Criterion;
-use super::search::{Effort, Plan, PlanError, Problem, best_for_time};
+use super::error::PlanError;
+use super::search::{Effort, Plan, Problem, best_for_time};
 
 /// The best plan for one time.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,7 +9,7 @@ use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix3xX, Vector3};
 
 use super::candidates::{Candidates, Scenario};
 use super::criterion::{Columns, Criterion};
-use super::search::PlanError;
+use super::error::PlanError;
 use crate::design::{Weight, total_covariance};
 use crate::fit::NULL_HOLD;
 use crate::measurement::MeasurementModel;

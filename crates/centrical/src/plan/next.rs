@@ -3,8 +3,8 @@
 use nalgebra::Matrix3;
 
 use super::criterion::Criterion;
+use super::error::PlanError;
 use super::information::{Factor, Scene, precision};
-use super::search::PlanError;
 use crate::design::Weight;
 use crate::measurement::MeasurementModel;
 

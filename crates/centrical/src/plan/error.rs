@@ -1,0 +1,46 @@
+//! Why there is no plan.
+
+use thiserror::Error;
+
+/// Why there is no plan.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PlanError {
+    /// There is nothing to choose from.
+    #[error("found no {0}, expected at least one")]
+    Nothing(&'static str),
+    /// A time or duration is none.
+    #[error("found a time that is negative or not finite, expected durations above 0 and costs of 0 or more")]
+    Time,
+    /// A re-seating costs more than a change of position, which contains one.
+    #[error("found a re-seating dearer than a change of position, expected at most as much")]
+    SeatAbovePosition,
+    /// The scenarios are of different experiments.
+    #[error("found scenarios of different experiments, expected the same candidates in all")]
+    Experiments,
+    /// A plateau's noise is none.
+    #[error("candidate {}: found noise that is no covariance, expected finite noise above 0", plateau + 1)]
+    Noise {
+        /// Index of the plateau.
+        plateau: usize,
+    },
+    /// A goal names no parameter.
+    #[error("goal {name:?}: found no such parameter, expected one of the instrument")]
+    Unknown {
+        /// As given.
+        name: String,
+    },
+    /// Not one visit fits into the time.
+    #[error("found {found:.0} s, expected at least {least:.0} s, the set-up of one mounting and its shortest plateau")]
+    TooShort {
+        /// Time given [s].
+        found: f64,
+        /// Least time in which anything can be measured [s].
+        least: f64,
+    },
+    /// The goals are not reached by all that there is.
+    #[error("found goals that all candidates together miss by a factor of {factor:.3}, expected goals that they reach")]
+    OutOfReach {
+        /// Worst uncertainty over its goal.
+        factor: f64,
+    },
+}
