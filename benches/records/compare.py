@@ -2,8 +2,8 @@
 """Whole `centrical reduce` of a session against the plain mean per column of the same files by polars and DuckDB.
 
     cargo build --release
-    python3 -m venv /tmp/venv && /tmp/venv/bin/pip install polars duckdb
-    /tmp/venv/bin/python benches/records/compare.py            # a session of 1 GB, made once in /tmp/centrical-records
+    python3 -m venv venv && venv/bin/pip install polars duckdb
+    venv/bin/python benches/records/compare.py                 # a session of 1 GB, made once in the folder for temporary files
 
 Every program runs with two threads on the same files in turn, several times; the best of each is shown: wall-clock time of
 the work (without starting an interpreter), processor time and peak memory of the process. On a machine that is busy with
@@ -14,6 +14,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -70,7 +71,7 @@ def session(folder, program, form, seconds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--folder", type=Path, default=Path("/tmp/centrical-records"), help="for the sessions")
+    parser.add_argument("--folder", type=Path, default=Path(tempfile.gettempdir()) / "centrical-records", help="for the sessions")
     parser.add_argument("--program", type=Path, default=ROOT / "target/release/centrical")
     parser.add_argument("--seconds", type=float, default=255, help="length of a plateau: 255 makes 1 GB of CSV")
     parser.add_argument("--runs", type=int, default=3)

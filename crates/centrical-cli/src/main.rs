@@ -3,6 +3,7 @@
 //! Arguments to calls to exit code: 0 done, 1 done but the result is not acceptable, 2 bad input or usage.
 
 mod command;
+mod format;
 mod progress;
 
 use std::process::ExitCode;

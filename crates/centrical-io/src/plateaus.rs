@@ -15,7 +15,7 @@ use std::path::Path;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, Place};
-use crate::parquet_table::ParquetTable;
+use crate::parquet_table::{Layout, ParquetTable};
 use crate::session::FASTEST;
 use crate::table::{self, ColumnName, Field, Rule};
 use crate::write::{write_stream, write_whole};
@@ -142,9 +142,9 @@ pub(crate) fn write_plateaus_parquet(file: &Path, plateaus: &[PlateauMean]) -> R
     let rows: Vec<[f64; COLUMNS.len()]> = plateaus.iter().map(row).collect();
     let columns: Vec<Vec<f64>> = (0..COLUMNS.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
     write_stream(file, |output| {
-        let mut table = ParquetTable::new(output, &COLUMNS.map(|(name, _)| name.to_owned()))?;
+        let mut table = ParquetTable::new(output, Layout::PACKED, &COLUMNS.map(|(name, _)| name))?;
         table.write(&columns)?;
-        table.finish()
+        table.finish().map(|_| ())
     })
 }
 

@@ -1,6 +1,5 @@
 //! Records out, block by block: CSV, or Parquet where the file's name ends in `.parquet`.
 
-mod parquet;
 mod text;
 
 use std::ffi::OsString;
@@ -8,9 +7,9 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use self::parquet::ParquetTable;
 use self::text::TextTable;
 use crate::error::Error;
+use crate::parquet_table::{Layout, ParquetTable};
 use centrical::reduction::RecordSlice;
 
 /// Writes `t` [s], `f1`, `f2`, `f3` [m/s^2] beside the file and renames at the end: whoever looks sees the whole
@@ -31,6 +30,17 @@ trait Table: Send {
     fn finish(self: Box<Self>) -> io::Result<()>;
 }
 
+impl Table for ParquetTable<File> {
+    fn write(&mut self, block: RecordSlice) -> io::Result<()> {
+        let [f1, f2, f3] = block.f_z;
+        self.write(&[block.t, f1, f2, f3])
+    }
+
+    fn finish(self: Box<Self>) -> io::Result<()> {
+        (*self).finish()?.sync_all()
+    }
+}
+
 impl RecordWriter {
     /// Begins a record.
     ///
@@ -42,7 +52,7 @@ impl RecordWriter {
         let failed = |error| Error::writing(file, error);
         let output = File::create(&beside).map_err(failed)?;
         let table: Box<dyn Table> = if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet")) {
-            Box::new(ParquetTable::new(output).map_err(failed)?)
+            Box::new(ParquetTable::new(output, Layout::PLAIN, &["t", "f1", "f2", "f3"]).map_err(failed)?)
         } else {
             Box::new(TextTable::new(output).map_err(failed)?)
         };

@@ -15,7 +15,7 @@ pub use truth::Truth;
 
 use self::csv::CsvTable;
 use crate::error::{Error, Place};
-use crate::parquet_table::ParquetTable;
+use crate::parquet_table::{Layout, ParquetTable};
 use crate::record::Column;
 use crate::session::{EXPERIMENT_FILE, Session};
 use crate::table::ColumnName;
@@ -135,9 +135,9 @@ fn write_table<const N: usize>(
             stretches.into_iter().try_for_each(|rows| table.write(&rows))
         }
         TableFormat::Parquet => {
-            let mut table = ParquetTable::new(output, names)?;
+            let mut table = ParquetTable::new(output, Layout::PACKED, names)?;
             stretches.into_iter().try_for_each(|rows| table.write(&rows))?;
-            table.finish()
+            table.finish().map(|_| ())
         }
     })
 }

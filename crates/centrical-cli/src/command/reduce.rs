@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use centrical_io::{Error, Reduced, Session, TableFormat, write_reduced};
+use centrical_io::{Error, Reduced, Session, write_reduced};
 
+use crate::format::Format;
 use crate::{Outcome, progress};
 
 /// Reduce a session's records to plateau means: a session of a few kilobytes, calibrated to the same numbers.
@@ -19,24 +20,13 @@ pub struct Arguments {
     format: Format,
 }
 
-#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
-enum Format {
-    #[default]
-    Csv,
-    Parquet,
-}
-
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
-    let format = match arguments.format {
-        Format::Csv => TableFormat::Csv,
-        Format::Parquet => TableFormat::Parquet,
-    };
     let bar = progress::reading(&session);
     let reduced = Reduced::without_inputs(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
-    write_reduced(&session, &reduced, format, &arguments.out)?;
+    write_reduced(&session, &reduced, arguments.format.into(), &arguments.out)?;
     let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();
     println!("{} plateaus of {samples} samples written to {}", reduced.plateaus.len(), arguments.out.display());
     Ok(Outcome::Done)

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use centrical_io::{Error, Session, TableFormat, Truth, simulate_session};
+use centrical_io::{Error, Session, Truth, simulate_session};
 
+use crate::format::Format;
 use crate::{Outcome, progress};
 
 /// Simulate a session: records, telemetry and experiment.toml, with truth.json beside them.
@@ -25,23 +26,12 @@ pub struct Arguments {
     format: Format,
 }
 
-#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
-enum Format {
-    #[default]
-    Csv,
-    Parquet,
-}
-
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let plan = Session::read(&arguments.plan)?;
     let truth = Truth::read(&arguments.truth, &plan, arguments.seed)?;
-    let format = match arguments.format {
-        Format::Csv => TableFormat::Csv,
-        Format::Parquet => TableFormat::Parquet,
-    };
     let bar = progress::mountings("simulating", plan.experiment.mountings.len());
-    simulate_session(&plan, &truth, arguments.seed, format, &arguments.out, &|_| bar.inc(1))?;
+    simulate_session(&plan, &truth, arguments.seed, arguments.format.into(), &arguments.out, &|_| bar.inc(1))?;
     bar.finish_and_clear();
     Ok(Outcome::Done)
 }

@@ -7,6 +7,8 @@
 
 mod mutate;
 mod parsers;
+#[path = "../common/random.rs"]
+mod random;
 
 use std::collections::HashSet;
 use std::fs;
@@ -15,8 +17,9 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use mutate::{Random, mutated};
+use mutate::mutated;
 use parsers::{Parser, parsers};
+use random::Random;
 
 /// The longest that a file of some kilobytes may take.
 const PATIENCE: Duration = Duration::from_secs(10);

@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 
 use centrical_io::{Columns, Session, read_plateaus, read_record};
 
+use crate::random::Random;
+
 /// Damaged copies of every file.
 const COPIES: u64 = 200;
 
@@ -18,7 +20,7 @@ const MEMORY: u64 = 300 << 10;
 #[test]
 fn damaged_files_are_read_or_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for original in originals() {
         let bytes = fs::read(&original).unwrap();
         let copy = folder.path().join(original.file_name().unwrap());
@@ -61,7 +63,7 @@ fn damaged(bytes: &[u8], random: &mut Random) -> Vec<u8> {
         if bytes.is_empty() {
             break;
         }
-        let at = random.near_an_end(bytes.len());
+        let at = random.place(bytes.len(), 200);
         match random.below(6) {
             0 => bytes[at] ^= 1 << random.below(8),
             1 => bytes[at] = b"\0\x01\x7f\x80\xff,;\"'\n\r[]{}=.-+e#naif09"[random.below(27)],
@@ -80,33 +82,6 @@ fn damaged(bytes: &[u8], random: &mut Random) -> Vec<u8> {
         }
     }
     bytes
-}
-
-/// A small generator of its own (splitmix64), so that every run damages alike.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        usize::try_from(self.next() % end as u64).unwrap()
-    }
-
-    /// A place, half the time near the start or the end, where formats keep their sizes.
-    fn near_an_end(&mut self, length: usize) -> usize {
-        let near = length.min(200);
-        match self.below(4) {
-            0 => self.below(near),
-            1 => length - 1 - self.below(near),
-            _ => self.below(length),
-        }
-    }
 }
 
 /// Peak memory of this process [KiB], where the system tells it.

@@ -4,6 +4,8 @@ mod claims;
 mod damage;
 mod growing;
 mod pieces;
+#[path = "../common/random.rs"]
+mod random;
 mod record_writer;
 mod session_forms;
 mod two_passes;

@@ -13,20 +13,7 @@ use centrical::{
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::common::{Random, spread, truth};
-
-/// What a good laboratory states.
-const STATED: TypeB = TypeB {
-    gravity: 1e-6,
-    latitude: 1e-5,
-    radius: 20e-6,
-    radius_difference: Some(3e-6),
-    speed_scale: 1e-6,
-    rest_angle: 5e-5,
-    proof_masses: 20e-6,
-    attitude: 2e-5,
-    resolution: 1e-5,
-    doubt: 0.0,
-};
+use crate::uncertainty::STATED;
 
 /// A few plateaus of one to three mountings, a unit of four to six coefficients, costs and durations by chance.
 fn small(random: &mut Random) -> Candidates {

@@ -1,0 +1,20 @@
+//! The format of tables, as it is asked for.
+
+use centrical_io::TableFormat;
+
+/// CSV or Parquet.
+#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
+pub enum Format {
+    #[default]
+    Csv,
+    Parquet,
+}
+
+impl From<Format> for TableFormat {
+    fn from(format: Format) -> Self {
+        match format {
+            Format::Csv => Self::Csv,
+            Format::Parquet => Self::Parquet,
+        }
+    }
+}
