@@ -2,6 +2,7 @@
 
 use crate::compensation::Compensation;
 use crate::error::UnequalLengths;
+use crate::lanes::Lanes;
 
 /// Readings of a bulk that no specific force within the range gives; they are NaN on all axes afterwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -14,10 +15,6 @@ pub struct Outside {
 
 /// Readings worked on together: long enough for any vectors, short enough to stay in the first-level cache.
 const LANES: usize = 64;
-
-/// The readings of a block, on the boundary of a cache line: the widest vectors would straddle two otherwise.
-#[repr(align(64))]
-struct Lanes([[f64; LANES]; 3]);
 
 impl Compensation<'_> {
     /// Takes readings `f'` [m/s^2], an array per axis, to specific forces [m/s^2] in place. Each becomes what
@@ -71,18 +68,22 @@ impl Compensation<'_> {
         let mut outside = Outside::default();
         let [f1, f2, f3] = f.map(|f| f.as_chunks_mut::<LANES>());
         let rest_from = LANES * f1.0.len();
+        let mut lanes = Lanes::ZERO;
         for (n, ((f1, f2), f3)) in f1.0.iter_mut().zip(f2.0).zip(f3.0).enumerate() {
-            let mut lanes = Lanes([*f1, *f2, *f3]);
-            self.invert(&mut lanes.0);
-            [*f1, *f2, *f3] = lanes.0;
+            // One axis after the other: an array of all would be made elsewhere first.
+            lanes.0[0] = *f1;
+            lanes.0[1] = *f2;
+            lanes.0[2] = *f3;
+            self.invert(&mut lanes);
+            (*f1, *f2, *f3) = (lanes.0[0], lanes.0[1], lanes.0[2]);
             outside = outside.and(Outside::of(&lanes.0[0]).after(n * LANES));
         }
         let rest = [f1.1, f2.1, f3.1];
-        let mut lanes = Lanes([[0.0; LANES]; 3]);
+        lanes = Lanes::ZERO;
         for (lane, f) in lanes.0.iter_mut().zip(&rest) {
             lane[..f.len()].copy_from_slice(f);
         }
-        self.invert(&mut lanes.0);
+        self.invert(&mut lanes);
         outside = outside.and(Outside::of(&lanes.0[0][..rest[0].len()]).after(rest_from));
         for (lane, f) in lanes.0.iter().zip(rest) {
             f.copy_from_slice(&lane[..f.len()]);

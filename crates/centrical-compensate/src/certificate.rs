@@ -17,12 +17,10 @@
 //! 2. a start: `f_0 = C (f' - b)` lies within `eta` of the solution, so in `B_4/3` for every `f` of the range. And
 //!    for every `f_0` in `B_4/3` there is a solution in `B_5/3` (`v -> f_0 - C N(v)` is a contraction there, its
 //!    shift being at most `1/3` over `B_2`), so what comes out is never an artefact;
-//! 3. convergence: with `e` the distance to the solution, a Newton step leaves at most
-//!    `e (gamma e / 2 + 2 kappa') / (1 - kappa)`, which falls from the start on (it is asked to halve at least)
-//!    and keeps the iterates in `B_2`. The number of steps that reaches rounding follows, once for all readings.
-//!    A step with the gain of the one before, whose distance was `d`, leaves at most
-//!    `e (gamma (d + e / 2) + 2 kappa') / (1 - kappa)`: the gain there differs from its mean between iterate and
-//!    solution by no more than `gamma (d + e / 2)`.
+//! 3. convergence: with `e` the distance to the solution, a fixed-point step `f <- f_0 - C N(f)` leaves at most
+//!    `kappa e`, from `eta` on; a Newton step at most `e (gamma e / 2 + 2 kappa') / (1 - kappa)`, which falls from the
+//!    start on (it is asked to halve at least). Both keep the iterates in `B_2`. The numbers of steps that reach
+//!    rounding follow, once for all readings; a Newton step costs as much as three of the others.
 
 use crate::error::NotInvertible;
 use crate::linear::{Linear, is_affine};
@@ -69,7 +67,28 @@ impl Certificate {
     /// Newton steps from `C (f' - b)` after which the error, relative to the range, is at most `accuracy`, for the
     /// reading of every `f` of the range. At least one.
     pub fn newton_steps(&self, accuracy: f64) -> usize {
-        let mut error = self.start;
+        self.newton_steps_from(self.start, accuracy)
+    }
+
+    /// Bound on the error of an iterate, relative to the range, after `steps` fixed-point steps `f <- f_0 - C N(f)`
+    /// from `f_0 = C (f' - b)`.
+    pub fn error_after(&self, steps: usize) -> f64 {
+        (0..steps).fold(self.start, |error, _| error * self.bounds.gain)
+    }
+
+    /// The cheapest steps after which the error, relative to the range, is at most `accuracy`. The last one is Newton's:
+    /// it corrects what rounding did to those before.
+    pub(crate) fn steps(&self, accuracy: f64) -> Steps {
+        let with = |fixed_point| Steps {
+            fixed_point,
+            newton: self.newton_steps_from(self.error_after(fixed_point), accuracy),
+        };
+        let newton = with(0);
+        (1..newton.cost()).map(with).fold(newton, |best, steps| if steps.cost() < best.cost() { steps } else { best })
+    }
+
+    /// Newton steps, at least one, that bring an error to `accuracy`.
+    fn newton_steps_from(&self, mut error: f64, accuracy: f64) -> usize {
         let mut steps = 0;
         while steps == 0 || error > accuracy {
             error *= self.bounds.rate(error);
@@ -77,26 +96,22 @@ impl Certificate {
         }
         steps
     }
-
-    /// The same, the last two of them a pair where that is enough.
-    pub(crate) fn steps(&self, accuracy: f64) -> Steps {
-        let newton = self.newton_steps(accuracy);
-        let plain = Steps { newton, ends_in_pair: false };
-        let Some(before) = newton.checked_sub(2) else { return plain };
-        let error = (0..before).fold(self.start, |error, _| error * self.bounds.rate(error));
-        let first = error * self.bounds.rate(error);
-        let second = first * self.bounds.rate_behind(first, error);
-        if second <= accuracy { Steps { newton: before, ends_in_pair: true } } else { plain }
-    }
 }
 
-/// How the iteration goes.
+/// How the iteration goes: fixed-point steps, then Newton's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Steps {
+    /// Steps `f <- f_0 - C N(f)`.
+    pub fixed_point: usize,
     /// Newton steps.
     pub newton: usize,
-    /// Whether two more follow, the second with the gain of the first.
-    pub ends_in_pair: bool,
+}
+
+impl Steps {
+    /// In fixed-point steps, by the operations in each.
+    fn cost(self) -> usize {
+        self.fixed_point + 3 * self.newton
+    }
 }
 
 /// Bounds over `B_s`, in units of the range.
@@ -146,12 +161,7 @@ impl Bounds {
 
     /// What a Newton step leaves of an error, relative to it.
     fn rate(&self, error: f64) -> f64 {
-        self.rate_behind(error, 0.0)
-    }
-
-    /// The same for a step with the gain of an iterate at the distance `behind`.
-    fn rate_behind(&self, error: f64, behind: f64) -> f64 {
-        (self.curvature * (behind + 0.5 * error) + 2.0 * self.kink) / (1.0 - self.gain)
+        (0.5 * self.curvature * error + 2.0 * self.kink) / (1.0 - self.gain)
     }
 
     /// Whether these bounds, taken over twice `factor` times the range, make the inverse certain there. A sum of

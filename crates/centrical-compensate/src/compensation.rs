@@ -1,15 +1,17 @@
-//! Newton's iteration for the specific force that gives a reading.
+//! The iteration for the specific force that gives a reading.
 //!
-//! The unknown is the error `e = f' - f`, the solution of `E(f' - e) = e`: small beside the reading, so that its
-//! rounding is too, and `f = f' - e` is exact almost to its last place. With the gain `J = I + E'` a step is
-//! `e <- e + J^-1 (E(f' - e) - e)`. The last step may take the gain of the one before, which spares it a quarter of
-//! the work. The certificate fixes the number of steps beforehand, whatever the reading.
+//! From `f_0 = C (f' - b)`, which is exact without the non-linear terms `N`, fixed-point steps `f <- f_0 - C N(f)` gain
+//! some digits each and cost little; Newton's step then doubles the digits. It goes for the error `e = f' - f`, the
+//! solution of `E(f' - e) = e`: small beside the reading, so that its rounding is too, and `f = f' - e` is exact almost
+//! to its last place. With the gain `J = I + E'` it is `e <- e + J^-1 (E(f' - e) - e)`. The certificate fixes the
+//! numbers of steps beforehand, whatever the reading.
 
 use crate::certificate::{Certificate, START_REGION, Steps};
 use crate::error::{NotInvertible, OutOfRange};
-use crate::linear::{Inverse, Linear, solve};
-use crate::separable::{Mixed, Separable, is_separable};
-use crate::term::{ErrorModel, Term};
+use crate::lanes::Lanes;
+use crate::linear::{Linear, solve};
+use crate::model::Model;
+use crate::term::Term;
 
 /// A range ends a few last places beyond its edge, so that what lies on it is not refused for its rounding.
 const EDGE: f64 = 1.0 + 8.0 * f64::EPSILON;
@@ -17,9 +19,7 @@ const EDGE: f64 = 1.0 + 8.0 * f64::EPSILON;
 /// The inverse of an error model over a range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compensation<'t> {
-    separable: Separable,
-    /// All terms, if some do not fit the fast form.
-    terms: Option<&'t [Term]>,
+    model: Model<'t>,
     linear: Linear,
     certificate: Certificate,
     steps: Steps,
@@ -37,9 +37,7 @@ impl<'t> Compensation<'t> {
         let certificate = Certificate::new(terms, &linear, range)?;
         // Half a unit in the last place of the range.
         let steps = certificate.steps(0.5 * f64::EPSILON);
-        let separable = Separable::part_of(terms);
-        let terms = (!terms.iter().all(is_separable)).then_some(terms);
-        Ok(Self { separable, terms, linear, certificate, steps })
+        Ok(Self { model: Model::new(terms), linear, certificate, steps })
     }
 
     /// What was shown of the inverse.
@@ -57,57 +55,76 @@ impl<'t> Compensation<'t> {
     /// # Errors
     /// [`OutOfRange`] when no `f` of the range has this reading.
     pub fn apply(&self, reading: [f64; 3]) -> Result<[f64; 3], OutOfRange> {
-        let mut lane = reading.map(|f| [f]);
+        let mut lane = Lanes(reading.map(|f| [f]));
         self.invert(&mut lane);
-        let f = lane.map(|[f]| f);
+        let f = lane.at(0);
         if f[0].is_nan() { Err(OutOfRange { reading, range: self.certificate.range }) } else { Ok(f) }
     }
 
     /// Takes `W` readings, by axes, to specific forces; NaN on all axes where there is none. No branch depends on a
     /// reading, so that the lanes go into vectors and each is what it would be alone.
     #[inline(always)]
-    pub(crate) fn invert<const W: usize>(&self, f: &mut [[f64; W]; 3]) {
-        match self.terms {
-            None => self.invert_model(&self.separable, f),
-            Some(terms) => self.invert_model(&Mixed { separable: self.separable, terms }, f),
-        }
+    pub(crate) fn invert<const W: usize>(&self, f: &mut Lanes<W>) {
+        if self.model.is_fast() { self.iterate::<W, true>(f) } else { self.iterate::<W, false>(f) }
     }
 
+    /// The iteration; `FAST` when all terms fit the fast form, so that no lane asks for others.
     #[inline(always)]
-    fn invert_model<const W: usize>(&self, model: &impl ErrorModel, f: &mut [[f64; W]; 3]) {
-        let mut error = [[0.0; W]; 3];
+    fn iterate<const W: usize, const FAST: bool>(&self, reading: &mut Lanes<W>) {
+        let (mut start, mut f) = (Lanes::ZERO, Lanes::ZERO);
         for w in 0..W {
-            put(&mut error, w, self.start(get(f, w)));
+            let f_0 = self.or_nan(self.linear.invert(reading.at(w)), START_REGION);
+            start.put(w, f_0);
+            f.put(w, f_0);
         }
+        for _ in 0..self.steps.fixed_point {
+            self.fixed_point_step::<W, FAST>(&start, &mut f);
+        }
+        for w in 0..W {
+            f.put(w, difference(reading.at(w), f.at(w)));
+        }
+        let error = &mut f;
         for _ in 0..self.steps.newton {
-            for w in 0..W {
-                let next = newton_step(model, get(f, w), get(&error, w));
-                put(&mut error, w, next);
-            }
-        }
-        if self.steps.ends_in_pair {
-            for w in 0..W {
-                let next = newton_pair(model, get(f, w), get(&error, w));
-                put(&mut error, w, next);
-            }
+            self.newton_step::<W, FAST>(reading, error);
         }
         for w in 0..W {
-            let compensated = self.finish(get(f, w), get(&error, w));
-            put(f, w, compensated);
+            let f = difference(reading.at(w), error.at(w));
+            reading.put(w, self.or_nan(f, EDGE));
         }
     }
 
-    /// Error of a reading by the affine part of the model; NaN if that lies too far out.
+    /// `f <- f_0 - C N(f)`.
     #[inline(always)]
-    fn start(&self, reading: [f64; 3]) -> [f64; 3] {
-        let f = self.linear.invert(reading);
-        difference(reading, self.or_nan(f, START_REGION))
+    fn fixed_point_step<const W: usize, const FAST: bool>(&self, start: &Lanes<W>, f: &mut Lanes<W>) {
+        let others = (!FAST).then(|| self.model.others_error(f));
+        for w in 0..W {
+            let mut n = self.model.separable.nonlinear(f.at(w));
+            if let Some(others) = &others {
+                n = sum(n, others.at(w));
+            }
+            f.put(w, difference(start.at(w), self.linear.inverse_times(n)));
+        }
     }
 
-    /// Reading less error; NaN if that lies out of range.
+    /// `e <- e + J^-1 (E(f' - e) - e)`.
     #[inline(always)]
-    fn finish(&self, reading: [f64; 3], error: [f64; 3]) -> [f64; 3] {
-        self.or_nan(difference(reading, error), EDGE)
+    fn newton_step<const W: usize, const FAST: bool>(&self, reading: &Lanes<W>, e: &mut Lanes<W>) {
+        let others = (!FAST).then(|| {
+            let mut f = Lanes::<W>::ZERO;
+            for w in 0..W {
+                f.put(w, difference(reading.at(w), e.at(w)));
+            }
+            self.model.others(&f)
+        });
+        for w in 0..W {
+            let (mut error, mut gain) = self.model.separable.error_and_gain(difference(reading.at(w), e.at(w)));
+            if let Some(others) = &others {
+                error = sum(error, others.error.at(w));
+                gain = [0, 1, 2].map(|j| sum(gain[j], others.gain[j].at(w)));
+            }
+            let next = sum(e.at(w), solve(gain, difference(error, e.at(w))));
+            e.put(w, next);
+        }
     }
 
     /// `f` within `scale` times the range, else NaN.
@@ -120,23 +137,6 @@ impl<'t> Compensation<'t> {
     }
 }
 
-/// `e + J^-1 (E(f' - e) - e)`.
-#[inline(always)]
-fn newton_step(model: &impl ErrorModel, reading: [f64; 3], e: [f64; 3]) -> [f64; 3] {
-    let (error, gain) = model.error_and_gain(difference(reading, e));
-    sum(e, solve(gain, difference(error, e)))
-}
-
-/// A Newton step and a second one with the gain of the first.
-#[inline(always)]
-fn newton_pair(model: &impl ErrorModel, reading: [f64; 3], e: [f64; 3]) -> [f64; 3] {
-    let (error, gain) = model.error_and_gain(difference(reading, e));
-    let inverse = Inverse::of(gain);
-    let e = sum(e, inverse.times(difference(error, e)));
-    let (error, _) = model.error_and_gain(difference(reading, e));
-    sum(e, inverse.times(difference(error, e)))
-}
-
 #[inline(always)]
 fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
@@ -145,18 +145,6 @@ fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 #[inline(always)]
 fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn get<const W: usize>(lanes: &[[f64; W]; 3], w: usize) -> [f64; 3] {
-    [lanes[0][w], lanes[1][w], lanes[2][w]]
-}
-
-#[inline(always)]
-fn put<const W: usize>(lanes: &mut [[f64; W]; 3], w: usize, v: [f64; 3]) {
-    for i in 0..3 {
-        lanes[i][w] = v[i];
-    }
 }
 
 fn check(terms: &[Term], range: f64) -> Result<(), NotInvertible> {

@@ -29,7 +29,9 @@ mod bulk;
 mod certificate;
 mod compensation;
 mod error;
+mod lanes;
 mod linear;
+mod model;
 mod separable;
 mod term;
 

@@ -35,7 +35,12 @@ impl Linear {
     /// `C (f' - b)`.
     #[inline(always)]
     pub(crate) fn invert(&self, reading: [f64; 3]) -> [f64; 3] {
-        let d = [reading[0] - self.bias[0], reading[1] - self.bias[1], reading[2] - self.bias[2]];
+        self.inverse_times([reading[0] - self.bias[0], reading[1] - self.bias[1], reading[2] - self.bias[2]])
+    }
+
+    /// `C d`.
+    #[inline(always)]
+    pub(crate) fn inverse_times(&self, d: [f64; 3]) -> [f64; 3] {
         [dot(self.inverse[0], d), dot(self.inverse[1], d), dot(self.inverse[2], d)]
     }
 }
@@ -45,8 +50,8 @@ pub(crate) fn is_affine(term: &Term) -> bool {
     term.degree() <= 1 && term.sign_of.is_none()
 }
 
-/// Solves `g x = d` by Cramer's rule, `g` given by columns. Backward stable enough for a Newton step, whose own
-/// error the next step removes, and without a branch, so that it goes into vectors. Products are shared: the first
+/// Solves `g x = d` by Cramer's rule, `g` given by columns. Accurate enough for a Newton step, which is
+/// small beside the error it corrects, and without a branch, so that it goes into vectors. Products are shared: the first
 /// unknown is `d . (b x c) = b . (c x d)` over the determinant `a . (b x c) = c . (a x b)`.
 #[inline(always)]
 pub(crate) fn solve(g: [[f64; 3]; 3], d: [f64; 3]) -> [f64; 3] {
@@ -54,30 +59,6 @@ pub(crate) fn solve(g: [[f64; 3]; 3], d: [f64; 3]) -> [f64; 3] {
     let (ab, cd) = (cross(a, b), cross(c, d));
     let scale = 1.0 / dot(c, ab);
     [dot(b, cd) * scale, -dot(a, cd) * scale, dot(d, ab) * scale]
-}
-
-/// The inverse of a matrix for more than one right-hand side, as [`solve`] has it.
-#[derive(Clone, Copy)]
-pub(crate) struct Inverse {
-    /// Rows, times the determinant.
-    rows: [[f64; 3]; 3],
-    scale: f64,
-}
-
-impl Inverse {
-    /// The inverse of `g`, given by columns.
-    #[inline(always)]
-    pub fn of(g: [[f64; 3]; 3]) -> Self {
-        let [a, b, c] = g;
-        let rows = [cross(b, c), cross(c, a), cross(a, b)];
-        Self { rows, scale: 1.0 / dot(a, rows[0]) }
-    }
-
-    /// `g^-1 d`.
-    #[inline(always)]
-    pub fn times(&self, d: [f64; 3]) -> [f64; 3] {
-        self.rows.map(|row| dot(row, d) * self.scale)
-    }
 }
 
 #[inline(always)]

@@ -1,6 +1,6 @@
 //! The fast form: errors that are sums of cubics in one component each, as the source's model is [K4.2].
 
-use crate::term::{ErrorModel, Term};
+use crate::term::Term;
 
 /// `E_i(f) = b_i + sum_j (g1_ij f_j + g0_ij) f_j + g2_i f_i^3`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,15 +9,6 @@ pub(crate) struct Separable {
     g0: [[f64; 3]; 3],
     g1: [[f64; 3]; 3],
     g2: [f64; 3],
-}
-
-/// Terms of which some do not fit the fast form: those are added one by one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Mixed<'t> {
-    /// The terms that fit.
-    pub separable: Separable,
-    /// All terms.
-    pub terms: &'t [Term],
 }
 
 impl Separable {
@@ -35,18 +26,21 @@ impl Separable {
         }
         part
     }
-}
 
-/// Whether a term fits the fast form.
-pub(crate) fn is_separable(term: &Term) -> bool {
-    let components = term.powers.iter().filter(|p| **p > 0).count();
-    let is_cubic = term.powers[term.axis] == 3;
-    term.sign_of.is_none() && components <= 1 && (term.degree() <= 2 || (is_cubic && term.degree() == 3))
-}
-
-impl ErrorModel for Separable {
+    /// `N(f)`: the quadratic and cubic terms [m/s^2].
     #[inline(always)]
-    fn error_and_gain(&self, f: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
+    pub fn nonlinear(&self, f: [f64; 3]) -> [f64; 3] {
+        let square = f.map(|f| f * f);
+        [0, 1, 2].map(|i| {
+            let mut g1 = self.g1[i];
+            g1[i] += self.g2[i] * f[i];
+            g1[0] * square[0] + g1[1] * square[1] + g1[2] * square[2]
+        })
+    }
+
+    /// `E(f)` [m/s^2], and the columns of the gain `I + dE/df`.
+    #[inline(always)]
+    pub fn error_and_gain(&self, f: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
         let mut error = self.bias;
         let mut columns = [[0.0; 3]; 3];
         for i in 0..3 {
@@ -57,8 +51,10 @@ impl ErrorModel for Separable {
                     error[i] += ((g2 * f[j] + g1) * f[j] + g0) * f[j];
                     columns[j][i] = (3.0 * g2 * f[j] + 2.0 * g1) * f[j] + (1.0 + g0);
                 } else {
-                    error[i] += (g1 * f[j] + g0) * f[j];
-                    columns[j][i] = 2.0 * g1 * f[j] + g0;
+                    let slope = g1 * f[j];
+                    let chord = slope + g0;
+                    error[i] += chord * f[j];
+                    columns[j][i] = chord + slope;
                 }
             }
         }
@@ -66,12 +62,9 @@ impl ErrorModel for Separable {
     }
 }
 
-impl ErrorModel for Mixed<'_> {
-    fn error_and_gain(&self, f: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
-        let (mut error, mut columns) = self.separable.error_and_gain(f);
-        for term in self.terms.iter().filter(|term| !is_separable(term)) {
-            term.add_to(&mut error, &mut columns, f);
-        }
-        (error, columns)
-    }
+/// Whether a term fits the fast form.
+pub(crate) fn is_separable(term: &Term) -> bool {
+    let components = term.powers.iter().filter(|p| **p > 0).count();
+    let is_cubic = term.powers[term.axis] == 3;
+    term.sign_of.is_none() && components <= 1 && (term.degree() <= 2 || (is_cubic && term.degree() == 3))
 }

@@ -1,5 +1,7 @@
 //! The error model as this crate has it: monomial terms with their coefficients.
 
+use crate::lanes::Lanes;
+
 /// `c f1^p1 f2^p2 f3^p3` on one axis, with the sign of a component if the term is odd: `c |f1| f1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {
@@ -11,12 +13,6 @@ pub struct Term {
     pub sign_of: Option<usize>,
     /// `c`, SI: m/s^2 per (m/s^2)^degree.
     pub coefficient: f64,
-}
-
-/// The error of a reading and its derivatives, in whatever form the coefficients are kept.
-pub(crate) trait ErrorModel {
-    /// `E(f)` [m/s^2], and the columns of the gain `I + dE/df`.
-    fn error_and_gain(&self, f: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]);
 }
 
 /// Reading `f' = f + E(f)` [m/s^2] of the specific force `f` [m/s^2].
@@ -66,12 +62,40 @@ impl Term {
         gradient
     }
 
-    /// Adds the term at `f` to an error and to the columns of a gain.
-    pub(crate) fn add_to(&self, error: &mut [f64; 3], columns: &mut [[f64; 3]; 3], f: [f64; 3]) {
-        error[self.axis] += self.value(f);
-        for (column, derivative) in columns.iter_mut().zip(self.gradient(f)) {
-            column[self.axis] += derivative;
+    /// Adds the term at `f` to errors.
+    #[inline(always)]
+    pub(crate) fn add_value<const W: usize>(&self, f: &Lanes<W>, error: &mut Lanes<W>) {
+        add(&self.monomials(self.coefficient, self.powers, f), &mut error.0[self.axis]);
+    }
+
+    /// Adds its derivatives at `f` to the columns of gains; at a kink, those of the positive side.
+    #[inline(always)]
+    pub(crate) fn add_gradient<const W: usize>(&self, f: &Lanes<W>, columns: &mut [Lanes<W>; 3]) {
+        for j in 0..3 {
+            if let Some(power) = self.powers[j].checked_sub(1) {
+                let mut lower = self.powers;
+                lower[j] = power;
+                let coefficient = f64::from(self.powers[j]) * self.coefficient;
+                add(&self.monomials(coefficient, lower, f), &mut columns[j].0[self.axis]);
+            }
         }
+    }
+
+    /// `c f1^p1 f2^p2 f3^p3`, and the term's sign, in each lane.
+    #[inline(always)]
+    fn monomials<const W: usize>(&self, c: f64, powers: [u8; 3], f: &Lanes<W>) -> [f64; W] {
+        let mut products = match self.sign_of {
+            None => [c; W],
+            Some(j) => f.0[j].map(|f| if f < 0.0 { -c } else { c }),
+        };
+        for (f, power) in f.0.iter().zip(powers) {
+            for _ in 0..power {
+                for w in 0..W {
+                    products[w] *= f[w];
+                }
+            }
+        }
+        products
     }
 
     /// Largest magnitude over the cube `|f_j| <= h`: at its corners.
@@ -93,4 +117,11 @@ fn product(f: [f64; 3], powers: [u8; 3]) -> f64 {
         }
     }
     product
+}
+
+#[inline(always)]
+fn add<const W: usize>(more: &[f64; W], sum: &mut [f64; W]) {
+    for w in 0..W {
+        sum[w] += more[w];
+    }
 }

@@ -58,6 +58,19 @@ proptest! {
         }
     }
 
+    /// Fixed-point steps gain what they are said to gain.
+    #[test]
+    fn fixed_point_steps_keep_their_promise((model, points) in with_points(everything(), 50), steps in 0..10_usize) {
+        let compensation = Compensation::new(&model.terms, model.range).unwrap();
+        let bound = compensation.certificate().error_after(steps);
+        for u in points {
+            let f = model.at(u);
+            let after = fixed_point(&compensation, &model.terms, reading(&model.terms, f), steps);
+            let error = (0..3).map(|i| (after[i] - f[i]).abs() / model.range).fold(0.0, f64::max);
+            prop_assert!(error <= bound + 1e-14, "{error:e} after {steps} steps, {bound:e} promised");
+        }
+    }
+
     /// `f + c f^2` turns back at `f = -1 / (2 c)`. The inverse is certain up to a sixth of that: twice the range,
     /// and a third of the gain.
     #[test]
@@ -83,6 +96,20 @@ proptest! {
         let refused = matches!(over(1.000_001), Err(NotInvertible::TooNonlinear { .. }));
         prop_assert!(refused);
     }
+}
+
+/// `f <- C (f' - b) - C N(f)`, the non-linear terms by the numerics.
+fn fixed_point(compensation: &Compensation, terms: &[Term], read: [f64; 3], steps: usize) -> [f64; 3] {
+    let (error_model, coefficients) = core_model(terms);
+    let linear = compensation.linear();
+    let (inverse, gain) = (matrix(linear.inverse), matrix(linear.gain));
+    let mut f = inverse * (Vector3::from(read) - Vector3::from(linear.bias));
+    let start = f;
+    for _ in 0..steps {
+        let affine = gain * f + Vector3::from(linear.bias);
+        f = start - inverse * (error_model.reading(&coefficients, &f) - affine);
+    }
+    f.into()
 }
 
 /// Newton's iteration on `f` itself, with the numerics' gain.
