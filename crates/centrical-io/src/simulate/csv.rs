@@ -8,8 +8,8 @@ const UNITS: u64 = 1_000_000_000;
 /// Above this a number times [`UNITS`] is no 64-bit integer any more, and far from what is measured.
 const LARGEST: f64 = 9e9;
 
-/// Bytes that a number and what follows it take at most: a sign, ten digits, a point, nine decimals, and room for eight
-/// decimals to be written at once; or what [`f64`] itself writes.
+/// Bytes that a number below [`LARGEST`] and what follows it take at most: a sign, ten digits, a point, nine decimals; and
+/// room for eight digits to be written at once.
 const LONGEST: usize = 32;
 
 /// A table that is written row after row.
@@ -28,21 +28,30 @@ impl<'a> CsvTable<'a> {
 
     /// Adds rows, given as columns of equal length.
     pub fn write(&mut self, columns: &[Vec<f64>]) -> io::Result<()> {
-        let rows = columns[0].len();
         let mut end = 0;
-        for row in 0..rows {
-            // Room is made for many rows at once, and numbers written in place: this is most of a simulation's time.
-            if self.text.len() < end + columns.len() * LONGEST {
-                self.text.resize(2 * self.text.len() + columns.len() * LONGEST, 0);
-            }
+        for row in 0..columns[0].len() {
             for column in columns {
-                end += put_number(&mut self.text, end, column[row]);
+                end = self.put(end, column[row]);
                 self.text[end] = b',';
                 end += 1;
             }
             self.text[end - 1] = b'\n';
         }
         self.output.write_all(&self.text[..end])
+    }
+
+    /// Writes a number at `start`, with room for a character after it, and tells where it ends.
+    fn put(&mut self, start: usize, value: f64) -> usize {
+        if value.abs() >= LARGEST || !value.is_finite() {
+            self.text.truncate(start);
+            self.text.extend_from_slice(value.to_string().as_bytes());
+            self.text.push(0);
+            return self.text.len() - 1;
+        }
+        if self.text.len() < start + LONGEST {
+            self.text.resize(2 * start + LONGEST, 0);
+        }
+        start + self.text[start..].first_chunk_mut().map_or(0, |place| put_number(place, value))
     }
 }
 
@@ -51,31 +60,21 @@ fn field(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 
-/// Writes a number to nine decimals at `start` and tells its length. There must be [`LONGEST`] bytes from there on, less
-/// one; a number that takes more makes them.
-fn put_number(text: &mut Vec<u8>, start: usize, value: f64) -> usize {
-    if value.abs() >= LARGEST || !value.is_finite() {
-        let number = value.to_string();
-        text.splice(start..start, number.bytes());
-        return number.len();
-    }
+/// Writes a number below [`LARGEST`] to nine decimals and tells its length.
+fn put_number(text: &mut [u8; LONGEST], value: f64) -> usize {
     let units = rounded(value * UNITS as f64);
     let (whole, decimals) = (units.unsigned_abs() / UNITS, units.unsigned_abs() % UNITS);
-    let mut end = start;
-    if units < 0 {
-        text[end] = b'-';
-        end += 1;
-    }
-    end += put_whole(text, end, whole);
-    if decimals > 0 {
-        text[end] = b'.';
-        let (first, last) = (eight_digits(decimals / 10), (decimals % 10) as u8);
-        text[end + 1..end + 9].copy_from_slice(&(first | ZEROS).to_le_bytes());
-        text[end + 9] = b'0' + last;
-        // The last digits are in the highest bytes: those that are zero are not counted.
-        end += if last > 0 { 10 } else { 9 - first.leading_zeros() as usize / 8 };
-    }
-    end - start
+    // What is not to be there is written over: branches that cannot be foreseen would cost more.
+    text[0] = b'-';
+    let mut end = usize::from(units < 0);
+    end += put_whole(&mut text[end..], whole);
+    let (first, last) = (eight_digits(decimals / 10), (decimals % 10) as u8);
+    text[end] = b'.';
+    text[end + 1..end + 9].copy_from_slice(&(first | ZEROS).to_le_bytes());
+    text[end + 9] = b'0' + last;
+    // The last digits are in the highest bytes: those that are zero are not counted.
+    let shown = if last > 0 { 9 } else { 8 - first.leading_zeros() as usize / 8 };
+    end + shown + usize::from(shown > 0)
 }
 
 /// To the nearest integer, halves away from zero, as [`f64::round`], which older processors have no instruction for.
@@ -87,15 +86,24 @@ fn rounded(value: f64) -> i64 {
     whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5)
 }
 
-/// Writes an integer and tells its length.
-fn put_whole(text: &mut [u8], start: usize, number: u64) -> usize {
-    let length = number.checked_ilog10().map_or(1, |log| log as usize + 1);
-    let mut rest = number;
-    for digit in text[start..start + length].iter_mut().rev() {
-        *digit = b'0' + (rest % 10) as u8;
-        rest /= 10;
+/// Writes an integer below 10^10 and tells its length.
+fn put_whole(text: &mut [u8], number: u64) -> usize {
+    const EIGHT: u64 = 100_000_000;
+    let mut length = 0;
+    if number >= 10 * EIGHT {
+        text[length] = b'0' + (number / (10 * EIGHT)) as u8;
+        length += 1;
     }
-    length
+    if number >= EIGHT {
+        text[length] = b'0' + (number / EIGHT % 10) as u8;
+        length += 1;
+    }
+    let digits = eight_digits(number % EIGHT);
+    // The first digits are in the lowest bytes; of a short number they are zero and left out, all but the last.
+    let leading = if length > 0 { 0 } else { (digits.trailing_zeros() / 8).min(7) };
+    let shown = (digits | ZEROS) >> (8 * leading);
+    text[length..length + 8].copy_from_slice(&shown.to_le_bytes());
+    length + 8 - leading as usize
 }
 
 /// Eight times the character 0.
@@ -116,9 +124,9 @@ mod tests {
     use super::*;
 
     fn written(value: f64) -> String {
-        let mut text = vec![b'#'; LONGEST];
-        let length = put_number(&mut text, 0, value);
-        String::from_utf8(text[..length].to_vec()).unwrap()
+        let mut text = Vec::new();
+        CsvTable::new(&mut text, &[]).and_then(|mut table| table.write(&[vec![value]])).unwrap();
+        String::from_utf8(text).unwrap().trim().to_owned()
     }
 
     #[test]
@@ -134,6 +142,9 @@ mod tests {
             (-4e-10, "0"),
             (123_456_789.123, "123456789.123"),
             (8_388_607.0, "8388607"),
+            (99_999_999.0, "99999999"),
+            (100_000_000.0, "100000000"),
+            (-4_000_000_001.0, "-4000000001"),
             (1e12, "1000000000000"),
             (-8_388_607.25, "-8388607.25"),
             (1e300, &format!("1{}", "0".repeat(300))),

@@ -61,9 +61,14 @@ impl Motion {
         Self { segments: path.segments, duration: path.end }
     }
 
-    /// Where the arm is at time `t` [s] and how it moves.
-    pub fn at(&self, t: f64) -> ArmMotion {
-        self.segment(t).map_or(ArmMotion { angle: 0.0, speed: 0.0, acceleration: 0.0 }, |segment| segment.at(t))
+    /// Where the arm is at time `t` [s] and how it moves; `segment` is where the time before was, 0 at first.
+    #[inline]
+    pub fn at(&self, t: f64, segment: &mut usize) -> ArmMotion {
+        while self.segments.get(*segment + 1).is_some_and(|next| next.start <= t) {
+            *segment += 1;
+        }
+        let at_rest = ArmMotion { angle: 0.0, speed: 0.0, acceleration: 0.0 };
+        self.segments.get(*segment).map_or(at_rest, |segment| segment.at(t))
     }
 
     /// The speed as the centrifuge believes it to be at time `t` [rad/s].

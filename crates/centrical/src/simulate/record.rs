@@ -19,6 +19,8 @@ pub struct Records<'a> {
     physics: Physics<'a>,
     noise: [Noise; 3],
     transmission: Transmission,
+    /// Segment of the motion that the last sample was in.
+    segment: usize,
     /// Next sample and number of samples.
     next: u64,
     count: u64,
@@ -38,6 +40,7 @@ impl<'a> Records<'a> {
             physics: Physics::new(simulation.model, simulation.truth, mounting.mounting),
             noise: [0, 1, 2].map(|axis| Noise::new(&settings.sensor, &sampling, axis)),
             transmission: Transmission::new(mounting),
+            segment: 0,
             next: 0,
             count,
         }
@@ -46,7 +49,7 @@ impl<'a> Records<'a> {
     /// Sample `n`: its time [s] and the sensor's output before transmission [m/s^2].
     fn sample(&mut self, n: u64) -> (f64, Vector3<f64>) {
         let t = n as f64 / self.mounting.simulation.settings.recorder.rate;
-        let mut f = self.physics.reading(&self.mounting.motion.at(t));
+        let mut f = self.physics.reading(&self.mounting.motion.at(t, &mut self.segment));
         for (f, noise) in f.iter_mut().zip(&mut self.noise) {
             *f += noise.at(n);
         }
@@ -160,6 +163,39 @@ impl Transmission {
     #[inline]
     fn output(&self, f: f64) -> f64 {
         let f = f.clamp(-self.range, self.range);
-        if self.quantum > 0.0 { (f / self.quantum).round() * self.quantum } else { f }
+        if self.quantum > 0.0 { rounded(f / self.quantum) * self.quantum } else { f }
+    }
+}
+
+/// [`f64::round`], which is a call where the processor that is compiled for has no instruction for it.
+#[inline]
+fn rounded(x: f64) -> f64 {
+    /// From here on there are no fractions.
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    if !(x.abs() < WHOLE) {
+        return x;
+    }
+    #[expect(clippy::cast_possible_truncation)]
+    let whole = x as i64 as f64;
+    // Exact: both are multiples of the last place of `x`.
+    let rest = x - whole;
+    let away = f64::from(i8::from(rest >= 0.5) - i8::from(rest <= -0.5));
+    (whole + away).copysign(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded;
+
+    #[test]
+    fn rounding_is_that_of_the_standard_library() {
+        let halves = (-20..=20).map(|k| 0.5 * f64::from(k));
+        let edges = [0.499_999_999_999_999_94, 4_503_599_627_370_495.5, 4_503_599_627_370_497.0, 1e300, f64::INFINITY];
+        for value in halves.chain(edges).chain([-0.0, 1.0 / 3.0, -1e-300]) {
+            for value in [value, -value, value.next_up(), value.next_down()] {
+                assert_eq!(rounded(value).to_bits(), value.round().to_bits(), "{value}");
+            }
+        }
+        assert!(rounded(f64::NAN).is_nan());
     }
 }
