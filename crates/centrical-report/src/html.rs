@@ -1,5 +1,6 @@
 //! The report as one HTML file: no network, no scripts, legible on a telephone, on paper and in the dark.
 
+mod steadiness;
 mod table;
 
 use std::fmt::Write;
@@ -37,6 +38,7 @@ pub fn html_report_with(result: &CalibrationResult, further: &[Figure], language
     heading(&mut html, result, language);
     verdict(&mut html, result, language);
     session(&mut html, result, language);
+    steadiness_section(&mut html, result, language);
     parameter_tables(&mut html, result, language);
     budget_section(&mut html, result, language);
     if let Some(figure) = positions(result, language) {
@@ -195,6 +197,17 @@ fn session(html: &mut String, result: &CalibrationResult, language: Language) {
             paragraph(html, &result.session.text);
         }
     });
+}
+
+/// Drift and tilt, where records tell them.
+fn steadiness_section(html: &mut String, result: &CalibrationResult, language: Language) {
+    let messages = language.messages();
+    if let Some(table) = steadiness::steadiness(result, language) {
+        section(html, messages.steadiness, |html| {
+            let _ = writeln!(html, "<p class=\"note\">{}</p>", Escaped(messages.steadiness_note));
+            html.push_str(&table);
+        });
+    }
 }
 
 fn parameter_tables(html: &mut String, result: &CalibrationResult, language: Language) {

@@ -83,13 +83,14 @@ impl Language {
 
     /// A unit as the result names it.
     pub(crate) fn unit(self, plain: &str) -> String {
-        const SYMBOLS: [(&str, &str, &str); 9] = [
+        const SYMBOLS: [(&str, &str, &str); 10] = [
             ("ppm", "ppm", "млн⁻¹"),
             ("urad", "µrad", "мкрад"),
             ("rad", "rad", "рад"),
             ("um", "µm", "мкм"),
             ("ug", "µg", "мкg"),
             ("mg", "mg", "мg"),
+            ("min", "min", "мин"),
             ("s", "s", "с"),
             ("m", "m", "м"),
             ("1", "1", "1"),

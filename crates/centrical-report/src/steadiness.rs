@@ -1,9 +1,11 @@
-//! How steady the readings were, in words: drift, tilt while spinning, samples left out.
+//! How steady the readings were: drift, tilt while spinning, samples left out; what of it is no chance, and all of it
+//! in words for the terminal.
 
 use std::fmt::Write;
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::{CalibrationResult, DriftSummary, TiltSummary};
+use centrical::uncertainty::chi_squared_tail;
+use centrical_io::{CalibrationResult, DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, TiltSummary};
 
 use crate::customary::with_uncertainty;
 
@@ -11,7 +13,82 @@ use crate::customary::with_uncertainty;
 const CHANCE: f64 = 1e-3;
 
 /// ug per m/s^2.
-const MICRO_G: f64 = 1e6 / STANDARD_GRAVITY;
+pub(crate) const MICRO_G: f64 = 1e6 / STANDARD_GRAVITY;
+
+/// Seconds in a minute.
+pub(crate) const MINUTE: f64 = 60.0;
+
+/// Whether the plateaus drift.
+pub(crate) fn plateaus_drift(drift: &DriftSummary) -> bool {
+    drift.probability < CHANCE
+}
+
+/// What the residuals say of a drift over the session.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SessionDrift {
+    NotSeen,
+    /// More than the stated uncertainties explain, and no more than the plateaus scatter about the fit.
+    WithinScatter,
+    Seen,
+}
+
+impl SessionDrift {
+    pub fn of(drift: &DriftSummary) -> Self {
+        // Family-wise over the newtonometers, by Bonferroni.
+        let tests = drift.over_session.len() as f64;
+        let any = |is: &dyn Fn(&SessionTrend) -> bool| drift.over_session.iter().any(is);
+        if any(&|trend| tests * trend.probability < CHANCE) {
+            Self::Seen
+        } else if any(&|trend| {
+            tests * chi_squared_tail((trend.change / trend.standard_uncertainty).powi(2), 1) < CHANCE
+        }) {
+            Self::WithinScatter
+        } else {
+            Self::NotSeen
+        }
+    }
+}
+
+/// The plateaus run again that are farthest apart, and whether they differ, by Bonferroni.
+pub(crate) fn farthest_apart(drift: &DriftSummary) -> Option<(&RepeatedPlateau, bool)> {
+    let worst = drift.repeats.iter().min_by(|a, b| a.probability.total_cmp(&b.probability))?;
+    Some((worst, drift.repeats.len() as f64 * worst.probability < CHANCE))
+}
+
+/// What the two tilts say of each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tilts {
+    Agree,
+    Differ,
+    /// The one seen while spinning would agree better if the arm turned the other way.
+    Reversed,
+}
+
+impl Tilts {
+    pub fn of(tilt: &TiltSummary) -> Self {
+        match tilt.probability < CHANCE {
+            false => Self::Agree,
+            true if tilt.reversed > tilt.spinning => Self::Reversed,
+            true => Self::Differ,
+        }
+    }
+}
+
+/// Whether the plateaus' own tilts scatter.
+pub(crate) fn tilts_scatter(tilt: &TiltSummary) -> bool {
+    tilt.scatter_probability < CHANCE
+}
+
+/// Samples of all plateaus that are not used, by kind.
+pub(crate) fn not_used(result: &CalibrationResult) -> LeftOutSummary {
+    let plateaus = result.plateaus.iter().filter_map(|plateau| plateau.left_out);
+    plateaus.fold(LeftOutSummary::default(), |sum, of| LeftOutSummary {
+        spikes: sum.spikes + of.spikes,
+        stuck: sum.stuck + of.stuck,
+        missing: sum.missing + of.missing,
+        repeated: sum.repeated + of.repeated,
+    })
+}
 
 /// The section of the terminal's table; empty for a session that came already averaged.
 pub(crate) fn steadiness(text: &mut String, result: &CalibrationResult) {
@@ -28,17 +105,8 @@ pub(crate) fn steadiness(text: &mut String, result: &CalibrationResult) {
 
 /// Samples that are not used, by kind, where there are any.
 fn left_out(text: &mut String, result: &CalibrationResult) {
-    let kinds: [(&str, usize); 4] = result.plateaus.iter().filter_map(|plateau| plateau.left_out).fold(
-        [("spikes", 0), ("missing", 0), ("stuck", 0), ("repeated", 0)],
-        |[spikes, missing, stuck, repeated], of| {
-            [
-                (spikes.0, spikes.1 + of.spikes),
-                (missing.0, missing.1 + of.missing),
-                (stuck.0, stuck.1 + of.stuck),
-                (repeated.0, repeated.1 + of.repeated),
-            ]
-        },
-    );
+    let LeftOutSummary { spikes, stuck, missing, repeated } = not_used(result);
+    let kinds = [("spikes", spikes), ("missing", missing), ("stuck", stuck), ("repeated", repeated)];
     let named: Vec<String> =
         kinds.iter().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{kind} {count}")).collect();
     if !named.is_empty() {
@@ -47,12 +115,11 @@ fn left_out(text: &mut String, result: &CalibrationResult) {
 }
 
 fn over_plateaus(text: &mut String, drift: &DriftSummary) {
-    const MINUTE: f64 = 60.0;
     let shown: Vec<String> = (drift.slope.iter().zip(&drift.slope_uncertainty))
         .map(|(slope, u)| with_uncertainty(MICRO_G * MINUTE * slope, MICRO_G * MINUTE * u))
         .map(|(slope, u)| format!("{slope} ± {u}"))
         .collect();
-    let verdict = if drift.probability < CHANCE { "plateaus drift" } else { "no drift seen" };
+    let verdict = if plateaus_drift(drift) { "plateaus drift" } else { "no drift seen" };
     let _ = writeln!(
         text,
         "DRIFT over a plateau, mean: {} ug/min; chi^2 {:.1} of {} slopes, {verdict}",
@@ -71,18 +138,18 @@ fn over_session(text: &mut String, drift: &DriftSummary) {
         format!("f{} {change} ± {u}", trend.axis)
     });
     let trends: Vec<String> = trends.collect();
-    // Family-wise over the newtonometers, by Bonferroni.
-    let tests = drift.over_session.len() as f64;
-    let is_seen = drift.over_session.iter().any(|trend| tests * trend.probability < CHANCE);
-    let verdict = if is_seen { "the session drifts" } else { "no drift seen" };
+    let verdict = match SessionDrift::of(drift) {
+        SessionDrift::NotSeen => "no drift seen",
+        SessionDrift::WithinScatter => "no more than the plateaus scatter",
+        SessionDrift::Seen => "the session drifts",
+    };
     let _ = writeln!(text, "      over the session: {} ug, {verdict}", trends.join(", "));
 }
 
 fn repeats(text: &mut String, drift: &DriftSummary) {
-    let Some(worst) = drift.repeats.iter().min_by(|a, b| a.probability.total_cmp(&b.probability)) else { return };
+    let Some((worst, differ)) = farthest_apart(drift) else { return };
     let count = drift.repeats.len();
     let [first, second] = worst.indices.map(|index| index + 1);
-    let differ = count as f64 * worst.probability < CHANCE;
     let verdict = if differ { "they differ" } else { "no difference seen" };
     let _ = writeln!(
         text,
@@ -96,14 +163,15 @@ fn tilts(text: &mut String, tilt: &TiltSummary) {
         let (value, u) = with_uncertainty(1e6 * value, 1e6 * u);
         format!("{value} ± {u} urad")
     };
-    let turned = tilt.reversed > tilt.spinning && tilt.probability < CHANCE;
-    let verdict = if turned {
-        let as_if = shown(tilt.reversed, tilt.spinning_uncertainty);
-        format!("it turns the other way ({as_if}): the sense of rotation is wrong")
-    } else if tilt.probability < CHANCE {
-        "they differ: the axis is not the same while it spins, or something else turns with it".to_owned()
-    } else {
-        "they agree".to_owned()
+    let verdict = match Tilts::of(tilt) {
+        Tilts::Agree => "they agree".to_owned(),
+        Tilts::Differ => {
+            "they differ: the axis is not the same while it spins, or something else turns with it".to_owned()
+        }
+        Tilts::Reversed => {
+            let as_if = shown(tilt.reversed, tilt.spinning_uncertainty);
+            format!("it turns the other way ({as_if}): the sense of rotation is wrong")
+        }
     };
     let _ = writeln!(
         text,
@@ -113,7 +181,7 @@ fn tilts(text: &mut String, tilt: &TiltSummary) {
         shown(tilt.at_rest, tilt.at_rest_uncertainty),
         tilt.chi_squared
     );
-    if tilt.scatter_probability < CHANCE {
+    if tilts_scatter(tilt) {
         let _ = writeln!(
             text,
             "      the plateaus' own tilts scatter: chi^2 {:.1} of {}",

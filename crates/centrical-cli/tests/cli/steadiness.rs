@@ -6,8 +6,17 @@ use centrical_io::CalibrationResult;
 
 use crate::session::{Copy, example};
 
-/// Simulates the example with its first speed run again at the end, and calibrates it: the result and what is said.
-fn calibrated(truth: &str, seed: &str) -> (CalibrationResult, String) {
+/// A session calibrated.
+struct Calibrated {
+    result: CalibrationResult,
+    /// What the terminal is told.
+    said: String,
+    /// The sections on it of the reports in English and in Russian.
+    sections: [String; 2],
+}
+
+/// Simulates the example with its first speed run again at the end, and calibrates it.
+fn calibrated(truth: &str, seed: &str) -> Calibrated {
     let copy = Copy::new();
     let plan = fs::read_to_string(example().join("experiment.toml")).unwrap();
     let last = "  { speed = \"598.3 rpm\" },\n";
@@ -18,7 +27,16 @@ fn calibrated(truth: &str, seed: &str) -> (CalibrationResult, String) {
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     let output = copy.run(&["calibrate", "session"]);
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    (CalibrationResult::read(&copy.out().join("result.json")).unwrap(), said)
+    let sections =
+        [("en", "<h2>Steadiness</h2>"), ("ru", "<h2>Постоянство показаний</h2>")].map(|(language, title)| {
+            let made = copy.run(&["report", "result.json", "--html", "report.html", "--language", language]);
+            // 1: written, but the result is not acceptable.
+            assert!(matches!(made.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&made.stderr));
+            let page = fs::read_to_string(copy.out().join("report.html")).unwrap();
+            let (_, section) = page.split_once(title).expect("the page has the section");
+            section.split_once("</section>").unwrap().0.to_owned()
+        });
+    Calibrated { result: CalibrationResult::read(&copy.out().join("result.json")).unwrap(), said, sections }
 }
 
 const STEADY: &str = r#"
@@ -32,13 +50,23 @@ white = "0.2 mg"
 
 #[test]
 fn a_steady_session_is_said_to_be_steady() {
-    let (result, said) = calibrated(STEADY, "11");
+    let Calibrated { result, said, sections: [english, russian] } = calibrated(STEADY, "11");
     let drift = result.drift.expect("records tell the drift");
     assert_eq!(drift.repeats.len(), 12);
     assert_eq!(drift.repeats[0].indices, [1, 8]);
     assert!(drift.repeats.iter().all(|repeat| repeat.probability > 1e-5));
     assert_eq!(said.matches("no drift seen").count(), 2, "{said}");
     assert!(said.contains("plateaus run again: 12") && said.contains("no difference seen"), "{said}");
+    assert_eq!((english.matches("no drift seen").count(), russian.matches("ухода не видно").count()), (2, 2));
+    assert!(english.contains("<td>12; farthest apart: ") && english.contains("no difference seen"), "{english}");
+    assert!(english.contains("they agree") && russian.contains("они согласны"), "{english}");
+    // The numbers are those of the terminal, as each language writes them.
+    let slopes = said.split_once("mean: ").unwrap().1.split_once(" ug/min").unwrap().0;
+    for slope in slopes.split(", ") {
+        let slope = slope.replace('-', "\u{2212}");
+        assert!(english.contains(&slope) && russian.contains(&slope.replace('.', ",")), "{slope}: {english} {russian}");
+    }
+    assert!(english.contains(" µg/min; χ²") && russian.contains(" мкg/мин; χ²"), "{english} {russian}");
     let tilt = result.tilt.expect("the tilt is determined");
     assert!((tilt.spinning - 5e-4).abs() < 4.0 * tilt.spinning_uncertainty, "{tilt:?}");
     assert!((tilt.at_rest - 5e-4).abs() < 4.0 * tilt.at_rest_uncertainty, "{tilt:?}");
@@ -53,9 +81,15 @@ fn a_steady_session_is_said_to_be_steady() {
 /// A bias that moves by 0.2 mm/s^3 over every record is seen in the plateaus and in those that were run again.
 #[test]
 fn a_drifting_session_is_said_to_drift() {
-    let (result, said) = calibrated(&STEADY.replace("white", "drift = 2e-4\nwhite"), "12");
+    let truth = STEADY.replace("white", "drift = 2e-4\nwhite");
+    let Calibrated { result, said, sections: [english, russian] } = calibrated(&truth, "12");
     assert!(said.contains("plateaus drift"), "{said}");
     assert!(said.contains("they differ"), "{said}");
+    // chi^2 per degree of freedom is 1800: 75 standard uncertainties of a trend are not one beyond the scatter.
+    assert!(said.contains("no more than the plateaus scatter"), "{said}");
+    assert!(english.contains("no more than the plateaus scatter"), "{english}");
+    assert!(english.contains("plateaus drift") && english.contains("they differ"), "{english}");
+    assert!(russian.contains("показания на площадках уходят") && russian.contains("они различаются"), "{russian}");
     let drift = result.drift.expect("records tell the drift");
     assert!(drift.probability < 1e-9, "{drift:?}");
     let [first, second] = drift.repeats[0].indices.map(|index| &result.plateaus[index]);

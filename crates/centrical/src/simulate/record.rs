@@ -12,6 +12,9 @@ use crate::reduction::Record;
 /// Samples in a stretch: a few hundred kilobytes.
 const STRETCH: u64 = 8192;
 
+/// Rows of a stretch and a few repeated ones.
+const ROOM: usize = 8200;
+
 /// The record of one mounting, a stretch at a time, in memory that does not grow with the record.
 #[derive(Debug, Clone)]
 pub struct Records<'a> {
@@ -65,7 +68,7 @@ impl Iterator for Records<'_> {
         if self.next == end {
             return None;
         }
-        let mut record = Record::default();
+        let mut record = Record { t: Vec::with_capacity(ROOM), f_z: [(); 3].map(|()| Vec::with_capacity(ROOM)) };
         for n in self.next..end {
             let (t, f) = self.sample(n);
             self.transmission.pass(n, t, f, &mut record);
