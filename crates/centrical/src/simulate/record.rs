@@ -49,14 +49,10 @@ impl<'a> Records<'a> {
         }
     }
 
-    /// Sample `n`: its time [s] and the sensor's output before transmission [m/s^2].
+    /// Sample `n`: its time [s] and the sensor's output without noise [m/s^2].
     fn sample(&mut self, n: u64) -> (f64, Vector3<f64>) {
         let t = n as f64 / self.mounting.simulation.settings.recorder.rate;
-        let mut f = self.physics.reading(&self.mounting.motion.at(t, &mut self.segment));
-        for (f, noise) in f.iter_mut().zip(&mut self.noise) {
-            *f += noise.at(n);
-        }
-        (t, f)
+        (t, self.physics.reading(&self.mounting.motion.at(t, &mut self.segment)))
     }
 }
 
@@ -69,8 +65,14 @@ impl Iterator for Records<'_> {
             return None;
         }
         let mut record = Record { t: Vec::with_capacity(ROOM), f_z: [(); 3].map(|()| Vec::with_capacity(ROOM)) };
-        for n in self.next..end {
-            let (t, f) = self.sample(n);
+        // The noise of a stretch at once, newtonometer by newtonometer: its generators stay in registers.
+        let stretch = self.next..end;
+        let noise = self.noise.each_mut().map(|noise| stretch.clone().map(|n| noise.at(n)).collect::<Vec<f64>>());
+        for (k, n) in stretch.enumerate() {
+            let (t, mut f) = self.sample(n);
+            for axis in 0..3 {
+                f[axis] += noise[axis][k];
+            }
             self.transmission.pass(n, t, f, &mut record);
         }
         self.next = end;
