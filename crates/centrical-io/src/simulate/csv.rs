@@ -89,21 +89,19 @@ fn rounded(value: f64) -> i64 {
 /// Writes an integer below 10^10 and tells its length.
 fn put_whole(text: &mut [u8], number: u64) -> usize {
     const EIGHT: u64 = 100_000_000;
-    if number < 10_000 {
-        let digits = four_digits(number as u32);
+    if let Some(short) = u32::try_from(number).ok().filter(|short| *short < 10_000) {
+        let digits = four_digits(short);
         // The first digits are in the lowest bytes; of a short number they are zero and left out, all but the last.
         let leading = (digits.trailing_zeros() / 8).min(3);
         text[..4].copy_from_slice(&((digits | FOUR_ZEROS) >> (8 * leading)).to_le_bytes());
         return 4 - leading as usize;
     }
     let mut length = 0;
-    if number >= 10 * EIGHT {
-        text[length] = b'0' + (number / (10 * EIGHT)) as u8;
-        length += 1;
-    }
-    if number >= EIGHT {
-        text[length] = b'0' + (number / EIGHT % 10) as u8;
-        length += 1;
+    for digit in [number / (10 * EIGHT), number / EIGHT % 10] {
+        if digit > 0 || length > 0 {
+            text[length] = b'0' + (digit % 10) as u8;
+            length += 1;
+        }
     }
     let digits = eight_digits(number % EIGHT);
     let leading = if length > 0 { 0 } else { (digits.trailing_zeros() / 8).min(7) };
@@ -121,19 +119,19 @@ const FOUR_ZEROS: u32 = 0x3030_3030;
 /// The eight digits of a number below 10^8, the first in the lowest byte: halves, quarters and eighths are split off
 /// in all parts of the word at once, by products with rounded reciprocals of 10^4, 100 and 10.
 fn eight_digits(number: u64) -> u64 {
-    let halves = number / 10_000 | (number % 10_000) << 32;
-    let hundreds = (halves * 10_486 >> 20) & 0x0000_007F_0000_007F;
-    let quarters = hundreds | (halves - 100 * hundreds) << 16;
-    let tens = (quarters * 103 >> 10) & 0x000F_000F_000F_000F;
-    tens | (quarters - 10 * tens) << 8
+    let halves = (number / 10_000) | ((number % 10_000) << 32);
+    let hundreds = ((halves * 10_486) >> 20) & 0x0000_007F_0000_007F;
+    let quarters = hundreds | ((halves - 100 * hundreds) << 16);
+    let tens = ((quarters * 103) >> 10) & 0x000F_000F_000F_000F;
+    tens | ((quarters - 10 * tens) << 8)
 }
 
 /// The four digits of a number below 10^4, likewise.
 fn four_digits(number: u32) -> u32 {
-    let hundreds = number * 5243 >> 19;
-    let quarters = hundreds | (number - 100 * hundreds) << 16;
-    let tens = (quarters * 103 >> 10) & 0x000F_000F;
-    tens | (quarters - 10 * tens) << 8
+    let hundreds = (number * 5243) >> 19;
+    let quarters = hundreds | ((number - 100 * hundreds) << 16);
+    let tens = ((quarters * 103) >> 10) & 0x000F_000F;
+    tens | ((quarters - 10 * tens) << 8)
 }
 
 #[cfg(test)]

@@ -177,15 +177,16 @@ impl Transmission {
 fn rounded(x: f64) -> f64 {
     /// From here on there are no fractions.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
-    if !(x.abs() < WHOLE) {
-        return x;
+    if x.abs() < WHOLE {
+        #[expect(clippy::cast_possible_truncation)]
+        let whole = x as i64 as f64;
+        // Exact: both are multiples of the last place of `x`.
+        let rest = x - whole;
+        let away = f64::from(i8::from(rest >= 0.5) - i8::from(rest <= -0.5));
+        (whole + away).copysign(x)
+    } else {
+        x
     }
-    #[expect(clippy::cast_possible_truncation)]
-    let whole = x as i64 as f64;
-    // Exact: both are multiples of the last place of `x`.
-    let rest = x - whole;
-    let away = f64::from(i8::from(rest >= 0.5) - i8::from(rest <= -0.5));
-    (whole + away).copysign(x)
 }
 
 #[cfg(test)]
