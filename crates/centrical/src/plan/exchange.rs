@@ -49,9 +49,43 @@ impl Whole {
 }
 
 impl Exchange<'_> {
-    /// A schedule near the continuous design `w`: whole parts of visits first, then halves and more while they fit, then
-    /// whatever brings most.
+    /// A schedule near the continuous design `w`: the better one of two roundings, each filled with whatever brings most.
     pub fn round(&self, w: &[f64]) -> Whole {
+        let [by_size, in_order] = [self.rounded_by_size(w), self.rounded_in_order(w)];
+        if in_order.value < by_size.value { in_order } else { by_size }
+    }
+
+    /// Visits wherever the parts before and here add up to one: what neighbouring speeds share becomes a visit of one of them,
+    /// and no mounting loses what it is there for. Scaled down until it fits.
+    fn rounded_in_order(&self, w: &[f64]) -> Whole {
+        let options = self.options();
+        let set_points = &self.candidates.experiment().set_points;
+        let rounded = |scale: f64| {
+            let mut counts = vec![0; w.len()];
+            let mut carried = 0.0;
+            for c in 0..self.candidates.len() {
+                if c > 0 && set_points[c].mounting != set_points[c - 1].mounting {
+                    carried = 0.0;
+                }
+                let mut room = self.candidates.repeats as f64;
+                for x in c * options..(c + 1) * options {
+                    carried += scale * w[x];
+                    let visits = (carried + 0.5 + 1e-6).floor().clamp(0.0, room);
+                    carried -= visits;
+                    room -= visits;
+                    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                    let visits = visits as u32;
+                    counts[x] = visits;
+                }
+            }
+            counts
+        };
+        let fitting = (0..100).map(|n| rounded(1.0 - 0.01 * f64::from(n))).find(|counts| self.is_within(counts));
+        self.fill(self.whole(fitting.unwrap_or_else(|| vec![0; w.len()])))
+    }
+
+    /// Whole parts of visits first, then halves and more while they fit.
+    fn rounded_by_size(&self, w: &[f64]) -> Whole {
         // Whole visits within rounding, then the rest by size.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let mut counts: Vec<u32> = w.iter().map(|w| (w + 1e-6).floor().max(0.0) as u32).collect();

@@ -24,6 +24,12 @@ const NOTHING: f64 = 1e-9;
 /// Multiplicative steps at the start.
 const MULTIPLICATIVE: usize = 15;
 
+/// Halvings of a Lagrange multiplier: any is a bound, these make it tight to a part in a million.
+const HALVINGS: usize = 36;
+
+/// A start whose logarithm is farther than this from its bound is left for a new one.
+const FAR: f64 = 1.0;
+
 /// Atoms in a quadratic model: those that are farthest from where they should be, and those nearest to their price.
 const FARTHEST: usize = 150;
 const NEAREST: usize = 60;
@@ -48,6 +54,24 @@ pub(super) struct Polytope {
     pub options: usize,
     /// Most visits of a plateau.
     pub repeats: f64,
+}
+
+/// How well an optimum has to be known, in the logarithm of the criterion.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Precision {
+    /// Distance of a design from its bound that will do.
+    pub tolerance: f64,
+    /// Distance that will do where the optimum lies below `enough`.
+    pub loose: f64,
+    /// A bound that will do, however far the design is from it.
+    pub enough: f64,
+}
+
+impl Precision {
+    /// To `tolerance`, whatever the optimum is.
+    pub fn of(tolerance: f64) -> Self {
+        Self { tolerance, loose: tolerance, enough: f64::INFINITY }
+    }
 }
 
 /// A continuous design and how far it can be from the optimum.
@@ -96,7 +120,7 @@ impl Polytope {
         let (mut below, mut above) = (0.0, steepest);
         let mut best = self.lagrangian(gain, 0.0).0.min(self.lagrangian(gain, steepest).0);
         let mut at = steepest;
-        for _ in 0..50 {
+        for _ in 0..HALVINGS {
             let middle = 0.5 * (below + above);
             let (value, spent) = self.lagrangian(gain, middle);
             if value < best {
@@ -110,9 +134,10 @@ impl Polytope {
     /// `lambda time + max over the bounds without the time of sum (gain - lambda price) w`, and the time of the maximum.
     fn lagrangian(&self, gain: &[f64], lambda: f64) -> (f64, f64) {
         let (mut value, mut spent) = (lambda * self.time, 0.0);
+        let mut best: Vec<(f64, usize)> = Vec::with_capacity(self.options);
         for c in 0..self.plateaus() {
             let mut left = self.repeats;
-            let mut best: Vec<(f64, usize)> = Vec::with_capacity(self.options);
+            best.clear();
             for x in self.atoms_of(c) {
                 let worth = gain[x] - lambda * self.price[x];
                 value += worth * self.low[x];
@@ -123,7 +148,7 @@ impl Polytope {
                 }
             }
             best.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            for (worth, x) in best {
+            for &(worth, x) in &best {
                 let part = left.min(self.high[x] - self.low[x]).max(0.0);
                 value += worth * part;
                 spent += self.price[x] * part;
@@ -163,20 +188,14 @@ struct Point {
     sensitivity: Vec<f64>,
 }
 
-/// Seeks the optimum of `polytope` from `start` until it is known to `tolerance` (of the logarithm), or the bound has reached
-/// `enough`.
-pub(super) fn relax(
-    scenes: &[Scene],
-    polytope: &Polytope,
-    start: Option<&[f64]>,
-    tolerance: f64,
-    enough: f64,
-) -> Relaxed {
-    let mut search = Search { scenes, polytope, best: f64::NEG_INFINITY, models: 0, exponent: 1.0, tolerance, enough };
+/// Seeks the optimum of `polytope` from `start` until it is known as well as `precision` asks.
+pub(super) fn relax(scenes: &[Scene], polytope: &Polytope, start: Option<&[f64]>, precision: Precision) -> Relaxed {
+    let mut search = Search { scenes, polytope, best: f64::NEG_INFINITY, models: 0, exponent: 1.0, precision };
     let has_goals = scenes.iter().any(|scene| scene.goals() > 1);
     let mut w = polytope.within(&start.map_or_else(|| search.spread(), <[f64]>::to_vec));
-    if start.is_none() {
-        search.exponent = if has_goals { 4.0 } else { 1.0 };
+    search.exponent = if has_goals { 4.0 } else { 1.0 };
+    if start.is_none_or(|_| search.is_far(&w)) {
+        w = polytope.within(&search.spread());
         w = search.gather(w);
     }
     let exponents: &[f64] = if has_goals { &[8.0, 32.0, 128.0] } else { &[1.0] };
@@ -195,8 +214,7 @@ struct Search<'a> {
     best: f64,
     models: usize,
     exponent: f64,
-    tolerance: f64,
-    enough: f64,
+    precision: Precision,
 }
 
 impl Search<'_> {
@@ -261,8 +279,19 @@ impl Search<'_> {
         self.polytope.atoms_of(plateau).any(|x| self.polytope.high[x] > 0.0)
     }
 
+    /// Whether a design is too far from the optimum for quadratic models of the logarithm, as one is that has just lost the only
+    /// mounting that determines a parameter.
+    fn is_far(&mut self, w: &[f64]) -> bool {
+        let factors = self.factors(w);
+        let (point, _) = self.look(factors);
+        point.value - self.best > FAR && !self.is_done(point.value)
+    }
+
+    /// Whether more would tell nothing: the bound is known, or is enough, or cannot become enough and is nearly known.
     fn is_done(&self, value: f64) -> bool {
-        self.best >= self.enough || value - self.best <= self.tolerance
+        let left = value - self.best;
+        let Precision { tolerance, loose, enough } = self.precision;
+        self.best >= enough || left <= tolerance || (value < enough && left <= loose)
     }
 
     /// Multiplicative steps `w_x (g_x / lambda tau_x)^e`, from a spread design.
@@ -497,17 +526,21 @@ impl Worth<'_> {
         self.sensitivity[x] - self.price(x)
     }
 
+    /// Visits of a plateau that are left.
+    fn idle(&self, plateau: usize) -> f64 {
+        self.polytope.repeats - self.polytope.atoms_of(plateau).map(|y| self.w[y]).sum::<f64>()
+    }
+
     /// By how much the criterion would fall if the atom went where its worth and its bounds draw it.
     fn distance(&self, x: usize) -> f64 {
         let net = self.net(x);
         let plateau = x / self.polytope.options;
-        let idle = || self.polytope.repeats - self.polytope.atoms_of(plateau).map(|y| self.w[y]).sum::<f64>();
         // A better duration of the same plateau draws as well, however few visits are left.
         let dearest = self.polytope.atoms_of(plateau).filter(|&y| self.w[y] > NOTHING).map(|y| self.net(y));
         let displaced = dearest.fold(f64::INFINITY, f64::min);
         if net > 0.0 {
             let room = self.polytope.high[x] - self.w[x];
-            let gain = net * room.min(idle().max(0.0));
+            let gain = net * room.min(self.idle(plateau).max(0.0));
             if displaced < net { gain.max((net - displaced) * room) } else { gain }
         } else {
             -net * (self.w[x] - self.polytope.low[x])
@@ -525,8 +558,16 @@ impl Worth<'_> {
         }
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         near.truncate(NEAREST);
-        let mut chosen: Vec<usize> = far.into_iter().chain(near).map(|(_, x)| x).collect();
+        // Visits of another duration that an atom would displace have to be free to go.
+        let with_displaced = |x: usize| {
+            let plateau = x / self.polytope.options;
+            let is_full = self.idle(plateau) < NOTHING;
+            let is_displaced = move |y: usize| is_full && self.w[y] > self.polytope.low[y] + NOTHING;
+            self.polytope.atoms_of(plateau).filter(move |y| *y == x || is_displaced(*y))
+        };
+        let mut chosen: Vec<usize> = far.into_iter().chain(near).flat_map(|(_, x)| with_displaced(x)).collect();
         chosen.sort_unstable();
+        chosen.dedup();
         chosen
     }
 }

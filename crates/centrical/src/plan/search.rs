@@ -1,10 +1,19 @@
 //! The best schedule for a time, and the shortest for given goals.
 //!
-//! Branch and bound. A node has decided on some mountings (their set-ups are paid, or they are closed) and on bounds of
-//! visits; its continuous design bounds all schedules below it. A mounting that is not decided costs a part of its set-up
-//! in proportion to its use: `f x / U` for the time `x <= U` in it, never more than what a schedule pays. Mountings are
-//! decided first, the most used one first. Where a problem is small, visits are decided too, until nothing is left to find;
-//! where it is large, the continuous designs of the nodes that are left say how far from the optimum the schedule can be.
+//! Branch and bound. A node has decided on some mountings (their set-ups are paid in full, or they are closed) and on bounds
+//! of visits; its continuous design bounds all schedules below it. Mountings are decided first, the most used one first, the
+//! lowest bound first. Where a problem is small, visits are decided too, until nothing is left to find; where it is large,
+//! the branches end with the mountings, and the lowest bound of their ends says how far the schedule can be from the best.
+//!
+//! **The bound is one.** Let a schedule belong to a node: it uses the mountings that are set up and perhaps some that are not
+//! decided, none that is closed. (1) Its visits are a point of the node's polytope: bounds and repeats are the schedule's own;
+//! and what an undecided mounting pays there, `f x / U` for the time `x` in it, is at most its set-up `f`, since no schedule
+//! spends more than `U` in it: every plateau as often and as long as may be, or all the time there is. The difference between
+//! a position and a seat is paid so once for the position, by the time in all its undecided mountings together. So the
+//! schedule's time holds what the polytope asks for. (2) The equivalence theorem bounds the criterion on the polytope from
+//! below at whatever design its sensitivities are taken, converged or not (see [`relax`](super::relaxation)). (3) The two
+//! children of a node hold all its schedules, a child inherits the bound of its parent, and [`Plan::bound`] is the lowest bound
+//! of the ends of all branches: left open, cut off against the best schedule, or not divided any further.
 
 use rayon::prelude::*;
 
@@ -13,7 +22,7 @@ use super::criterion::Criterion;
 use super::error::PlanError;
 use super::exchange::{Exchange, Whole};
 use super::information::Scene;
-use super::relaxation::{Polytope, Relaxed, relax};
+use super::relaxation::{Polytope, Precision, Relaxed, relax};
 
 /// How much is tried. The outcome depends on it, never on the clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,8 +38,11 @@ pub struct Effort {
 impl Effort {
     /// Some seconds' worth: fewer nodes over mountings where there are more plateaus to choose from.
     pub fn usual(plateaus: usize) -> Self {
-        Self { mounting_nodes: (8000 / plateaus.max(1)).clamp(10, 300), visit_nodes: 0, trials: 120 }
+        Self { mounting_nodes: (200_000 / plateaus.max(1)).clamp(20, 1000), visit_nodes: 0, trials: 120 }
     }
+
+    /// Until no other set of mountings can hold a plan that is better by more than 0.1 % of the uncertainty.
+    pub const CERTIFIED: Self = Self { mounting_nodes: 1 << 20, visit_nodes: 0, trials: 120 };
 
     /// Until nothing is left to find: for small problems.
     pub const EXHAUSTIVE: Self = Self { mounting_nodes: 1 << 20, visit_nodes: 1 << 20, trials: 200 };
@@ -214,6 +226,12 @@ struct Tree<'a> {
     nodes: usize,
 }
 
+/// A node that no bound can cut off is known this well before it is divided (3 % of an uncertainty).
+const LOOSE: f64 = 0.06;
+
+/// Whole visits that cost more than this part of the criterion are exchanged at once.
+const ROUGH: f64 = 0.01;
+
 /// Known to this part of the criterion, nodes are not divided: where the best of all is sought, and where a plan that is
 /// nearly as good will do (0.1 % of an uncertainty).
 const SAME: f64 = 1e-7;
@@ -232,7 +250,7 @@ impl<'a> Tree<'a> {
         self.exchange_mountings();
         self.open.push(root);
         while let Some(node) = self.next() {
-            self.divide(&node);
+            self.divide(node);
         }
         self.polish();
         self.into_plan()
@@ -248,7 +266,7 @@ impl<'a> Tree<'a> {
             high: vec![high; atoms],
             relaxed: Relaxed { visits: Vec::new(), value: f64::INFINITY, bound: f64::NEG_INFINITY, models: 0 },
         };
-        self.relaxed(node, None).unwrap_or_else(|node| node)
+        self.relaxed_to(self.tolerance(), node, None).unwrap_or_else(|node| node)
     }
 
     /// Whether the continuous design reaches goals of 1.
@@ -261,6 +279,11 @@ impl<'a> Tree<'a> {
         if self.effort.visit_nodes > 0 { SAME } else { NEARLY }
     }
 
+    /// How well a continuous design is known at the end of a branch.
+    fn tolerance(&self) -> f64 {
+        0.5 * self.same()
+    }
+
     fn incumbent(&self) -> f64 {
         self.best.as_ref().map_or(f64::INFINITY, |best| best.value)
     }
@@ -270,16 +293,22 @@ impl<'a> Tree<'a> {
         let best = (0..self.open.len())
             .min_by(|&a, &b| self.open[a].relaxed.bound.total_cmp(&self.open[b].relaxed.bound).then(b.cmp(&a)))?;
         let node = self.open.swap_remove(best);
-        self.bound = if node.relaxed.bound < self.incumbent() - self.same() {
-            self.bound
-        } else {
-            self.bound.min(node.relaxed.bound)
-        };
-        (node.relaxed.bound < self.incumbent() - self.same()).then_some(node)
+        let may_be_better = node.relaxed.bound < self.incumbent() - self.same();
+        if !may_be_better {
+            self.bound = self.bound.min(node.relaxed.bound);
+        }
+        may_be_better.then_some(node)
     }
 
     /// Two nodes that decide one thing more, or the end of this branch.
-    fn divide(&mut self, node: &Node) {
+    fn divide(&mut self, node: Node) {
+        let is_end = |of_mountings: Option<usize>| of_mountings.is_none() || self.nodes >= self.effort.mounting_nodes;
+        let node = &if is_end(self.undecided(&node)) && node.relaxed.bound < self.bound {
+            let start = node.relaxed.visits.clone();
+            self.relaxed_to(self.tolerance(), node, Some(&start)).unwrap_or_else(|node| node)
+        } else {
+            node
+        };
         let of_mountings = self.undecided(node);
         let decided = match of_mountings {
             Some(m) if self.nodes < self.effort.mounting_nodes => {
@@ -355,15 +384,20 @@ impl<'a> Tree<'a> {
     }
 
     /// The node with its continuous design; the node itself if nothing fits into it.
-    fn relaxed(&self, mut node: Node, start: Option<&[f64]>) -> Result<Node, Node> {
+    fn relaxed(&self, node: Node, start: Option<&[f64]>) -> Result<Node, Node> {
+        let is_decided = node.mountings.iter().all(Option::is_some);
+        self.relaxed_to(if is_decided { self.tolerance() } else { LOOSE }, node, start)
+    }
+
+    fn relaxed_to(&self, loose: f64, mut node: Node, start: Option<&[f64]>) -> Result<Node, Node> {
         let polytope = self.polytope(&node);
         if !polytope.is_feasible() {
             return Err(node);
         }
-        let tolerance = 0.5 * self.same();
+        let precision = Precision { tolerance: self.tolerance(), loose, enough: self.incumbent() - self.same() };
         // What bounds all below the parent bounds all below its child.
         let inherited = node.relaxed.bound;
-        node.relaxed = relax(&self.problem.scenes, &polytope, start, tolerance, self.incumbent() - self.same());
+        node.relaxed = relax(&self.problem.scenes, &polytope, start, precision);
         node.relaxed.bound = node.relaxed.bound.max(inherited);
         Ok(node)
     }
@@ -431,7 +465,11 @@ impl<'a> Tree<'a> {
     /// A schedule from a continuous design that may hold a better one than the best so far.
     fn round(&mut self, set: Vec<bool>, relaxed: Option<Relaxed>) {
         if let Some(relaxed) = relaxed.filter(|relaxed| relaxed.bound < self.incumbent() - self.same()) {
-            let whole = self.problem.exchange(self.time, &set, self.effort.trials).round(&relaxed.visits);
+            let exchange = self.problem.exchange(self.time, &set, self.effort.trials);
+            let mut whole = exchange.round(&relaxed.visits);
+            if whole.value > relaxed.value + ROUGH {
+                whole = exchange.improve(whole);
+            }
             if whole.value < self.incumbent() - 1e-12 {
                 self.best = Some(whole);
             }
@@ -545,7 +583,7 @@ impl<'a> Tree<'a> {
             relaxed: Relaxed { visits: start.clone(), value: best.value, bound: f64::NEG_INFINITY, models: 0 },
         };
         let polytope = self.polytope(&node);
-        let continuous = relax(&self.problem.scenes, &polytope, Some(&start), 5e-4, f64::INFINITY);
+        let continuous = relax(&self.problem.scenes, &polytope, Some(&start), Precision::of(5e-4));
         Plan {
             schedule: candidates.schedule(best.visits(candidates)),
             criterion: best.value.exp(),
