@@ -64,8 +64,13 @@ impl<'a> Tree<'a> {
         self.seek_on_all(&root);
         self.exchange_mountings();
         self.open.push(root);
-        while let Some(node) = self.next() {
-            self.divide(node);
+        loop {
+            // Two at once keep two processors busy; the number is fixed, so that the plan does not depend on theirs.
+            let nodes: Vec<Node> = [self.next(), self.next()].into_iter().flatten().collect();
+            if nodes.is_empty() {
+                break;
+            }
+            self.divide(nodes);
         }
         self.polish();
         self.into_plan()
@@ -115,8 +120,28 @@ impl<'a> Tree<'a> {
         may_be_better.then_some(node)
     }
 
-    /// Two nodes that decide one thing more, or the end of this branch.
-    fn divide(&mut self, node: Node) {
+    /// Relaxes the children of some nodes and keeps those that may hold something better.
+    fn divide(&mut self, nodes: Vec<Node>) {
+        let children: Vec<Node> = nodes.into_iter().flat_map(|node| self.children(node)).collect();
+        let relaxed = |child: Node| {
+            let start = child.relaxed.visits.clone();
+            self.relaxed(child, Some(&start))
+        };
+        let children: Vec<_> = children.into_par_iter().map(relaxed).collect();
+        for child in children {
+            self.nodes += 1;
+            if let Ok(child) = child {
+                if child.relaxed.bound < self.incumbent() - self.same() {
+                    self.open.push(child);
+                } else {
+                    self.bound = self.bound.min(child.relaxed.bound);
+                }
+            }
+        }
+    }
+
+    /// Two nodes that decide one thing more, with the continuous design of theirs, or none at the end of a branch.
+    fn children(&mut self, node: Node) -> Vec<Node> {
         let is_end = |of_mountings: Option<usize>| of_mountings.is_none() || self.nodes >= self.effort.mounting_nodes;
         let node = &if is_end(self.undecided(&node)) && node.relaxed.bound < self.bound {
             let start = node.relaxed.visits.clone();
@@ -154,18 +179,7 @@ impl<'a> Tree<'a> {
         if decided.is_empty() {
             self.bound = self.bound.min(node.relaxed.bound);
         }
-        let start = &node.relaxed.visits;
-        let children: Vec<_> = decided.into_par_iter().map(|child| self.relaxed(child, Some(start))).collect();
-        for child in children {
-            self.nodes += 1;
-            if let Ok(child) = child {
-                if child.relaxed.bound < self.incumbent() - self.same() {
-                    self.open.push(child);
-                } else {
-                    self.bound = self.bound.min(child.relaxed.bound);
-                }
-            }
-        }
+        decided
     }
 
     /// The undecided mounting that the continuous design uses most.
