@@ -5,6 +5,7 @@ use nalgebra::Matrix3;
 
 use super::candidates::{Candidates, Visit};
 use super::information::{Factor, Insight, Scene, sum_of};
+use super::robustness::Scenes;
 
 /// Visits by atom within a set of mountings, and what they are worth.
 #[derive(Debug, Clone)]
@@ -22,7 +23,7 @@ pub(super) struct Whole {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Exchange<'a> {
     pub candidates: &'a Candidates,
-    pub scenes: &'a [Scene],
+    pub scenes: &'a Scenes,
     /// Time there is, set-ups included [s].
     pub time: f64,
     /// Mountings that may be used.
@@ -40,6 +41,11 @@ struct Move {
 }
 
 impl Whole {
+    /// Logarithm of the criterion in each scenario.
+    pub fn by_scenario(&self) -> Vec<f64> {
+        self.factors.iter().map(Scene::value).collect()
+    }
+
     /// The visits as a list.
     pub fn visits(&self, candidates: &Candidates) -> Vec<Visit> {
         let options = candidates.durations.len();
@@ -154,7 +160,7 @@ impl Exchange<'_> {
             let Some((_, m)) = best else { return whole };
             let mut counts = whole.counts;
             self.apply(&mut counts, &m);
-            let factors = self.scenes.iter().zip(&whole.factors).map(|(scene, factor)| {
+            let factors = self.scenes.all.iter().zip(&whole.factors).map(|(scene, factor)| {
                 if m.from.is_none() {
                     scene.with(factor, &[(m.plateau, self.change(scene, &m))])
                 } else {
@@ -168,13 +174,12 @@ impl Exchange<'_> {
 
     /// The schedule of these counts.
     pub fn whole(&self, counts: Vec<u32>) -> Whole {
-        let factors = self.scenes.iter().map(|scene| scene.factor(&self.information(scene, &counts))).collect();
+        let factors = self.scenes.all.iter().map(|scene| scene.factor(&self.information(scene, &counts))).collect();
         self.with_factors(counts, factors)
     }
 
     fn with_factors(&self, counts: Vec<u32>, factors: Vec<Factor>) -> Whole {
-        let value = self.scenes.iter().zip(&factors).map(|(scene, factor)| scene.weight * Scene::value(factor)).sum();
-        Whole { value, time: self.time_of(&counts), counts, factors }
+        Whole { value: self.scenes.value(&factors), time: self.time_of(&counts), counts, factors }
     }
 
     fn options(&self) -> usize {
@@ -196,16 +201,16 @@ impl Exchange<'_> {
             let insight = |c: usize| self.is_open(c).then(|| scene.insight(factor, c));
             (0..self.candidates.len()).map(insight).collect()
         };
-        self.scenes.iter().zip(&whole.factors).map(of_scene).collect()
+        self.scenes.all.iter().zip(&whole.factors).map(of_scene).collect()
     }
 
     fn value_after(&self, whole: &Whole, insights: &[Vec<Option<Insight>>], m: &Move) -> f64 {
         let of_scene =
             |((scene, factor), insights): ((&Scene, &Factor), &Vec<Option<Insight>>)| match &insights[m.plateau] {
-                Some(insight) => scene.weight * scene.value_after(factor, insight, &self.change(scene, m)),
+                Some(insight) => scene.value_after(factor, insight, &self.change(scene, m)),
                 None => f64::INFINITY,
             };
-        self.scenes.iter().zip(&whole.factors).zip(insights).map(of_scene).sum()
+        self.scenes.joint(self.scenes.all.iter().zip(&whole.factors).zip(insights).map(of_scene))
     }
 
     fn change(&self, scene: &Scene, m: &Move) -> Matrix3<f64> {

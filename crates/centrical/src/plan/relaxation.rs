@@ -9,7 +9,7 @@
 //!
 //! since `Phi` is homogeneous of degree -1 and convex in `M`: for linear criteria by Cauchy and Schwarz, for determinants by
 //! the tangent plane, for the worst of several goals by the linear criterion of their weights, for several scenarios by
-//! Jensen. The maximum is a linear programme over a knapsack, bounded from above by any Lagrange multiplier.
+//! Jensen, the worst of them by their mean with any weights. The maximum is a linear programme over a knapsack, bounded from above by any Lagrange multiplier.
 //!
 //! The optimum is sought by multiplicative steps, which bring together the plateaus that matter, and then by sequential
 //! quadratic programming whose inner problems are solved by exchange of time between pairs of plateaus.
@@ -21,6 +21,7 @@ mod polytope;
 use self::model::Model;
 pub(super) use self::polytope::Polytope;
 use super::information::{Factor, Scene, Smooth, sum_of, trace_of_product};
+use super::robustness::Scenes;
 
 /// Weights below this are none.
 const NOTHING: f64 = 1e-9;
@@ -76,6 +77,8 @@ impl Relaxed {
 struct Point {
     factors: Vec<Factor>,
     smooth: Vec<Smooth>,
+    /// Parts of the scenes, which sum to 1.
+    parts: Vec<f64>,
     /// Logarithm of the smooth criterion over all scenes.
     value: f64,
     /// By atom.
@@ -83,16 +86,16 @@ struct Point {
 }
 
 /// Seeks the optimum of `polytope` from `start` until it is known as well as `precision` asks.
-pub(super) fn relax(scenes: &[Scene], polytope: &Polytope, start: Option<&[f64]>, precision: Precision) -> Relaxed {
+pub(super) fn relax(scenes: &Scenes, polytope: &Polytope, start: Option<&[f64]>, precision: Precision) -> Relaxed {
     let mut search = Search { scenes, polytope, best: f64::NEG_INFINITY, models: 0, exponent: 1.0, precision };
-    let has_goals = scenes.iter().any(|scene| scene.goals() > 1);
+    let has_norm = scenes.has_norm();
     let mut w = polytope.within(&start.map_or_else(|| search.spread(), <[f64]>::to_vec));
-    search.exponent = if has_goals { 4.0 } else { 1.0 };
+    search.exponent = if has_norm { 4.0 } else { 1.0 };
     if start.is_none_or(|_| search.is_far(&w)) {
         w = polytope.within(&search.spread());
         w = search.gather(w);
     }
-    let exponents: &[f64] = if has_goals { &[8.0, 32.0, 128.0] } else { &[1.0] };
+    let exponents: &[f64] = if has_norm { &[8.0, 32.0, 128.0] } else { &[1.0] };
     for &exponent in exponents {
         search.exponent = exponent;
         w = search.refine(w);
@@ -102,7 +105,7 @@ pub(super) fn relax(scenes: &[Scene], polytope: &Polytope, start: Option<&[f64]>
 }
 
 struct Search<'a> {
-    scenes: &'a [Scene],
+    scenes: &'a Scenes,
     polytope: &'a Polytope,
     /// Best lower bound so far.
     best: f64,
@@ -132,41 +135,41 @@ impl Search<'_> {
             });
             scene.factor(&information.collect::<Vec<_>>())
         };
-        self.scenes.iter().map(factor).collect()
+        self.scenes.all.iter().map(factor).collect()
     }
 
     fn true_value(&self, w: &[f64]) -> f64 {
-        let factors = self.factors(w);
-        self.scenes.iter().zip(&factors).map(|(scene, factor)| scene.weight * Scene::value(factor)).sum()
+        self.scenes.value(&self.factors(w))
     }
 
     fn value(&self, factors: &[Factor]) -> f64 {
-        let of = |(scene, factor): (&Scene, &Factor)| scene.weight * scene.smooth(factor, self.exponent).value;
-        self.scenes.iter().zip(factors).map(of).sum()
+        let of = |(scene, factor): (&Scene, &Factor)| scene.smooth(factor, self.exponent).value;
+        let logs: Vec<f64> = self.scenes.all.iter().zip(factors).map(of).collect();
+        self.scenes.smooth(&logs, self.exponent).0
     }
 
     /// The sensitivities at `w`, and the bound that they give.
     fn look(&mut self, factors: Vec<Factor>) -> (Point, f64) {
         let options = self.polytope.options;
         let mut sensitivity = vec![0.0; self.polytope.price.len()];
-        let (mut value, mut support, mut of_priors) = (0.0, 0.0, 0.0);
-        let mut smooth = Vec::with_capacity(self.scenes.len());
-        for (scene, factor) in self.scenes.iter().zip(&factors) {
-            let here = scene.smooth(factor, self.exponent);
+        let (mut support, mut of_priors) = (0.0, 0.0);
+        let smooth = self.scenes.all.iter().zip(&factors).map(|(scene, factor)| scene.smooth(factor, self.exponent));
+        let smooth: Vec<Smooth> = smooth.collect();
+        let logs: Vec<f64> = smooth.iter().map(|of_scene| of_scene.value).collect();
+        let (value, parts) = self.scenes.smooth(&logs, self.exponent);
+        for (((scene, factor), here), part) in self.scenes.all.iter().zip(&factors).zip(&smooth).zip(&parts) {
             for c in (0..self.polytope.plateaus()).filter(|&c| self.is_open(c)) {
                 let g = Scene::weighed(&scene.response(factor, c), &here.columns);
                 for x in c * options..(c + 1) * options {
-                    sensitivity[x] += scene.weight * trace_of_product(scene.precision(x), &g);
+                    sensitivity[x] += part * trace_of_product(scene.precision(x), &g);
                 }
             }
-            value += scene.weight * here.value;
-            support += scene.weight * here.support;
-            of_priors += scene.weight * scene.prior_part(factor, &here.columns);
-            smooth.push(here);
+            support += part * here.support;
+            of_priors += part * scene.prior_part(factor, &here.columns);
         }
         let (most, lambda) = self.polytope.most(&sensitivity);
         self.best = self.best.max(support - (of_priors + most).ln());
-        (Point { factors, smooth, value, sensitivity }, lambda)
+        (Point { factors, smooth, parts, value, sensitivity }, lambda)
     }
 
     fn is_open(&self, plateau: usize) -> bool {

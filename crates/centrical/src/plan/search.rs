@@ -46,8 +46,10 @@ impl Effort {
 pub struct Plan {
     /// What is to be done.
     pub schedule: Schedule,
-    /// The criterion, in variance units: see [`Criterion`]; a geometric mean over scenarios.
+    /// The criterion, in variance units: see [`Criterion`]; of several scenarios their mean or worst, as asked.
     pub criterion: f64,
+    /// The criterion in each scenario.
+    pub by_scenario: Vec<f64>,
     /// No schedule of these candidates in this time has a lower criterion.
     pub bound: f64,
     /// The continuous design on the plan's mountings, with the bound of the equivalence theorem.

@@ -2,20 +2,46 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::{DMatrix, DVector, Matrix3};
 
 use crate::plan::information::{Factor, Scene, Smooth, trace_of_product};
+
+/// A scene at a design, and its part in the joint criterion.
+pub(super) struct SceneThere<'a> {
+    pub scene: &'a Scene,
+    pub factor: &'a Factor,
+    pub smooth: &'a Smooth,
+    pub part: f64,
+}
+
+/// `-d ln Phi_s / d w_x` of the active atoms.
+pub(super) fn slope(there: &SceneThere, active: &[usize], options: usize) -> DVector<f64> {
+    let SceneThere { scene, factor, smooth, .. } = there;
+    let of_atom = |&x: &usize| {
+        let g = Scene::weighed(&scene.response(factor, x / options), &smooth.columns);
+        trace_of_product(scene.precision(x), &g)
+    };
+    DVector::from_iterator(active.len(), active.iter().map(of_atom))
+}
+
+/// Adds what the norm over scenes makes of their first derivatives: `q (sum pi_s l_s l_s^T - t t^T)`, `t = sum pi_s l_s`.
+pub(super) fn add_norm(hessian: &mut DMatrix<f64>, slopes: &DMatrix<f64>, parts: &[f64], exponent: f64) {
+    let total = slopes * DVector::from_column_slice(parts);
+    for (slope, part) in slopes.column_iter().zip(parts) {
+        let apart = slope - &total;
+        hessian.ger(exponent * part, &apart, &apart, 1.0);
+    }
+}
 
 /// Adds a scene's second derivatives: of a goal `2 tr(N A N' G')`, less `tr(N G N' G')` for a determinant, plus what the norm
 /// over goals makes of the first derivatives, less the product of the sensitivities for the logarithm.
 pub(super) fn add_curvature(
     hessian: &mut DMatrix<f64>,
-    scene: &Scene,
-    factor: &Factor,
-    smooth: &Smooth,
+    there: &SceneThere,
     exponent: f64,
     (active, groups, plateaus): (&[usize], &[Range<usize>], &[usize]),
 ) {
+    let SceneThere { scene, factor, smooth, part: weight } = there;
     let views = scene.views(factor, plateaus);
     let a = views.transpose() * &views;
     let responses: Vec<_> = plateaus.iter().map(|&c| scene.response(factor, c)).collect();
@@ -38,7 +64,7 @@ pub(super) fn add_curvature(
                 let left = scene.precision(active[k]) * mixed;
                 for l in groups[j].clone().filter(|&l| l <= k) {
                     // tr(N_k X_ij N_l G_ji), G_ji = G_ij^T
-                    let value = scene.weight * (left * scene.precision(active[l])).component_mul(&g_ij).sum();
+                    let value = weight * (left * scene.precision(active[l])).component_mul(&g_ij).sum();
                     hessian[(k, l)] += value;
                     if l != k {
                         hessian[(l, k)] += value;
@@ -48,12 +74,12 @@ pub(super) fn add_curvature(
         }
     }
     if !scene.is_determinant() {
-        let total = &by_goal * nalgebra::DVector::from_column_slice(&smooth.parts);
+        let total = &by_goal * DVector::from_column_slice(&smooth.parts);
         for (goal, part) in smooth.parts.iter().enumerate().filter(|(_, part)| **part > 1e-12) {
             let column = by_goal.column(goal);
-            hessian.ger(scene.weight * (exponent - 1.0) * part, &column, &column, 1.0);
+            hessian.ger(weight * (exponent - 1.0) * part, &column, &column, 1.0);
         }
-        hessian.ger(-scene.weight * exponent, &total, &total, 1.0);
+        hessian.ger(-weight * exponent, &total, &total, 1.0);
     }
 }
 

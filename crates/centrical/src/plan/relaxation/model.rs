@@ -3,7 +3,7 @@
 
 use nalgebra::DMatrix;
 
-use super::curvature::add_curvature;
+use super::curvature::{SceneThere, add_curvature, add_norm, slope};
 use super::polytope::Polytope;
 use super::{NOTHING, Point, Search};
 
@@ -46,8 +46,17 @@ impl<'a> Model<'a> {
         }
         let n = active.len();
         let mut hessian = DMatrix::zeros(n, n);
-        for ((scene, factor), smooth) in search.scenes.iter().zip(&point.factors).zip(&point.smooth) {
-            add_curvature(&mut hessian, scene, factor, smooth, search.exponent, (&active, &groups, &plateaus));
+        let scenes = search.scenes.all.iter().zip(&point.factors).zip(&point.smooth).zip(&point.parts);
+        let mut slopes = DMatrix::zeros(n, point.parts.len());
+        for (s, (((scene, factor), smooth), part)) in scenes.enumerate().filter(|(_, (_, part))| **part > 1e-12) {
+            let of_scene = SceneThere { scene, factor, smooth, part: *part };
+            add_curvature(&mut hessian, &of_scene, search.exponent, (&active, &groups, &plateaus));
+            if search.scenes.is_worst() {
+                slopes.set_column(s, &slope(&of_scene, &active, search.polytope.options));
+            }
+        }
+        if search.scenes.is_worst() {
+            add_norm(&mut hessian, &slopes, &point.parts, search.exponent);
         }
         // A trace of a ridge makes parallel atoms no flat direction.
         let ridge = 1e-9 * hessian.diagonal().iter().copied().fold(0.0, f64::max);

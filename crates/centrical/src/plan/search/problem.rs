@@ -5,11 +5,12 @@ use crate::plan::criterion::Criterion;
 use crate::plan::error::PlanError;
 use crate::plan::exchange::{Exchange, Whole};
 use crate::plan::information::Scene;
+use crate::plan::robustness::Scenes;
 
 /// Candidates and criterion made ready.
 pub(in crate::plan) struct Problem<'a> {
     pub candidates: &'a Candidates,
-    pub scenes: Vec<Scene>,
+    pub scenes: Scenes,
 }
 
 impl<'a> Problem<'a> {
@@ -17,7 +18,8 @@ impl<'a> Problem<'a> {
         candidates.check()?;
         let total: f64 = candidates.scenarios.iter().map(|s| s.weight).sum();
         let scene = |scenario| Scene::new(scenario, candidates, criterion, total);
-        Ok(Self { candidates, scenes: candidates.scenarios.iter().map(scene).collect::<Result<_, _>>()? })
+        let all = candidates.scenarios.iter().map(scene).collect::<Result<_, _>>()?;
+        Ok(Self { candidates, scenes: Scenes { all, robustness: candidates.robustness } })
     }
 
     pub fn mountings(&self) -> usize {

@@ -300,6 +300,7 @@ impl<'a> Tree<'a> {
         Plan {
             schedule: candidates.schedule(best.visits(candidates)),
             criterion: best.value.exp(),
+            by_scenario: best.by_scenario().into_iter().map(f64::exp).collect(),
             bound: bound.exp(),
             continuous,
             nodes: self.nodes,
