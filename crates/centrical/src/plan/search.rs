@@ -100,7 +100,11 @@ pub fn shortest_for_goals(
     if everything.value > 0.0 {
         return Err(PlanError::OutOfReach { factor: (0.5 * everything.value).exp() });
     }
-    let plan = |time: f64, effort: Effort| Tree::new(&problem, time, effort).run();
+    // A plan that reaches them in a time, or none; where the search ran to its end there is none.
+    let reached = |time: f64| {
+        let plan = Tree { wanted: Some(0.0), ..Tree::new(&problem, time, effort) }.run();
+        (plan.criterion <= 1.0).then_some(plan)
+    };
     // No schedule is shorter than the continuous design that reaches the goals.
     let (mut below, mut above) = (problem.least_time(), everything.time);
     while above / below > 1.0 + 0.25 * resolution {
@@ -108,25 +112,26 @@ pub fn shortest_for_goals(
         let reaches = Tree::new(&problem, middle, effort).relaxed_reaches();
         if reaches { above = middle } else { below = middle }
     }
-    let shortest = below;
-    let (mut step, mut best) = (resolution, None);
-    let mut time = shortest;
-    while best.is_none() {
-        time = (shortest * (1.0 + step)).min(everything.time);
-        let found = plan(time, Effort::FAIR);
-        if found.criterion <= 1.0 {
-            best = Some(found);
-        } else if time >= everything.time {
-            return Ok(Plan { schedule: candidates.schedule(everything.visits(candidates)), ..found });
+    let (mut step, mut low) = (resolution, below);
+    let (mut time, mut best) = loop {
+        let time = (below * (1.0 + step)).min(everything.time);
+        if let Some(plan) = reached(time) {
+            break (time, plan);
         }
-        step *= 2.0;
-    }
-    let mut low = shortest * (1.0 + 0.25 * step);
+        if time >= everything.time {
+            let plan = Tree::new(&problem, time, effort).run();
+            return Ok(Plan { schedule: candidates.schedule(everything.visits(candidates)), ..plan });
+        }
+        (low, step) = (time, 2.0 * step);
+    };
     while time / low > 1.0 + resolution {
         let middle = (low * time).sqrt();
-        let found = plan(middle, Effort::FAIR);
-        if found.criterion <= 1.0 { (time, best) = (middle, Some(found)) } else { low = middle }
+        match reached(middle) {
+            Some(plan) => (time, best) = (middle, plan),
+            None => low = middle,
+        }
     }
-    let thorough = plan(time, effort);
-    Ok(best.filter(|quick| quick.criterion < thorough.criterion || thorough.criterion > 1.0).unwrap_or(thorough))
+    // What else this time is good for, and a bound of its own.
+    let thorough = Tree::new(&problem, time, effort).run();
+    Ok(if thorough.criterion <= 1.0 { thorough } else { best })
 }

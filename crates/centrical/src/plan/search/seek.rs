@@ -33,7 +33,7 @@ impl Tree<'_> {
 
     /// A schedule from a continuous design that may hold a better one than the best so far.
     fn round(&mut self, set: Vec<bool>, relaxed: Option<Relaxed>) {
-        if let Some(relaxed) = relaxed.filter(|relaxed| relaxed.bound < self.incumbent() - self.same()) {
+        if let Some(relaxed) = relaxed.filter(|relaxed| relaxed.bound < self.threshold()) {
             let exchange = self.problem.exchange(self.time, &set, self.effort.trials);
             let mut whole = exchange.round(&relaxed.visits);
             if whole.value > relaxed.value + ROUGH {
@@ -83,7 +83,7 @@ impl Tree<'_> {
             for (set, relaxed) in sets.into_iter().zip(relaxed) {
                 self.round(set, relaxed);
             }
-            if self.incumbent() >= best.value {
+            if self.incumbent() >= best.value || self.is_reached() {
                 return;
             }
         }

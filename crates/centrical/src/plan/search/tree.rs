@@ -39,6 +39,8 @@ pub(super) struct Tree<'a> {
     pub best: Option<Whole>,
     /// Sets of mountings for which a schedule has been sought.
     pub tried: Vec<Vec<bool>>,
+    /// Value that is to be reached and no more, if any.
+    pub wanted: Option<f64>,
     /// Lowest bound of the nodes that are not divided any further.
     pub bound: f64,
     pub nodes: usize,
@@ -54,17 +56,29 @@ const NEARLY: f64 = 2e-3;
 
 impl<'a> Tree<'a> {
     pub fn new(problem: &'a Problem<'a>, time: f64, effort: Effort) -> Self {
-        Self { problem, time, effort, open: Vec::new(), best: None, tried: Vec::new(), bound: f64::INFINITY, nodes: 0 }
+        Self {
+            problem,
+            time,
+            effort,
+            open: Vec::new(),
+            best: None,
+            tried: Vec::new(),
+            wanted: None,
+            bound: f64::INFINITY,
+            nodes: 0,
+        }
     }
 
     pub fn run(mut self) -> Plan {
         let root = self.root();
         self.nodes = 1;
         self.seek(&root);
-        self.seek_on_all(&root);
+        if !self.is_reached() {
+            self.seek_on_all(&root);
+        }
         self.exchange_mountings();
         self.open.push(root);
-        loop {
+        while !self.is_reached() {
             // Two at once keep two processors busy; the number is fixed, so that the plan does not depend on theirs.
             let nodes: Vec<Node> = [self.next(), self.next()].into_iter().flatten().collect();
             if nodes.is_empty() {
@@ -104,6 +118,15 @@ impl<'a> Tree<'a> {
         0.5 * self.same()
     }
 
+    /// No branch is followed whose bound is not below this.
+    pub fn threshold(&self) -> f64 {
+        (self.incumbent() - self.same()).min(self.wanted.unwrap_or(f64::INFINITY))
+    }
+
+    pub fn is_reached(&self) -> bool {
+        self.wanted.is_some_and(|wanted| self.incumbent() <= wanted)
+    }
+
     pub fn incumbent(&self) -> f64 {
         self.best.as_ref().map_or(f64::INFINITY, |best| best.value)
     }
@@ -113,7 +136,7 @@ impl<'a> Tree<'a> {
         let best = (0..self.open.len())
             .min_by(|&a, &b| self.open[a].relaxed.bound.total_cmp(&self.open[b].relaxed.bound).then(b.cmp(&a)))?;
         let node = self.open.swap_remove(best);
-        let may_be_better = node.relaxed.bound < self.incumbent() - self.same();
+        let may_be_better = node.relaxed.bound < self.threshold();
         if !may_be_better {
             self.bound = self.bound.min(node.relaxed.bound);
         }
@@ -131,7 +154,7 @@ impl<'a> Tree<'a> {
         for child in children {
             self.nodes += 1;
             if let Ok(child) = child {
-                if child.relaxed.bound < self.incumbent() - self.same() {
+                if child.relaxed.bound < self.threshold() {
                     self.open.push(child);
                 } else {
                     self.bound = self.bound.min(child.relaxed.bound);
@@ -162,8 +185,7 @@ impl<'a> Tree<'a> {
             None => {
                 self.seek(node);
                 self.take_whole(node);
-                let is_left =
-                    self.nodes < self.effort.visit_nodes && node.relaxed.bound < self.incumbent() - self.same();
+                let is_left = self.nodes < self.effort.visit_nodes && node.relaxed.bound < self.threshold();
                 match self.split_visit(node).filter(|_| is_left) {
                     Some((x, below, above)) => {
                         let (mut fewer, mut more) = (node.clone(), node.clone());
@@ -223,7 +245,7 @@ impl<'a> Tree<'a> {
         if !polytope.is_feasible() {
             return Err(node);
         }
-        let precision = Precision { tolerance: self.tolerance(), loose, enough: self.incumbent() - self.same() };
+        let precision = Precision { tolerance: self.tolerance(), loose, enough: self.threshold() };
         // What bounds all below the parent bounds all below its child.
         let inherited = node.relaxed.bound;
         node.relaxed = relax(&self.problem.scenes, &polytope, start, precision);
