@@ -167,7 +167,13 @@ impl Planning {
     /// # Errors
     /// [`Error::Planning`] when there is none.
     pub fn plan(&self, certify: bool) -> Result<Plan, Error> {
-        let effort = if certify { Effort::CERTIFIED } else { Effort::usual(self.candidates.len()) };
+        let usual = Effort::usual(self.candidates.len());
+        let effort = match (certify, self.time) {
+            (true, _) => Effort::CERTIFIED,
+            (false, Some(_)) => usual,
+            // The shortest plan is sought by a search for each of a dozen times.
+            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 16, ..usual },
+        };
         let Criterion::Worst(goals) = &self.criterion else { return self.best(&self.criterion, effort) };
         if self.type_b == TypeB::default() {
             return self.best(&self.criterion, effort);
