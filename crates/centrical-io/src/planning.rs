@@ -412,7 +412,8 @@ impl PlanReport {
             document.remove(key);
         }
         // The plan may be written to another folder than the one it was read from.
-        if let Some(nominal) = document.get_mut("plan").and_then(|plan| plan.get_mut("nominal")) {
+        let nominal = document.get_mut("plan").and_then(|plan| plan.get_mut("nominal"));
+        if let Some(nominal) = nominal.filter(|item| item.is_str()) {
             let from = file.parent().unwrap_or(Path::new("")).join(nominal.as_str().unwrap_or_default());
             let whole = std::path::absolute(&from).unwrap_or(from);
             *nominal = toml_edit::value(whole.to_string_lossy().into_owned());
