@@ -32,6 +32,8 @@ pub struct Design {
     pub weighted_by: String,
     /// What is set, and what is unknown.
     pub model: MeasurementModel,
+    /// Expected unknowns, about which uncertainties are predicted; zero where nothing is expected.
+    pub nominal: Vec<f64>,
     /// How well each mean is known, or will be.
     pub weights: Vec<Weight>,
     /// Relative standard uncertainty of the speed of a plateau.
@@ -55,11 +57,13 @@ impl Design {
 
     fn of_session(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
         let reduced = Reduced::of(session, progress)?;
+        let model = session.model()?;
         Ok(Self {
             file: session.file.clone(),
             title: session.title.clone(),
             weighted_by: "the noise of its data".to_owned(),
-            model: session.model()?,
+            nominal: vec![0.0; model.parameters().len()],
+            model,
             weights: reduced.observations().iter().map(Weight::from).collect(),
             speed_uncertainty: session.speed_uncertainty,
             type_b: session.type_b,
@@ -69,8 +73,7 @@ impl Design {
     /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
     /// the experiment.
     fn prediction(&self) -> Result<PredictionReport, Error> {
-        let zero = vec![0.0; self.model.parameters().len()];
-        let prediction = predict(&self.model, &self.weights, self.speed_uncertainty, &self.type_b, &zero)
+        let prediction = predict(&self.model, &self.weights, self.speed_uncertainty, &self.type_b, &self.nominal)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })?;
         let experiment = self.model.experiment();
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
@@ -96,6 +99,7 @@ impl From<Plan> for Design {
             title: plan.title,
             weighted_by: format!("a planned noise of {density:.3} ug/sqrt(Hz)"),
             model: plan.model,
+            nominal: plan.nominal,
             weights: plan.weights,
             speed_uncertainty: plan.speed_uncertainty,
             type_b: plan.type_b,

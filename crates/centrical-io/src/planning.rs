@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use centrical::plan::{
-    Account, Candidates, Criterion, Effort, Plan, PlanError, Prediction, Reason, best_for_time, frontier, predict,
-    shortest_for_goals,
+    Account, Candidates, Criterion, Effort, Goal, Plan, PlanError, Prediction, Reason, Robustness, Schedule, Visit,
+    best_for_time, frontier, predict, shortest_for_goals,
 };
+use centrical::uncertainty::TypeB;
 use centrical::{Experiment, MeasurementModel, SetPoint};
 use serde::Serialize;
 
@@ -19,6 +20,9 @@ const SCHEMA: &str = "centrical-plan/1";
 
 /// Levels `m` of [K5.5] on the frontier unless others are given.
 pub const USUAL_LEVELS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
+
+/// Type B is reckoned with this much above that of the plan before, so that the next one keeps within it.
+const MARGIN: f64 = 1.01;
 
 /// Speeds of a uniform plan at most, in each mounting.
 const UNIFORM_SPEEDS: usize = 8;
@@ -47,6 +51,10 @@ pub struct PlanReport {
     pub criterion: &'static str,
     /// Value of the criterion as an uncertainty: square root of the variance it is [m/s^2 for I, else 1].
     pub value: f64,
+    /// The value in each scenario, if there are several: the expected one first.
+    pub by_scenario: Vec<f64>,
+    /// "mean" or "worst": how they are one.
+    pub against: &'static str,
     /// No schedule of the candidates in this time has a lower value.
     pub bound: f64,
     /// The continuous design on the mountings of the plan: its value, and the part by which the equivalence theorem leaves it
@@ -124,8 +132,17 @@ pub struct GoalReport {
     pub wanted: f64,
     /// Predicted by noise, speeds and priors.
     pub type_a: Option<f64>,
+    /// What the stated type B leaves, which no plan lowers by much.
+    pub type_b: Option<f64>,
     /// Predicted with type B.
     pub combined: Option<f64>,
+}
+
+impl GoalReport {
+    fn with_type_b(self) -> Self {
+        let rest = |(all, a): (f64, f64)| (all * all - a * a).max(0.0).sqrt();
+        Self { type_b: self.combined.zip(self.type_a).map(rest), ..self }
+    }
 }
 
 /// One time of the frontier. Values are uncertainties as in [`PlanReport::value`].
@@ -144,16 +161,63 @@ pub struct FrontierRow {
 }
 
 impl Planning {
-    /// The best plan for the time, or the shortest for the goals.
+    /// The best plan for the time, or the shortest for the goals; `certify`: searched until its bound is within 0.1 % or all
+    /// sets of mountings are done with.
     ///
     /// # Errors
     /// [`Error::Planning`] when there is none.
-    pub fn plan(&self) -> Result<Plan, Error> {
+    pub fn plan(&self, certify: bool) -> Result<Plan, Error> {
+        let usual = Effort::usual(self.candidates.len());
+        let effort = match (certify, self.time) {
+            (true, _) => Effort::CERTIFIED,
+            (false, Some(_)) => usual,
+            // The shortest plan is sought by a search for each of a dozen times.
+            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 16, ..usual },
+        };
+        let Criterion::Worst(goals) = &self.criterion else { return self.best(&self.criterion, effort) };
+        if self.type_b == TypeB::default() {
+            return self.best(&self.criterion, effort);
+        }
+        // Type B hardly depends on the plan: what it leaves of the goals for type A settles in a few plans.
+        let mut floors = self.floors(&self.everything())?;
+        for (goal, floor) in goals.iter().zip(&floors).filter(|_| self.time.is_none()) {
+            let (name, wanted) = named(goal);
+            if *floor >= wanted {
+                return Err(self.failed(PlanError::BelowTypeB { name: name.to_owned(), factor: floor / wanted }));
+            }
+        }
+        for effort in [Effort::QUICK, Effort::QUICK, effort, effort] {
+            let plan = self.best(&Criterion::Worst(for_type_a(goals, &floors)), effort)?;
+            let there = self.floors(&plan.schedule)?;
+            let is_settled = there.iter().zip(&floors).all(|(there, floor)| there <= floor);
+            floors.iter_mut().zip(there).for_each(|(floor, there)| *floor = floor.max(MARGIN * there));
+            if is_settled && effort != Effort::QUICK {
+                return Ok(plan);
+            }
+        }
+        self.best(&Criterion::Worst(for_type_a(goals, &floors)), effort)
+    }
+
+    fn best(&self, criterion: &Criterion, effort: Effort) -> Result<Plan, Error> {
         let plan = match self.time {
-            Some(time) => best_for_time(&self.candidates, &self.criterion, time, Effort::usual(self.candidates.len())),
-            None => shortest_for_goals(&self.candidates, &self.criterion, 0.01, Effort::usual(self.candidates.len())),
+            Some(time) => best_for_time(&self.candidates, criterion, time, effort),
+            None => shortest_for_goals(&self.candidates, criterion, 0.01, effort),
         };
         plan.map_err(|source| self.failed(source))
+    }
+
+    /// Every plateau as often and as long as may be.
+    fn everything(&self) -> Schedule {
+        let candidates = &self.candidates;
+        let longest = candidates.durations.last().copied().unwrap_or(0.0);
+        let visit = |n: usize| Visit { plateau: n % candidates.len(), duration: longest };
+        candidates.schedule((0..candidates.len() * candidates.repeats).map(visit).collect())
+    }
+
+    /// What the stated type B leaves of each goal with a schedule, none where it is lost altogether.
+    fn floors(&self, schedule: &Schedule) -> Result<Vec<f64>, Error> {
+        let floor = |goal: &GoalReport| goal.type_b.unwrap_or(0.0);
+        Ok(self.goals_of(&self.predict(schedule)?).iter().map(floor).collect())
     }
 
     /// What there is to say of a plan.
@@ -166,7 +230,7 @@ impl Planning {
         let account = Account::of(candidates, &self.criterion, schedule).map_err(|source| self.failed(source))?;
         let measuring: f64 = schedule.visits.iter().map(|v| v.duration).sum();
         let visits: f64 = schedule.visits.iter().map(|v| candidates.visit_time(v)).sum();
-        let prediction = self.predict(plan)?;
+        let prediction = self.predict(schedule)?;
         Ok(PlanReport {
             schema: SCHEMA,
             program: Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
@@ -178,6 +242,15 @@ impl Planning {
                 Criterion::Worst(_) => "worst",
             },
             value: plan.criterion.sqrt(),
+            by_scenario: if plan.by_scenario.len() > 1 {
+                plan.by_scenario.iter().map(|value| value.sqrt()).collect()
+            } else {
+                Vec::new()
+            },
+            against: match candidates.robustness {
+                Robustness::Mean => "mean",
+                Robustness::Worst => "worst",
+            },
             bound: plan.bound.sqrt(),
             continuous: (0.5 * plan.continuous.value).exp(),
             continuous_gap: (1.0 + plan.continuous.gap()).sqrt() - 1.0,
@@ -186,22 +259,24 @@ impl Planning {
             time: schedule.time,
             time_by_use: [measuring, visits - measuring, schedule.time - visits],
             mountings: self.mountings(plan, &account),
-            goals: self.goals(&prediction),
+            goals: self.goals_of(&prediction),
             prediction: PredictionReport::of(&prediction, self.range, request.coverage),
             frontier: self.frontier(schedule.time, request)?,
         })
     }
 
-    /// What a plan will know in the first scenario.
+    /// What a schedule will know in the first scenario.
     ///
     /// # Errors
     /// [`Error::Fit`] when its numbers are beyond all measure.
-    pub fn predict(&self, plan: &Plan) -> Result<Prediction, Error> {
-        let (experiment, weights) = self.candidates.experiment_of(&plan.schedule);
+    pub fn predict(&self, schedule: &Schedule) -> Result<Prediction, Error> {
+        let (experiment, weights) = self.candidates.experiment_of(schedule);
         let scenario = &self.candidates.scenarios[0];
         let model = scenario.model.in_experiment(experiment);
-        let zero = vec![0.0; model.parameters().len()];
-        predict(&model, &weights, scenario.speed_uncertainty, &self.type_b, &zero)
+        let expected =
+            |p: &centrical::Parameter| scenario.model.parameters().find(&p.name).map_or(0.0, |j| scenario.nominal[j]);
+        let nominal: Vec<f64> = model.parameters().iter().map(expected).collect();
+        predict(&model, &weights, scenario.speed_uncertainty, &self.type_b, &nominal)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })
     }
 
@@ -244,10 +319,10 @@ impl Planning {
         &self.candidates.scenarios[0].model
     }
 
-    fn goals(&self, prediction: &Prediction) -> Vec<GoalReport> {
+    fn goals_of(&self, prediction: &Prediction) -> Vec<GoalReport> {
         let Criterion::Worst(goals) = &self.criterion else { return Vec::new() };
-        let report = |goal: &centrical::plan::Goal| match goal {
-            centrical::plan::Goal::Parameter { name, uncertainty } => {
+        let report = |goal: &Goal| match goal {
+            Goal::Parameter { name, uncertainty } => {
                 let parameters = prediction.model().parameters();
                 let j = parameters.find(name);
                 GoalReport {
@@ -256,10 +331,12 @@ impl Planning {
                     group: j.map_or("", |j| parameters[j].group),
                     wanted: *uncertainty,
                     type_a: j.and_then(|j| prediction.type_a(j)),
+                    type_b: None,
                     combined: j.and_then(|j| prediction.budget().standard_uncertainty(j)),
                 }
+                .with_type_b()
             }
-            centrical::plan::Goal::Reading { range, uncertainty } => {
+            Goal::Reading { range, uncertainty } => {
                 let reading = prediction.reading(*range);
                 GoalReport {
                     name: "reading".to_owned(),
@@ -267,8 +344,10 @@ impl Planning {
                     group: "bias",
                     wanted: *uncertainty,
                     type_a: reading.map(|[a, _]| a),
+                    type_b: None,
                     combined: reading.map(|[_, all]| all),
                 }
+                .with_type_b()
             }
         };
         goals.iter().map(report).collect()
@@ -332,6 +411,13 @@ impl PlanReport {
         for key in ["candidates", "cost", "target", "robust"] {
             document.remove(key);
         }
+        // The plan may be written to another folder than the one it was read from.
+        let nominal = document.get_mut("plan").and_then(|plan| plan.get_mut("nominal"));
+        if let Some(nominal) = nominal.filter(|item| item.is_str()) {
+            let from = file.parent().unwrap_or(Path::new("")).join(nominal.as_str().unwrap_or_default());
+            let whole = std::path::absolute(&from).unwrap_or(from);
+            *nominal = toml_edit::value(whole.to_string_lossy().into_owned());
+        }
         // A position that is not used has no mounting, and no parameters.
         if let Some(toml_edit::Item::ArrayOfTables(positions)) = document.get_mut("position") {
             positions.retain(|table| {
@@ -361,11 +447,34 @@ impl PlannedMounting {
     }
 }
 
+/// Name and wanted standard uncertainty of a goal.
+fn named(goal: &Goal) -> (&str, f64) {
+    match goal {
+        Goal::Parameter { name, uncertainty } => (name, *uncertainty),
+        Goal::Reading { uncertainty, .. } => ("reading", *uncertainty),
+    }
+}
+
+/// What is left of goals for type A, `sqrt(wanted^2 - floor^2)`; a goal that type B alone misses is sought as it stands.
+fn for_type_a(goals: &[Goal], floors: &[f64]) -> Vec<Goal> {
+    let left = |(goal, floor): (&Goal, &f64)| {
+        let (_, wanted) = named(goal);
+        let rest = (wanted - floor) * (wanted + floor);
+        let uncertainty = if rest > 0.0 { rest.sqrt() } else { wanted };
+        match goal {
+            Goal::Parameter { name, .. } => Goal::Parameter { name: name.clone(), uncertainty },
+            Goal::Reading { range, .. } => Goal::Reading { range: *range, uncertainty },
+        }
+    };
+    goals.iter().zip(floors).map(left).collect()
+}
+
 /// The candidates with other plateaus in the same mountings.
 fn with_set_points(candidates: &Candidates, set_points: &[SetPoint]) -> Candidates {
     let mut other = candidates.clone();
     for scenario in &mut other.scenarios {
         let experiment = Experiment { set_points: set_points.to_vec(), ..scenario.model.experiment().clone() };
+        // The same positions and mountings have the same unknowns.
         scenario.model = scenario.model.in_experiment(experiment);
     }
     other

@@ -27,6 +27,7 @@ mod next;
 mod normalised;
 mod prediction;
 mod relaxation;
+mod robustness;
 mod search;
 
 pub use account::{Account, Reason};
@@ -38,4 +39,5 @@ pub use next::{Gain, next_best};
 pub use normalised::Normalised;
 pub use prediction::{Prediction, predict};
 pub use relaxation::Relaxed;
+pub use robustness::Robustness;
 pub use search::{Effort, Plan, best_for_time, shortest_for_goals};

@@ -72,15 +72,16 @@ impl Case {
         Ok(Self { model, observations, truth, speed_uncertainty, stated: session.type_b })
     }
 
-    /// A plan: every unknown is of typical size, signs in turn.
+    /// A plan: every unknown is as the plan expects it, or where it expects nothing of typical size, signs in turn.
     fn planned(plan: Plan, noise: Option<f64>) -> Self {
-        let Plan { model, weights, speed_uncertainty, type_b, .. } = plan;
+        let Plan { model, nominal, weights, speed_uncertainty, type_b, .. } = plan;
         let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
         let weights = noise.map_or_else(|| weights.clone(), equal);
         let observation =
             |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
         let sign = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let truth = model.parameters().iter().enumerate().map(|(j, p)| sign(j) * p.typical).collect();
+        let typical = || model.parameters().iter().enumerate().map(|(j, p)| sign(j) * p.typical).collect();
+        let truth = if nominal.iter().any(|value| *value != 0.0) { nominal } else { typical() };
         let observations = weights.into_iter().map(observation).collect();
         Self { model, observations, truth, speed_uncertainty, stated: type_b }
     }

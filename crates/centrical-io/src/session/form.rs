@@ -53,6 +53,8 @@ pub(super) struct PlanTable {
     pub noise: Option<Quantity>,
     pub floor: Option<Quantity>,
     pub duration: Option<Quantity>,
+    /// The result.json of an earlier calibration of the unit.
+    pub nominal: Option<std::path::PathBuf>,
 }
 
 /// What a plan is chosen from.
@@ -115,7 +117,10 @@ pub(super) struct TargetTable {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RobustTable {
+    /// "mean" or "worst".
+    pub against: Option<String>,
     pub noise: Vec<Quantity>,
+    pub floor: Vec<Quantity>,
     pub extensions: Vec<String>,
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
 use centrical::uncertainty::TypeB;
-use centrical::{MeasurementModel, Weight};
+use centrical::{MeasurementModel, Parameter, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;
 
@@ -14,6 +14,7 @@ use super::form::{self, Form, PresetForm, PresetTable};
 use super::{Session, extensions, pair_relation, prior, read_text, rotation, schedule, terms};
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
+use crate::result::CalibrationResult;
 
 /// Name of the source's normalised experiment [K5.5].
 const NORMALISED: &str = "kozlov-2017-normalised";
@@ -33,6 +34,8 @@ pub struct Plan {
     pub title: String,
     /// The experiment, the unit's error model, extensions and priors.
     pub model: MeasurementModel,
+    /// Expected unknowns: those of an earlier result that `[plan]` names, zero where nothing is expected.
+    pub nominal: Vec<f64>,
     /// How well the mean of each set point will be known.
     pub weights: Vec<Weight>,
     /// Relative standard uncertainty of the speed of a plateau.
@@ -110,10 +113,12 @@ impl Plan {
         let of_table = |key: fn(&form::PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
         let noise = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;
         let durations = durations(file, form)?.into_iter().map(|duration| duration.unwrap_or(noise.duration)).collect();
+        let model = session.model()?;
         Ok(Self {
             file: file.to_owned(),
             title: session.title.clone(),
-            model: session.model()?,
+            nominal: nominal_of(&model, earlier(file, form)?.as_ref()),
+            model,
             weights: weights(&noise, durations),
             speed_uncertainty: session.speed_uncertainty,
             noise,
@@ -144,6 +149,7 @@ impl Plan {
         Ok(Self {
             file: file.to_owned(),
             title: form.session.title.clone(),
+            nominal: vec![0.0; model.parameters().len()],
             model: prior::with_priors(file, model, &prior::entries(&form.prior))?,
             weights,
             speed_uncertainty,
@@ -151,6 +157,22 @@ impl Plan {
             type_b: TypeB::default(),
         })
     }
+}
+
+/// The earlier result that a plan names, by its path from the folder of the plan.
+pub(super) fn earlier(file: &Path, form: &Form) -> Result<Option<CalibrationResult>, Error> {
+    let named = form.plan.as_ref().and_then(|table| table.nominal.as_ref());
+    let folder = file.parent().unwrap_or(Path::new(""));
+    named.map(|path| CalibrationResult::read(&folder.join(path))).transpose()
+}
+
+/// What an earlier result says of the unknowns, those of its seatings included, and zero of the others.
+pub(super) fn nominal_of(model: &MeasurementModel, earlier: Option<&CalibrationResult>) -> Vec<f64> {
+    let value = |p: &Parameter| {
+        let known = earlier.and_then(|result| result.parameters.iter().find(|known| known.name == p.name));
+        known.and_then(|known| known.value).unwrap_or(0.0)
+    };
+    model.parameters().iter().map(value).collect()
 }
 
 /// Duration stated for each plateau [s], in the order of the set points.

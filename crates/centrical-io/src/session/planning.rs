@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical::plan::{Candidates, Costs, Criterion, Goal, ReadingRange, Scenario};
+use centrical::plan::{Candidates, Costs, Criterion, Goal, ReadingRange, Robustness, Scenario};
 use centrical::uncertainty::TypeB;
 use centrical::{Experiment, MeasurementModel, STANDARD_GRAVITY, SetPoint};
 
 use super::at::At;
 use super::form::{self, CandidatesTable, Form, MountingTable, Steps};
-use super::plan::{duration, noise};
+use super::plan::{duration, earlier, noise, nominal_of};
 use super::{FASTEST, Session, named_extensions, prior, read_text, rotation};
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
@@ -62,6 +62,7 @@ impl Planning {
         let scenarios = scenarios(path, &form, &session)?;
         let candidates = Candidates {
             scenarios,
+            robustness: robustness(path, &form)?,
             durations: durations(&at, &table)?,
             repeats: repeats(&at, &table)?,
             costs: costs(path, &form)?,
@@ -204,7 +205,9 @@ fn scenarios(file: &Path, form: &Form, session: &Session) -> Result<Vec<Scenario
     let given = |key: fn(&form::PlanTable) -> &Option<Quantity>| plan.and_then(|table| key(table).as_ref());
     let expected = noise(file, given(|t| &t.noise), given(|t| &t.floor), given(|t| &t.duration))?;
     let expected = centrical::plan::Noise { density: expected.density, floor: expected.floor };
+    let earlier = earlier(file, form)?;
     let scenario = |model: MeasurementModel, noise| Scenario {
+        nominal: nominal_of(&model, earlier.as_ref()),
         model,
         noise,
         speed_uncertainty: session.speed_uncertainty,
@@ -218,12 +221,26 @@ fn scenarios(file: &Path, form: &Form, session: &Session) -> Result<Vec<Scenario
         let density = at.bounded("noise", density, Dimension::NoiseDensity, (1e-15, 1.0), meaning)?;
         scenarios.push(scenario(model.clone(), centrical::plan::Noise { density, ..expected }));
     }
+    for floor in &form.robust.floor {
+        let floor = at.bounded("floor", floor, Dimension::Acceleration, (0.0, 1.0), "a floor from 0 to 1 m/s^2")?;
+        scenarios.push(scenario(model.clone(), centrical::plan::Noise { floor, ..expected }));
+    }
     if !form.robust.extensions.is_empty() {
         let mut with = session.clone();
         with.extensions.extend(named_extensions(&at, &form.robust.extensions)?);
         scenarios.push(scenario(with.model()?, expected));
     }
     Ok(scenarios)
+}
+
+fn robustness(file: &Path, form: &Form) -> Result<Robustness, Error> {
+    match form.robust.against.as_deref() {
+        None | Some("mean") => Ok(Robustness::Mean),
+        Some("worst") => Ok(Robustness::Worst),
+        Some(other) => {
+            Err(At::table(file, "robust").unexpected("against", quoted(other.as_bytes()), "\"mean\" or \"worst\""))
+        }
+    }
 }
 
 /// Criterion, time and range; without a time the criterion is that of the goals.

@@ -4,6 +4,7 @@ mod claims;
 mod damage;
 mod growing;
 mod pieces;
+mod predictions;
 #[path = "../common/random.rs"]
 mod random;
 mod record_writer;

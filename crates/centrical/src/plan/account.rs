@@ -83,9 +83,8 @@ impl<'a> Judges<'a> {
     /// Logarithm of the criterion, and squares of the parameters' uncertainties, with some visits left out.
     fn judged(&self, left_out: &[usize]) -> (f64, Vec<f64>) {
         let factor = |scene: &Scene| scene.factor(&self.information(scene, left_out));
-        let factors: Vec<Factor> = self.by_criterion.scenes.iter().map(factor).collect();
-        let scenes = self.by_criterion.scenes.iter().zip(&factors);
-        (scenes.map(|(scene, f)| scene.weight * Scene::value(f)).sum(), factor(&self.by_parameter).goals)
+        let factors: Vec<Factor> = self.by_criterion.scenes.all.iter().map(factor).collect();
+        (self.by_criterion.scenes.value(&factors), factor(&self.by_parameter).goals)
     }
 
     fn information(&self, scene: &Scene, left_out: &[usize]) -> Vec<(usize, Matrix3<f64>)> {

@@ -3,6 +3,7 @@
 use nalgebra::Matrix3;
 
 use super::error::PlanError;
+use super::robustness::Robustness;
 use crate::design::Weight;
 use crate::experiment::Experiment;
 use crate::measurement::MeasurementModel;
@@ -33,6 +34,9 @@ impl Noise {
 pub struct Scenario {
     /// The unit's model. Its experiment has all candidate mountings, and the candidate plateaus as set points.
     pub model: MeasurementModel,
+    /// Expected unknowns in the order of the model's parameters, about which the plan is linearised: zeros for a unit and
+    /// seatings without errors.
+    pub nominal: Vec<f64>,
     /// The noise that is reckoned with.
     pub noise: Noise,
     /// Relative standard uncertainty of the speed of a plateau.
@@ -62,6 +66,8 @@ pub struct Costs {
 pub struct Candidates {
     /// What the plan must be good for; at least one.
     pub scenarios: Vec<Scenario>,
+    /// How their criteria are one.
+    pub robustness: Robustness,
     /// Durations of a plateau [s], rising.
     pub durations: Vec<f64>,
     /// How often one plateau may be visited: each visit has its own speed error.
@@ -173,6 +179,9 @@ impl Candidates {
         }
         if costs.seat > costs.position {
             return Err(PlanError::SeatAbovePosition);
+        }
+        if self.scenarios.iter().any(|s| s.nominal.len() != s.model.parameters().len()) {
+            return Err(PlanError::Nominal);
         }
         let same = |s: &Scenario| s.model.experiment() == first.model.experiment();
         if self.scenarios.iter().all(same) { Ok(()) } else { Err(PlanError::Experiments) }

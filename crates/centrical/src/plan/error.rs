@@ -17,6 +17,9 @@ pub enum PlanError {
     /// The scenarios are of different experiments.
     #[error("found scenarios of different experiments, expected the same candidates in all")]
     Experiments,
+    /// Expected unknowns that are not those of the model.
+    #[error("found expected unknowns of another number than the model's parameters, expected one for each")]
+    Nominal,
     /// A plateau's noise is none.
     #[error("candidate {}: found noise that is no covariance, expected finite noise above 0", plateau + 1)]
     Noise {
@@ -36,6 +39,17 @@ pub enum PlanError {
         found: f64,
         /// Least time in which anything can be measured [s].
         least: f64,
+    },
+    /// A goal is below what the stated type B leaves of it.
+    #[error(
+        "goal {name:?}: found one that the stated type B uncertainties alone miss by a factor of {factor:.3} when all candidates \
+         are measured, expected one above them: no plan lowers gravity, radii and attitudes as they are stated"
+    )]
+    BelowTypeB {
+        /// The parameter, or "reading".
+        name: String,
+        /// Its type B uncertainty over the goal.
+        factor: f64,
     },
     /// The goals are not reached by all that there is.
     #[error("found goals that all candidates together miss by a factor of {factor:.3}, expected goals that they reach")]

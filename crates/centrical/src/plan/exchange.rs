@@ -5,6 +5,7 @@ use nalgebra::Matrix3;
 
 use super::candidates::{Candidates, Visit};
 use super::information::{Factor, Insight, Scene, sum_of};
+use super::robustness::Scenes;
 
 /// Visits by atom within a set of mountings, and what they are worth.
 #[derive(Debug, Clone)]
@@ -22,7 +23,7 @@ pub(super) struct Whole {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Exchange<'a> {
     pub candidates: &'a Candidates,
-    pub scenes: &'a [Scene],
+    pub scenes: &'a Scenes,
     /// Time there is, set-ups included [s].
     pub time: f64,
     /// Mountings that may be used.
@@ -40,6 +41,11 @@ struct Move {
 }
 
 impl Whole {
+    /// Logarithm of the criterion in each scenario.
+    pub fn by_scenario(&self) -> Vec<f64> {
+        self.factors.iter().map(Scene::value).collect()
+    }
+
     /// The visits as a list.
     pub fn visits(&self, candidates: &Candidates) -> Vec<Visit> {
         let options = candidates.durations.len();
@@ -49,9 +55,43 @@ impl Whole {
 }
 
 impl Exchange<'_> {
-    /// A schedule near the continuous design `w`: whole parts of visits first, then halves and more while they fit, then
-    /// whatever brings most.
+    /// A schedule near the continuous design `w`: the better one of two roundings, each filled with whatever brings most.
     pub fn round(&self, w: &[f64]) -> Whole {
+        let [by_size, in_order] = [self.rounded_by_size(w), self.rounded_in_order(w)];
+        if in_order.value < by_size.value { in_order } else { by_size }
+    }
+
+    /// Visits wherever the parts before and here add up to one: what neighbouring speeds share becomes a visit of one of them,
+    /// and no mounting loses what it is there for. Scaled down until it fits.
+    fn rounded_in_order(&self, w: &[f64]) -> Whole {
+        let options = self.options();
+        let set_points = &self.candidates.experiment().set_points;
+        let rounded = |scale: f64| {
+            let mut counts = vec![0; w.len()];
+            let mut carried = 0.0;
+            for c in 0..self.candidates.len() {
+                if c > 0 && set_points[c].mounting != set_points[c - 1].mounting {
+                    carried = 0.0;
+                }
+                let mut room = self.candidates.repeats as f64;
+                for x in c * options..(c + 1) * options {
+                    carried += scale * w[x];
+                    let visits = (carried + 0.5 + 1e-6).floor().clamp(0.0, room);
+                    carried -= visits;
+                    room -= visits;
+                    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                    let visits = visits as u32;
+                    counts[x] = visits;
+                }
+            }
+            counts
+        };
+        let fitting = (0..100).map(|n| rounded(1.0 - 0.01 * f64::from(n))).find(|counts| self.is_within(counts));
+        self.fill(self.whole(fitting.unwrap_or_else(|| vec![0; w.len()])))
+    }
+
+    /// Whole parts of visits first, then halves and more while they fit.
+    fn rounded_by_size(&self, w: &[f64]) -> Whole {
         // Whole visits within rounding, then the rest by size.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let mut counts: Vec<u32> = w.iter().map(|w| (w + 1e-6).floor().max(0.0) as u32).collect();
@@ -120,7 +160,7 @@ impl Exchange<'_> {
             let Some((_, m)) = best else { return whole };
             let mut counts = whole.counts;
             self.apply(&mut counts, &m);
-            let factors = self.scenes.iter().zip(&whole.factors).map(|(scene, factor)| {
+            let factors = self.scenes.all.iter().zip(&whole.factors).map(|(scene, factor)| {
                 if m.from.is_none() {
                     scene.with(factor, &[(m.plateau, self.change(scene, &m))])
                 } else {
@@ -134,13 +174,12 @@ impl Exchange<'_> {
 
     /// The schedule of these counts.
     pub fn whole(&self, counts: Vec<u32>) -> Whole {
-        let factors = self.scenes.iter().map(|scene| scene.factor(&self.information(scene, &counts))).collect();
+        let factors = self.scenes.all.iter().map(|scene| scene.factor(&self.information(scene, &counts))).collect();
         self.with_factors(counts, factors)
     }
 
     fn with_factors(&self, counts: Vec<u32>, factors: Vec<Factor>) -> Whole {
-        let value = self.scenes.iter().zip(&factors).map(|(scene, factor)| scene.weight * Scene::value(factor)).sum();
-        Whole { value, time: self.time_of(&counts), counts, factors }
+        Whole { value: self.scenes.value(&factors), time: self.time_of(&counts), counts, factors }
     }
 
     fn options(&self) -> usize {
@@ -162,16 +201,16 @@ impl Exchange<'_> {
             let insight = |c: usize| self.is_open(c).then(|| scene.insight(factor, c));
             (0..self.candidates.len()).map(insight).collect()
         };
-        self.scenes.iter().zip(&whole.factors).map(of_scene).collect()
+        self.scenes.all.iter().zip(&whole.factors).map(of_scene).collect()
     }
 
     fn value_after(&self, whole: &Whole, insights: &[Vec<Option<Insight>>], m: &Move) -> f64 {
         let of_scene =
             |((scene, factor), insights): ((&Scene, &Factor), &Vec<Option<Insight>>)| match &insights[m.plateau] {
-                Some(insight) => scene.weight * scene.value_after(factor, insight, &self.change(scene, m)),
+                Some(insight) => scene.value_after(factor, insight, &self.change(scene, m)),
                 None => f64::INFINITY,
             };
-        self.scenes.iter().zip(&whole.factors).zip(insights).map(of_scene).sum()
+        self.scenes.joint(self.scenes.all.iter().zip(&whole.factors).zip(insights).map(of_scene))
     }
 
     fn change(&self, scene: &Scene, m: &Move) -> Matrix3<f64> {

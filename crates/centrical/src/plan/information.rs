@@ -11,8 +11,9 @@ use super::candidates::{Candidates, Scenario};
 use super::criterion::{Columns, Criterion};
 use super::error::PlanError;
 use crate::design::{Weight, total_covariance};
+use crate::experiment::SetPoint;
 use crate::fit::NULL_HOLD;
-use crate::measurement::MeasurementModel;
+use crate::measurement::{Linearisation, MeasurementModel};
 
 /// A scenario made ready: rows of all plateaus, precisions of all visits, what is judged.
 #[derive(Debug, Clone)]
@@ -66,17 +67,18 @@ impl Scene {
         let mut precisions = Vec::with_capacity(candidates.len() * candidates.durations.len());
         for n in 0..candidates.len() {
             for &duration in &candidates.durations {
-                precisions.push(precision(model, &scenario.noise.weight(n, duration), scenario.speed_uncertainty)?);
+                let weight = scenario.noise.weight(n, duration);
+                precisions.push(precision(model, &scenario.nominal, &weight, scenario.speed_uncertainty)?);
             }
         }
-        Ok(Self { weight: scenario.weight / total, precisions, ..Self::of(model, criterion)? })
+        Ok(Self { weight: scenario.weight / total, precisions, ..Self::of(model, &scenario.nominal, criterion)? })
     }
 
     /// The rows of all plateaus of `model` and what is judged, without precisions.
-    pub fn of(model: &MeasurementModel, criterion: &Criterion) -> Result<Self, PlanError> {
+    pub fn of(model: &MeasurementModel, nominal: &[f64], criterion: &Criterion) -> Result<Self, PlanError> {
         let scale: Vec<f64> = model.parameters().iter().map(|p| NULL_HOLD * p.typical).collect();
         let jacobian = |set_point| {
-            let columns = model.linearise_at_zero(set_point).columns.into_iter();
+            let columns = linearised(model, nominal, set_point).columns.into_iter();
             columns.map(|(j, column)| (j, column * scale[j])).collect::<Vec<_>>()
         };
         let jacobians: Vec<_> = model.experiment().set_points.iter().map(jacobian).collect();
@@ -268,14 +270,24 @@ pub(super) struct Insight {
     by_goal: Vec<Matrix3<f64>>,
 }
 
+/// At the expected unknowns by the exact model, at none by [K5.3], which is the same there.
+fn linearised(model: &MeasurementModel, nominal: &[f64], set_point: &SetPoint) -> Linearisation {
+    if nominal.iter().all(|value| *value == 0.0) {
+        model.linearise_at_zero(set_point)
+    } else {
+        model.linearise(set_point, nominal)
+    }
+}
+
 /// `Sigma^-1` of a plateau's mean, its speed error included.
 pub(super) fn precision(
     model: &MeasurementModel,
+    nominal: &[f64],
     weight: &Weight,
     speed_uncertainty: f64,
 ) -> Result<Matrix3<f64>, PlanError> {
     let set_points = &model.experiment().set_points;
-    let speed = model.linearise_at_zero(&set_points[weight.set_point]).speed;
+    let speed = linearised(model, nominal, &set_points[weight.set_point]).speed;
     let total = total_covariance(&weight.covariance, &speed, speed_uncertainty);
     let precision = total.cholesky().map(|factor| factor.inverse());
     precision.filter(|p| p.iter().all(|v| v.is_finite())).ok_or(PlanError::Noise { plateau: weight.set_point })

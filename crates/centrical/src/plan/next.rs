@@ -29,12 +29,13 @@ pub fn next_best(
     taken: &[Weight],
     candidates: &[Weight],
 ) -> Result<Vec<Gain>, PlanError> {
-    let scene = Scene::of(model, criterion)?;
-    let factor = factor_of(&scene, model, speed_uncertainty, taken)?;
+    let none = vec![0.0; model.parameters().len()];
+    let scene = Scene::of(model, &none, criterion)?;
+    let factor = factor_of(&scene, (model, &none), speed_uncertainty, taken)?;
     let before = Scene::value(&factor);
     let mut gains = Vec::with_capacity(candidates.len());
     for candidate in candidates {
-        let dn = precision(model, candidate, speed_uncertainty)?;
+        let dn = precision(model, &none, candidate, speed_uncertainty)?;
         let after = scene.value_after(&factor, &scene.insight(&factor, candidate.set_point), &dn);
         gains.push(Gain { set_point: candidate.set_point, factor: (0.5 * (after - before)).exp() });
     }
@@ -44,10 +45,11 @@ pub fn next_best(
 
 fn factor_of(
     scene: &Scene,
-    model: &MeasurementModel,
+    (model, none): (&MeasurementModel, &[f64]),
     speed_uncertainty: f64,
     taken: &[Weight],
 ) -> Result<Factor, PlanError> {
-    let information = taken.iter().map(|weight| Ok((weight.set_point, precision(model, weight, speed_uncertainty)?)));
+    let information =
+        taken.iter().map(|weight| Ok((weight.set_point, precision(model, none, weight, speed_uncertainty)?)));
     Ok(scene.factor(&information.collect::<Result<Vec<(usize, Matrix3<f64>)>, PlanError>>()?))
 }

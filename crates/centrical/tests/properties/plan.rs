@@ -1,19 +1,25 @@
 use centrical::plan::{
-    Account, Candidates, Costs, Criterion, Effort, Goal, Noise, PlanError, ReadingRange, Scenario, Schedule, Visit,
-    best_for_time, next_best, predict, shortest_for_goals,
+    Account, Candidates, Costs, Criterion, Effort, Goal, Noise, Plan, PlanError, ReadingRange, Robustness, Scenario,
+    Schedule, Visit, best_for_time, next_best, predict, shortest_for_goals,
 };
 use centrical::position::{ThirdPosition, kozlov_2017};
 use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, reduce};
 use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
 use centrical::uncertainty::{Compensated, Method, Settings, TypeB, monte_carlo};
 use centrical::{
-    ErrorModel, Experiment, MeasurementModel, Monomial, Mounting, Observation, PairRelation, ReferencePoint, SetPoint,
-    Site, Term, Unit, Weight, fit, linear,
+    ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, Observation, PairRelation,
+    ReferencePoint, SetPoint, Site, Term, Unit, Weight, fit, linear,
 };
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::common::{Random, spread, truth};
 use crate::uncertainty::STATED;
+
+/// One that expects a unit without errors.
+pub fn scenario(model: MeasurementModel, noise: Noise, speed_uncertainty: f64) -> Scenario {
+    let nominal = vec![0.0; model.parameters().len()];
+    Scenario { model, nominal, noise, speed_uncertainty, weight: 1.0 }
+}
 
 /// A few plateaus of one to three mountings, a unit of four to six coefficients, costs and durations by chance.
 fn small(random: &mut Random) -> Candidates {
@@ -48,7 +54,8 @@ fn small(random: &mut Random) -> Candidates {
     let noise = Noise { density: 1e-4 * (1.0 + random.uniform()), floor: 1e-5 * random.uniform() };
     let position = 300.0 * random.uniform();
     Candidates {
-        scenarios: vec![Scenario { model, noise, speed_uncertainty: 1e-5 * random.uniform(), weight: 1.0 }],
+        scenarios: vec![scenario(model, noise, 1e-5 * random.uniform())],
+        robustness: Robustness::Mean,
         durations: vec![20.0 + 40.0 * random.uniform(), 100.0 + 100.0 * random.uniform()],
         repeats: 1,
         costs: Costs {
@@ -62,14 +69,13 @@ fn small(random: &mut Random) -> Candidates {
 }
 
 /// The covariance by one factorisation of all rows in typical units, each visit by itself: another way to the same numbers.
-fn covariance(candidates: &Candidates, visits: &[Visit]) -> DMatrix<f64> {
-    let scenario = &candidates.scenarios[0];
+fn covariance(scenario: &Scenario, visits: &[Visit]) -> DMatrix<f64> {
     let model = &scenario.model;
     let p = model.parameters().len();
     let mut rows = DMatrix::zeros(p + 3 * visits.len(), p);
     rows.fill_diagonal(1.0 / fit::NULL_HOLD);
     for (n, visit) in visits.iter().enumerate() {
-        let l = model.linearise_at_zero(&model.experiment().set_points[visit.plateau]);
+        let l = model.linearise(&model.experiment().set_points[visit.plateau], &scenario.nominal);
         let shift = l.speed * scenario.speed_uncertainty;
         let sigma = Matrix3::identity() * scenario.noise.variance(visit.duration) + shift * shift.transpose();
         let whitener = sigma.cholesky().unwrap().l().try_inverse().unwrap();
@@ -85,10 +91,18 @@ fn covariance(candidates: &Candidates, visits: &[Visit]) -> DMatrix<f64> {
     &root * root.transpose()
 }
 
-/// The criterion from its definition.
+/// The criterion from its definition, the mean of its logarithm over the scenarios or the worst.
 fn value(criterion: &Criterion, candidates: &Candidates, visits: &[Visit]) -> f64 {
-    let model = &candidates.scenarios[0].model;
-    let all = covariance(candidates, visits);
+    let values: Vec<f64> = candidates.scenarios.iter().map(|s| value_in(s, criterion, visits)).collect();
+    match candidates.robustness {
+        Robustness::Mean => (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp(),
+        Robustness::Worst => values.into_iter().fold(0.0, f64::max),
+    }
+}
+
+fn value_in(scenario: &Scenario, criterion: &Criterion, visits: &[Visit]) -> f64 {
+    let model = &scenario.model;
+    let all = covariance(scenario, visits);
     let instrument: Vec<usize> = (0..all.nrows()).filter(|&j| model.parameters()[j].is_of_instrument()).collect();
     let c = all.select_rows(&instrument).select_columns(&instrument);
     let typical = |n: usize| model.parameters()[instrument[n]].typical;
@@ -152,11 +166,53 @@ fn criterion(number: usize, model: &MeasurementModel) -> Criterion {
 /// On small cases the plan is the best of all that there are.
 #[test]
 fn small_plans_are_the_best_of_all() {
-    let mut random = Random::new(11);
+    let proven = compared_with_all(11, 60, &mut |candidates, _| candidates);
+    assert!(proven.len() >= 55, "{}", proven.len());
+}
+
+/// So it is for several scenarios of which none is the worst for all plans: much white noise; little of it but a floor that
+/// longer plateaus do not lower; an elastic turn; a unit with errors.
+#[test]
+fn small_plans_are_the_best_in_the_worst_case() {
+    let proven = compared_with_all(12, 48, &mut |mut candidates, random| {
+        let first = candidates.scenarios[0].clone();
+        let noise = Noise { density: 0.2 * first.noise.density, floor: (2.0 + 3.0 * random.uniform()) * 1e-5 };
+        let coloured = scenario(first.model.clone(), noise, first.speed_uncertainty);
+        let elastic = MeasurementModel::new(
+            first.model.experiment().clone(),
+            first.model.error_model().clone(),
+            &[Extension::ElasticTurn(Law::Speed)],
+        );
+        let quiet = Noise { density: 0.3 * first.noise.density, ..first.noise };
+        let mut with_errors = first.clone();
+        with_errors.nominal = truth(&first.model, 1.0, random);
+        candidates.scenarios = vec![first, coloured, scenario(elastic, quiet, 0.0), with_errors];
+        candidates.robustness = if random.below(4) == 0 { Robustness::Mean } else { Robustness::Worst };
+        candidates
+    });
+    assert!(proven.len() >= 40, "{}", proven.len());
+    // Not one scenario is always the worst: there is something to weigh.
+    let is_worst = |s: usize| {
+        let worst = |plan: &&Plan| plan.by_scenario.iter().all(|value| *value <= plan.by_scenario[s]);
+        proven.iter().filter(worst).count()
+    };
+    let counts = [0, 1, 2, 3].map(is_worst);
+    println!("{counts:?} plans are worst in each scenario");
+    assert!(counts.iter().filter(|count| **count >= 5).count() >= 2, "{counts:?}");
+}
+
+/// Enumerates all plans of small cases and compares the best with what is found; the plans found.
+fn compared_with_all(
+    seed: u64,
+    cases: usize,
+    changed: &mut dyn FnMut(Candidates, &mut Random) -> Candidates,
+) -> Vec<Plan> {
+    let mut random = Random::new(seed);
     let mut enumerated_plans = 0;
-    let mut proven = 0;
-    for case in 0..60 {
+    let mut proven = Vec::new();
+    for case in 0..cases {
         let candidates = small(&mut random);
+        let candidates = changed(candidates, &mut random);
         let criterion = criterion(case % 4, &candidates.scenarios[0].model);
         let all: Vec<Visit> =
             (0..candidates.len()).map(|plateau| Visit { plateau, duration: candidates.durations[1] }).collect();
@@ -183,10 +239,17 @@ fn small_plans_are_the_best_of_all() {
             plan,
             best.1
         );
-        proven += 1;
+        // However early the search ends, no schedule is below its bound.
+        let ends = [1, 2, 3, 5, 9].map(|mounting_nodes| Effort { mounting_nodes, ..Effort::QUICK });
+        for effort in ends.into_iter().chain([Effort::CERTIFIED]) {
+            let early = best_for_time(&candidates, &criterion, time, effort).unwrap();
+            assert!(early.bound <= best.0 * (1.0 + 1e-9), "case {case}, {effort:?}: {:e} {:e}", early.bound, best.0);
+            assert!(early.bound > 0.0 && early.criterion >= best.0 * (1.0 - 1e-6), "case {case}, {effort:?}");
+        }
+        proven.push(plan);
     }
-    println!("{proven} cases, {enumerated_plans} plans enumerated");
-    assert!(proven >= 55, "{proven}");
+    println!("{} cases, {enumerated_plans} plans enumerated", proven.len());
+    proven
 }
 
 /// Mounting by mounting, and no plateau twice running.
@@ -214,7 +277,8 @@ pub fn large(speeds: usize, durations: &[f64]) -> Candidates {
     let model = MeasurementModel::new(experiment, ErrorModel::kozlov_2017(), &[]);
     let noise = Noise { density: 20e-6 * 9.80665, floor: 1e-6 * 9.80665 };
     Candidates {
-        scenarios: vec![Scenario { model, noise, speed_uncertainty: 1e-5, weight: 1.0 }],
+        scenarios: vec![scenario(model, noise, 1e-5)],
+        robustness: Robustness::Mean,
         durations: durations.to_vec(),
         repeats: 2,
         costs: Costs { position: 1200.0, seat: 600.0, ramp: 30.0, turn: 10.0, run_up: 60.0 },
@@ -223,16 +287,17 @@ pub fn large(speeds: usize, durations: &[f64]) -> Candidates {
 
 #[test]
 fn large_plans_are_certified() {
-    for (number, time) in [(2, 6.0), (0, 8.0), (1, 8.0), (3, 8.0)] {
+    for (number, time) in [(2, 4.0), (2, 6.0), (0, 8.0), (1, 8.0), (3, 8.0)] {
         let candidates = large(8, &[30.0, 60.0, 120.0]);
         let criterion = criterion(number, &candidates.scenarios[0].model);
         let plan = best_for_time(&candidates, &criterion, time * 3600.0, Effort::usual(candidates.len())).unwrap();
         assert!(schedule_is_sorted(&plan.schedule, &candidates));
-        // The continuous design within 0.2 % of the optimum, the schedule within 0.2 % of it, and both of the best on any
-        // mountings within 1 %.
+        // The continuous design within 0.2 % of the optimum; the schedule, where there is more time to fill than set-ups take,
+        // within 0.2 % of it; and of the best on any mountings within 1 % of the uncertainty.
+        println!("{number}, {time} h: {:.2e} {:.2e}, {} nodes", plan.gap(), plan.rounding(), plan.nodes);
         assert!(plan.continuous.gap() < 2e-3, "{number}: {}", plan.continuous.gap());
-        assert!(plan.rounding() < 2e-3, "{number}: {}", plan.rounding());
-        assert!(plan.gap() < 0.01, "{number}: {}", plan.gap());
+        assert!(plan.rounding() < if time > 4.0 { 2e-3 } else { 0.02 }, "{number}: {}", plan.rounding());
+        assert!((1.0 + plan.gap()).sqrt() < 1.01, "{number}: {}", plan.gap());
     }
 }
 

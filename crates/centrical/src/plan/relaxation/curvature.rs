@@ -1,0 +1,110 @@
+//! The second derivatives of a smooth criterion.
+
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector, Matrix3};
+
+use crate::plan::information::{Factor, Scene, Smooth, trace_of_product};
+
+/// A scene at a design, and its part in the joint criterion.
+pub(super) struct SceneThere<'a> {
+    pub scene: &'a Scene,
+    pub factor: &'a Factor,
+    pub smooth: &'a Smooth,
+    pub part: f64,
+}
+
+/// `-d ln Phi_s / d w_x` of the active atoms.
+pub(super) fn slope(there: &SceneThere, active: &[usize], options: usize) -> DVector<f64> {
+    let SceneThere { scene, factor, smooth, .. } = there;
+    let of_atom = |&x: &usize| {
+        let g = Scene::weighed(&scene.response(factor, x / options), &smooth.columns);
+        trace_of_product(scene.precision(x), &g)
+    };
+    DVector::from_iterator(active.len(), active.iter().map(of_atom))
+}
+
+/// Adds what the norm over scenes makes of their first derivatives: `q (sum pi_s l_s l_s^T - t t^T)`, `t = sum pi_s l_s`.
+pub(super) fn add_norm(hessian: &mut DMatrix<f64>, slopes: &DMatrix<f64>, parts: &[f64], exponent: f64) {
+    let total = slopes * DVector::from_column_slice(parts);
+    for (slope, part) in slopes.column_iter().zip(parts) {
+        let apart = slope - &total;
+        hessian.ger(exponent * part, &apart, &apart, 1.0);
+    }
+}
+
+/// Adds a scene's second derivatives: of a goal `2 tr(N A N' G')`, less `tr(N G N' G')` for a determinant, plus what the norm
+/// over goals makes of the first derivatives, less the product of the sensitivities for the logarithm.
+pub(super) fn add_curvature(
+    hessian: &mut DMatrix<f64>,
+    there: &SceneThere,
+    exponent: f64,
+    (active, groups, plateaus): (&[usize], &[Range<usize>], &[usize]),
+) {
+    let SceneThere { scene, factor, smooth, part: weight } = there;
+    let views = scene.views(factor, plateaus);
+    let a = views.transpose() * &views;
+    let responses: Vec<_> = plateaus.iter().map(|&c| scene.response(factor, c)).collect();
+    let m = smooth.columns.len();
+    let mut roots = DMatrix::zeros(m, 3 * plateaus.len());
+    for (n, response) in responses.iter().enumerate() {
+        for (column, weight) in smooth.columns.iter().enumerate() {
+            (0..3).for_each(|i| roots[(column, 3 * n + i)] = response[(i, column)] * weight.sqrt());
+        }
+    }
+    let g = roots.transpose() * &roots;
+    let by_goal = by_goal(scene, &responses, active, groups, factor);
+    let block = |of: &DMatrix<f64>, i: usize, j: usize| of.fixed_view::<3, 3>(3 * i, 3 * j).into_owned();
+    let s = m as f64;
+    for i in 0..plateaus.len() {
+        for j in 0..=i {
+            let (a_ij, g_ij) = (block(&a, i, j), block(&g, i, j));
+            let mixed = if scene.is_determinant() { 2.0 * a_ij - g_ij * s } else { 2.0 * a_ij };
+            for k in groups[i].clone() {
+                let left = scene.precision(active[k]) * mixed;
+                for l in groups[j].clone().filter(|&l| l <= k) {
+                    // tr(N_k X_ij N_l G_ji), G_ji = G_ij^T
+                    let value = weight * (left * scene.precision(active[l])).component_mul(&g_ij).sum();
+                    hessian[(k, l)] += value;
+                    if l != k {
+                        hessian[(l, k)] += value;
+                    }
+                }
+            }
+        }
+    }
+    if !scene.is_determinant() {
+        let total = &by_goal * DVector::from_column_slice(&smooth.parts);
+        for (goal, part) in smooth.parts.iter().enumerate().filter(|(_, part)| **part > 1e-12) {
+            let column = by_goal.column(goal);
+            hessian.ger(weight * (exponent - 1.0) * part, &column, &column, 1.0);
+        }
+        hessian.ger(-weight * exponent, &total, &total, 1.0);
+    }
+}
+
+/// `d ln r_j / d w_x` without its sign, active atoms by goals.
+fn by_goal(
+    scene: &Scene,
+    responses: &[nalgebra::Matrix3xX<f64>],
+    active: &[usize],
+    groups: &[Range<usize>],
+    factor: &Factor,
+) -> DMatrix<f64> {
+    let mut by_goal = DMatrix::zeros(active.len(), scene.goals());
+    if scene.is_determinant() {
+        return by_goal;
+    }
+    for (group, response) in groups.iter().zip(responses) {
+        let mut of_goal = vec![Matrix3::zeros(); scene.goals()];
+        for (m, f) in response.column_iter().enumerate() {
+            of_goal[scene.goal_of(m)] += f * f.transpose();
+        }
+        for k in group.clone() {
+            for (goal, g) in of_goal.iter().enumerate() {
+                by_goal[(k, goal)] = trace_of_product(scene.precision(active[k]), g) / factor.goals[goal];
+            }
+        }
+    }
+    by_goal
+}
