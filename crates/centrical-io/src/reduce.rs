@@ -157,12 +157,10 @@ fn one_mounting(
     let file = session.record_file(mounting)?;
     let refused = |source| Error::Reduction { file: file.to_owned(), mounting: mounting + 1, source: Box::new(source) };
     let record = RecordFile::new(file, &session.columns, progress);
-    let t0 = std::time::Instant::now();
     let survey = record.survey(kept)?;
     let telemetry = session.telemetry(mounting)?;
     let located = survey.locate(telemetry.as_ref(), &schedule).map_err(refused)?;
     let average = |plateau: usize, samples: RecordSlice| located.average(plateau, samples);
-    let t0 = std::time::Instant::now();
     let averaged = record.windows(kept, &located.windows(), &average)?;
     let averaged = averaged.into_iter().collect::<Result<_, _>>().map_err(refused)?;
     let overview = RecordOverview::of(mounting + 1, &survey.extremes().collect::<Vec<_>>());

@@ -1,9 +1,10 @@
 //! One block of a record, condensed: its level without spikes, and what its samples tell of their digits and noise.
 
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
 
 use super::blocks::{MAD, SAMPLES, cut, median};
-use super::lanes::{Wide, fold, sum, widest};
+use super::lanes::{fold, sum, widest};
 use super::record::RecordSlice;
 
 /// What is kept of the samples of one block of time.
@@ -66,11 +67,11 @@ struct OneAxis<'a> {
     differences: &'a mut Vec<f64>,
 }
 
-impl Wide for OneAxis<'_> {
-    type Outcome = Axis;
+impl WithSimd for OneAxis<'_> {
+    type Output = Axis;
 
     #[inline(always)]
-    fn run(self) -> Axis {
+    fn with_simd<S: Simd>(self, _: S) -> Axis {
         let Self { f, differences } = self;
         let [low, high] = range(f);
         differences.clear();

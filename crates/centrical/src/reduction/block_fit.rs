@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
 
 use super::blocks::{Blocks, MAD, median};
-use super::lanes::{Wide, subtract, widest};
+use super::lanes::{subtract, widest};
 use super::shape::Shape;
 use super::triangle::{TERMS, Triangle};
 
@@ -133,11 +134,11 @@ struct Off<'a> {
     cut: f64,
 }
 
-impl Wide for Off<'_> {
-    type Outcome = Vec<bool>;
+impl WithSimd for Off<'_> {
+    type Output = Vec<bool>;
 
     #[inline(always)]
-    fn run(self) -> Vec<bool> {
+    fn with_simd<S: Simd>(self, _: S) -> Vec<bool> {
         let Self { fit, scale, cut } = self;
         let mut off = Vec::with_capacity(fit.range.len());
         let terms = fit.coefficients.len();

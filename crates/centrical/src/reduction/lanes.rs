@@ -1,31 +1,14 @@
 //! Sums over many numbers in lanes that do not wait for each other, in an order that is always the same.
 //!
-//! What is called within [`widest`] is compiled for the processor's vectors only where it is inlined: hence the attributes.
+//! What a [`widest`] work calls is compiled for the processor's vectors only where it is inlined: hence the attributes.
 
 /// Lanes: as many as the widest processor has for two instructions.
 const LANES: usize = 8;
 
-/// What is worth doing with the widest vectors of the machine.
-pub(super) trait Wide {
-    type Outcome;
-
-    /// To be inlined, always.
-    fn run(self) -> Self::Outcome;
-}
-
 /// Does a work with the widest vectors of the machine. They add and multiply as single numbers do, and nothing is fused:
 /// the outcome is the same on any.
-pub(super) fn widest<W: Wide>(work: W) -> W::Outcome {
-    struct Work<W>(W);
-    impl<W: Wide> pulp::WithSimd for Work<W> {
-        type Output = W::Outcome;
-
-        #[inline(always)]
-        fn with_simd<S: pulp::Simd>(self, _: S) -> W::Outcome {
-            self.0.run()
-        }
-    }
-    pulp::Arch::new().dispatch(Work(work))
+pub(super) fn widest<W: pulp::WithSimd>(work: W) -> W::Output {
+    pulp::Arch::new().dispatch(work)
 }
 
 /// Folds values into lanes, and the lanes into one.

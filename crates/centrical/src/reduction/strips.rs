@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
 
-use super::lanes::{Wide, dot, fold, subtract, sum, widest};
+use super::lanes::{dot, fold, subtract, sum, widest};
 use super::samples::Samples;
 use super::triangle::{TERMS, Triangle};
 
@@ -133,11 +134,11 @@ struct Judgement<'a> {
     room: &'a mut Room,
 }
 
-impl Wide for Judgement<'_> {
-    type Outcome = bool;
+impl WithSimd for Judgement<'_> {
+    type Output = bool;
 
     #[inline(always)]
-    fn run(self) -> bool {
+    fn with_simd<S: Simd>(self, _: S) -> bool {
         self.strip.judge(&self.fit, self.terms, &self.reference, self.room)
     }
 }

@@ -128,13 +128,9 @@ impl Survey {
         telemetry: Option<&SpeedTrace>,
         schedule: &[ScheduledPlateau],
     ) -> Result<Located, ReductionError> {
-        let t0 = std::time::Instant::now();
         let blocks = Blocks::new(&self.grid, &self.blocks)?;
-        let t1 = std::time::Instant::now();
         let cores = alignment::align(&blocks, schedule)?;
-        let t2 = std::time::Instant::now();
         let clock_offset = telemetry.and_then(|telemetry| clock::offset(&blocks, schedule, &cores, telemetry));
-        let t3 = std::time::Instant::now();
         let windows = window::refine(&blocks, schedule, &cores)?;
         let speed = |window: &window::Window| clock::median_speed(telemetry?, clock_offset.as_ref()?, window.span);
         let speeds = windows.plateaus.iter().map(speed).collect();

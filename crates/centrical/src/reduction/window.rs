@@ -9,11 +9,12 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::block_fit::{BlockFit, Levels, spread};
 use super::blocks::{Blocks, cut, median, whole};
-use super::lanes::{Wide, dot, widest};
+use super::lanes::{dot, widest};
 use super::shape::{Settling, Shape};
 use super::{ReductionError, ScheduledPlateau};
 
@@ -264,13 +265,13 @@ struct Explained<'a> {
     settling: Settling,
 }
 
-impl Wide for Explained<'_> {
-    type Outcome = f64;
+impl WithSimd for Explained<'_> {
+    type Output = f64;
 
     /// `sum_k (c^T r_k)^2 / (c^T c - sum_j (q_j^T c)^2)`: the residuals are orthogonal to the design, and at least half of
     /// the settling is, since it fades in a quarter of the plateau.
     #[inline(always)]
-    fn run(self) -> f64 {
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
         let column: Vec<f64> = self.of.since.iter().map(|since| self.settling.value(*since)).collect();
         let taken: f64 = self.of.q.iter().map(|q| dot(q, &column).powi(2)).sum();
         let square = dot(&column, &column) - taken;
