@@ -66,13 +66,16 @@ impl Levels {
         Some(BlockFit { of: self, range, triangle, coefficients })
     }
 
-    /// The triangle of some blocks.
+    /// The triangle of some blocks, less than two pieces of them.
     fn triangle(&self, range: Range<usize>) -> Triangle {
-        let part = |column: &Vec<f64>| column[range.clone()].to_vec();
-        let (mut columns, mut levels) =
-            (self.columns.iter().map(part).collect::<Vec<_>>(), self.f_z.each_ref().map(part));
-        let mut columns: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
-        Triangle::of(&mut columns, &mut levels.each_mut().map(Vec::as_mut_slice))
+        let n = range.len();
+        let (mut columns, mut levels) = ([[0.0; 2 * PIECE]; TERMS], [[0.0; 2 * PIECE]; 3]);
+        let rooms = columns[..self.columns.len()].iter_mut().chain(&mut levels);
+        for (room, column) in rooms.zip(self.columns.iter().chain(&self.f_z)) {
+            room[..n].copy_from_slice(&column[range.clone()]);
+        }
+        let mut columns = columns.each_mut().map(|column| &mut column[..n]);
+        Triangle::of(&mut columns[..self.columns.len()], &mut levels.each_mut().map(|level| &mut level[..n]))
     }
 }
 

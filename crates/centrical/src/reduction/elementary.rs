@@ -1,4 +1,4 @@
-//! Cosine, sine and exponential at many instants: polynomials that a processor evaluates side by side.
+//! Cosine, sine, exponential and logarithm of many numbers: polynomials that a processor evaluates side by side.
 
 use std::f64::consts::{LOG2_E, TAU};
 
@@ -47,6 +47,21 @@ const EXP: [f64; 14] = [
     1.0 / 6_227_020_800.0,
 ];
 
+/// `artanh(s) / s` by powers of `s^2`: the first term left out is below 2^-53 for `|s| <= (2^0.5 - 1) / (2^0.5 + 1)`.
+const ARTANH: [f64; 11] = [
+    1.0,
+    1.0 / 3.0,
+    1.0 / 5.0,
+    1.0 / 7.0,
+    1.0 / 9.0,
+    1.0 / 11.0,
+    1.0 / 13.0,
+    1.0 / 15.0,
+    1.0 / 17.0,
+    1.0 / 19.0,
+    1.0 / 21.0,
+];
+
 /// The first 32 bits of `ln 2`: their product with a number of powers has no rounding.
 const LN_2_HEAD: f64 = 6.931_471_803_691_238e-1;
 const LN_2_TAIL: f64 = 1.908_214_929_270_587_7e-10;
@@ -87,6 +102,20 @@ pub(super) fn exp(x: f64) -> f64 {
     }
 }
 
+/// `ln(x)` of a positive, normal `x`: `2 artanh(s) = ln m`, `s = (m - 1) / (m + 1)`, for the fraction `m` of `x` that is
+/// nearest to 1.
+#[inline(always)]
+pub(super) fn ln(x: f64) -> f64 {
+    // Half the bits of the fraction's root: a fraction above it is taken as half of it, with one power of two more.
+    let shifted = x.to_bits().wrapping_sub(std::f64::consts::FRAC_1_SQRT_2.to_bits());
+    #[expect(clippy::cast_possible_wrap, reason = "the powers of two, negative ones too")]
+    let powers = (shifted as i64) >> 52;
+    let fraction = f64::from_bits(x.to_bits().wrapping_sub(shifted & (0xfff << 52)));
+    let powers = powers as f64;
+    let s = (fraction - 1.0) / (fraction + 1.0);
+    powers * LN_2_HEAD + (2.0 * s * polynomial(&ARTANH, s * s) + powers * LN_2_TAIL)
+}
+
 #[inline(always)]
 fn polynomial<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
@@ -94,7 +123,7 @@ fn polynomial<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{cos_sin, exp};
+    use super::{cos_sin, exp, ln};
 
     #[test]
     fn as_the_standard_library_has_them() {
@@ -118,5 +147,13 @@ mod tests {
             assert!((exp(x) / x.exp() - 1.0).abs() < 5e-16, "{x}");
         }
         assert_eq!((exp(0.0), exp(-1e9), exp(1e9)), (1.0, 0.0, f64::INFINITY));
+    }
+
+    #[test]
+    fn logarithms_as_the_standard_library_has_them() {
+        for x in (0..200_000).map(|i| (-690.0 + f64::from(i) * 6.9e-3_f64).exp()).chain([1.0, 0.5, 2.0, 0.999_999, 1.5])
+        {
+            assert!((ln(x) - x.ln()).abs() <= 4e-16 * x.ln().abs().max(1e-3), "{x}");
+        }
     }
 }

@@ -4,9 +4,11 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
 
 use super::blocks::{Blocks, MAD, cut, median, whole};
 use super::cells::CELLS;
+use super::lanes::widest;
 use super::regression::Regression;
 use super::saturation::standing;
 use super::shape::Shape;
@@ -50,7 +52,7 @@ impl<'a> Samples<'a> {
     pub fn cut_out(record: RecordSlice<'a>, window: &'a Window, blocks: &'a Blocks) -> Self {
         let RecordSlice { t, f_z } = record.between(window.span);
         let came = t.len();
-        let (t, f_z) = if t.windows(2).all(|pair| pair[0] < pair[1]) {
+        let (t, f_z) = if widest(Steps { t, least: f64::MIN_POSITIVE }) == came.saturating_sub(1) {
             (Cow::from(t), f_z.map(Cow::from))
         } else {
             let first_of_stamp = |i: &usize| *i == 0 || t[*i] > t[*i - 1];
@@ -110,14 +112,20 @@ impl<'a> Samples<'a> {
         let is_readable = |i: &usize| self.f_z.iter().all(|f| f[*i].is_finite());
         let unreadable = if rejected == 0 { 0 } else { (0..self.len()).filter(|i| !is_readable(i)).count() };
         let stuck = self.stuck.as_ref().map_or(0, |stuck| stuck.iter().filter(|stuck| **stuck).count());
-        let gaps = self.t.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1.5 * self.interval);
-        let missing: usize = gaps.map(|step| whole((step / self.interval).round()) - 1).sum();
+        let gap = 1.5 * self.interval;
+        let missing = if widest(Steps { t: &self.t, least: gap }) == 0 { 0 } else { self.samples_in_gaps(gap) };
         LeftOut {
             spikes: rejected.saturating_sub(unreadable + stuck),
             stuck,
             missing: unreadable + missing,
             repeated: self.repeated,
         }
+    }
+
+    /// Samples that never came: in steps of at least so long.
+    fn samples_in_gaps(&self, least: f64) -> usize {
+        let gaps = self.t.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step >= least);
+        gaps.map(|step| whole((step / self.interval).round()) - 1).sum()
     }
 
     /// Why most samples cannot be used.
@@ -134,6 +142,22 @@ impl<'a> Samples<'a> {
         } else {
             ReductionError::Unsteady { index, window, samples, good }
         }
+    }
+}
+
+/// Steps of time that are at least so long, to be counted.
+struct Steps<'a> {
+    t: &'a [f64],
+    least: f64,
+}
+
+impl WithSimd for Steps<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> usize {
+        let steps = self.t.iter().zip(self.t.get(1..).unwrap_or_default()).map(|(before, after)| after - before);
+        steps.map(|step| usize::from(step >= self.least)).sum()
     }
 }
 
