@@ -121,65 +121,78 @@ impl BlockFit<'_> {
     /// Which blocks are off the fit by more than noise of the given scale: `r^2 > c^2 s^2 (1 - h)`, the leverage `h` being
     /// the part of the noise that the fit takes up.
     pub fn off(&self, scale: &Vector3<f64>, cut: f64) -> Vec<bool> {
-        widest(Off { fit: self, scale, cut })
+        self.off_among(self.range.clone(), scale, cut)
     }
 
-    /// Whether two neighbouring blocks are off.
+    /// Whether two neighbouring blocks are off. A ramp shows at an end: there they are looked for first.
     pub fn has_two_off(&self, scale: &Vector3<f64>, cut: f64) -> bool {
-        self.off(scale, cut).windows(2).any(|pair| pair == [true, true])
+        let Range { start, end } = self.range;
+        let near = PIECE.min(self.range.len());
+        let parts = [end - near..end, start..start + near, self.range.clone()];
+        let two_off = |part| self.off_among(part, scale, cut).windows(2).any(|pair| pair == [true, true]);
+        parts.into_iter().any(two_off)
+    }
+
+    fn off_among(&self, range: Range<usize>, scale: &Vector3<f64>, cut: f64) -> Vec<bool> {
+        let mut off = vec![false; range.len()];
+        for (from, verdicts) in range.clone().step_by(PIECE).zip(off.chunks_mut(PIECE)) {
+            widest(Off { fit: self, from, verdicts, scale, cut });
+        }
+        off
     }
 }
 
-/// Blocks to be told from those that are off.
+/// Blocks from `from` on, to be told from those that are off; a piece at most.
 struct Off<'a> {
     fit: &'a BlockFit<'a>,
+    from: usize,
+    verdicts: &'a mut [bool],
     scale: &'a Vector3<f64>,
     cut: f64,
 }
 
 impl WithSimd for Off<'_> {
-    type Output = Vec<bool>;
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Vec<bool> {
-        let Self { fit, scale, cut } = self;
-        let mut off = Vec::with_capacity(fit.range.len());
-        let terms = fit.coefficients.len();
-        let r = &fit.triangle.r;
-        for from in fit.range.clone().step_by(PIECE) {
-            let piece = from..(from + PIECE).min(fit.range.end);
-            let n = piece.len();
-            // The columns of Q, one after another, and the squares of what they leave of the noise and of the levels.
-            let mut q = [[0.0; PIECE]; TERMS];
-            let mut left = [1.0; PIECE];
-            for j in 0..terms {
-                let (done, rest) = q.split_at_mut(j);
-                let column = &mut rest[0][..n];
-                column.copy_from_slice(&fit.of.columns[j][piece.clone()]);
-                for (i, q) in done.iter().enumerate() {
-                    subtract(column, r[j][i], &q[..n]);
-                }
-                for (q, left) in column.iter_mut().zip(&mut left) {
-                    *q /= r[j][j];
-                    *left -= *q * *q;
-                }
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { fit, from, verdicts, scale, cut } = self;
+        let n = verdicts.len();
+        let piece = from..from + n;
+        let (terms, r) = (fit.coefficients.len(), &fit.triangle.r);
+        // The columns of Q, one after another, and what they leave of the noise.
+        let mut q = [[0.0; PIECE]; TERMS];
+        let mut left = [1.0; PIECE];
+        for j in 0..terms {
+            let (done, rest) = q.split_at_mut(j);
+            let column = &mut rest[0][..n];
+            column.copy_from_slice(&fit.of.columns[j][piece.clone()]);
+            for (i, q) in done.iter().enumerate() {
+                subtract(column, r[j][i], &q[..n]);
             }
-            let mut worst = [0.0_f64; PIECE];
-            for axis in 0..3 {
-                let mut residuals = [0.0; PIECE];
-                let residuals = &mut residuals[..n];
-                residuals.copy_from_slice(&fit.of.f_z[axis][piece.clone()]);
-                for (column, b) in fit.of.columns.iter().zip(&fit.coefficients) {
-                    subtract(residuals, b[axis], &column[piece.clone()]);
-                }
-                let share = 1.0 / (cut * scale[axis]);
-                for (worst, r) in worst.iter_mut().zip(residuals) {
-                    *worst = worst.max((*r * share) * (*r * share));
-                }
+            let scale = 1.0 / r[j][j];
+            for (q, left) in column.iter_mut().zip(&mut left) {
+                *q *= scale;
+                *left -= *q * *q;
             }
-            off.extend(worst[..n].iter().zip(&left).map(|(worst, left)| *worst > left.max(0.0)));
         }
-        off
+        // The largest square of what the fit leaves of the levels, in units of what may be left.
+        let mut worst = [0.0_f64; PIECE];
+        for axis in 0..3 {
+            let mut residuals = [0.0; PIECE];
+            let residuals = &mut residuals[..n];
+            residuals.copy_from_slice(&fit.of.f_z[axis][piece.clone()]);
+            for (column, b) in fit.of.columns.iter().zip(&fit.coefficients) {
+                subtract(residuals, b[axis], &column[piece.clone()]);
+            }
+            let share = 1.0 / (cut * scale[axis]);
+            for (worst, r) in worst.iter_mut().zip(residuals) {
+                *worst = worst.max((*r * share) * (*r * share));
+            }
+        }
+        for ((off, worst), left) in verdicts.iter_mut().zip(&worst).zip(&left) {
+            *off = *worst > left.max(0.0);
+        }
     }
 }
 

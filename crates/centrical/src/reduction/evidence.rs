@@ -164,12 +164,13 @@ impl WithSimd for InnerChanges<'_> {
         let (ends, ends_sums) = (&levels[from(inside.start + ahead)], &sums[from(inside.start + ahead)]);
         let (begins, begins_sums) = (&levels[from(inside.start - behind)], &sums[from(inside.start - behind)]);
         let (here_sums, next_sums) = (&sums[from(inside.start)], &sums[from(inside.start + 1)]);
-        let change = |i: usize| {
+        let mut changes = vec![0.0; n];
+        for (i, change) in changes.iter_mut().enumerate() {
             let after = ends_sums[i] + ends[i] * part_ahead - here_sums[i];
             let before = next_sums[i] - (begins_sums[i] + begins[i] * part_behind);
-            (after - before) / reach
-        };
-        (0..n).map(change).collect()
+            *change = (after - before) / reach;
+        }
+        changes
     }
 }
 
@@ -186,14 +187,15 @@ impl WithSimd for LevelDensity<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
-        let [f1, f2, f3] = self.levels.each_ref().map(|levels| &levels[..self.levels[0].len()]);
+        let [f1, f2, f3] = self.levels.each_ref().map(Vec::as_slice);
         let nominal = self.nominal_z;
         let (scale, any) = (1.0 / (self.width * self.width), 3.0 * (self.span / self.width).ln());
-        let density = |i: usize| {
-            let (d1, d2, d3) = (f1[i] - nominal[0], f2[i] - nominal[1], f3[i] - nominal[2]);
-            any - 2.0 * ln(PI * (1.0 + (d1 * d1 + d2 * d2 + d3 * d3) * scale))
-        };
-        (0..f1.len()).map(density).collect()
+        let mut density = vec![0.0; f1.len()];
+        for (((density, f1), f2), f3) in density.iter_mut().zip(f1).zip(f2).zip(f3) {
+            let (d1, d2, d3) = (f1 - nominal[0], f2 - nominal[1], f3 - nominal[2]);
+            *density = any - 2.0 * ln(PI * (1.0 + (d1 * d1 + d2 * d2 + d3 * d3) * scale));
+        }
+        density
     }
 }
 
@@ -209,14 +211,15 @@ impl WithSimd for ChangeDensity<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
-        let [c1, c2, c3] = self.changes.each_ref().map(|changes| &changes[..self.changes[0].len()]);
+        let [c1, c2, c3] = self.changes.each_ref().map(Vec::as_slice);
         let any = 3.0 * (self.span / (self.noise.product().cbrt() * TAU.sqrt())).ln();
         let noise = self.noise.map(|noise| 1.0 / noise);
-        let density = |i: usize| {
-            let (x1, x2, x3) = (c1[i] * noise[0], c2[i] * noise[1], c3[i] * noise[2]);
-            any - 0.5 * (x1 * x1 + x2 * x2 + x3 * x3)
-        };
-        (0..c1.len()).map(density).collect()
+        let mut density = vec![0.0; c1.len()];
+        for (((density, c1), c2), c3) in density.iter_mut().zip(c1).zip(c2).zip(c3) {
+            let (x1, x2, x3) = (c1 * noise[0], c2 * noise[1], c3 * noise[2]);
+            *density = any - 0.5 * (x1 * x1 + x2 * x2 + x3 * x3);
+        }
+        density
     }
 }
 

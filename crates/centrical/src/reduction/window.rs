@@ -168,8 +168,10 @@ impl Search<'_> {
         let fits = |range: Range<usize>| levels.fit(range).is_some_and(|fit| !fit.has_two_off(&scale, cut));
         let quarter = core.len() / 4;
         let (first, last) = (core.start + quarter, core.end - quarter);
-        let end = last + furthest(to - last, |more| fits(first..last + more));
-        let start = first - furthest(first - from, |more| fits(first - more..end));
+        let guess = &self.ranges[k];
+        let end = last + furthest(to - last, guess.end.saturating_sub(last), |more| fits(first..last + more));
+        let to_start = furthest(first - from, first.saturating_sub(guess.start), |more| fits(first - more..end));
+        let start = first - to_start;
         // A block off alone is a disturbance inside, and the begin of a ramp at an edge.
         let off = levels.fit(start..end).map(|fit| fit.off(&scale, cut)).unwrap_or_default();
         let at_edge = |block: Option<&bool>| usize::from(block.is_some_and(|off| *off));
@@ -199,16 +201,18 @@ struct Guess {
     seen: bool,
 }
 
-/// The greatest of `0..=most` that is accepted, by steps halved on refusal. Passes are repeated while they gain: chance
-/// may refuse a value below the limit, and hardly its neighbours too.
-fn furthest(most: usize, accepted: impl Fn(usize) -> bool) -> usize {
-    let mut reached = 0;
+/// The greatest of `0..=most` that is accepted, looked for about a guess by steps that are doubled on success and halved on
+/// refusal. Passes are repeated while they gain: chance may refuse a value below the limit, and hardly its neighbours too.
+fn furthest(most: usize, guess: usize, accepted: impl Fn(usize) -> bool) -> usize {
+    const FIRST_STEP: usize = 16;
+    let guess = guess.max(1).min(most);
+    let (mut reached, mut step) = (0, guess);
     loop {
         let before = reached;
-        let mut step = most - reached;
         while step > 0 {
             if accepted(reached + step) {
                 reached += step;
+                step = if before == 0 && reached == guess { FIRST_STEP } else { 2 * step };
                 step = step.min(most - reached);
             } else {
                 step /= 2;
@@ -217,6 +221,7 @@ fn furthest(most: usize, accepted: impl Fn(usize) -> bool) -> usize {
         if reached == before {
             return reached;
         }
+        step = FIRST_STEP.min(most - reached);
     }
 }
 
@@ -272,7 +277,10 @@ impl WithSimd for Explained<'_> {
     /// the settling is, since it fades in a quarter of the plateau.
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> f64 {
-        let column: Vec<f64> = self.of.since.iter().map(|since| self.settling.value(*since)).collect();
+        let mut column = vec![0.0; self.of.since.len()];
+        for (value, since) in column.iter_mut().zip(&self.of.since) {
+            *value = self.settling.value(*since);
+        }
         let taken: f64 = self.of.q.iter().map(|q| dot(q, &column).powi(2)).sum();
         let square = dot(&column, &column) - taken;
         self.of.residuals.iter().map(|residuals| dot(&column, residuals).powi(2) / square).sum()
