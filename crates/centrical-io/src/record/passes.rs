@@ -22,12 +22,19 @@ pub(crate) struct RecordFile<'a> {
 }
 
 /// A record that was read once, for the second pass: its samples, unless there are too many.
-#[derive(Default)]
 pub(crate) struct Kept {
+    /// Samples that are kept at most.
+    most: usize,
     samples: Record,
     /// Where they stand, if they are not kept and the file can be read from anywhere.
     index: Option<Index>,
     is_whole: bool,
+}
+
+impl Default for Kept {
+    fn default() -> Self {
+        Self { most: MOST, samples: Record::default(), index: None, is_whole: false }
+    }
 }
 
 impl Kept {
@@ -39,7 +46,7 @@ impl Kept {
 
     fn extend(&mut self, blocks: &[Block]) {
         for block in blocks {
-            self.is_whole &= self.samples.t.len() + block[0].len() <= MOST;
+            self.is_whole &= self.samples.t.len() + block[0].len() <= self.most;
             if self.is_whole {
                 self.samples.extend(stretch(block));
             } else {
@@ -162,4 +169,46 @@ fn begin(beginning: &Record) -> Survey {
     let mut survey = Survey::new(&beginning.t);
     survey.append(survey.condense(beginning.as_slice()));
     survey
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::{self, File};
+    use std::io::Write;
+
+    use flate2::{Compression, write::GzEncoder};
+
+    use super::*;
+
+    /// The samples of windows, of records read once, again by its index, and again from start to end.
+    #[test]
+    fn a_window_is_the_same_kept_or_read_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let (plain, packed) = (folder.path().join("record.csv"), folder.path().join("record.csv.gz"));
+        let rows =
+            (0..40_000).map(|i| format!("{},{},-{}.5,{}e-3\n", f64::from(i) * 1e-3, i % 977, i % 11, i * i % 1009));
+        let text: String = std::iter::once("t,f1,f2,f3\n".to_owned()).chain(rows).collect();
+        fs::write(&plain, &text).unwrap();
+        let mut encoder = GzEncoder::new(File::create(&packed).unwrap(), Compression::fast());
+        encoder.write_all(text.as_bytes()).unwrap();
+        encoder.finish().unwrap();
+        let windows = [[0.0, 3.0], [3.5, 17.25], [17.3, 17.3], [20.0, 39.5]];
+        let samples = |file: &Path, most: usize| -> Vec<(usize, Record)> {
+            let (columns, mut kept) = (Columns::default(), Kept { most, ..Kept::default() });
+            let record = RecordFile::new(file, &columns, &|_| {});
+            record.survey(&mut kept).unwrap();
+            assert_eq!(kept.is_whole, most > 0);
+            let whole = |k: usize, samples: RecordSlice| {
+                let mut record = Record::default();
+                record.extend(samples);
+                (k, record)
+            };
+            record.windows(&kept, &windows, &whole).unwrap()
+        };
+        let expected = samples(&plain, MOST);
+        assert_eq!(expected.iter().map(|(_, record)| record.t.len()).collect::<Vec<_>>(), [3001, 13_751, 1, 19_501]);
+        assert!(
+            samples(&plain, 0) == expected && samples(&packed, 0) == expected && samples(&packed, MOST) == expected
+        );
+    }
 }

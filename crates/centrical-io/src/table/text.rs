@@ -201,7 +201,9 @@ impl Piece {
                 self.lines += ROWS as u64;
                 of_batch[of_batch.len() - 1] as usize + 1
             } else {
-                let rest = from + piece::before_line(&text[from..], ROWS as u64);
+                // As many lines, or what there is: a line may have more separators than it should.
+                let lines = piece::before_line(&text[from..], ROWS as u64);
+                let rest = if lines == 0 { text.len() } else { from + lines };
                 if let Err(fault) = self.read_rows(&text[from..rest], layout, fields, block) {
                     break Err(fault);
                 }

@@ -192,7 +192,8 @@ mod tests {
             assert_eq!(read(text), None, "{text}");
         }
         assert_eq!(read("123456789012345"), Some(123_456_789_012_345.0));
-        assert_eq!(read("-12345678.1234567"), None);
+        assert_eq!(read("-12345678.1234567"), Some(-12_345_678.123_456_7));
+        assert_eq!(read("-123456789.1234567"), None);
         assert_eq!(read("-1234567.1234567"), Some(-1_234_567.123_456_7));
     }
 
