@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::input::Input;
 use crate::overview::RecordOverview;
 use crate::plateaus::PlateauMean as TabledPlateau;
-use crate::record::RecordFile;
+use crate::record::{Kept, RecordFile};
 use crate::session::Session;
 use crate::steadiness::Steadiness;
 
@@ -121,12 +121,13 @@ impl Reduced {
     }
 }
 
-/// Every mounting by itself, then the noise of all of them together, then the covariances.
+/// One mounting after the other, then the noise of all of them together, then the covariances.
 fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Reduced, Error> {
-    let mountings = (0..session.experiment.mountings.len()).into_par_iter();
-    // Gathered before the first error is taken: which one it is does not depend on the threads.
-    let mountings: Vec<_> = mountings.map(|mounting| one_mounting(session, mounting, progress)).collect();
-    let mountings: Vec<(ReducedMounting, RecordOverview)> = mountings.into_iter().collect::<Result<_, _>>()?;
+    // One after the other, each on all threads, in the same room.
+    let mut kept = Kept::default();
+    let mountings = 0..session.experiment.mountings.len();
+    let mountings = mountings.map(|mounting| one_mounting(session, mounting, &mut kept, progress));
+    let mountings: Vec<(ReducedMounting, RecordOverview)> = mountings.collect::<Result<_, _>>()?;
     let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) = mountings.into_iter().unzip();
     let noise = NoiseModel::pool(&reduced);
     let means = reduced.iter().flat_map(|mounting| mounting.means(&noise));
@@ -145,6 +146,7 @@ fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Re
 fn one_mounting(
     session: &Session,
     mounting: usize,
+    kept: &mut Kept,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<(ReducedMounting, RecordOverview), Error> {
     let experiment = &session.experiment;
@@ -155,11 +157,11 @@ fn one_mounting(
     let file = session.record_file(mounting)?;
     let refused = |source| Error::Reduction { file: file.to_owned(), mounting: mounting + 1, source: Box::new(source) };
     let record = RecordFile::new(file, &session.columns, progress);
-    let (survey, index) = record.survey()?;
+    let survey = record.survey(kept)?;
     let telemetry = session.telemetry(mounting)?;
     let located = survey.locate(telemetry.as_ref(), &schedule).map_err(refused)?;
     let average = |plateau: usize, samples: RecordSlice| located.average(plateau, samples);
-    let averaged = record.windows(index.as_ref(), &located.windows(), &average)?;
+    let averaged = record.windows(kept, &located.windows(), &average)?;
     let averaged = averaged.into_iter().collect::<Result<_, _>>().map_err(refused)?;
     let overview = RecordOverview::of(mounting + 1, &survey.extremes().collect::<Vec<_>>());
     Ok((located.into_mounting(averaged), overview))

@@ -150,7 +150,7 @@ pub(crate) fn read_batches(
             let unpacked = zstd::Decoder::new(input).map_err(|e| Error::reading(file, e, expected))?;
             text::read(file, &mut Packed::new(file, unpacked), &mut rows)?;
         }
-        Format::Parquet => parquet::read(file, input, &mut rows)?,
+        Format::Parquet => parquet::read(file, &input, &mut rows)?,
         Format::Npy => npy::read(file, &input, &mut rows)?,
         Format::Npz => npy::read_archive(file, input, &mut rows)?,
         Format::Arrow => arrow::read(file, &input, &mut rows)?,
@@ -262,6 +262,8 @@ struct Rows<'a> {
     /// The block in the making, and those that are made.
     block: Block,
     gathered: Vec<Block>,
+    /// Blocks that are done with: room for the next.
+    spare: Vec<Block>,
     /// Last value of every field, to see that time does not run backwards.
     last: Vec<f64>,
     count: u64,
@@ -283,6 +285,7 @@ impl<'a> Rows<'a> {
             fields,
             block: vec![Vec::with_capacity(BLOCK); fields.len()],
             gathered: Vec::new(),
+            spare: Vec::new(),
             last: vec![f64::NEG_INFINITY; fields.len()],
             count: 0,
             most: ROWS_OF_NOTHING + ROWS_PER_BYTE * bytes,
@@ -313,7 +316,7 @@ impl<'a> Rows<'a> {
     fn flush(&mut self) {
         if !self.block[0].is_empty() {
             self.count += self.block[0].len() as u64;
-            let next = vec![Vec::with_capacity(BLOCK); self.fields.len()];
+            let next = self.spare.pop().unwrap_or_else(|| vec![Vec::with_capacity(BLOCK); self.fields.len()]);
             self.gathered.push(std::mem::replace(&mut self.block, next));
             if self.gathered.len() == BATCH {
                 self.deliver_gathered();
@@ -324,6 +327,10 @@ impl<'a> Rows<'a> {
     fn deliver_gathered(&mut self) {
         let mut gathered = std::mem::take(&mut self.gathered);
         self.deliver(&mut gathered);
+        for mut block in gathered {
+            block.iter_mut().for_each(Vec::clear);
+            self.spare.push(block);
+        }
     }
 
     /// Hands blocks to the visitor.

@@ -22,11 +22,18 @@
 //! ([`Survey`]); the second takes the samples of one window at a time ([`Located`]). [`reduce`] is both, for a record in
 //! memory.
 
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
+)]
+
 mod alignment;
 mod block;
+mod block_fit;
 mod blocks;
 mod cells;
 mod clock;
+mod elementary;
 mod error;
 mod evidence;
 mod lanes;
@@ -36,12 +43,13 @@ mod path;
 mod plateau_fit;
 mod record;
 mod regression;
-mod revolution;
 mod rotation;
 mod rounding;
+mod samples;
 mod saturation;
 mod settling;
 mod shape;
+mod strips;
 mod stuck;
 mod survey;
 mod triangle;

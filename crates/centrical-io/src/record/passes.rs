@@ -1,4 +1,5 @@
-//! The two passes of a reduction over the record in a file, in memory that does not grow with it.
+//! The two passes of a reduction over the record in a file, in memory that does not grow with it. A record that is not too
+//! long is read once.
 
 use std::path::Path;
 
@@ -9,6 +10,9 @@ use super::{Columns, Wanted, stretch};
 use crate::error::Error;
 use crate::table::{Block, Extent, Index};
 
+/// Samples that are kept at most: 128 MB.
+const MOST: usize = 4_000_000;
+
 /// The record in a file.
 pub(crate) struct RecordFile<'a> {
     file: &'a Path,
@@ -17,23 +21,61 @@ pub(crate) struct RecordFile<'a> {
     progress: &'a (dyn Fn(u64) + Sync),
 }
 
+/// A record that was read once, for the second pass: its samples, unless there are too many.
+pub(crate) struct Kept {
+    /// Samples that are kept at most.
+    most: usize,
+    samples: Record,
+    /// Where they stand, if they are not kept and the file can be read from anywhere.
+    index: Option<Index>,
+    is_whole: bool,
+}
+
+impl Default for Kept {
+    fn default() -> Self {
+        Self { most: MOST, samples: Record::default(), index: None, is_whole: false }
+    }
+}
+
+impl Kept {
+    /// Begins another record, in the room of the last one.
+    fn begin(&mut self) {
+        self.samples.clear();
+        (self.index, self.is_whole) = (None, true);
+    }
+
+    fn extend(&mut self, blocks: &[Block]) {
+        for block in blocks {
+            self.is_whole &= self.samples.t.len() + block[0].len() <= self.most;
+            if self.is_whole {
+                self.samples.extend(stretch(block));
+            } else {
+                self.samples = Record::default();
+            }
+        }
+    }
+}
+
 impl<'a> RecordFile<'a> {
     pub fn new(file: &'a Path, columns: &'a Columns, progress: &'a (dyn Fn(u64) + Sync)) -> Self {
         Self { file, wanted: columns.of_record(), progress }
     }
 
-    /// First pass: all of the record, its stretches condensed on all threads; and where its times stand, if the file
-    /// can be read from anywhere.
-    pub fn survey(&self) -> Result<(Survey, Option<Index>), Error> {
+    /// First pass: all of the record, its stretches condensed on all threads, and its samples kept if they are not too
+    /// many.
+    pub fn survey(&self, kept: &mut Kept) -> Result<Survey, Error> {
         let mut beginning = Record::default();
         let mut survey: Option<Survey> = None;
-        let index = self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks: &[Block]| {
+        kept.begin();
+        kept.index = self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks: &[Block]| {
             if let Some(survey) = &mut survey {
-                let condensed: Vec<_> = blocks.par_iter().map(|block| survey.condense(stretch(block))).collect();
+                let condense = || blocks.par_iter().map(|block| survey.condense(stretch(block))).collect();
+                let (condensed, ()): (Vec<_>, ()) = rayon::join(condense, || kept.extend(blocks));
                 for stretch in condensed {
                     survey.append(stretch);
                 }
             } else {
+                kept.extend(blocks);
                 for block in blocks {
                     beginning.extend(stretch(block));
                 }
@@ -44,23 +86,29 @@ impl<'a> RecordFile<'a> {
         })?;
         let mut survey = survey.unwrap_or_else(|| begin(&beginning));
         survey.finish();
-        Ok((survey, index))
+        Ok(survey)
     }
 
     /// Second pass: calls `average` with the number of each window, from and to [s], in ascending order, and its samples.
+    /// Of a record that is not kept, one window at a time is held.
     pub fn windows<T: Send>(
         &self,
-        index: Option<&Index>,
+        kept: &Kept,
         windows: &[[f64; 2]],
         average: &(dyn Fn(usize, RecordSlice) -> T + Sync),
     ) -> Result<Vec<T>, Error> {
-        match index {
+        if kept.is_whole {
+            let of = |(k, window): (usize, &[f64; 2])| average(k, kept.samples.as_slice().between(*window));
+            let averaged = windows.par_iter().enumerate().map(of).collect();
+            (self.progress)(std::fs::metadata(self.file).map_or(0, |file| file.len()));
+            return Ok(averaged);
+        }
+        match &kept.index {
             Some(index) => {
                 let one = |(k, window): (usize, &[f64; 2])| {
                     self.samples(index, *window).map(|samples| average(k, samples.as_slice()))
                 };
-                let averaged: Vec<Result<T, Error>> = windows.par_iter().enumerate().map(one).collect();
-                averaged.into_iter().collect()
+                windows.iter().enumerate().map(one).collect()
             }
             None => self.windows_in_order(windows, average),
         }
@@ -121,4 +169,46 @@ fn begin(beginning: &Record) -> Survey {
     let mut survey = Survey::new(&beginning.t);
     survey.append(survey.condense(beginning.as_slice()));
     survey
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::{self, File};
+    use std::io::Write;
+
+    use flate2::{Compression, write::GzEncoder};
+
+    use super::*;
+
+    /// The samples of windows, of records read once, again by its index, and again from start to end.
+    #[test]
+    fn a_window_is_the_same_kept_or_read_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let (plain, packed) = (folder.path().join("record.csv"), folder.path().join("record.csv.gz"));
+        let rows =
+            (0..40_000).map(|i| format!("{},{},-{}.5,{}e-3\n", f64::from(i) * 1e-3, i % 977, i % 11, i * i % 1009));
+        let text: String = std::iter::once("t,f1,f2,f3\n".to_owned()).chain(rows).collect();
+        fs::write(&plain, &text).unwrap();
+        let mut encoder = GzEncoder::new(File::create(&packed).unwrap(), Compression::fast());
+        encoder.write_all(text.as_bytes()).unwrap();
+        encoder.finish().unwrap();
+        let windows = [[0.0, 3.0], [3.5, 17.25], [17.3, 17.3], [20.0, 39.5]];
+        let samples = |file: &Path, most: usize| -> Vec<(usize, Record)> {
+            let (columns, mut kept) = (Columns::default(), Kept { most, ..Kept::default() });
+            let record = RecordFile::new(file, &columns, &|_| {});
+            record.survey(&mut kept).unwrap();
+            assert_eq!(kept.is_whole, most > 0);
+            let whole = |k: usize, samples: RecordSlice| {
+                let mut record = Record::default();
+                record.extend(samples);
+                (k, record)
+            };
+            record.windows(&kept, &windows, &whole).unwrap()
+        };
+        let expected = samples(&plain, MOST);
+        assert_eq!(expected.iter().map(|(_, record)| record.t.len()).collect::<Vec<_>>(), [3001, 13_751, 1, 19_501]);
+        assert!(
+            samples(&plain, 0) == expected && samples(&packed, 0) == expected && samples(&packed, MOST) == expected
+        );
+    }
 }

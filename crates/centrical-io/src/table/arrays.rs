@@ -160,11 +160,11 @@ pub(super) fn column<'a>(
 
 impl Bytes {
     /// The bytes of the array from `start` on.
-    pub fn open(&self, file: &Path, start: u64) -> io::Result<Box<dyn Read>> {
+    pub fn open(&self, file: &Path, start: u64) -> io::Result<Box<dyn Read + Send>> {
         let mut input = File::open(file)?;
         input.seek(SeekFrom::Start(self.offset))?;
         let input = io::BufReader::with_capacity(1 << 16, input.take(self.length));
-        let mut unpacked: Box<dyn Read> = match self.packing {
+        let mut unpacked: Box<dyn Read + Send> = match self.packing {
             Packing::Plain => Box::new(input),
             Packing::Deflate => Box::new(DeflateDecoder::new(input)),
             Packing::Zlib => Box::new(ZlibDecoder::new(input)),

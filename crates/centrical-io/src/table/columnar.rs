@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use super::{ASCENDING, LARGEST, Rows, Rule};
 use crate::error::{Error, Place};
 
 /// Appends the next values of a column, [`super::BLOCK`] at most, and none at its end.
-pub(super) type Column<'a> = Box<dyn FnMut(&mut Vec<f64>) -> Result<(), Error> + 'a>;
+pub(super) type Column<'a> = Box<dyn FnMut(&mut Vec<f64>) -> Result<(), Error> + Send + 'a>;
 
 /// What stands for a missing value while a block is read: a NaN unlike the usual one, for the message alone.
 pub(super) const MISSING: f64 = f64::from_bits(0x7ff8_0000_0000_0eaf);
@@ -14,9 +16,9 @@ pub(super) const MISSING: f64 = f64::from_bits(0x7ff8_0000_0000_0eaf);
 /// Reads columns, in the order of the fields, to their common end; `first_row` counts the rows.
 pub(super) fn read(file: &Path, columns: &mut [Column], first_row: &mut u64, rows: &mut Rows) -> Result<(), Error> {
     while !rows.is_too_long() {
-        for (column, values) in columns.iter_mut().zip(&mut rows.block) {
-            column(values)?;
-        }
+        let read = columns.par_iter_mut().zip(&mut rows.block).map(|(column, values)| column(values));
+        // Gathered before the first error is taken: which one it is does not depend on the threads.
+        read.collect::<Vec<_>>().into_iter().collect::<Result<(), Error>>()?;
         let length = rows.block[0].len();
         if let Some(k) = rows.block.iter().position(|values| values.len() != length) {
             let found = format!("{} rows where {} has {length}", rows.block[k].len(), rows.fields[0].name);
@@ -40,6 +42,10 @@ fn check(file: &Path, first_row: u64, rows: &mut Rows) -> Result<(), Error> {
             let place = Place::Row { row: first_row + i as u64 + 1, column: field.name.to_string() };
             Err(Error::content(file, place, found, expected))
         };
+        if is_plain(&rows.block[k], rows.last[k], field.rule) {
+            rows.last[k] = rows.block[k].last().copied().unwrap_or(rows.last[k]);
+            continue;
+        }
         let missing_is_fine = field.rule == Rule::OrMissing;
         for (i, value) in rows.block[k].iter().enumerate() {
             if value.is_nan() && !missing_is_fine || value.abs() > LARGEST {
@@ -54,4 +60,12 @@ fn check(file: &Path, first_row: u64, rows: &mut Rows) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// Whether there is nothing to say of any of the values, the last one before them being that.
+fn is_plain(values: &[f64], last: f64, rule: Rule) -> bool {
+    let wrong = values.iter().map(|value| usize::from(value.is_nan() || value.abs() > LARGEST)).sum::<usize>();
+    let backwards = || values.windows(2).map(|pair| usize::from(pair[1] < pair[0])).sum::<usize>();
+    let ascends = || values.first().is_none_or(|first| *first >= last) && backwards() == 0;
+    wrong == 0 && (!rule.ascends() || ascends())
 }

@@ -19,16 +19,19 @@ use super::{BLOCK, ColumnName, Field, Rows, Rule, caught};
 use crate::error::{Error, Place, quoted};
 
 /// Reads the table of `file`.
-pub(super) fn read(file: &Path, input: File, rows: &mut Rows) -> Result<(), Error> {
-    let metadata = caught(|| ParquetMetaDataReader::new().parse_and_finish(&input));
+pub(super) fn read(file: &Path, input: &File, rows: &mut Rows) -> Result<(), Error> {
+    let metadata = caught(|| ParquetMetaDataReader::new().parse_and_finish(input));
     let metadata = metadata.map_err(|e| damaged(file, e.as_ref()))?;
     let columns: Vec<usize> =
         rows.fields.iter().map(|field| find(file, &metadata, field)).collect::<Result<_, Error>>()?;
-    let source = Arc::new(Source(input));
+    // Columns are read at the same time, and a file has one place that is read next: each column opens it for itself.
+    let open = |_: &usize| File::open(file).map(|input| Arc::new(Source(input)));
+    let sources: Vec<Arc<Source>> =
+        columns.iter().map(open).collect::<std::io::Result<_>>().map_err(|e| Error::reading(file, e, "Parquet"))?;
     let mut first_row = 0;
     for group in 0..metadata.num_row_groups() {
-        let open = |c: &usize| column(file, &source, &metadata, group, *c);
-        let columns = columns.iter().map(open).collect::<ParquetResult<Vec<_>>>();
+        let open = |(c, source): (&usize, &Arc<Source>)| column(file, source, &metadata, group, *c);
+        let columns = columns.iter().zip(&sources).map(open).collect::<ParquetResult<Vec<_>>>();
         let mut columns = columns.map_err(|e| damaged(file, Some(&e)))?;
         columnar::read(file, &mut columns, &mut first_row, rows)?;
     }
@@ -98,9 +101,14 @@ fn column<'a>(
     let pages = Checked::new(source, metadata.row_group(group), column)?;
     let description = metadata.file_metadata().schema_descr().column(column);
     let unit = stamp_unit(&description);
+    let whole = description.max_def_level();
     let mut reader = get_column_reader(description, Box::new(pages));
     Ok(Box::new(move |values| {
         let read = caught(|| match &mut reader {
+            // As they are, if there is one in every row.
+            ColumnReader::DoubleColumnReader(reader) if whole == 0 => {
+                reader.read_records(BLOCK, None, None, values).map(|_| ())
+            }
             ColumnReader::DoubleColumnReader(reader) => numbers(reader, values, |v| v),
             ColumnReader::FloatColumnReader(reader) => numbers(reader, values, f64::from),
             ColumnReader::Int32ColumnReader(reader) => numbers(reader, values, f64::from),

@@ -6,6 +6,7 @@
 //!
 //! A text is read in pieces of whole lines, several at a time on all threads.
 
+mod batch;
 mod layout;
 mod number;
 mod piece;
@@ -15,6 +16,7 @@ use std::path::Path;
 use memchr::{memchr, memchr_iter};
 use rayon::prelude::*;
 
+use self::batch::ROWS;
 use self::layout::{Fault, Layout, Prologue};
 pub(super) use self::piece::{Lines, Packed, Plain};
 use super::{ASCENDING, Block, Field, Rows};
@@ -50,8 +52,8 @@ pub(super) struct Piece {
     first_row: u64,
     /// What stands wrong, and in which line of the piece.
     fault: Option<(u64, Fault)>,
-    /// Lines of the text's second half whose rows are read before their time, and these rows.
-    later: (u64, Block),
+    /// Room for the places of its separators.
+    separators: Vec<u32>,
 }
 
 /// Reads the table of `file` from its `lines`.
@@ -173,46 +175,45 @@ impl Piece {
             self.fault = Some((skipped + at, Fault::no_table(found)));
             text = &text[..piece::before_line(text, at)];
         }
-        let rest = self.read_side_by_side(text, layout, block);
-        for text in rest {
-            if let Err(fault) = self.read_rows(text, layout, fields, block) {
-                self.fault = Some(fault);
-                break;
-            }
-            // The second half begins where the first one ends.
-            self.lines += self.later.0;
-            block.iter_mut().zip(&mut self.later.1).for_each(|(column, later)| column.append(later));
-            self.later.0 = 0;
-        }
+        self.fault = self.read_batches(text, layout, fields, block).err().or(self.fault.take());
         self.text = whole;
         self.check_times(skipped, fields, block);
     }
 
-    /// Reads bare numbers from both halves of a text at once, as far as there are no other lines: a row is a chain of
-    /// steps each of which waits for the one before, and a processor has room for two chains. What is left of the halves is
-    /// returned; the rows of the second wait in `later`.
-    fn read_side_by_side<'t>(&mut self, text: &'t [u8], layout: &Layout, block: &mut Block) -> [&'t [u8]; 2] {
-        let half = text.len() / 2;
-        let middle = memchr(b'\n', &text[half..]).map_or(text.len(), |end| half + end + 1);
-        let (mut first, mut second) = text.split_at(middle);
-        let mut rows = [vec![0.0; block.len()], vec![0.0; block.len()]];
-        let (_, later) = &mut self.later;
-        later.resize(block.len(), Vec::new());
-        later.iter_mut().for_each(Vec::clear);
-        let mut count = 0;
-        while !second.is_empty()
-            && let Some(of_first) = layout.plain_row(first, &mut rows[0])
-            && let Some(of_second) = layout.plain_row(second, &mut rows[1])
-        {
-            first = &first[of_first..];
-            second = &second[of_second..];
-            block.iter_mut().zip(&rows[0]).for_each(|(column, value)| column.push(*value));
-            later.iter_mut().zip(&rows[1]).for_each(|(column, value)| column.push(*value));
-            count += 1;
-        }
-        self.lines += count;
-        self.later.0 = count;
-        [first, second]
+    /// Reads rows of bare numbers, many at a time, and others one by one, up to the first fault.
+    fn read_batches(
+        &mut self,
+        text: &[u8],
+        layout: &Layout,
+        fields: &[Field],
+        block: &mut Block,
+    ) -> Result<(), (u64, Fault)> {
+        let Some(delimiter) = layout.delimiter() else { return self.read_rows(text, layout, fields, block) };
+        let mut places = std::mem::take(&mut self.separators);
+        batch::separators(text, delimiter, &mut places);
+        let mut separators = places.as_slice();
+        let mut from = 0;
+        let read = loop {
+            let Some(of_batch) = separators.get(..ROWS * layout.fields()) else {
+                break self.read_rows(&text[from..], layout, fields, block);
+            };
+            let rest = if layout.batch(text, from, of_batch, block).is_some() {
+                self.lines += ROWS as u64;
+                of_batch[of_batch.len() - 1] as usize + 1
+            } else {
+                // As many lines, or what there is: a line may have more separators than it should.
+                let lines = piece::before_line(&text[from..], ROWS as u64);
+                let rest = if lines == 0 { text.len() } else { from + lines };
+                if let Err(fault) = self.read_rows(&text[from..rest], layout, fields, block) {
+                    break Err(fault);
+                }
+                rest
+            };
+            separators = &separators[separators.partition_point(|place| (*place as usize) < rest)..];
+            from = rest;
+        };
+        self.separators = places;
+        read
     }
 
     /// Reads the rows of a text one by one, up to the first fault.

@@ -79,3 +79,34 @@ fn a_fault_is_on_its_line() {
         }
     }
 }
+
+#[test]
+fn a_comment_with_as_many_delimiters_is_no_row() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.csv");
+    let mut text = "note,t,f1,f2,f3\n".to_owned();
+    for k in 0..1000 {
+        if k % 100 == 50 {
+            text.push_str("# noon,0.5,1.5,2.5,3.5\n");
+        }
+        writeln!(text, "\"a, b\",{},1.5,2.5,{}", k as f64 / 8.0, k % 7).unwrap();
+        writeln!(text, "c,{},1.5,2.5,{}", k as f64 / 8.0 + 0.0625, k % 5).unwrap();
+    }
+    fs::write(&file, text).unwrap();
+    let record = read_record(&file, &Columns::default()).unwrap();
+    let times: Vec<f64> = (0..2000).map(|k| f64::from(k) / 16.0).collect();
+    assert_eq!(record.t, times);
+}
+
+#[test]
+fn a_line_of_too_many_fields_is_refused_where_it_is() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.csv");
+    let long = format!("1,2,3,4{}", ",5".repeat(1000));
+    fs::write(&file, format!("t,f1,f2,f3\n0,1,2,3\n{long}\n2,1,2,3\n")).unwrap();
+    let error = read_record(&file, &Columns::default()).unwrap_err().to_string();
+    assert!(
+        error.contains("line 3: found 1004 fields") && error.ends_with("expected 4 as in the first line"),
+        "{error}"
+    );
+}

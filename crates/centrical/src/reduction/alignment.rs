@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 use super::blocks::{Blocks, median};
 use super::evidence::{Candidate, Evidence};
@@ -37,9 +38,9 @@ pub(super) fn level(blocks: &Blocks, range: &Range<usize>) -> Vector3<f64> {
 /// The core of each scheduled plateau, in blocks.
 fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
     let evidence = Evidence::new(blocks);
-    let candidates: Vec<Candidate> = schedule.iter().map(|plateau| evidence.of(plateau)).collect();
+    let candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
     let between = evidence.in_transition();
-    let on: Vec<Vec<f64>> = candidates.iter().map(|candidate| candidate.density(evidence.noise())).collect();
+    let on: Vec<Vec<f64>> = candidates.par_iter().map(|candidate| candidate.density(evidence.noise())).collect();
     let mut cores = best_path(&on, &between);
     if let Some(index) = missing(&cores) {
         let ScheduledPlateau { omega, nominal_z } = schedule[index];
@@ -50,7 +51,7 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
     // Now that it is known where the plateaus are, the changes on each tell their own noise, far below that of a
     // sample; and so again, until nothing of the ramps is left in it.
     for _ in 0..ROUNDS {
-        let own = candidates.iter().zip(&cores);
+        let own = candidates.par_iter().zip(&cores);
         let on: Vec<Vec<f64>> =
             own.map(|(candidate, core)| candidate.density(&candidate.noise_of_change(core))).collect();
         let next = best_path(&on, &between);

@@ -1,9 +1,10 @@
 //! One block of a record, condensed: its level without spikes, and what its samples tell of their digits and noise.
 
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
 
 use super::blocks::{MAD, SAMPLES, cut, median};
-use super::lanes::{fold, sum};
+use super::lanes::{fold, sum, widest};
 use super::record::RecordSlice;
 
 /// What is kept of the samples of one block of time.
@@ -28,6 +29,8 @@ pub(super) struct Block {
 
 /// What is kept of the samples of one axis.
 struct Axis {
+    /// Whether every reading is a number.
+    is_whole: bool,
     range: [f64; 2],
     step: f64,
     fresh: u64,
@@ -38,9 +41,9 @@ struct Axis {
 impl Block {
     /// Condenses the samples of a block; `differences` is room to work in.
     pub fn of(number: usize, samples: RecordSlice, differences: &mut Vec<f64>) -> Self {
-        let axes = samples.f_z.map(|f| Axis::of(f, differences));
+        let axes = samples.f_z.map(|f| widest(OneAxis { f, differences }));
         let finite = |i: &usize| samples.f_z.iter().all(|f| f[*i].is_finite());
-        let whole = samples.f_z.iter().all(|f| sum(f, |value| value).is_finite());
+        let whole = axes.iter().all(|axis| axis.is_whole);
         let readable = if whole { samples.t.len() } else { (0..samples.t.len()).filter(finite).count() };
         let vector = |of: fn(&Axis) -> f64| Vector3::from_fn(|k, _| of(&axes[k]));
         let [a, b, c] = axes.each_ref().map(|axis| axis.level);
@@ -58,8 +61,18 @@ impl Block {
     }
 }
 
-impl Axis {
-    fn of(f: &[f64], differences: &mut Vec<f64>) -> Self {
+/// The samples of one axis, with room to work in.
+struct OneAxis<'a> {
+    f: &'a [f64],
+    differences: &'a mut Vec<f64>,
+}
+
+impl WithSimd for OneAxis<'_> {
+    type Output = Axis;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Axis {
+        let Self { f, differences } = self;
         let [low, high] = range(f);
         differences.clear();
         differences.extend(f.windows(2).map(|pair| pair[1] - pair[0]));
@@ -69,11 +82,13 @@ impl Axis {
         // Half-filled blocks stand beside a gap: too few samples for a median that a spike cannot move.
         let level = if f.len() > SAMPLES / 2 { level(f, [low, high]) } else { None };
         let level = level.map(|level| (level, noise(differences)));
-        Self { range: [low, high], step: smallest_above(differences, rounding), fresh, repeated, level }
+        let is_whole = sum(f, |value| value).is_finite();
+        Axis { is_whole, range: [low, high], step: smallest_above(differences, rounding), fresh, repeated, level }
     }
 }
 
 /// Lowest and highest of the values that are numbers.
+#[inline(always)]
 fn range(f: &[f64]) -> [f64; 2] {
     let low = fold(f, f64::INFINITY, |low, value| if value < low { value } else { low }, f64::min);
     let high = fold(f, f64::NEG_INFINITY, |high, value| if value > high { value } else { high }, f64::max);
@@ -81,12 +96,14 @@ fn range(f: &[f64]) -> [f64; 2] {
 }
 
 /// The smallest size above a limit; infinite if there is none.
+#[inline(always)]
 fn smallest_above(differences: &[f64], limit: f64) -> f64 {
     let smaller = |smallest: f64, d: f64| if d.abs() > limit && d.abs() < smallest { d.abs() } else { smallest };
     fold(differences, f64::INFINITY, smaller, f64::min)
 }
 
 /// Readings different from the one before, and of these the ones that the next repeats: a long run counts once.
+#[inline(always)]
 fn repeats(differences: &[f64]) -> (u64, u64) {
     let pairs = differences.iter().zip(differences.get(1..).unwrap_or_default());
     pairs.fold((0, 0), |(fresh, repeated), (before, after)| {
@@ -96,6 +113,7 @@ fn repeats(differences: &[f64]) -> (u64, u64) {
 }
 
 /// Standard deviation of white noise by its second differences, whose variance is six-fold.
+#[inline(always)]
 fn noise(differences: &[f64]) -> f64 {
     let (before, after) = (&differences[..differences.len() - 1], &differences[1..]);
     let mut lanes = [0.0; 8];
@@ -109,6 +127,7 @@ fn noise(differences: &[f64]) -> f64 {
 
 /// Mean of the values that are no spikes. A mean, since the median of part of a revolution is no linear function of
 /// its phase. `None` of too few values.
+#[inline(always)]
 fn level(f: &[f64], [low, high]: [f64; 2]) -> Option<f64> {
     let count = f.len() as f64;
     let mean = low + sum(f, |value| value - low) / count;

@@ -8,9 +8,12 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
 
 use super::ScheduledPlateau;
 use super::blocks::{Blocks, MAD, median, whole};
+use super::elementary::{exp, ln};
+use super::lanes::widest;
 
 /// Share of blocks on a plateau that show something else: a knock, a burst of spikes.
 const DISTURBED: f64 = 0.01;
@@ -29,8 +32,9 @@ pub(super) struct Evidence<'a> {
     span: f64,
     /// Noise of one sample; of a dead channel a billionth of the span [m/s^2].
     noise: Vector3<f64>,
-    /// Sums of the block levels before each block.
-    sums: Vec<Vector3<f64>>,
+    /// Levels per axis, and their sums before each block.
+    levels: [Vec<f64>; 3],
+    sums: [Vec<f64>; 3],
 }
 
 /// The evidence for one scheduled plateau.
@@ -38,8 +42,8 @@ pub(super) struct Candidate {
     span: f64,
     /// Noise of a block's level if it were white [m/s^2].
     white: Vector3<f64>,
-    /// Change of level about each block [m/s^2].
-    changes: Vec<Vector3<f64>>,
+    /// Change of level about each block, per axis [m/s^2].
+    changes: [Vec<f64>; 3],
     /// Logarithm of the density of each block's level.
     levels: Vec<f64>,
 }
@@ -47,36 +51,34 @@ pub(super) struct Candidate {
 impl<'a> Evidence<'a> {
     /// Evidence of a record.
     pub fn new(blocks: &'a Blocks) -> Self {
-        let mut sums = vec![Vector3::zeros()];
+        let levels = [0, 1, 2].map(|axis| -> Vec<f64> { blocks.f_z.iter().map(|f| f[axis]).collect() });
+        let sums = levels.each_ref().map(|levels| -> Vec<f64> {
+            let sums = levels.iter().scan(0.0, |sum, level| Some(std::mem::replace(sum, *sum + level)));
+            sums.collect()
+        });
         let (mut low, mut high) = (blocks.f_z[0], blocks.f_z[0]);
         for f in &blocks.f_z {
-            sums.push(sums[sums.len() - 1] + f);
             (low, high) = (low.inf(f), high.sup(f));
         }
         let span = (high - low).max().max(blocks.sample_noise.max());
         let noise = blocks.sample_noise.map(|noise| noise.max(1e-9 * span));
-        Self { blocks, span, noise, sums }
+        Self { blocks, span, noise, levels, sums }
     }
 
     /// Evidence for a scheduled plateau.
     pub fn of(&self, plateau: &ScheduledPlateau) -> Candidate {
         let width = LEVEL.0 * plateau.nominal_z.norm() + LEVEL.1;
-        let level = |f: &Vector3<f64>| {
-            let distance = (f - plateau.nominal_z).norm() / width;
-            3.0 * (self.span / width).ln() - 2.0 * (PI * (1.0 + distance * distance)).ln()
-        };
         Candidate {
             span: self.span,
             white: self.noise * (self.blocks.interval / self.blocks.width).sqrt(),
             changes: self.changes(plateau.omega),
-            levels: self.blocks.f_z.iter().map(level).collect(),
+            levels: widest(LevelDensity { levels: &self.levels, nominal_z: plateau.nominal_z, width, span: self.span }),
         }
     }
 
     /// In a transition: moving or, as likely, steady at a level of no scheduled plateau.
     pub fn in_transition(&self) -> Vec<f64> {
-        let steadiness = self.steadiness();
-        steadiness.iter().map(|steady| mixture(0.5, *steady)).collect()
+        widest(Mixture { share: 0.5, x: self.steadiness() })
     }
 
     /// The noise to begin with: that of one sample. White noise makes the change of block levels far smaller,
@@ -97,17 +99,31 @@ impl<'a> Evidence<'a> {
     }
 
     fn steadiness(&self) -> Vec<f64> {
-        self.changes(0.0).iter().map(|change| noise_like(change, &self.noise, self.span)).collect()
+        let changes = self.changes(0.0);
+        widest(ChangeDensity { changes: &changes, noise: &self.noise, span: self.span })
     }
 
     /// Change of level about each block: the mean of whole revolutions from it on, less that of as many up to it.
-    fn changes(&self, omega: f64) -> Vec<Vector3<f64>> {
+    fn changes(&self, omega: f64) -> [Vec<f64>; 3] {
         let reach = self.reach(omega);
-        let change = |i: usize| {
+        let (n, axes) = (self.blocks.len(), [0, 1, 2]);
+        let at = |axis: usize, i: usize| {
             let here = i as f64;
-            self.mean_level(here, here + reach) - self.mean_level(here + 1.0 - reach, here + 1.0)
+            self.mean_level(axis, here, here + reach) - self.mean_level(axis, here + 1.0 - reach, here + 1.0)
         };
-        (0..self.blocks.len()).map(change).collect()
+        // Away from the ends of the record every block has its neighbours at the same distance.
+        let whole_reach = whole(reach.ceil());
+        let inside = whole_reach..n.saturating_sub(whole_reach + 1).max(whole_reach);
+        if inside.is_empty() {
+            return axes.map(|axis| (0..n).map(|i| at(axis, i)).collect());
+        }
+        axes.map(|axis| {
+            let of = InnerChanges { levels: &self.levels[axis], sums: &self.sums[axis], reach, inside: inside.clone() };
+            let mut changes: Vec<f64> = (0..inside.start).map(|i| at(axis, i)).collect();
+            changes.extend(widest(of));
+            changes.extend((inside.end..n).map(|i| at(axis, i)));
+            changes
+        })
     }
 
     fn reach(&self, omega: f64) -> f64 {
@@ -115,22 +131,126 @@ impl<'a> Evidence<'a> {
         (revolution * (REACH / revolution).ceil()).min(self.blocks.len() as f64)
     }
 
-    /// Mean level from block `from` to block `to`, in parts of blocks.
-    fn mean_level(&self, from: f64, to: f64) -> Vector3<f64> {
+    /// Mean level on an axis from block `from` to block `to`, in parts of blocks.
+    fn mean_level(&self, axis: usize, from: f64, to: f64) -> f64 {
         let (from, to) = (from.max(0.0), to.min(self.blocks.len() as f64));
         let integral = |x: f64| {
             let i = whole(x).min(self.blocks.len() - 1);
-            self.sums[i] + self.blocks.f_z[i] * (x - i as f64)
+            self.sums[axis][i] + self.levels[axis][i] * (x - i as f64)
         };
         (integral(to) - integral(from)) / (to - from)
+    }
+}
+
+/// Changes of level about blocks that have all of the reach to both sides.
+struct InnerChanges<'a> {
+    levels: &'a [f64],
+    sums: &'a [f64],
+    reach: f64,
+    inside: Range<usize>,
+}
+
+impl WithSimd for InnerChanges<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
+        let Self { levels, sums, reach, inside } = self;
+        let n = inside.len();
+        // Where the mean ahead ends, `reach` on, and the mean behind begins, `reach - 1` back: whole blocks and parts.
+        let (ahead, behind) = (whole(reach), whole((reach - 1.0).ceil()));
+        let (part_ahead, part_behind) = (reach - ahead as f64, behind as f64 - (reach - 1.0));
+        let from = |start: usize| start..start + n;
+        let (ends, ends_sums) = (&levels[from(inside.start + ahead)], &sums[from(inside.start + ahead)]);
+        let (begins, begins_sums) = (&levels[from(inside.start - behind)], &sums[from(inside.start - behind)]);
+        let (here_sums, next_sums) = (&sums[from(inside.start)], &sums[from(inside.start + 1)]);
+        let mut changes = vec![0.0; n];
+        for (i, change) in changes.iter_mut().enumerate() {
+            let after = ends_sums[i] + ends[i] * part_ahead - here_sums[i];
+            let before = next_sums[i] - (begins_sums[i] + begins[i] * part_behind);
+            *change = (after - before) / reach;
+        }
+        changes
+    }
+}
+
+/// Density of levels near a nominal one, over that of any level; logarithm.
+struct LevelDensity<'a> {
+    levels: &'a [Vec<f64>; 3],
+    nominal_z: Vector3<f64>,
+    width: f64,
+    span: f64,
+}
+
+impl WithSimd for LevelDensity<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
+        let [f1, f2, f3] = self.levels.each_ref().map(Vec::as_slice);
+        let nominal = self.nominal_z;
+        let (scale, any) = (1.0 / (self.width * self.width), 3.0 * (self.span / self.width).ln());
+        let mut density = vec![0.0; f1.len()];
+        for (((density, f1), f2), f3) in density.iter_mut().zip(f1).zip(f2).zip(f3) {
+            let (d1, d2, d3) = (f1 - nominal[0], f2 - nominal[1], f3 - nominal[2]);
+            *density = any - 2.0 * ln(PI * (1.0 + (d1 * d1 + d2 * d2 + d3 * d3) * scale));
+        }
+        density
+    }
+}
+
+/// Density of changes if they are noise, over that of any change; logarithm.
+struct ChangeDensity<'a> {
+    changes: &'a [Vec<f64>; 3],
+    noise: &'a Vector3<f64>,
+    span: f64,
+}
+
+impl WithSimd for ChangeDensity<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
+        let [c1, c2, c3] = self.changes.each_ref().map(Vec::as_slice);
+        let any = 3.0 * (self.span / (self.noise.product().cbrt() * TAU.sqrt())).ln();
+        let noise = self.noise.map(|noise| 1.0 / noise);
+        let mut density = vec![0.0; c1.len()];
+        for (((density, c1), c2), c3) in density.iter_mut().zip(c1).zip(c2).zip(c3) {
+            let (x1, x2, x3) = (c1 * noise[0], c2 * noise[1], c3 * noise[2]);
+            *density = any - 0.5 * (x1 * x1 + x2 * x2 + x3 * x3);
+        }
+        density
+    }
+}
+
+/// `ln(share e^x + 1 - share)` of many `x`.
+struct Mixture {
+    share: f64,
+    x: Vec<f64>,
+}
+
+impl WithSimd for Mixture {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, _: S) -> Vec<f64> {
+        // Beyond this one of the two is less than the rounding of the other.
+        const ONE_ONLY: f64 = 45.0;
+        let (share, of_share) = (self.share, self.share.ln());
+        for x in &mut self.x {
+            let both = ln(share * exp(x.min(ONE_ONLY)) + 1.0 - share);
+            *x = if *x > ONE_ONLY { of_share + *x } else { both };
+        }
+        self.x
     }
 }
 
 impl Candidate {
     /// On the plateau: a change as noise and the level near the nominal, or a disturbance that shows anything.
     pub fn density(&self, noise: &Vector3<f64>) -> Vec<f64> {
-        let blocks = self.changes.iter().zip(&self.levels);
-        blocks.map(|(change, level)| mixture(1.0 - DISTURBED, noise_like(change, noise, self.span) + level)).collect()
+        let mut x = widest(ChangeDensity { changes: &self.changes, noise, span: self.span });
+        x.iter_mut().zip(&self.levels).for_each(|(x, level)| *x += level);
+        widest(Mixture { share: 1.0 - DISTURBED, x })
     }
 
     /// Whether the level of a block is rather the plateau's than any.
@@ -140,27 +260,8 @@ impl Candidate {
 
     /// Robust standard deviation of the change over some blocks, not below what white noise makes.
     pub fn noise_of_change(&self, range: &Range<usize>) -> Vector3<f64> {
-        let changes = &self.changes[range.clone()];
-        let size = |axis: usize| changes.iter().map(|change| change[axis].abs()).collect::<Vec<f64>>();
+        let size =
+            |axis: usize| self.changes[axis][range.clone()].iter().map(|change| change.abs()).collect::<Vec<f64>>();
         Vector3::from_fn(|axis, _| (MAD * median(&mut size(axis))).max(self.white[axis]))
-    }
-}
-
-/// Density of a change if it is noise, over that of any change; logarithm.
-fn noise_like(change: &Vector3<f64>, noise: &Vector3<f64>, span: f64) -> f64 {
-    let scale = span / (noise.product().cbrt() * TAU.sqrt());
-    3.0 * scale.ln() - 0.5 * change.component_div(noise).norm_squared()
-}
-
-/// `ln(share e^x + 1 - share)`.
-fn mixture(share: f64, x: f64) -> f64 {
-    // Beyond this one of the two is less than the rounding of the other.
-    const ONE_ONLY: f64 = 45.0;
-    if x > ONE_ONLY {
-        share.ln() + x
-    } else if x < -ONE_ONLY {
-        (1.0 - share).ln()
-    } else {
-        (share * x.exp() + 1.0 - share).ln()
     }
 }

@@ -1,9 +1,18 @@
 //! Sums over many numbers in lanes that do not wait for each other, in an order that is always the same.
+//!
+//! What a [`widest`] work calls is compiled for the processor's vectors only where it is inlined: hence the attributes.
 
 /// Lanes: as many as the widest processor has for two instructions.
 const LANES: usize = 8;
 
+/// Does a work with the widest vectors of the machine. They add and multiply as single numbers do, and nothing is fused:
+/// the outcome is the same on any.
+pub(super) fn widest<W: pulp::WithSimd>(work: W) -> W::Output {
+    pulp::Arch::new().dispatch(work)
+}
+
 /// Folds values into lanes, and the lanes into one.
+#[inline(always)]
 pub(super) fn fold<T: Copy>(values: &[f64], start: T, step: impl Fn(T, f64) -> T, join: impl Fn(T, T) -> T) -> T {
     let mut lanes = [start; LANES];
     let whole = values.chunks_exact(LANES);
@@ -20,11 +29,13 @@ pub(super) fn fold<T: Copy>(values: &[f64], start: T, step: impl Fn(T, f64) -> T
 }
 
 /// Sum of a function of values.
+#[inline(always)]
 pub(super) fn sum(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     fold(values, 0.0, |sum, value| sum + of(value), |a, b| a + b)
 }
 
 /// Scalar product.
+#[inline(always)]
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
     let (whole_a, whole_b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
@@ -39,6 +50,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// `y - factor x`.
+#[inline(always)]
 pub(super) fn subtract(y: &mut [f64], factor: f64, x: &[f64]) {
     y.iter_mut().zip(x).for_each(|(y, x)| *y -= factor * x);
 }

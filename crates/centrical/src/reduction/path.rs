@@ -19,23 +19,22 @@ pub(super) fn best_path(on: &[Vec<f64>], between: &[f64]) -> Vec<Range<usize>> {
     // State 2k is the transition before plateau k, state 2k + 1 the plateau k.
     let states = 2 * plateaus + 1;
     let mut score: Vec<f64> = (0..states).map(|state| (state / 2) as f64 * odds).collect();
-    let mut came_from: Vec<Vec<u32>> = Vec::with_capacity(between.len());
-    for i in 0..between.len() {
-        let mut from: Vec<u32> = (0..).take(states).collect();
+    let itself: Vec<u32> = (0..).take(states).collect();
+    let mut came_from: Vec<u32> = itself.repeat(between.len());
+    for (i, from) in came_from.chunks_exact_mut(states).enumerate() {
         if i > 0 {
-            advance(&mut score, &mut from, odds);
+            advance(&mut score, from, odds);
         }
         for (k, on) in on.iter().enumerate() {
             score[2 * k] += between[i];
             score[2 * k + 1] += on[i];
         }
         score[states - 1] += between[i];
-        came_from.push(from);
     }
     // The record may end anywhere: plateaus still to come are passed over.
     let total = |state: &usize| score[*state] + ((states - 1 - state) / 2) as f64 * odds;
     let last = (0..states).max_by(|a, b| total(a).total_cmp(&total(b))).unwrap_or(0);
-    trace(&came_from, last, plateaus)
+    trace(came_from.chunks_exact(states), last, plateaus)
 }
 
 /// One block on: the best predecessor of every state.
@@ -64,10 +63,14 @@ fn advance(score: &mut [f64], from: &mut [u32], odds: f64) {
     }
 }
 
-fn trace(came_from: &[Vec<u32>], last: usize, plateaus: usize) -> Vec<Range<usize>> {
+fn trace<'a>(
+    came_from: impl DoubleEndedIterator<Item = &'a [u32]> + ExactSizeIterator,
+    last: usize,
+    plateaus: usize,
+) -> Vec<Range<usize>> {
     let mut found = vec![0..0; plateaus];
     let mut state = last;
-    for (i, from) in came_from.iter().enumerate().rev() {
+    for (i, from) in came_from.enumerate().rev() {
         if state % 2 == 1 {
             let range = &mut found[state / 2];
             range.start = i;

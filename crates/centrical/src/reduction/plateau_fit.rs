@@ -1,21 +1,18 @@
 //! Second pass: the mean of one plateau from its samples.
 
-use std::borrow::Cow;
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::blocks::{Blocks, MAD, cut, median, whole};
+use super::blocks::Blocks;
 use super::cells::{CELLS, Cells};
-use super::lanes::{dot, subtract, sum};
 use super::noise::NoiseModel;
-use super::regression::Regression;
 use super::rounding::bias_variance;
-use super::saturation::{piled_up, standing};
+use super::samples::Samples;
+use super::saturation::{may_be_piled_up, piled_up};
 use super::settling::TimeStep;
 use super::shape::Shape;
-use super::stuck::stuck_on_any_axis;
+use super::strips::Strips;
 use super::triangle::{TERMS, Triangle};
 use super::window::Window;
 use super::{LeftOut, PlateauMean, RecordSlice, ReductionError};
@@ -49,56 +46,44 @@ impl PlateauFit {
         blocks: &Blocks,
     ) -> Result<Self, ReductionError> {
         let samples = Samples::cut_out(record, window, blocks);
-        let mut good = samples.without_outliers(&samples.fit_of_medians());
-        let mut strips = Strips::new(&samples, &good);
-        let mut first = true;
+        let mut strips = Strips::of(&samples);
+        strips.judge(&samples.fit_of_medians(), false);
+        let mut once_out = false;
         loop {
-            let (all, left) = (good.len(), good.iter().filter(|good| **good).count());
-            if 2 * left <= all {
-                return Err(samples.unsteady(index, left));
+            let good = strips.good();
+            if 2 * good <= samples.len() {
+                return Err(samples.unsteady(index, good));
             }
             let (omega, interval) = (window.shape.omega, blocks.interval);
             let aliased = ReductionError::RevolutionAliased { index, omega, interval };
             let (triangle, coefficients) = strips.solve().ok_or(aliased)?;
-            let mut still_good = samples.without_outliers(&coefficients);
-            if !first {
-                // From the second fit on, once out is out: the set shrinks, and the loop ends.
-                still_good.iter_mut().zip(&good).for_each(|(still, before)| *still &= *before);
+            if !strips.judge(&coefficients, once_out) {
+                check_range(&samples, &strips, index)?;
+                return Ok(Self::from_fit(&samples, &strips, &coefficients, &triangle));
             }
-            if still_good == good {
-                samples.check_range(index, &good)?;
-                return Ok(Self::from_fit(&samples, &good, &coefficients, &triangle, interval));
-            }
-            strips.renew(&samples, &good, &still_good);
-            (good, first) = (still_good, false);
+            // From the second fit on, once out is out: the set shrinks, and the loop ends.
+            once_out = true;
         }
     }
 
-    fn from_fit(
-        samples: &Samples,
-        good: &[bool],
-        coefficients: &[Vector3<f64>],
-        triangle: &Triangle,
-        interval: f64,
-    ) -> Self {
-        let residuals = samples.good_residuals(coefficients, good);
-        let kept = good.iter().filter(|good| **good).count();
-        let variance = Vector3::from_fn(|axis, _| dot(&residuals[axis], &residuals[axis]) / kept as f64);
+    fn from_fit(samples: &Samples, strips: &Strips, coefficients: &[Vector3<f64>], triangle: &Triangle) -> Self {
+        let (kept, came) = (strips.good(), samples.len());
+        let squares: Vector3<f64> = strips.iter().map(|strip| Vector3::from(strip.sums.squares)).sum();
         let Window { span, shape } = samples.window;
         let columns = coefficients.len();
         let zero = Vector3::zeros();
         Self {
             window: *span,
             samples: kept,
-            rejected: good.len() - kept,
-            left_out: samples.left_out(good.len() - kept),
+            rejected: came - kept,
+            left_out: samples.left_out(came - kept),
             mean: coefficients[columns - 1],
             once_per_revolution: if shape.omega == 0.0 { [zero; 2] } else { [coefficients[0], coefficients[1]] },
             settling: shape.settling.map_or(zero, |_| coefficients[columns - 2]),
             shape: *shape,
             digit: *samples.digit,
-            variance,
-            cells: samples.cells(good, &residuals, triangle, interval),
+            variance: squares / kept as f64,
+            cells: cells(samples, strips, triangle, columns),
         }
     }
 
@@ -145,264 +130,32 @@ impl PlateauFit {
     }
 }
 
-/// Samples of a window, with the design of what is fitted to them.
-struct Samples<'a> {
-    window: &'a Window,
-    /// Last digit of the readings [m/s^2].
-    digit: &'a Vector3<f64>,
-    /// White noise of a sample [m/s^2].
-    white: &'a Vector3<f64>,
-    t: Cow<'a, [f64]>,
-    f_z: [Cow<'a, [f64]>; 3],
-    /// The stuck ones, if there are any.
-    stuck: Option<Vec<bool>>,
-    columns: Vec<Vec<f64>>,
-    /// Samples with the stamp of the one before.
-    repeated: usize,
-    /// Sampling interval [s].
-    interval: f64,
+/// Refuses good readings that pile up at the end of their range: what is cut off there is missing in the mean.
+fn check_range(samples: &Samples, strips: &Strips, index: usize) -> Result<(), ReductionError> {
+    let told = |axis: &usize| samples.white[*axis] > samples.digit[*axis];
+    let looked_at = (0..3).filter(told).filter(|axis| may_be_piled_up(strips.most_at_an_end(*axis)));
+    for axis in looked_at {
+        if let Some((value, piled_up)) = piled_up(strips.good_readings(axis)) {
+            let (window, samples) = (samples.window.span, samples.len());
+            return Err(ReductionError::Saturated { index, window, axis, value, samples, piled_up });
+        }
+    }
+    Ok(())
 }
 
-impl<'a> Samples<'a> {
-    /// The samples of a record in a window, without repeated stamps.
-    fn cut_out(record: RecordSlice<'a>, window: &'a Window, blocks: &'a Blocks) -> Self {
-        let RecordSlice { t, f_z } = record.between(window.span);
-        let came = t.len();
-        let (t, f_z) = if t.windows(2).all(|pair| pair[0] < pair[1]) {
-            (Cow::from(t), f_z.map(Cow::from))
-        } else {
-            let first_of_stamp = |i: &usize| *i == 0 || t[*i] > t[*i - 1];
-            let pick = |values: &[f64]| -> Cow<[f64]> {
-                (0..t.len()).filter(first_of_stamp).map(|i| values[i]).collect::<Vec<f64>>().into()
-            };
-            (pick(t), f_z.map(pick))
-        };
-        let columns = window.shape.columns(&t);
-        let stuck = stuck_on_any_axis(f_z.each_ref().map(|f| &**f), &blocks.repeat_rate);
-        let (repeated, interval) = (came - t.len(), blocks.interval);
-        Self { window, digit: &blocks.digit, white: &blocks.sample_noise, t, f_z, stuck, columns, repeated, interval }
+/// The strips' sums, gathered by cell.
+fn cells(samples: &Samples, strips: &Strips, triangle: &Triangle, terms: usize) -> Cells {
+    let [from, to] = samples.window.span;
+    let mut cells = Cells::empty(triangle, terms, (to - from) / CELLS as f64, samples.interval);
+    let mut sums = vec![(0, Vector3::zeros(), [0.0; TERMS]); CELLS];
+    for strip in strips.iter() {
+        let (count, residuals, columns) = &mut sums[strip.cell];
+        *count += strip.sums.count;
+        *residuals += Vector3::from(strip.sums.residuals);
+        columns.iter_mut().zip(strip.sums.columns).for_each(|(sum, of_strip)| *sum += of_strip);
     }
-
-    /// Samples of each cell: the times do not decrease.
-    fn cells_of_samples(&self) -> Vec<Range<usize>> {
-        let [from, to] = self.window.span;
-        let cell = |t: f64| whole((t - from) / (to - from) * CELLS as f64).min(CELLS - 1);
-        let mut start = 0;
-        let end_of = |k: usize| self.t.partition_point(|t| cell(*t) <= k);
-        (0..CELLS).map(|k| std::mem::replace(&mut start, end_of(k))..end_of(k)).collect()
+    for (cell, (count, residuals, columns)) in sums.into_iter().enumerate() {
+        cells.fill(cell, count, residuals, &triangle.orthonormal(columns, terms)[..terms]);
     }
-
-    /// A fit through the medians of the cells, which no spike moves. The once-per-revolution term is not in it: cells
-    /// may be longer than a revolution. A cell of many samples shows its median by some of them.
-    fn fit_of_medians(&self) -> Vec<Vector3<f64>> {
-        const SHOWN: usize = 256;
-        let [from, to] = self.window.span;
-        let shape = Shape { omega: 0.0, ..self.window.shape };
-        let (mut middles, mut medians) = (Vec::new(), Vec::new());
-        for (cell, range) in self.cells_of_samples().into_iter().enumerate().filter(|(_, range)| !range.is_empty()) {
-            let readings = |axis: usize| {
-                let shown = spread_out(range.len(), SHOWN).map(|i| self.f_z[axis][range.start + i]);
-                median(&mut shown.filter(|f| f.is_finite()).collect::<Vec<f64>>())
-            };
-            middles.push(from + (cell as f64 + 0.5) * (to - from) / CELLS as f64);
-            medians.push(Vector3::from_fn(|axis, _| readings(axis)));
-        }
-        Regression::new(shape.columns(&middles)).map_or(vec![], |regression| regression.solve(&medians))
-    }
-
-    /// The columns of the terms that have coefficients: all, or the last.
-    fn columns_with<'s>(
-        &'s self,
-        coefficients: &'s [Vector3<f64>],
-    ) -> impl Iterator<Item = (&'s [f64], &'s Vector3<f64>)> {
-        let without = self.columns.len() - coefficients.len();
-        self.columns[without..].iter().map(Vec::as_slice).zip(coefficients)
-    }
-
-    /// Residuals of some samples on one axis.
-    fn residuals(&self, coefficients: &[Vector3<f64>], axis: usize, range: Range<usize>, residuals: &mut Vec<f64>) {
-        residuals.clear();
-        residuals.extend_from_slice(&self.f_z[axis][range.clone()]);
-        for (column, b) in self.columns_with(coefficients) {
-            subtract(residuals, b[axis], &column[range.clone()]);
-        }
-    }
-
-    /// Residuals of the good samples, zero for the others.
-    fn good_residuals(&self, coefficients: &[Vector3<f64>], good: &[bool]) -> [Vec<f64>; 3] {
-        [0, 1, 2].map(|axis| {
-            let mut residuals = Vec::new();
-            self.residuals(coefficients, axis, 0..self.t.len(), &mut residuals);
-            residuals.iter_mut().zip(good).for_each(|(r, good)| *r = if *good { *r } else { 0.0 });
-            residuals
-        })
-    }
-
-    /// How large a residual of a good sample may be. The spread is seen by some thousands of them.
-    fn limits(&self, coefficients: &[Vector3<f64>]) -> [f64; 3] {
-        const SEEN: usize = 1 << 14;
-        let cut = cut(self.t.len());
-        [0, 1, 2].map(|axis| {
-            let residual = |i: usize| {
-                let fitted: f64 = self.columns_with(coefficients).map(|(column, b)| b[axis] * column[i]).sum();
-                self.f_z[axis][i] - fitted
-            };
-            let sizes = spread_out(self.t.len(), SEEN).map(|i| residual(i).abs()).filter(|r| r.is_finite());
-            // Rounding moves a reading by a digit at most, and may leave no spread to see.
-            cut * MAD * median(&mut sizes.collect::<Vec<f64>>()) + self.digit[axis]
-        })
-    }
-
-    /// Which samples are no spikes and not stuck in any axis. Symmetric, so that the mean of good samples is not
-    /// biased.
-    fn without_outliers(&self, coefficients: &[Vector3<f64>]) -> Vec<bool> {
-        let limits = self.limits(coefficients);
-        let mut good = vec![true; self.t.len()];
-        let mut residuals = Vec::with_capacity(STRIP);
-        for range in strips(self.t.len()) {
-            for axis in 0..3 {
-                self.residuals(coefficients, axis, range.clone(), &mut residuals);
-                // A reading that is not a number is within no limit.
-                let good = good[range.clone()].iter_mut().zip(&residuals);
-                good.for_each(|(good, r)| *good &= r.abs() <= limits[axis]);
-            }
-        }
-        if let Some(stuck) = &self.stuck {
-            good.iter_mut().zip(stuck).for_each(|(good, stuck)| *good &= !stuck);
-        }
-        good
-    }
-
-    /// What is not used, by kind, `rejected` being the samples that came and are not. Samples that never came are counted
-    /// by the intervals between those that did.
-    fn left_out(&self, rejected: usize) -> LeftOut {
-        let is_readable = |i: &usize| self.f_z.iter().all(|f| f[*i].is_finite());
-        let unreadable = if rejected == 0 { 0 } else { (0..self.t.len()).filter(|i| !is_readable(i)).count() };
-        let stuck = self.stuck.as_ref().map_or(0, |stuck| stuck.iter().filter(|stuck| **stuck).count());
-        let gaps = self.t.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1.5 * self.interval);
-        let missing: usize = gaps.map(|step| whole((step / self.interval).round()) - 1).sum();
-        LeftOut {
-            spikes: rejected.saturating_sub(unreadable + stuck),
-            stuck,
-            missing: unreadable + missing,
-            repeated: self.repeated,
-        }
-    }
-
-    /// Why most samples cannot be used.
-    fn unsteady(&self, index: usize, good: usize) -> ReductionError {
-        let (window, samples) = (self.window.span, self.t.len());
-        let (axis, (value, stuck)) = [0, 1, 2]
-            .map(|axis| (axis, standing(&self.f_z[axis])))
-            .into_iter()
-            .max_by_key(|most| most.1.1)
-            .unwrap_or_default();
-        // Most: a lesser number of equal readings does not keep the others from being averaged.
-        if 3 * stuck > samples {
-            ReductionError::Stuck { index, window, axis, value, samples, stuck }
-        } else {
-            ReductionError::Unsteady { index, window, samples, good }
-        }
-    }
-
-    /// Refuses good readings that pile up at the end of their range: what is cut off there is missing in the mean.
-    fn check_range(&self, index: usize, good: &[bool]) -> Result<(), ReductionError> {
-        for axis in (0..3).filter(|axis| self.white[*axis] > self.digit[*axis]) {
-            if let Some((value, piled_up)) = piled_up(&self.f_z[axis], good) {
-                let (window, samples) = (self.window.span, self.t.len());
-                return Err(ReductionError::Saturated { index, window, axis, value, samples, piled_up });
-            }
-        }
-        Ok(())
-    }
-
-    fn cells(&self, good: &[bool], residuals: &[Vec<f64>; 3], triangle: &Triangle, interval: f64) -> Cells {
-        let [from, to] = self.window.span;
-        let terms = self.columns.len();
-        let mut cells = Cells::empty(triangle, terms, (to - from) / CELLS as f64, interval);
-        for (cell, range) in self.cells_of_samples().into_iter().enumerate() {
-            let good = &good[range.clone()];
-            let count = good.iter().filter(|good| **good).count();
-            let sum_of = |column: &[f64]| {
-                let column = &column[range.clone()];
-                let all = sum(column, |x| x);
-                // Few are not good: they are taken out again.
-                let bad = good.iter().zip(column).filter(|(good, _)| !**good);
-                all - if count == good.len() { 0.0 } else { bad.map(|(_, x)| x).sum() }
-            };
-            let mut sums = [0.0; TERMS];
-            sums.iter_mut().zip(&self.columns).for_each(|(sum, column)| *sum = sum_of(column));
-            let residuals = Vector3::from_fn(|axis, _| sum(&residuals[axis][range.clone()], |r| r));
-            cells.fill(cell, count, residuals, &triangle.orthonormal(sums, terms)[..terms]);
-        }
-        cells
-    }
-}
-
-/// Samples of a strip: their design stays in the fastest memory.
-const STRIP: usize = 512;
-
-fn strips(samples: usize) -> impl Iterator<Item = Range<usize>> {
-    (0..samples).step_by(STRIP).map(move |from| from..(from + STRIP).min(samples))
-}
-
-/// The triangles of a plateau's strips.
-struct Strips {
-    triangles: Vec<Triangle>,
-    terms: usize,
-    /// Near the readings: less of them is left to rounding.
-    reference: Vector3<f64>,
-}
-
-impl Strips {
-    fn new(samples: &Samples, good: &[bool]) -> Self {
-        let near = |axis: usize| samples.f_z[axis].iter().copied().find(|f| f.is_finite()).unwrap_or(0.0);
-        let reference = Vector3::from_fn(|axis, _| near(axis));
-        let mut of = Self { triangles: Vec::new(), terms: samples.columns.len(), reference };
-        of.triangles = strips(good.len()).map(|range| of.triangle(samples, good, range)).collect();
-        of
-    }
-
-    /// Those of the strips whose good samples are others now.
-    fn renew(&mut self, samples: &Samples, before: &[bool], good: &[bool]) {
-        for (k, range) in strips(good.len()).enumerate() {
-            if before[range.clone()] != good[range.clone()] {
-                self.triangles[k] = self.triangle(samples, good, range);
-            }
-        }
-    }
-
-    /// The triangle of the good samples of a strip; the others are rows of zeros.
-    fn triangle(&self, samples: &Samples, good: &[bool], range: Range<usize>) -> Triangle {
-        let good = &good[range.clone()];
-        let mut terms = [[0.0; STRIP]; TERMS];
-        let mut readings = [[0.0; STRIP]; 3];
-        for (term, column) in terms.iter_mut().zip(&samples.columns) {
-            for ((term, x), good) in term.iter_mut().zip(&column[range.clone()]).zip(good) {
-                *term = if *good { *x } else { 0.0 };
-            }
-        }
-        for ((reading, f), reference) in readings.iter_mut().zip(&samples.f_z).zip(&self.reference) {
-            for ((reading, f), good) in reading.iter_mut().zip(&f[range.clone()]).zip(good) {
-                *reading = if *good { f - reference } else { 0.0 };
-            }
-        }
-        let mut terms = terms.each_mut().map(|term| &mut term[..range.len()]);
-        Triangle::of(&mut terms[..self.terms], &mut readings.each_mut().map(|f| &mut f[..range.len()]))
-    }
-
-    /// The triangle of all strips, and the coefficients.
-    fn solve(&self) -> Option<(Triangle, Vec<Vector3<f64>>)> {
-        let triangle = Triangle::joined(&self.triangles, self.terms);
-        let mut coefficients = triangle.solve(self.terms)?;
-        coefficients[self.terms - 1] += self.reference;
-        Some((triangle, coefficients))
-    }
-}
-
-/// `count` of the numbers up to `all`, or all of them: one in each of equal ranges, here and there in it, so that nothing
-/// periodic is always seen at the same phase.
-fn spread_out(all: usize, count: usize) -> impl Iterator<Item = usize> {
-    let step = all.div_ceil(count).max(1);
-    (0..all).step_by(step).enumerate().map(move |(k, i)| (i + k * 7919 % step).min(all - 1))
+    cells
 }

@@ -54,21 +54,6 @@ impl Regression {
         }
         b
     }
-
-    /// What the columns leave of `y`: `y - Q Q^T y`, per axis.
-    pub fn residuals(&self, y: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
-        let mut residuals = y.to_vec();
-        for q in &self.q {
-            let projection: Vector3<f64> = q.iter().zip(y).map(|(q, y)| y * *q).sum();
-            residuals.iter_mut().zip(q).for_each(|(r, q)| *r -= projection * *q);
-        }
-        residuals
-    }
-
-    /// Variance of the fitted value at row `i`, in units of the noise's: diagonal of `Q Q^T`.
-    pub fn leverage(&self, i: usize) -> f64 {
-        self.q.iter().map(|q| q[i] * q[i]).sum()
-    }
 }
 
 fn norm(a: &[f64]) -> f64 {

@@ -1,22 +1,17 @@
 //! Saturation: readings that pile up at the end of their range.
 
+/// What chance is not believed to do.
+const CHANCE: f64 = 1e-6;
+
 /// The value at which readings pile up, and how many do; none if they do not.
 ///
 /// The numbers of readings at the outermost values of a noisy reading fall off: log-concavity, which the normal law keeps
 /// when it is rounded, makes the outermost number no more than `n_1^2 / n_2` of the next two on average. A number that
 /// Poisson's law has less than once in a million times about that is a pile. Where noise is less than a digit nothing can
 /// be told: the crest of a slow wave piles up as well.
-pub(super) fn piled_up(f: &[f64], good: &[bool]) -> Option<(f64, usize)> {
-    const CHANCE: f64 = 1e-6;
-    let readings = || f.iter().zip(good).filter(|(_, good)| **good).map(|(f, _)| *f);
-    // Nearly always the outermost values are there once or twice, and that is all there is to look at.
-    let ends = readings().fold(End::none(), End::with);
-    if poisson_tail(ends.most(), 1.0) >= CHANCE {
-        return None;
-    }
-    let mut values: Vec<f64> = readings().collect();
-    values.sort_by(f64::total_cmp);
-    let counts: Vec<(f64, usize)> = values.chunk_by(f64::eq).map(|same| (same[0], same.len())).collect();
+pub(super) fn piled_up(mut readings: Vec<f64>) -> Option<(f64, usize)> {
+    readings.sort_by(f64::total_cmp);
+    let counts: Vec<(f64, usize)> = readings.chunk_by(f64::eq).map(|same| (same[0], same.len())).collect();
     let at_end = |[outer, next, inner]: [(f64, usize); 3]| {
         let usual = (next.1 as f64 + 1.0).powi(2) / inner.1 as f64;
         (poisson_tail(outer.1, usual) < CHANCE).then_some(outer)
@@ -26,37 +21,16 @@ pub(super) fn piled_up(f: &[f64], good: &[bool]) -> Option<(f64, usize)> {
     top.into_iter().chain(bottom).max_by_key(|end| end.1)
 }
 
+/// Whether so many readings at the end of their range are worth a look at the others: nearly always there is one or two.
+pub(super) fn may_be_piled_up(most: usize) -> bool {
+    poisson_tail(most, 1.0) < CHANCE
+}
+
 /// The value that readings have most often, and how often.
 pub(super) fn standing(f: &[f64]) -> (f64, usize) {
     let mut values: Vec<f64> = f.iter().copied().filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     values.chunk_by(f64::eq).map(|same| (same[0], same.len())).max_by_key(|same| same.1).unwrap_or((f64::NAN, 0))
-}
-
-/// The outermost values, and how often each is there.
-struct End {
-    low: (f64, usize),
-    high: (f64, usize),
-}
-
-impl End {
-    fn none() -> Self {
-        Self { low: (f64::INFINITY, 0), high: (f64::NEG_INFINITY, 0) }
-    }
-
-    fn with(mut self, f: f64) -> Self {
-        if f <= self.low.0 {
-            self.low = (f, if f < self.low.0 { 1 } else { self.low.1 + 1 });
-        }
-        if f >= self.high.0 {
-            self.high = (f, if f > self.high.0 { 1 } else { self.high.1 + 1 });
-        }
-        self
-    }
-
-    fn most(&self) -> usize {
-        self.low.1.max(self.high.1)
-    }
 }
 
 /// Probability of `count` or more under Poisson's law of that mean, from above (Chernoff): `(e m / k)^k exp(-m)`.
@@ -84,12 +58,11 @@ mod tests {
         for digit in [0.0, 1e-3, 0.1, 0.5, 1.0] {
             let rounded = |f: f64| if digit > 0.0 { (f / digit).round() * digit } else { f };
             for part in normal(100_000).chunks(2000) {
-                let good = vec![true; part.len()];
                 let plain: Vec<f64> = part.iter().map(|f| rounded(*f)).collect();
-                assert_eq!(piled_up(&plain, &good), None, "digit {digit}");
+                assert_eq!(piled_up(plain), None, "digit {digit}");
                 if digit < 0.2 {
                     let clipped: Vec<f64> = part.iter().map(|f| rounded(f.min(1.5))).collect();
-                    let (value, count) = piled_up(&clipped, &good).expect("a fifteenth of them is clipped");
+                    let (value, count) = piled_up(clipped).expect("a fifteenth of them is clipped");
                     assert!((value - 1.5).abs() < 0.05 + digit && count > 80, "{value} {count}");
                 }
             }

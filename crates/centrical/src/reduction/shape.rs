@@ -1,6 +1,6 @@
 //! The shape of a plateau's reading in time: the columns of its design.
 
-use super::revolution::cos_sin;
+use super::elementary::{cos_sin, exp};
 
 /// Which terms a plateau has: `[cos, sin,] [settling,] 1`. The constant stands last.
 #[derive(Debug, Clone, Copy)]
@@ -38,28 +38,53 @@ impl Settling {
     }
 
     /// What is left after a time, over the straight part at the start.
+    #[inline(always)]
     pub fn value(self, since: f64) -> f64 {
-        let fading = (-since / self.time).exp();
+        let fading = exp(-since / self.time);
         fading * (1.0 + self.bend * fading)
+    }
+
+    /// The same at many instants.
+    #[inline(always)]
+    fn values(self, start: f64, t: &[f64], values: &mut [f64]) {
+        // Beyond forty time constants less is left of the settling than rounding leaves of a reading.
+        if t.first().is_some_and(|first| first - start > 40.0 * self.time) {
+            values.fill(0.0);
+        } else {
+            t.iter().zip(values).for_each(|(t, value)| *value = self.value(t - start));
+        }
     }
 }
 
 impl Shape {
+    /// Terms of the reading.
+    pub fn terms(&self) -> usize {
+        2 * usize::from(self.omega != 0.0) + usize::from(self.settling.is_some()) + 1
+    }
+
     /// The design at the times `t`, one column a term.
     pub fn columns(&self, t: &[f64]) -> Vec<Vec<f64>> {
-        let mut columns = Vec::with_capacity(4);
-        if self.omega != 0.0 {
-            let (cos, sin) = cos_sin(self.omega, self.start, t);
-            columns.extend([cos, sin]);
-        }
-        columns.extend(self.settling.map(|settling| {
-            // Beyond forty time constants less is left of the settling than rounding leaves of a reading.
-            let over = t.partition_point(|t| t - self.start < 40.0 * settling.time);
-            let mut column: Vec<f64> = t[..over].iter().map(|t| settling.value(t - self.start)).collect();
-            column.resize(t.len(), 0.0);
-            column
-        }));
-        columns.push(vec![1.0; t.len()]);
+        let mut columns = vec![vec![0.0; t.len()]; self.terms()];
+        self.design(t, &mut columns.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>());
         columns
+    }
+
+    /// The same into `columns` that are there, each as long as `t`.
+    #[inline(always)]
+    pub fn design(&self, t: &[f64], columns: &mut [&mut [f64]]) {
+        let mut columns = columns.iter_mut();
+        if self.omega != 0.0
+            && let (Some(cos), Some(sin)) = (columns.next(), columns.next())
+        {
+            cos_sin(self.omega, self.start, t, cos, sin);
+        }
+        if let Some(settling) = self.settling
+            && let Some(column) = columns.next()
+        {
+            settling.values(self.start, t, column);
+        }
+        if let Some(constant) = columns.next() {
+            constant.fill(1.0);
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! Readings that repeat themselves for longer than noise lets them: a stuck sensor, a saturated one, a logger that
 //! holds.
 
+use super::blocks::whole;
+
 /// Which samples are stuck on any axis, by the axes' repeat rates; none if not one is.
 pub(super) fn stuck_on_any_axis(f_z: [&[f64]; 3], repeat_rate: &[f64; 3]) -> Option<Vec<bool>> {
     let mut stuck: Option<Vec<bool>> = None;
@@ -28,13 +30,17 @@ fn longest_run(n: usize, repeat_rate: f64) -> f64 {
     1.0 + (CHANCE / n as f64).ln() / repeat_rate.ln()
 }
 
+/// A run of `m` equal pairs of neighbours has one in every `m`-th place: hardly any pair need be looked at.
 fn run_is_longer(f: &[f64], longest: f64) -> bool {
-    let longer = |run: u32, pair: &[f64]| if pair[0] == pair[1] { run + 1 } else { 1 };
-    let runs = f.windows(2).scan(1, |run, pair| {
-        *run = longer(*run, pair);
-        Some(*run)
-    });
-    runs.max().is_some_and(|run| f64::from(run) > longest)
+    let m = whole(longest).max(1);
+    let is_equal = |i: usize| f[i] == f[i + 1];
+    let run_about = |i: usize| {
+        let before = (0..i).rev().take_while(|i| is_equal(*i)).count();
+        let after = (i..f.len() - 1).take_while(|i| is_equal(*i)).count();
+        before + after + 1
+    };
+    let places = (m - 1..f.len().saturating_sub(1)).step_by(m);
+    places.into_iter().any(|i| is_equal(i) && run_about(i) as f64 > longest)
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ pub(super) struct Triangle {
 
 impl Triangle {
     /// The triangle of some rows: `terms` columns of a design and three of readings, which are spent.
+    #[inline(always)]
     pub fn of(terms: &mut [&mut [f64]], readings: &mut [&mut [f64]; 3]) -> Self {
         let mut triangle = Self::default();
         for j in 0..terms.len() {
@@ -52,7 +53,7 @@ impl Triangle {
     }
 
     /// The triangle of all rows from those of the strips.
-    pub fn joined(strips: &[Self], terms: usize) -> Self {
+    pub fn joined(strips: &[&Self], terms: usize) -> Self {
         let mut columns = vec![vec![0.0; strips.len() * terms]; terms];
         let mut readings = [const { Vec::new() }; 3];
         for (s, strip) in strips.iter().enumerate() {
@@ -123,7 +124,7 @@ mod tests {
         let whole = of(0..rows);
         // The settling is over in the later strips: a column that rounds to the span of the others.
         let strips: Vec<Triangle> = (0..10).map(|s| of(100 * s..100 * s + 100)).collect();
-        let joined = Triangle::joined(&strips, 3);
+        let joined = Triangle::joined(&strips.iter().collect::<Vec<_>>(), 3);
         for j in 0..3 {
             for i in 0..=j {
                 assert!((joined.r[j][i].abs() - whole.r[j][i].abs()).abs() < 1e-12 * rows as f64);

@@ -9,9 +9,12 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
+use rayon::prelude::*;
 
-use super::blocks::{Blocks, MAD, cut, median, whole};
-use super::regression::{Regression, dot};
+use super::block_fit::{BlockFit, Levels, spread};
+use super::blocks::{Blocks, cut, median, whole};
+use super::lanes::{dot, widest};
 use super::shape::{Settling, Shape};
 use super::{ReductionError, ScheduledPlateau};
 
@@ -45,7 +48,7 @@ pub(super) fn refine(
     search.grow();
     if !search.best_settling().is_some_and(|settling| settling.seen) {
         search.settling_time = None;
-        search.take((0..cores.len()).map(|k| search.range(k)).collect());
+        search.take((0..cores.len()).into_par_iter().map(|k| search.range(k)).collect());
     }
     Ok(search.windows())
 }
@@ -83,8 +86,8 @@ impl Search<'_> {
     fn grow(&mut self) {
         for _ in 0..ROUNDS {
             self.settling_time = self.best_settling().map(|settling| settling.time);
-            self.bends = (0..self.cores.len()).map(|k| self.bend(k)).collect();
-            let ranges: Vec<Range<usize>> = (0..self.cores.len()).map(|k| self.range(k)).collect();
+            self.bends = (0..self.cores.len()).into_par_iter().map(|k| self.bend(k)).collect();
+            let ranges: Vec<Range<usize>> = (0..self.cores.len()).into_par_iter().map(|k| self.range(k)).collect();
             if ranges == self.ranges {
                 break;
             }
@@ -96,9 +99,10 @@ impl Search<'_> {
     /// explains more than its coefficients would of noise (Schwarz's criterion).
     fn best_settling(&self) -> Option<Guess> {
         let spinning: Vec<usize> = (0..self.ranges.len()).filter(|k| self.schedule[*k].omega != 0.0).collect();
-        let steady = spinning.iter().map(|k| {
-            let fit = BlockFit::new(self.blocks, self.ranges[*k].clone(), self.schedule[*k].omega, None)?;
-            Some((Steady::new(fit), self.bends[*k]))
+        let steady = spinning.par_iter().map(|k| {
+            let range = &self.ranges[*k];
+            let levels = self.levels(*k, range.clone(), range.len(), None);
+            Some((Steady::new(&self.blocks.t[range.clone()], &levels.fit(range.clone())?), self.bends[*k]))
         });
         let steady = steady.collect::<Option<Vec<_>>>()?;
         let shortest = spinning.iter().map(|k| self.cores[*k].len()).min()? as f64 * self.blocks.width;
@@ -120,27 +124,34 @@ impl Search<'_> {
         self.settling_time.filter(|_| self.schedule[plateau].omega != 0.0)
     }
 
-    /// A fit of a plateau's blocks, settling included.
-    fn fit(&self, k: usize, range: Range<usize>) -> Option<BlockFit> {
-        let settling = self.settling_of(k).map(|time| {
-            let delay = self.blocks.t[range.start] - self.blocks.t[self.ranges[k].start];
-            Settling { time, bend: self.bends[k] }.after(delay)
-        });
-        BlockFit::new(self.blocks, range, self.schedule[k].omega, settling)
+    /// A plateau's settling as it is at the start of a range of blocks.
+    fn settling_at(&self, k: usize, range: &Range<usize>) -> Option<Settling> {
+        let delay = self.blocks.t[range.start] - self.blocks.t[self.ranges[k].start];
+        self.settling_of(k).map(|time| Settling { time, bend: self.bends[k] }.after(delay))
+    }
+
+    /// The levels of some blocks with the design of a plateau's reading. Settling that began earlier has the same shape:
+    /// the fits over any of these blocks have the design in common. The once-per-revolution term is in it if as many blocks
+    /// as `shown` show it.
+    fn levels(&self, k: usize, range: Range<usize>, shown: usize, settling: Option<Settling>) -> Levels {
+        let omega = self.schedule[k].omega;
+        let omega = if turns_seen(omega, self.blocks.width, shown) { omega } else { 0.0 };
+        Levels::new(self.blocks, range.clone(), &Shape { start: self.blocks.t[self.ranges[k].start], omega, settling })
     }
 
     /// Takes other ranges; the bends go with their starts.
     fn take(&mut self, ranges: Vec<Range<usize>>) {
-        let fits: Vec<Option<Settling>> =
-            (0..ranges.len()).map(|k| self.fit(k, ranges[k].clone()).and_then(|fit| fit.shape.settling)).collect();
-        self.bends = fits.iter().map(|settling| settling.map_or(0.0, |settling| settling.bend)).collect();
+        let settling = |(k, range)| self.settling_at(k, range);
+        self.bends = ranges.iter().enumerate().map(settling).map(|s| s.map_or(0.0, |settling| settling.bend)).collect();
         self.ranges = ranges;
     }
 
     /// The bend of a plateau's settling at the start of its range: a quarter of the force's relative error there.
     fn bend(&self, k: usize) -> f64 {
-        let nominal_z = self.schedule[k].nominal_z;
-        let settling = self.fit(k, self.ranges[k].clone()).map_or(Vector3::zeros(), |fit| fit.settling());
+        let (nominal_z, range) = (self.schedule[k].nominal_z, self.ranges[k].clone());
+        let Some(settling) = self.settling_at(k, &range) else { return 0.0 };
+        let levels = self.levels(k, range.clone(), range.len(), Some(settling));
+        let settling = levels.fit(range).map_or(Vector3::zeros(), |fit| fit.settling());
         0.25 * settling.dot(&nominal_z) / nominal_z.norm_squared()
     }
 
@@ -151,17 +162,20 @@ impl Search<'_> {
         let core = &self.cores[k];
         let from = if k == 0 { 0 } else { self.cores[k - 1].end };
         let to = self.cores.get(k + 1).map_or(self.blocks.len(), |next| next.start);
-        let Some(of_core) = self.fit(k, core.clone()) else { return core.clone() };
+        let levels = self.levels(k, from..to, core.len(), self.settling_at(k, &self.ranges[k]));
+        let Some(of_core) = levels.fit(core.clone()) else { return core.clone() };
         let (scale, cut) = (of_core.scale(), cut(self.blocks.len()));
-        let fits = |range: Range<usize>| self.fit(k, range).is_some_and(|fit| fit.longest_run_off(&scale, cut) < 2);
+        let fits = |range: Range<usize>| levels.fit(range).is_some_and(|fit| !fit.has_two_off(&scale, cut));
         let quarter = core.len() / 4;
         let (first, last) = (core.start + quarter, core.end - quarter);
-        let end = last + furthest(to - last, |more| fits(first..last + more));
-        let start = first - furthest(first - from, |more| fits(first - more..end));
+        let guess = &self.ranges[k];
+        let end = last + furthest(to - last, guess.end.saturating_sub(last), |more| fits(first..last + more));
+        let to_start = furthest(first - from, first.saturating_sub(guess.start), |more| fits(first - more..end));
+        let start = first - to_start;
         // A block off alone is a disturbance inside, and the begin of a ramp at an edge.
-        let fit = self.fit(k, start..end);
-        let off = |i: usize| fit.as_ref().is_some_and(|fit| fit.is_off(i, &scale, cut));
-        start + usize::from(off(0))..end - usize::from(off(end - start - 1))
+        let off = levels.fit(start..end).map(|fit| fit.off(&scale, cut)).unwrap_or_default();
+        let at_edge = |block: Option<&bool>| usize::from(block.is_some_and(|off| *off));
+        start + at_edge(off.first())..end - at_edge(off.last())
     }
 
     /// The windows, with a margin: the block at an edge may hold the onset of the ramp below the noise, and what does
@@ -173,8 +187,7 @@ impl Search<'_> {
             let wait = self.blocks.width + self.settling_of(k).unwrap_or(0.0);
             let from = self.blocks.t[range.start] - half + wait;
             let to = self.blocks.t[range.end - 1] + half - self.blocks.width;
-            let fit = self.fit(k, range.clone());
-            let settling = fit.and_then(|fit| fit.shape.settling).map(|settling| settling.after(wait - half));
+            let settling = self.settling_at(k, range).map(|settling| settling.after(wait - half));
             Window { span: [from, to], shape: Shape { start: from, omega: self.schedule[k].omega, settling } }
         };
         Windows { plateaus: (0..self.ranges.len()).map(window).collect(), settling_time: self.settling_time }
@@ -188,16 +201,18 @@ struct Guess {
     seen: bool,
 }
 
-/// The greatest of `0..=most` that is accepted, by steps halved on refusal. Passes are repeated while they gain: chance
-/// may refuse a value below the limit, and hardly its neighbours too.
-fn furthest(most: usize, accepted: impl Fn(usize) -> bool) -> usize {
-    let mut reached = 0;
+/// The greatest of `0..=most` that is accepted, looked for about a guess by steps that are doubled on success and halved on
+/// refusal. Passes are repeated while they gain: chance may refuse a value below the limit, and hardly its neighbours too.
+fn furthest(most: usize, guess: usize, accepted: impl Fn(usize) -> bool) -> usize {
+    const FIRST_STEP: usize = 16;
+    let guess = guess.max(1).min(most);
+    let (mut reached, mut step) = (0, guess);
     loop {
         let before = reached;
-        let mut step = most - reached;
         while step > 0 {
             if accepted(reached + step) {
                 reached += step;
+                step = if before == 0 && reached == guess { FIRST_STEP } else { 2 * step };
                 step = step.min(most - reached);
             } else {
                 step /= 2;
@@ -206,6 +221,7 @@ fn furthest(most: usize, accepted: impl Fn(usize) -> bool) -> usize {
         if reached == before {
             return reached;
         }
+        step = FIRST_STEP.min(most - reached);
     }
 }
 
@@ -213,7 +229,8 @@ fn furthest(most: usize, accepted: impl Fn(usize) -> bool) -> usize {
 struct Steady {
     /// Time from the first block [s].
     since: Vec<f64>,
-    regression: Regression,
+    /// Orthonormal columns of the design.
+    q: Vec<Vec<f64>>,
     /// Residuals per axis in units of their spread.
     residuals: [Vec<f64>; 3],
     /// Variance of means of many blocks over what it would be if the blocks were independent.
@@ -221,85 +238,65 @@ struct Steady {
 }
 
 impl Steady {
-    fn new(fit: BlockFit) -> Self {
+    fn new(t: &[f64], fit: &BlockFit) -> Self {
+        let residuals = fit.residuals();
         // The spread is that of the later half, where the settling is over.
-        let later = &fit.residuals[fit.residuals.len() / 2..];
-        let middle = Vector3::from_fn(|axis, _| median(&mut later.iter().map(|r| r[axis]).collect::<Vec<f64>>()));
-        let about: Vec<Vector3<f64>> = later.iter().map(|r| r - middle).collect();
-        let scale = spread(&about, &fit.floor);
-        let residuals = [0, 1, 2].map(|axis| fit.residuals.iter().map(|r| r[axis] / scale[axis]).collect());
-        let scaled: Vec<Vector3<f64>> = about.iter().map(|r| r.component_div(&scale)).collect();
-        Self { since: fit.since, regression: fit.regression, residuals, colour: colour(&scaled) }
+        let about = residuals.each_ref().map(|residuals| -> Vec<f64> {
+            let later = &residuals[residuals.len() / 2..];
+            let middle = median(&mut later.to_vec());
+            later.iter().map(|r| r - middle).collect()
+        });
+        let scale = spread(&about, fit.floor());
+        let scaled = |residuals: [Vec<f64>; 3]| {
+            let mut axis = 0..3;
+            residuals.map(|residuals| -> Vec<f64> {
+                let scale = axis.next().map_or(1.0, |axis| scale[axis]);
+                residuals.iter().map(|r| r / scale).collect()
+            })
+        };
+        let since = t.iter().map(|time| time - t[0]).collect();
+        Self { since, q: fit.orthonormal(), residuals: scaled(residuals), colour: colour(&scaled(about)) }
     }
 
     /// How much of the residuals' square sum a settling takes away.
     fn explained_by(&self, settling: Settling) -> f64 {
-        let mut column: Vec<f64> = self.since.iter().map(|since| settling.value(*since)).collect();
-        for q in &self.regression.q {
-            let projection = dot(q, &column);
-            column.iter_mut().zip(q).for_each(|(c, q)| *c -= projection * q);
+        widest(Explained { of: self, settling })
+    }
+}
+
+/// A settling to be tried on residuals.
+struct Explained<'a> {
+    of: &'a Steady,
+    settling: Settling,
+}
+
+impl WithSimd for Explained<'_> {
+    type Output = f64;
+
+    /// `sum_k (c^T r_k)^2 / (c^T c - sum_j (q_j^T c)^2)`: the residuals are orthogonal to the design, and at least half of
+    /// the settling is, since it fades in a quarter of the plateau.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let mut column = vec![0.0; self.of.since.len()];
+        for (value, since) in column.iter_mut().zip(&self.of.since) {
+            *value = self.settling.value(*since);
         }
-        let square = dot(&column, &column);
-        self.residuals.iter().map(|residuals| dot(&column, residuals).powi(2) / square).sum()
+        let taken: f64 = self.of.q.iter().map(|q| dot(q, &column).powi(2)).sum();
+        let square = dot(&column, &column) - taken;
+        self.of.residuals.iter().map(|residuals| dot(&column, residuals).powi(2) / square).sum()
     }
 }
 
 /// Variance of the means of quarters, over that of independent residuals of unit variance; mean of the axes.
-fn colour(residuals: &[Vector3<f64>]) -> f64 {
-    let quarter = residuals.len().div_ceil(4).max(1);
-    let sums: Vec<Vector3<f64>> = residuals.chunks_exact(quarter).map(|part| part.iter().sum()).collect();
-    let middle = sums.iter().sum::<Vector3<f64>>() / sums.len().max(1) as f64;
-    let squares: f64 = sums.iter().map(|sum| (sum - middle).norm_squared()).sum();
-    squares / (3 * quarter * sums.len().saturating_sub(1).max(1)) as f64
-}
-
-/// A plateau fitted through its block levels.
-struct BlockFit {
-    /// Time from the first block [s].
-    since: Vec<f64>,
-    shape: Shape,
-    regression: Regression,
-    coefficients: Vec<Vector3<f64>>,
-    residuals: Vec<Vector3<f64>>,
-    /// Smallest spread that the sampling allows [m/s^2].
-    floor: Vector3<f64>,
-}
-
-impl BlockFit {
-    fn new(blocks: &Blocks, range: Range<usize>, omega: f64, settling: Option<Settling>) -> Option<Self> {
-        let (t, levels) = (&blocks.t[range.clone()], &blocks.f_z[range]);
-        let omega = if turns_seen(omega, blocks.width, t.len()) { omega } else { 0.0 };
-        let shape = Shape { start: t[0], omega, settling };
-        let regression = Regression::new(shape.columns(t))?;
-        let coefficients = regression.solve(levels);
-        let residuals = regression.residuals(levels);
-        // Rounded readings may leave no spread at all.
-        let floor = blocks.sample_noise * (blocks.interval / blocks.width).sqrt() + blocks.digit / MAD;
-        let since = t.iter().map(|time| time - t[0]).collect();
-        Some(Self { since, shape, regression, coefficients, residuals, floor })
-    }
-
-    /// Standard deviation of a block about the fit, robust [m/s^2].
-    fn scale(&self) -> Vector3<f64> {
-        spread(&self.residuals, &self.floor)
-    }
-
-    /// Settling at the start [m/s^2].
-    fn settling(&self) -> Vector3<f64> {
-        self.shape.settling.map_or(Vector3::zeros(), |_| self.coefficients[self.coefficients.len() - 2])
-    }
-
-    /// Whether a block is off the fit by more than noise of the given scale.
-    fn is_off(&self, i: usize, scale: &Vector3<f64>, cut: f64) -> bool {
-        let left = 1.0 - self.regression.leverage(i);
-        self.residuals[i].component_div(scale).amax() > cut * left.max(0.0).sqrt()
-    }
-
-    /// Most neighbouring blocks that are off.
-    fn longest_run_off(&self, scale: &Vector3<f64>, cut: f64) -> usize {
-        let off: Vec<bool> = (0..self.residuals.len()).map(|i| self.is_off(i, scale, cut)).collect();
-        off.chunk_by(bool::eq).filter(|run| run[0]).map(<[bool]>::len).max().unwrap_or(0)
-    }
+fn colour(residuals: &[Vec<f64>; 3]) -> f64 {
+    let quarter = residuals[0].len().div_ceil(4).max(1);
+    let of_axis = |residuals: &Vec<f64>| {
+        let sums: Vec<f64> = residuals.chunks_exact(quarter).map(|part| part.iter().sum()).collect();
+        let middle = sums.iter().sum::<f64>() / sums.len().max(1) as f64;
+        let squares: f64 = sums.iter().map(|sum| (sum - middle).powi(2)).sum();
+        squares / (3 * quarter * sums.len().saturating_sub(1).max(1)) as f64
+    };
+    residuals.iter().map(of_axis).sum()
 }
 
 /// Whether blocks of this width show at least two turns in `n`, directly or by aliasing. Otherwise they have
@@ -307,12 +304,6 @@ impl BlockFit {
 fn turns_seen(omega: f64, width: f64, n: usize) -> bool {
     let turns = omega * width / TAU;
     (turns - turns.round()).abs() * n as f64 > 2.0
-}
-
-/// Robust standard deviation about zero, not below the floor.
-fn spread(residuals: &[Vector3<f64>], floor: &Vector3<f64>) -> Vector3<f64> {
-    let of = |axis: usize| MAD * median(&mut residuals.iter().map(|r| r[axis].abs()).collect::<Vec<f64>>());
-    Vector3::from_fn(|axis, _| of(axis).max(floor[axis]))
 }
 
 /// Where `f` is greatest between `low` and `high`: the best of a grid, then golden section about it until a parabola

@@ -2,11 +2,12 @@
 
 use std::borrow::Cow;
 
-use memchr::{memchr, memchr3};
+use memchr::{memchr, memchr2, memchr3};
 
+use super::batch::Texts;
 use super::number::plain;
 use crate::error::quoted;
-use crate::table::{ColumnName, Field, LARGEST, Rule, stamp};
+use crate::table::{Block, ColumnName, Field, LARGEST, Rule, stamp};
 
 /// What stands wrong in a line.
 pub(super) struct Fault {
@@ -128,11 +129,65 @@ impl Layout {
         }
     }
 
+    /// What divides the fields, if it is one byte.
+    pub fn delimiter(&self) -> Option<u8> {
+        match self.delimiter {
+            Delimiter::Byte(delimiter) => Some(delimiter),
+            Delimiter::Blanks => None,
+        }
+    }
+
+    /// Fields in a row.
+    pub fn fields(&self) -> usize {
+        self.wanted.len()
+    }
+
+    /// Reads [`ROWS`] rows of bare numbers that begin at `from` and have these separators; nothing where one of them is
+    /// anything else, right or wrong.
+    pub fn batch(&self, text: &[u8], from: usize, separators: &[u32], block: &mut Block) -> Option<()> {
+        let fields = self.wanted.len();
+        let lines = separators.chunks_exact(fields);
+        let ends = |line: &[u32]| text[line[fields - 1] as usize] == b'\n';
+        let divides = |place: &u32| text[*place as usize] != b'\n';
+        let mut is_plain = text[from] != b'#';
+        for line in lines.clone() {
+            is_plain &= ends(line) && line[..fields - 1].iter().all(divides);
+        }
+        let all = &text[from..*separators.last()? as usize];
+        // A delimiter within quotes divides nothing.
+        if !is_plain || self.wanted.contains(&None) && memchr2(b'"', b'#', all).is_some() {
+            return None;
+        }
+        let mut numbers = Vec::with_capacity(block.len());
+        for (column, field) in self.wanted.iter().enumerate() {
+            let Some(field) = field else { continue };
+            let mut texts = Texts::EMPTY;
+            let mut start = from;
+            for (row, line) in lines.clone().enumerate() {
+                if column > 0 {
+                    start = line[column - 1] as usize + 1;
+                }
+                let end = line[column] as usize;
+                let last = text.get(end.wrapping_sub(1));
+                let carriage_return = usize::from(column + 1 == fields && last == Some(&b'\r'));
+                if !texts.take(row, text, start, end - carriage_return) {
+                    return None;
+                }
+                start = line[fields - 1] as usize + 1;
+            }
+            numbers.push((*field, texts.numbers()?));
+        }
+        for (field, numbers) in &numbers {
+            block[*field].extend_from_slice(numbers);
+        }
+        Some(())
+    }
+
     /// The row of bare numbers that a text begins with, and the length of its line; nothing where the line is anything
     /// else, right or wrong.
     #[inline]
     pub fn plain_row(&self, text: &[u8], row: &mut [f64]) -> Option<usize> {
-        let Delimiter::Byte(delimiter) = self.delimiter else { return None };
+        let delimiter = self.delimiter().filter(|_| text.first() != Some(&b'#'))?;
         let mut at = 0;
         for (i, wanted) in self.wanted.iter().enumerate() {
             if i > 0 {

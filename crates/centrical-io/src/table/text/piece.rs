@@ -55,27 +55,40 @@ impl Plain {
     /// Reads the piece of that number into `text`, without a mark of the byte order.
     pub(super) fn read(&mut self, number: u64, text: &mut Vec<u8>) -> io::Result<()> {
         text.clear();
-        let (begin, end) = (number * SIZE, ((number + 1) * SIZE).min(self.length));
-        // The byte before: if it ends a line, the next line begins with the piece.
-        let from = begin.saturating_sub(1);
-        self.input.seek(SeekFrom::Start(from))?;
-        (&mut self.input).take(end - from).read_to_end(text)?;
-        let start = match memchr(b'\n', text) {
-            _ if number == 0 => 0,
-            Some(end_of_line) if end_of_line + 1 < text.len() => end_of_line + 1,
-            // No line begins here.
-            _ => {
-                text.clear();
-                return Ok(());
-            }
-        };
+        let end = ((number + 1) * SIZE).min(self.length);
+        let Some(begin) = self.first_line(number * SIZE, end)? else { return Ok(()) };
+        self.input.seek(SeekFrom::Start(begin))?;
+        (&mut self.input).take(end - begin).read_to_end(text)?;
         if text.last() != Some(&b'\n') {
-            self.complete(from + text.len() as u64, text)?;
+            self.complete(begin + text.len() as u64, text)?;
         }
         let mark = "\u{feff}".as_bytes();
-        let start = if number == 0 && text.starts_with(mark) { mark.len() } else { start };
-        text.drain(..start);
+        if number == 0 && text.starts_with(mark) {
+            text.drain(..mark.len());
+        }
         Ok(())
+    }
+
+    /// Where the first line begins from `begin` on, if one does before `end`.
+    fn first_line(&mut self, begin: u64, end: u64) -> io::Result<Option<u64>> {
+        const STEP: u64 = 256;
+        // The byte before: if it ends a line, the next line begins here.
+        let Some(mut at) = begin.checked_sub(1) else { return Ok(Some(0)) };
+        self.input.seek(SeekFrom::Start(at))?;
+        let mut step = Vec::new();
+        while at < end {
+            step.clear();
+            (&mut self.input).take(STEP.min(end - at)).read_to_end(&mut step)?;
+            if let Some(end_of_line) = memchr(b'\n', &step) {
+                let begin = at + end_of_line as u64 + 1;
+                return Ok(Some(begin).filter(|begin| *begin < end));
+            }
+            if step.is_empty() {
+                break;
+            }
+            at += step.len() as u64;
+        }
+        Ok(None)
     }
 
     /// Adds the rest of the last line.

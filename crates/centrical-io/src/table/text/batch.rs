@@ -1,0 +1,208 @@
+//! Rows of bare numbers, many at a time: the separators of a text first, and then a column of numbers side by side, as the
+//! vectors of the processor have room for them.
+//!
+//! A number of at most 16 bytes stands at the end of two words of eight. Its point is taken out, and what is before it moves
+//! up; then neighbours are joined to pairs, pairs to fours, fours to eight. As in [`super::number`], such a number is
+//! a whole one divided by a power of ten, and its last bit that of any correctly rounding parser.
+
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
+)]
+
+use pulp::{Arch, Simd, WithSimd};
+
+/// Rows that are read together.
+pub(super) const ROWS: usize = 64;
+
+/// Ones in each of eight bytes.
+const ONES: u64 = 0x0101_0101_0101_0101;
+
+/// The top bits of eight bytes.
+const TOPS: u64 = 0x80 * ONES;
+
+const POWERS: [f64; 8] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
+
+/// Where the delimiters and the ends of lines are in a text, in ascending order.
+pub(super) fn separators(text: &[u8], delimiter: u8, places: &mut Vec<u32>) {
+    Arch::new().dispatch(Separators { text, delimiter, places });
+}
+
+struct Separators<'a> {
+    text: &'a [u8],
+    delimiter: u8,
+    places: &'a mut Vec<u32>,
+}
+
+impl WithSimd for Separators<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { text, delimiter, places } = self;
+        places.clear();
+        let is_separator = |byte: u8| byte == delimiter || byte == b'\n';
+        let (steps, rest) = text.as_chunks::<64>();
+        let mut at = 0;
+        for step in steps {
+            let mut found = 0_u64;
+            for (k, byte) in step.iter().enumerate() {
+                found |= u64::from(is_separator(*byte)) << k;
+            }
+            while found != 0 {
+                places.push(at + found.trailing_zeros());
+                found &= found - 1;
+            }
+            at += 64;
+        }
+        places.extend((at..).zip(rest).filter(|(_, byte)| is_separator(**byte)).map(|(at, _)| at));
+    }
+}
+
+/// The texts of a column of numbers.
+pub(super) struct Texts {
+    /// The last eight bytes before the end of each, and the eight before.
+    low: [u64; ROWS],
+    high: [u64; ROWS],
+    /// Lengths without the sign.
+    length: [u64; ROWS],
+    /// The sign's bit.
+    sign: [u64; ROWS],
+}
+
+impl Texts {
+    pub const EMPTY: Self = Self { low: [0; ROWS], high: [0; ROWS], length: [0; ROWS], sign: [0; ROWS] };
+
+    /// Takes the text from `start` to `end` for the number of a row. Whether it can be one of this kind.
+    #[inline]
+    pub fn take(&mut self, row: usize, text: &[u8], start: usize, end: usize) -> bool {
+        let words =
+            end.checked_sub(16).and_then(|from| text.get(from..end)).and_then(|words| words.first_chunk::<16>());
+        let (Some(words), Some(first)) = (words, text.get(start)) else { return false };
+        let (high, low) = words.split_at(8);
+        let minus = u64::from(*first == b'-');
+        let length = (end as u64).wrapping_sub(start as u64).wrapping_sub(minus);
+        self.low[row] = u64::from_le_bytes(low.try_into().unwrap_or_default());
+        self.high[row] = u64::from_le_bytes(high.try_into().unwrap_or_default());
+        self.length[row] = length;
+        self.sign[row] = minus << 63;
+        length.wrapping_sub(1) < 16
+    }
+
+    /// The numbers; none if one of them is no bare number, or has more than 15 digits or more than 7 decimals.
+    pub fn numbers(&self) -> Option<[f64; ROWS]> {
+        Arch::new().dispatch(Numbers(self))
+    }
+}
+
+struct Numbers<'a>(&'a Texts);
+
+impl WithSimd for Numbers<'_> {
+    type Output = Option<[f64; ROWS]>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Option<[f64; ROWS]> {
+        let Self(texts) = self;
+        let mut numbers = [0.0; ROWS];
+        let mut wrong = 0;
+        for row in 0..ROWS {
+            let length = texts.length[row];
+            // The digits, as numbers; zeros before them.
+            let (short, long) = (8 - length.min(8), 16 - length.max(8));
+            let low = (texts.low[row] ^ (0x30 * ONES)) >> (8 * short) << (8 * short);
+            let high = (texts.high[row] ^ (0x30 * ONES)) >> (4 * long) >> (4 * long) << (4 * long) << (4 * long);
+            // The point: the top bit of its byte, if it is among the last eight bytes.
+            let others = low ^ ((0x30 ^ 0x2e) * ONES);
+            let point = !(((others & !TOPS) + !TOPS) | others) & TOPS;
+            let before = (point >> 7).wrapping_sub(1);
+            let after = !(point << 1).wrapping_sub(1);
+            let has_point = point != 0;
+            let joined_low = (low & after) | ((low & before) << 8) | (high >> 56);
+            let (joined_low, joined_high) = if has_point { (joined_low, high << 8) } else { (low, high) };
+            let decimals = if has_point { u64::from(point.leading_zeros()) / 8 } else { 0 };
+            for digits in [joined_low, joined_high] {
+                wrong |= (digits.wrapping_add(0x76 * ONES) | digits) & TOPS;
+            }
+            // A point with nothing after it, a number of nothing but a point, one of 16 digits.
+            wrong |= u64::from(has_point && (decimals == 0 || decimals + 1 == length));
+            wrong |= u64::from(!has_point && length == 16);
+            let whole = eight(joined_high) * 100_000_000 + eight(joined_low);
+            #[expect(clippy::cast_possible_wrap, reason = "at most 15 digits, below 2^53")]
+            let number = whole as i64 as f64 / POWERS[(decimals & 7) as usize];
+            numbers[row] = f64::from_bits(number.to_bits() | texts.sign[row]);
+        }
+        (wrong == 0).then_some(numbers)
+    }
+}
+
+/// The number that eight digits make, the first in the lowest byte.
+#[inline(always)]
+fn eight(digits: u64) -> u64 {
+    let pairs = (digits.wrapping_mul(10).wrapping_add(digits >> 8)) & 0x00ff_00ff_00ff_00ff;
+    let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_ffff_0000_ffff;
+    (fours.wrapping_mul(10_000).wrapping_add(fours >> 32)) & 0xffff_ffff
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ROWS, Texts, separators};
+
+    /// A column of one number.
+    fn read(text: &str) -> Option<f64> {
+        let line = format!("0123456789abcdef,{text},");
+        let mut texts = Texts::EMPTY;
+        let taken = (0..ROWS).all(|row| texts.take(row, line.as_bytes(), 17, line.len() - 1));
+        let numbers = taken.then(|| texts.numbers())??;
+        assert!(numbers.iter().all(|number| number.to_bits() == numbers[0].to_bits()));
+        Some(numbers[0])
+    }
+
+    #[test]
+    fn bare_numbers_are_read_to_the_last_bit() {
+        let mut seed = 1_u64;
+        let mut below = |end: u64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) % end
+        };
+        for _ in 0..100_000 {
+            let decimals = below(8);
+            let whole = 1 + below(15 - decimals);
+            let mut digits = |count: u64| -> String {
+                (0..count).map(|_| char::from_digit(u32::try_from(below(10)).unwrap(), 10).unwrap()).collect()
+            };
+            let part = if decimals == 0 { String::new() } else { format!(".{}", digits(decimals)) };
+            let sign = if digits(1).as_str() < "5" { "-" } else { "" };
+            let text = format!("{sign}{}{part}", digits(whole));
+            let expected: f64 = text.parse().unwrap();
+            match read(&text) {
+                Some(number) => assert_eq!(number.to_bits(), expected.to_bits(), "{text}"),
+                None => assert!(text.len() > 16, "{text}"),
+            }
+        }
+    }
+
+    #[test]
+    fn other_texts_are_left() {
+        for text in
+            ["", "-", "+1", ".5", "-.5", ".", "-.", "1.", "1.12345678", "1e5", "1.5e-3", "nan", "--1", "a", "1.2.3"]
+        {
+            assert_eq!(read(text), None, "{text}");
+        }
+        for text in [" 1", "1 ", "1\r", "\"1\"", "1-", "1234567890123456", "12345678901234567", "1/2", "1:2"] {
+            assert_eq!(read(text), None, "{text}");
+        }
+        assert_eq!(read("123456789012345"), Some(123_456_789_012_345.0));
+        assert_eq!(read("-12345678.1234567"), Some(-12_345_678.123_456_7));
+        assert_eq!(read("-123456789.1234567"), None);
+        assert_eq!(read("-1234567.1234567"), Some(-1_234_567.123_456_7));
+    }
+
+    #[test]
+    fn every_separator_is_found() {
+        let text: Vec<u8> = (0..1000_u32).map(|i| b"01;\n,.5-"[(i * i / 7 % 8) as usize]).collect();
+        let mut places = Vec::new();
+        separators(&text, b';', &mut places);
+        let expected: Vec<u32> = (0..1000).filter(|i| matches!(text[*i as usize], b';' | b'\n')).collect();
+        assert_eq!(places, expected);
+    }
+}
