@@ -42,9 +42,9 @@ fn in_place(f: &mut [Vec<f64>; 3]) -> [&mut [f64]; 3] {
     f.each_mut().map(Vec::as_mut_slice)
 }
 
-#[divan::bench(sample_count = 20, args = [kozlov as fn() -> Vec<Term>, with_products])]
-fn one_thread(bencher: Bencher, terms: fn() -> Vec<Term>) {
-    let terms = terms();
+#[divan::bench(sample_count = 20, args = ["kozlov", "with products"])]
+fn one_thread(bencher: Bencher, model: &str) {
+    let terms = if model == "kozlov" { kozlov() } else { with_products() };
     let compensation = Compensation::new(&terms, 2000.0).unwrap();
     let bencher = bencher.counter(ItemsCount::new(READINGS)).with_inputs(readings);
     bencher.bench_local_refs(|f| compensation.apply_all(in_place(f)).unwrap());

@@ -28,7 +28,7 @@ impl Effort {
         Self { mounting_nodes: (200_000 / plateaus.max(1)).clamp(20, 1000), visit_nodes: 0, trials: 120 }
     }
 
-    /// Until no other set of mountings can hold a plan that is better by more than 0.1 % of the uncertainty.
+    /// Until no other set of mountings can hold a plan that is better by more than 0.25 % of the uncertainty.
     pub const CERTIFIED: Self = Self { mounting_nodes: 1 << 20, visit_nodes: 0, trials: 120 };
 
     /// Until nothing is left to find: for small problems.

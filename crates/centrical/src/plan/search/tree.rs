@@ -50,9 +50,9 @@ pub(super) struct Tree<'a> {
 const LOOSE: f64 = 0.06;
 
 /// Known to this part of the criterion, nodes are not divided: where the best of all is sought, and where a plan that is
-/// nearly as good will do (0.1 % of an uncertainty).
+/// nearly as good will do (0.25 % of an uncertainty).
 const SAME: f64 = 1e-7;
-const NEARLY: f64 = 2e-3;
+const NEARLY: f64 = 5e-3;
 
 impl<'a> Tree<'a> {
     pub fn new(problem: &'a Problem<'a>, time: f64, effort: Effort) -> Self {
