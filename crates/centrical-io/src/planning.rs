@@ -171,8 +171,8 @@ impl Planning {
         let effort = match (certify, self.time) {
             (true, _) => Effort::CERTIFIED,
             (false, Some(_)) => usual,
-            // The shortest plan is sought by a search for each of a dozen times.
-            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 16, ..usual },
+            // The shortest plan is sought by a search for each of some times.
+            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 4, ..usual },
         };
         let Criterion::Worst(goals) = &self.criterion else { return self.best(&self.criterion, effort) };
         if self.type_b == TypeB::default() {

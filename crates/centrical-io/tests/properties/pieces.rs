@@ -89,8 +89,8 @@ fn a_comment_with_as_many_delimiters_is_no_row() {
         if k % 100 == 50 {
             text.push_str("# noon,0.5,1.5,2.5,3.5\n");
         }
-        writeln!(text, "\"a, b\",{},1.5,2.5,{}", k as f64 / 8.0, k % 7).unwrap();
-        writeln!(text, "c,{},1.5,2.5,{}", k as f64 / 8.0 + 0.0625, k % 5).unwrap();
+        writeln!(text, "\"a, b\",{},1.5,2.5,{}", f64::from(k) / 8.0, k % 7).unwrap();
+        writeln!(text, "c,{},1.5,2.5,{}", f64::from(k) / 8.0 + 0.0625, k % 5).unwrap();
     }
     fs::write(&file, text).unwrap();
     let record = read_record(&file, &Columns::default()).unwrap();

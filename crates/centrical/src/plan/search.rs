@@ -101,9 +101,23 @@ pub fn shortest_for_goals(
         return Err(PlanError::OutOfReach { factor: (0.5 * everything.value).exp() });
     }
     // A plan that reaches them in a time, or none; where the search ran to its end there is none.
-    let reached = |time: f64| {
-        let plan = Tree { wanted: Some(0.0), ..Tree::new(&problem, time, effort) }.run();
-        (plan.criterion <= 1.0).then_some(plan)
+    let fast = Effort { mounting_nodes: effort.mounting_nodes.div_ceil(4), ..effort };
+    let search = |time: f64| Tree { wanted: Some(0.0), ..Tree::new(&problem, time, fast) };
+    let reached = |time: f64| Some(search(time).run()).filter(|plan| plan.criterion <= 1.0);
+    // The shortest plan on the mountings of one that reaches them.
+    let on_its_mountings = |mut plan: Plan| {
+        let used = problem.mountings_of(&plan.schedule);
+        let (mut low, mut time) = (candidates.set_up_time(&used), plan.schedule.time);
+        while time / low > 1.0 + resolution {
+            let middle = (low * time).sqrt();
+            let shorter = search(middle).run_on(used.clone(), &plan.continuous.visits);
+            if shorter.criterion <= 1.0 {
+                (time, plan) = (middle, shorter);
+            } else {
+                low = middle;
+            }
+        }
+        (time, plan)
     };
     // No schedule is shorter than the continuous design that reaches the goals.
     let (mut below, mut above) = (problem.least_time(), everything.time);
@@ -112,26 +126,28 @@ pub fn shortest_for_goals(
         let reaches = Tree::new(&problem, middle, effort).relaxed_reaches();
         if reaches { above = middle } else { below = middle }
     }
-    let (mut step, mut low) = (resolution, below);
-    let (mut time, mut best) = loop {
+    let mut step = resolution;
+    let mut best = loop {
         let time = (below * (1.0 + step)).min(everything.time);
         if let Some(plan) = reached(time) {
-            break (time, plan);
+            break plan;
         }
         if time >= everything.time {
             let plan = Tree::new(&problem, time, effort).run();
             return Ok(Plan { schedule: candidates.schedule(everything.visits(candidates)), ..plan });
         }
-        (low, step) = (time, 2.0 * step);
+        step *= 2.0;
     };
-    while time / low > 1.0 + resolution {
-        let middle = (low * time).sqrt();
-        match reached(middle) {
-            Some(plan) => (time, best) = (middle, plan),
-            None => low = middle,
+    // The best plan for that time reaches more than the goals: its mountings reach them in less, and so on.
+    loop {
+        let (time, shorter) = on_its_mountings(best);
+        let thorough = Tree::new(&problem, time, effort).run();
+        let is_better = thorough.criterion < shorter.criterion;
+        let (next_time, next) = if is_better { on_its_mountings(thorough.clone()) } else { (time, shorter.clone()) };
+        if next_time * (1.0 + resolution) > time {
+            // What else this time is good for, and a bound of its own.
+            return Ok(if thorough.criterion <= 1.0 { thorough } else { shorter });
         }
+        best = next;
     }
-    // What else this time is good for, and a bound of its own.
-    let thorough = Tree::new(&problem, time, effort).run();
-    Ok(if thorough.criterion <= 1.0 { thorough } else { best })
 }

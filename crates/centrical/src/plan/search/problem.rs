@@ -1,6 +1,6 @@
 //! Candidates and criterion made ready for the search.
 
-use crate::plan::candidates::Candidates;
+use crate::plan::candidates::{Candidates, Schedule};
 use crate::plan::criterion::Criterion;
 use crate::plan::error::PlanError;
 use crate::plan::exchange::{Exchange, Whole};
@@ -24,6 +24,15 @@ impl<'a> Problem<'a> {
 
     pub fn mountings(&self) -> usize {
         self.candidates.experiment().mountings.len()
+    }
+
+    /// Which mountings a schedule uses.
+    pub fn mountings_of(&self, schedule: &Schedule) -> Vec<bool> {
+        let mut used = vec![false; self.mountings()];
+        for visit in &schedule.visits {
+            used[self.candidates.experiment().set_points[visit.plateau].mounting] = true;
+        }
+        used
     }
 
     pub fn mounting_of(&self, atom: usize) -> usize {

@@ -3,6 +3,7 @@
 
 use rayon::prelude::*;
 
+use super::Plan;
 use super::tree::{Node, Tree};
 use crate::plan::exchange::Whole;
 use crate::plan::relaxation::Relaxed;
@@ -11,6 +12,14 @@ use crate::plan::relaxation::Relaxed;
 const ROUGH: f64 = 0.01;
 
 impl Tree<'_> {
+    /// The best schedule on a set of mountings alone, sought from the continuous design of another time.
+    pub fn run_on(mut self, set: Vec<bool>, start: &[f64]) -> Plan {
+        let restricted = self.restricted(&set, start);
+        self.round(set, restricted);
+        self.polish();
+        self.into_plan()
+    }
+
     /// Seeks a schedule on the mountings that the node's continuous design uses.
     pub fn seek(&mut self, node: &Node) {
         if let Some(set) = self.affordable(node).filter(|set| !self.tried.contains(set)) {

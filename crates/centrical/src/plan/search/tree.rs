@@ -49,10 +49,11 @@ pub(super) struct Tree<'a> {
 /// A node that no bound can cut off is known this well before it is divided (3 % of an uncertainty).
 const LOOSE: f64 = 0.06;
 
-/// Known to this part of the criterion, nodes are not divided: where the best of all is sought, and where a plan that is
-/// nearly as good will do (0.25 % of an uncertainty).
+/// Known to this part of the criterion, nodes are not divided: where the best of all is sought; where a plan that is nearly
+/// as good will do (0.25 % of an uncertainty); and where goals are to be met, that a plan of less time may just miss.
 const SAME: f64 = 1e-7;
 const NEARLY: f64 = 5e-3;
+const NEARLY_MET: f64 = 2e-3;
 
 impl<'a> Tree<'a> {
     pub fn new(problem: &'a Problem<'a>, time: f64, effort: Effort) -> Self {
@@ -110,7 +111,11 @@ impl<'a> Tree<'a> {
 
     /// How near to the best schedule a bound is as good as the same.
     pub fn same(&self) -> f64 {
-        if self.effort.visit_nodes > 0 { SAME } else { NEARLY }
+        match self.wanted {
+            _ if self.effort.visit_nodes > 0 => SAME,
+            Some(_) => NEARLY_MET,
+            None => NEARLY,
+        }
     }
 
     /// How well a continuous design is known at the end of a branch.
@@ -293,7 +298,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    fn into_plan(self) -> Plan {
+    pub fn into_plan(self) -> Plan {
         let open = vec![true; self.problem.mountings()];
         let candidates = self.problem.candidates;
         let best = self.best.clone().unwrap_or_else(|| {
