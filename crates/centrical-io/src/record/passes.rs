@@ -10,8 +10,8 @@ use super::{Columns, Wanted, stretch};
 use crate::error::Error;
 use crate::table::{Block, Extent, Index};
 
-/// Samples that are kept at most: 128 MB.
-const MOST: usize = 4_000_000;
+/// Samples that are kept at most: an hour at 1 kHz, 115 MB.
+const MOST: usize = 3_600_000;
 
 /// The record in a file.
 pub(crate) struct RecordFile<'a> {
