@@ -168,10 +168,8 @@ impl Search<'_> {
         let fits = |range: Range<usize>| levels.fit(range).is_some_and(|fit| !fit.has_two_off(&scale, cut));
         let quarter = core.len() / 4;
         let (first, last) = (core.start + quarter, core.end - quarter);
-        let guess = &self.ranges[k];
-        let end = last + furthest(to - last, guess.end.saturating_sub(last), |more| fits(first..last + more));
-        let to_start = furthest(first - from, first.saturating_sub(guess.start), |more| fits(first - more..end));
-        let start = first - to_start;
+        let end = last + furthest(to - last, |more| fits(first..last + more));
+        let start = first - furthest(first - from, |more| fits(first - more..end));
         // A block off alone is a disturbance inside, and the begin of a ramp at an edge.
         let off = levels.fit(start..end).map(|fit| fit.off(&scale, cut)).unwrap_or_default();
         let at_edge = |block: Option<&bool>| usize::from(block.is_some_and(|off| *off));
@@ -201,18 +199,16 @@ struct Guess {
     seen: bool,
 }
 
-/// The greatest of `0..=most` that is accepted, looked for about a guess by steps that are doubled on success and halved on
-/// refusal. Passes are repeated while they gain: chance may refuse a value below the limit, and hardly its neighbours too.
-fn furthest(most: usize, guess: usize, accepted: impl Fn(usize) -> bool) -> usize {
-    const FIRST_STEP: usize = 16;
-    let guess = guess.max(1).min(most);
-    let (mut reached, mut step) = (0, guess);
+/// The greatest of `0..=most` that is accepted, by steps halved on refusal. Passes are repeated while they gain: chance
+/// may refuse a value below the limit, and hardly its neighbours too.
+fn furthest(most: usize, accepted: impl Fn(usize) -> bool) -> usize {
+    let mut reached = 0;
     loop {
         let before = reached;
+        let mut step = most - reached;
         while step > 0 {
             if accepted(reached + step) {
                 reached += step;
-                step = if before == 0 && reached == guess { FIRST_STEP } else { 2 * step };
                 step = step.min(most - reached);
             } else {
                 step /= 2;
@@ -221,7 +217,6 @@ fn furthest(most: usize, guess: usize, accepted: impl Fn(usize) -> bool) -> usiz
         if reached == before {
             return reached;
         }
-        step = FIRST_STEP.min(most - reached);
     }
 }
 
