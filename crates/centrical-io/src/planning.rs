@@ -161,7 +161,7 @@ pub struct FrontierRow {
 }
 
 impl Planning {
-    /// The best plan for the time, or the shortest for the goals; `certify`: searched until its bound is within 0.1 % or all
+    /// The best plan for the time, or the shortest for the goals; `certify`: searched until its bound is within 0.25 % or all
     /// sets of mountings are done with.
     ///
     /// # Errors

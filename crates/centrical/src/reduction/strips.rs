@@ -73,10 +73,17 @@ impl<'a> Strips<'a> {
         let without = self.terms - coefficients.len();
         all[without..].iter_mut().zip(coefficients).for_each(|(b, of)| *b = (*of).into());
         let mut room = Room { columns: [[0.0; STRIP]; TERMS], readings: [[0.0; STRIP]; 3] };
+        let fit = Fit {
+            samples: self.samples,
+            terms: self.terms,
+            reference: self.reference,
+            coefficients: all,
+            limits: limits.into(),
+            once_out,
+        };
         let mut changed = false;
         for strip in &mut self.each {
-            let fit = Fit { samples: self.samples, coefficients: &all, limits: limits.into(), once_out };
-            changed |= widest(Judgement { strip, fit, terms: self.terms, reference: self.reference, room: &mut room });
+            changed |= widest(Judgement { strip, fit: &fit, room: &mut room });
         }
         changed
     }
@@ -120,7 +127,9 @@ impl<'a> Strips<'a> {
 /// A fit that samples are judged by.
 struct Fit<'a> {
     samples: &'a Samples<'a>,
-    coefficients: &'a [[f64; 3]; TERMS],
+    terms: usize,
+    reference: [f64; 3],
+    coefficients: [[f64; 3]; TERMS],
     limits: [f64; 3],
     once_out: bool,
 }
@@ -128,9 +137,7 @@ struct Fit<'a> {
 /// A strip's samples on their way to be judged.
 struct Judgement<'a> {
     strip: &'a mut Strip,
-    fit: Fit<'a>,
-    terms: usize,
-    reference: [f64; 3],
+    fit: &'a Fit<'a>,
     room: &'a mut Room,
 }
 
@@ -139,7 +146,7 @@ impl WithSimd for Judgement<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> bool {
-        self.strip.judge(&self.fit, self.terms, &self.reference, self.room)
+        self.strip.judge(self.fit, self.room)
     }
 }
 
@@ -156,16 +163,16 @@ impl Strip {
     }
 
     #[inline(always)]
-    fn judge(&mut self, fit: &Fit, terms: usize, reference: &[f64; 3], room: &mut Room) -> bool {
+    fn judge(&mut self, fit: &Fit, room: &mut Room) -> bool {
         let (n, samples) = (self.range.len(), fit.samples);
         let f_z = samples.f_z.each_ref().map(|f| &f[self.range.clone()]);
         let mut columns = room.columns.each_mut().map(|column| &mut column[..n]);
-        let columns = &mut columns[..terms];
+        let columns = &mut columns[..fit.terms];
         let mut readings = room.readings.each_mut().map(|reading| &mut reading[..n]);
         samples.window.shape.design(&samples.t[self.range.clone()], columns);
         for (axis, (residuals, f)) in readings.iter_mut().zip(f_z).enumerate() {
             residuals.copy_from_slice(f);
-            for (column, b) in columns.iter().zip(fit.coefficients) {
+            for (column, b) in columns.iter().zip(&fit.coefficients) {
                 subtract(residuals, b[axis], column);
             }
         }
@@ -188,7 +195,7 @@ impl Strip {
         }
         if changed {
             self.take_range(samples);
-            for ((reading, f), reference) in readings.iter_mut().zip(f_z).zip(reference) {
+            for ((reading, f), reference) in readings.iter_mut().zip(f_z).zip(fit.reference) {
                 reading.iter_mut().zip(f).for_each(|(reading, f)| *reading = f - reference);
                 self.bad.iter().for_each(|i| reading[*i] = 0.0);
             }

@@ -2,7 +2,7 @@
 //! vectors of the processor have room for them.
 //!
 //! A number of at most 16 bytes stands at the end of two words of eight. Its point is taken out, and what is before it moves
-//! up; then neighbours are joined to pairs, pairs to fours, fours to eight. As in [`super::number`], such a number is
+//! up; then the digits are joined as in [`super::number`]. As there, such a number is
 //! a whole one divided by a power of ten, and its last bit that of any correctly rounding parser.
 
 #![allow(
@@ -12,16 +12,13 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use super::number::{ONES, POWERS, joined};
+
 /// Rows that are read together.
 pub(super) const ROWS: usize = 64;
 
-/// Ones in each of eight bytes.
-const ONES: u64 = 0x0101_0101_0101_0101;
-
 /// The top bits of eight bytes.
 const TOPS: u64 = 0x80 * ONES;
-
-const POWERS: [f64; 8] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 
 /// Where the delimiters and the ends of lines are in a text, in ascending order.
 pub(super) fn separators(text: &[u8], delimiter: u8, places: &mut Vec<u32>) {
@@ -117,30 +114,22 @@ impl WithSimd for Numbers<'_> {
             let before = (point >> 7).wrapping_sub(1);
             let after = !(point << 1).wrapping_sub(1);
             let has_point = point != 0;
-            let joined_low = (low & after) | ((low & before) << 8) | (high >> 56);
-            let (joined_low, joined_high) = if has_point { (joined_low, high << 8) } else { (low, high) };
+            let digits_low = (low & after) | ((low & before) << 8) | (high >> 56);
+            let (digits_low, digits_high) = if has_point { (digits_low, high << 8) } else { (low, high) };
             let decimals = if has_point { u64::from(point.leading_zeros()) / 8 } else { 0 };
-            for digits in [joined_low, joined_high] {
+            for digits in [digits_low, digits_high] {
                 wrong |= (digits.wrapping_add(0x76 * ONES) | digits) & TOPS;
             }
             // A point with nothing after it, a number of nothing but a point, one of 16 digits.
             wrong |= u64::from(has_point && (decimals == 0 || decimals + 1 == length));
             wrong |= u64::from(!has_point && length == 16);
-            let whole = eight(joined_high) * 100_000_000 + eight(joined_low);
+            let whole = joined(digits_high) * 100_000_000 + joined(digits_low);
             #[expect(clippy::cast_possible_wrap, reason = "at most 15 digits, below 2^53")]
             let number = whole as i64 as f64 / POWERS[(decimals & 7) as usize];
             numbers[row] = f64::from_bits(number.to_bits() | texts.sign[row]);
         }
         (wrong == 0).then_some(numbers)
     }
-}
-
-/// The number that eight digits make, the first in the lowest byte.
-#[inline(always)]
-fn eight(digits: u64) -> u64 {
-    let pairs = (digits.wrapping_mul(10).wrapping_add(digits >> 8)) & 0x00ff_00ff_00ff_00ff;
-    let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_ffff_0000_ffff;
-    (fours.wrapping_mul(10_000).wrapping_add(fours >> 32)) & 0xffff_ffff
 }
 
 #[cfg(test)]

@@ -5,12 +5,12 @@
 //! correctly rounding parser. What is written otherwise is left to such a parser.
 
 /// Ones in each of eight bytes.
-const ONES: u64 = 0x0101_0101_0101_0101;
+pub(super) const ONES: u64 = 0x0101_0101_0101_0101;
 
 /// Bytes that are looked at: sign, eight bytes of whole digits and point, eight of decimals, and the byte after.
 const REACH: usize = 18;
 
-const POWERS: [f64; 8] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
+pub(super) const POWERS: [f64; 8] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 const WHOLE_POWERS: [u64; 8] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000];
 
 /// The number that a text starts with, and its length; nothing if it is not of the plain kind or its end may not be in
@@ -63,13 +63,19 @@ fn digits(word: u64) -> u32 {
     others.trailing_zeros() / 8
 }
 
-/// The number that the first `count` of eight digits make, `count` from 1 to 8: neighbours are joined to pairs, pairs to
-/// fours, fours to eight.
+/// The number that the first `count` of eight bytes make, `count` from 1 to 8.
 #[inline]
 fn value(word: u64, count: u32) -> u64 {
     // The digits to the end, zeros before them.
-    let word = (word ^ (ONES * u64::from(b'0'))) << (64 - 8 * count);
-    let pairs = (word.wrapping_mul(10).wrapping_add(word >> 8)) & 0x00ff_00ff_00ff_00ff;
+    joined((word ^ (ONES * u64::from(b'0'))) << (64 - 8 * count))
+}
+
+/// The number that eight digits make, the first in the lowest byte: neighbours are joined to pairs, pairs to fours, fours to
+/// eight.
+#[expect(clippy::inline_always, reason = "a batch of numbers is compiled for the widest vectors")]
+#[inline(always)]
+pub(super) fn joined(digits: u64) -> u64 {
+    let pairs = (digits.wrapping_mul(10).wrapping_add(digits >> 8)) & 0x00ff_00ff_00ff_00ff;
     let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_ffff_0000_ffff;
     (fours.wrapping_mul(10_000).wrapping_add(fours >> 32)) & 0xffff_ffff
 }
