@@ -1,12 +1,14 @@
 //! Records of the unit and telemetry of the centrifuge, in SI.
 
+mod kept;
 mod passes;
 
 use std::path::Path;
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 
-pub(crate) use self::passes::{Kept, RecordFile};
+pub(crate) use self::kept::{Kept, Room};
+pub(crate) use self::passes::RecordFile;
 use crate::error::Error;
 use crate::table::{self, Block, ColumnName, Extent, Field, Index, Rule, Visitor};
 

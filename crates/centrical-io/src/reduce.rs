@@ -1,6 +1,7 @@
 //! From a session's files to plateau means: the part of the work that is proportional to the data.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical::reduction::{ClockOffset, NoiseModel, PlateauMean, RecordSlice, ReducedMounting, ScheduledPlateau};
 use centrical::{Observation, SetPoint, linear};
@@ -11,7 +12,7 @@ use crate::error::Error;
 use crate::input::Input;
 use crate::overview::RecordOverview;
 use crate::plateaus::PlateauMean as TabledPlateau;
-use crate::record::{Kept, RecordFile};
+use crate::record::{Kept, RecordFile, Room};
 use crate::session::Session;
 use crate::steadiness::Steadiness;
 
@@ -121,14 +122,10 @@ impl Reduced {
     }
 }
 
-/// One mounting after the other, then the noise of all of them together, then the covariances.
+/// The mountings, then the noise of all of them together, then the covariances.
 fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Reduced, Error> {
-    // One after the other, each on all threads, in the same room.
-    let mut kept = Kept::default();
-    let mountings = 0..session.experiment.mountings.len();
-    let mountings = mountings.map(|mounting| one_mounting(session, mounting, &mut kept, progress));
-    let mountings: Vec<(ReducedMounting, RecordOverview)> = mountings.collect::<Result<_, _>>()?;
-    let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) = mountings.into_iter().unzip();
+    let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) =
+        all_mountings(session, progress)?.into_iter().unzip();
     let noise = NoiseModel::pool(&reduced);
     let means = reduced.iter().flat_map(|mounting| mounting.means(&noise));
     let findings =
@@ -140,6 +137,45 @@ fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Re
         held_out: Vec::new(),
         inputs: Vec::new(),
     })
+}
+
+/// Mountings under way at a time: while one is searched for its plateaus, which threads cannot share well, the other is
+/// read.
+const AT_A_TIME: usize = 2;
+
+/// The first mounting on all threads: it tells how many records there is room for. Then the others.
+fn all_mountings(
+    session: &Session,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<Vec<(ReducedMounting, RecordOverview)>, Error> {
+    let count = session.experiment.mountings.len();
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let room = Room::default();
+    let mut kept = Kept::new(&room);
+    let first = one_mounting(session, 0, &mut kept, progress)?;
+    let lanes = kept.fit_in().min(AT_A_TIME);
+    let next = AtomicUsize::new(1);
+    let lane = |mut kept: Kept| {
+        let mut done = Vec::new();
+        loop {
+            let mounting = next.fetch_add(1, Ordering::Relaxed);
+            if mounting >= count {
+                return done;
+            }
+            let reduced = one_mounting(session, mounting, &mut kept, progress);
+            if reduced.is_err() {
+                // Those before it are under way: which error is the first does not depend on the threads.
+                next.store(count, Ordering::Relaxed);
+            }
+            done.push((mounting, reduced));
+        }
+    };
+    let kept: Vec<Kept> = std::iter::once(kept).chain((1..lanes).map(|_| Kept::new(&room))).collect();
+    let mut others: Vec<_> = kept.into_par_iter().map(lane).collect::<Vec<_>>().into_iter().flatten().collect();
+    others.sort_by_key(|(mounting, _)| *mounting);
+    std::iter::once(Ok(first)).chain(others.into_iter().map(|(_, reduced)| reduced)).collect()
 }
 
 /// Twice through the record: where the plateaus are, and what they read.

@@ -254,7 +254,7 @@ fn ended_lines(input: &mut File, bytes: u64) -> std::io::Result<u64> {
 }
 
 /// Blocks that are gathered for the visitor.
-const BATCH: usize = 16;
+const BATCH: usize = 8;
 
 /// Rows on their way from a parser to the visitor.
 struct Rows<'a> {

@@ -6,12 +6,10 @@ use std::path::Path;
 use centrical::reduction::{Record, RecordSlice, Survey};
 use rayon::prelude::*;
 
+use super::kept::Kept;
 use super::{Columns, Wanted, stretch};
 use crate::error::Error;
 use crate::table::{Block, Extent, Index};
-
-/// Samples that are kept at most: an hour at 1 kHz, 115 MB.
-const MOST: usize = 3_600_000;
 
 /// The record in a file.
 pub(crate) struct RecordFile<'a> {
@@ -19,41 +17,6 @@ pub(crate) struct RecordFile<'a> {
     wanted: Wanted<'a>,
     /// Told of bytes as they are read.
     progress: &'a (dyn Fn(u64) + Sync),
-}
-
-/// A record that was read once, for the second pass: its samples, unless there are too many.
-pub(crate) struct Kept {
-    /// Samples that are kept at most.
-    most: usize,
-    samples: Record,
-    /// Where they stand, if they are not kept and the file can be read from anywhere.
-    index: Option<Index>,
-    is_whole: bool,
-}
-
-impl Default for Kept {
-    fn default() -> Self {
-        Self { most: MOST, samples: Record::default(), index: None, is_whole: false }
-    }
-}
-
-impl Kept {
-    /// Begins another record, in the room of the last one.
-    fn begin(&mut self) {
-        self.samples.clear();
-        (self.index, self.is_whole) = (None, true);
-    }
-
-    fn extend(&mut self, blocks: &[Block]) {
-        for block in blocks {
-            self.is_whole &= self.samples.t.len() + block[0].len() <= self.most;
-            if self.is_whole {
-                self.samples.extend(stretch(block));
-            } else {
-                self.samples = Record::default();
-            }
-        }
-    }
 }
 
 impl<'a> RecordFile<'a> {
@@ -70,13 +33,14 @@ impl<'a> RecordFile<'a> {
         kept.index = self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks: &[Block]| {
             if let Some(survey) = &mut survey {
                 let condense = || blocks.par_iter().map(|block| survey.condense(stretch(block))).collect();
-                let (condensed, ()): (Vec<_>, ()) = rayon::join(condense, || kept.extend(blocks));
+                let keep = || blocks.iter().for_each(|block| kept.extend(stretch(block)));
+                let (condensed, ()): (Vec<_>, ()) = rayon::join(condense, keep);
                 for stretch in condensed {
                     survey.append(stretch);
                 }
             } else {
-                kept.extend(blocks);
                 for block in blocks {
+                    kept.extend(stretch(block));
                     beginning.extend(stretch(block));
                 }
                 if beginning.t.len() >= Survey::BEGINNING {
@@ -98,7 +62,7 @@ impl<'a> RecordFile<'a> {
         average: &(dyn Fn(usize, RecordSlice) -> T + Sync),
     ) -> Result<Vec<T>, Error> {
         if kept.is_whole {
-            let of = |(k, window): (usize, &[f64; 2])| average(k, kept.samples.as_slice().between(*window));
+            let of = |(k, window): (usize, &[f64; 2])| kept.between(*window, |samples| average(k, samples));
             let averaged = windows.par_iter().enumerate().map(of).collect();
             (self.progress)(std::fs::metadata(self.file).map_or(0, |file| file.len()));
             return Ok(averaged);
@@ -178,6 +142,7 @@ mod tests {
 
     use flate2::{Compression, write::GzEncoder};
 
+    use super::super::kept::Room;
     use super::*;
 
     /// The samples of windows, of records read once, again by its index, and again from start to end.
@@ -194,7 +159,8 @@ mod tests {
         encoder.finish().unwrap();
         let windows = [[0.0, 3.0], [3.5, 17.25], [17.3, 17.3], [20.0, 39.5]];
         let samples = |file: &Path, most: usize| -> Vec<(usize, Record)> {
-            let (columns, mut kept) = (Columns::default(), Kept { most, ..Kept::default() });
+            let (columns, room) = (Columns::default(), Room::of(most));
+            let mut kept = Kept::new(&room);
             let record = RecordFile::new(file, &columns, &|_| {});
             record.survey(&mut kept).unwrap();
             assert_eq!(kept.is_whole, most > 0);
@@ -205,10 +171,9 @@ mod tests {
             };
             record.windows(&kept, &windows, &whole).unwrap()
         };
-        let expected = samples(&plain, MOST);
+        let all = 40_000 * 32;
+        let expected = samples(&plain, all);
         assert_eq!(expected.iter().map(|(_, record)| record.t.len()).collect::<Vec<_>>(), [3001, 13_751, 1, 19_501]);
-        assert!(
-            samples(&plain, 0) == expected && samples(&packed, 0) == expected && samples(&packed, MOST) == expected
-        );
+        assert!(samples(&plain, 0) == expected && samples(&packed, 0) == expected && samples(&packed, all) == expected);
     }
 }

@@ -10,6 +10,7 @@ mod batch;
 mod layout;
 mod number;
 mod piece;
+mod separators;
 
 use std::path::Path;
 
@@ -19,11 +20,12 @@ use rayon::prelude::*;
 use self::batch::ROWS;
 use self::layout::{Fault, Layout, Prologue};
 pub(super) use self::piece::{Lines, Packed, Plain};
+use self::separators::Separators;
 use super::{ASCENDING, Block, Field, Rows};
 use crate::error::{Error, Place};
 
 /// Pieces read at a time.
-const PIECES: usize = 16;
+const PIECES: usize = 8;
 
 /// Where the rows of a text stand in it, for a second look.
 #[derive(Debug, Clone)]
@@ -52,8 +54,7 @@ pub(super) struct Piece {
     first_row: u64,
     /// What stands wrong, and in which line of the piece.
     fault: Option<(u64, Fault)>,
-    /// Room for the places of its separators.
-    separators: Vec<u32>,
+    separators: Separators,
 }
 
 /// Reads the table of `file` from its `lines`.
@@ -72,8 +73,13 @@ pub(super) fn read(file: &Path, lines: &mut dyn Lines, rows: &mut Rows) -> Resul
             return Ok(index);
         }
         let (pieces, blocks) = (&mut pieces[..filled], &mut blocks[..filled]);
+        let any_piece = lines.any_piece();
+        let fill =
+            |(number, piece): (u64, &mut Piece)| any_piece.map_or(Ok(()), |lines| lines.fill_alone(number, piece));
         let mut skipped = 0;
-        if index.is_none() {
+        let is_first = index.is_none();
+        if is_first {
+            fill((number, &mut pieces[0]))?;
             let start = match piece::endless_line(&pieces[0].text) {
                 Some((at, found)) => Err((at, Fault::no_table(found))),
                 None => prologue.read(&pieces[0].text, fields),
@@ -89,9 +95,16 @@ pub(super) fn read(file: &Path, lines: &mut dyn Lines, rows: &mut Rows) -> Resul
             continue;
         };
         let layout = &index.layout;
-        pieces.par_iter_mut().zip(blocks.par_iter_mut()).for_each(|(piece, block)| {
+        let read = |((k, piece), block): ((usize, &mut Piece), &mut Block)| {
+            if !is_first {
+                fill((number + k as u64, &mut *piece))?;
+            }
             piece.read(layout, skipped, fields, block);
-        });
+            Ok(())
+        };
+        let read = pieces.par_iter_mut().enumerate().zip(blocks.par_iter_mut()).map(read);
+        // Gathered before the first error is taken: which one it is does not depend on the threads.
+        read.collect::<Vec<_>>().into_iter().collect::<Result<(), Error>>()?;
         for (piece, block) in pieces.iter_mut().zip(blocks.iter()) {
             let backwards = rows.next(block);
             if let Some(fault) = backwards.map(|backwards| backwards.fault(fields)) {
@@ -167,7 +180,11 @@ impl Piece {
             text = split_line(text).1;
         }
         (self.lines, self.first_row, self.fault) = (skipped, skipped, None);
-        if let Err((at, column, found)) = piece::check_utf8(text) {
+        if let Some(delimiter) = layout.delimiter() {
+            self.separators.find(text, delimiter);
+        }
+        let is_ascii = layout.delimiter().is_some() && self.separators.is_ascii();
+        if !is_ascii && let Err((at, column, found)) = piece::check_utf8(text) {
             self.fault = Some((skipped + at, Fault { column, found, expected: "text in UTF-8".to_owned() }));
             text = &text[..piece::before_line(text, at)];
         }
@@ -188,13 +205,17 @@ impl Piece {
         fields: &[Field],
         block: &mut Block,
     ) -> Result<(), (u64, Fault)> {
-        let Some(delimiter) = layout.delimiter() else { return self.read_rows(text, layout, fields, block) };
-        let mut places = std::mem::take(&mut self.separators);
-        batch::separators(text, delimiter, &mut places);
-        let mut separators = places.as_slice();
+        if layout.delimiter().is_none() {
+            return self.read_rows(text, layout, fields, block);
+        }
+        let of_text = std::mem::take(&mut self.separators);
+        let mut separators = of_text.places();
         let mut from = 0;
         let read = loop {
-            let Some(of_batch) = separators.get(..ROWS * layout.fields()) else {
+            // Of a text that is read up to a fault, some are beyond it.
+            let of_batch = separators.get(..ROWS * layout.fields());
+            let of_batch = of_batch.filter(|places| places.last().is_some_and(|last| (*last as usize) < text.len()));
+            let Some(of_batch) = of_batch else {
                 break self.read_rows(&text[from..], layout, fields, block);
             };
             let rest = if layout.batch(text, from, of_batch, block).is_some() {
@@ -212,7 +233,7 @@ impl Piece {
             separators = &separators[separators.partition_point(|place| (*place as usize) < rest)..];
             from = rest;
         };
-        self.separators = places;
+        self.separators = of_text;
         read
     }
 

@@ -8,7 +8,7 @@ use pulp::{Simd, WithSimd};
 use super::blocks::{Blocks, MAD, median};
 use super::lanes::{subtract, widest};
 use super::shape::Shape;
-use super::triangle::{TERMS, Triangle};
+use super::triangle::{Rows, TERMS, Triangle};
 
 /// Blocks that are orthogonalised once for all ranges.
 const PIECE: usize = 64;
@@ -75,7 +75,9 @@ impl Levels {
             room[..n].copy_from_slice(&column[range.clone()]);
         }
         let mut columns = columns.each_mut().map(|column| &mut column[..n]);
-        Triangle::of(&mut columns[..self.columns.len()], &mut levels.each_mut().map(|level| &mut level[..n]))
+        let columns = &mut columns[..self.columns.len()];
+        let mut levels = levels.each_mut().map(|level| &mut level[..n]);
+        widest(Rows { terms: columns, readings: &mut levels })
     }
 }
 
@@ -99,9 +101,7 @@ impl BlockFit<'_> {
     pub fn residuals(&self) -> [Vec<f64>; 3] {
         [0, 1, 2].map(|axis| {
             let mut residuals = self.of.f_z[axis][self.range.clone()].to_vec();
-            for (column, b) in self.of.columns.iter().zip(&self.coefficients) {
-                subtract(&mut residuals, b[axis], &column[self.range.clone()]);
-            }
+            widest(Residuals { fit: self, axis, levels: &mut residuals });
             residuals
         })
     }
@@ -139,6 +139,24 @@ impl BlockFit<'_> {
             widest(Off { fit: self, from, verdicts, scale, cut });
         }
         off
+    }
+}
+
+/// Levels on an axis, to be made residuals.
+struct Residuals<'a> {
+    fit: &'a BlockFit<'a>,
+    axis: usize,
+    levels: &'a mut [f64],
+}
+
+impl WithSimd for Residuals<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for (column, b) in self.fit.of.columns.iter().zip(&self.fit.coefficients) {
+            subtract(self.levels, b[self.axis], &column[self.fit.range.clone()]);
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::lanes::dot;
+use super::lanes::product as dot;
 use super::triangle::Triangle;
 
 /// Cells in a window.

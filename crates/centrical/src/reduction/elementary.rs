@@ -89,7 +89,7 @@ pub(super) fn cos_sin(omega: f64, start: f64, t: &[f64], cos: &mut [f64], sin: &
 pub(super) fn exp(x: f64) -> f64 {
     let shifted = x * LOG2_E + ROUNDING;
     let powers = shifted - ROUNDING;
-    let y = (x - powers * LN_2_HEAD) - powers * LN_2_TAIL;
+    let y = (-powers).mul_add(LN_2_TAIL, x - powers * LN_2_HEAD);
     // The last bits of the shifted number are those of the whole powers of two.
     let scale = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
     let inside = polynomial(&EXP, y) * scale;
@@ -118,7 +118,11 @@ pub(super) fn ln(x: f64) -> f64 {
 
 #[inline(always)]
 fn polynomial<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+    let mut sum = 0.0_f64;
+    for c in coefficients.iter().rev() {
+        sum = sum.mul_add(x, *c);
+    }
+    sum
 }
 
 #[cfg(test)]

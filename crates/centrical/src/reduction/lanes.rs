@@ -1,22 +1,27 @@
 //! Sums over many numbers in lanes that do not wait for each other, in an order that is always the same.
 //!
-//! What a [`widest`] work calls is compiled for the processor's vectors only where it is inlined: hence the attributes.
+//! What a [`widest`] work calls is compiled for the processor's vectors only where it is inlined: hence the attributes, and
+//! loops where an iterator's own would be a call.
 
-/// Lanes: as many as the widest processor has for two instructions.
+use pulp::{Arch, Simd, WithSimd};
+
+/// Lanes: as many as the widest processor has for one instruction.
 const LANES: usize = 8;
 
-/// Does a work with the widest vectors of the machine. They add and multiply as single numbers do, and nothing is fused:
-/// the outcome is the same on any.
-pub(super) fn widest<W: pulp::WithSimd>(work: W) -> W::Output {
-    pulp::Arch::new().dispatch(work)
+/// Lanes of a long product: a processor has as many instructions under way.
+const LONG: usize = 4 * LANES;
+
+/// Does a work with the widest vectors of the machine. They add and multiply as single numbers do, and what is fused is
+/// written so: the outcome is the same on any.
+pub(super) fn widest<W: WithSimd>(work: W) -> W::Output {
+    Arch::new().dispatch(work)
 }
 
 /// Folds values into lanes, and the lanes into one.
 #[inline(always)]
 pub(super) fn fold<T: Copy>(values: &[f64], start: T, step: impl Fn(T, f64) -> T, join: impl Fn(T, T) -> T) -> T {
     let mut lanes = [start; LANES];
-    let whole = values.chunks_exact(LANES);
-    let rest = whole.remainder();
+    let (whole, rest) = values.as_chunks::<LANES>();
     for chunk in whole {
         for (lane, value) in lanes.iter_mut().zip(chunk) {
             *lane = step(*lane, *value);
@@ -25,7 +30,7 @@ pub(super) fn fold<T: Copy>(values: &[f64], start: T, step: impl Fn(T, f64) -> T
     for (lane, value) in lanes.iter_mut().zip(rest) {
         *lane = step(*lane, *value);
     }
-    lanes.into_iter().reduce(join).unwrap_or(start)
+    joined(lanes, join)
 }
 
 /// Sum of a function of values.
@@ -36,21 +41,61 @@ pub(super) fn sum(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
 
 /// Scalar product.
 #[inline(always)]
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut lanes = [0.0; LANES];
-    let (whole_a, whole_b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-    let rest = whole_a.remainder().iter().zip(whole_b.remainder());
-    let rest: f64 = rest.map(|(a, b)| a * b).sum();
-    for (a, b) in whole_a.zip(whole_b) {
-        for ((lane, a), b) in lanes.iter_mut().zip(a).zip(b) {
-            *lane += a * b;
+pub(super) fn dot<S: Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
+    let mut vectors = const { LONG / S::F64_LANES };
+    let mut sums = [simd.splat_f64s(0.0); LONG];
+    let ((whole_a, rest_a), (whole_b, rest_b)) = (a.as_chunks::<LONG>(), b.as_chunks::<LONG>());
+    let (mut last_a, mut last_b) = ([0.0; LONG], [0.0; LONG]);
+    last_a[..rest_a.len()].copy_from_slice(rest_a);
+    last_b[..rest_b.len()].copy_from_slice(rest_b);
+    for (a, b) in whole_a.iter().zip(whole_b).chain([(&last_a, &last_b)]) {
+        let (a, b) = (S::as_simd_f64s(a).0, S::as_simd_f64s(b).0);
+        for k in 0..vectors {
+            sums[k] = simd.mul_add_f64s(a[k], b[k], sums[k]);
         }
     }
-    lanes.iter().sum::<f64>() + rest
+    while vectors * S::F64_LANES > LANES {
+        vectors /= 2;
+        for k in 0..vectors {
+            sums[k] = simd.add_f64s(sums[k], sums[k + vectors]);
+        }
+    }
+    let mut lanes = [0.0; LANES];
+    S::as_mut_simd_f64s(&mut lanes).0.copy_from_slice(&sums[..vectors]);
+    joined(lanes, |a, b| a + b)
 }
 
 /// `y - factor x`.
 #[inline(always)]
 pub(super) fn subtract(y: &mut [f64], factor: f64, x: &[f64]) {
-    y.iter_mut().zip(x).for_each(|(y, x)| *y -= factor * x);
+    for (y, x) in y.iter_mut().zip(x) {
+        *y = (-factor).mul_add(*x, *y);
+    }
+}
+
+/// Scalar product, with the widest vectors.
+pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
+    widest(Product { a, b })
+}
+
+struct Product<'a> {
+    a: &'a [f64],
+    b: &'a [f64],
+}
+
+impl WithSimd for Product<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        dot(simd, self.a, self.b)
+    }
+}
+
+/// Lanes joined by halves, each of which is a vector of its own.
+#[inline(always)]
+fn joined<T: Copy>(lanes: [T; LANES], join: impl Fn(T, T) -> T) -> T {
+    let [a, b, c, d, e, f, g, h] = lanes;
+    let [a, b, c, d] = [join(a, e), join(b, f), join(c, g), join(d, h)];
+    join(join(a, c), join(b, d))
 }

@@ -68,7 +68,7 @@ impl PlateauFit {
 
     fn from_fit(samples: &Samples, strips: &Strips, coefficients: &[Vector3<f64>], triangle: &Triangle) -> Self {
         let (kept, came) = (strips.good(), samples.len());
-        let squares: Vector3<f64> = strips.iter().map(|strip| Vector3::from(strip.sums.squares)).sum();
+        let squares: Vector3<f64> = strips.sums(coefficients).map(|(_, sums)| sums.squares).sum();
         let Window { span, shape } = samples.window;
         let columns = coefficients.len();
         let zero = Vector3::zeros();
@@ -76,14 +76,14 @@ impl PlateauFit {
             window: *span,
             samples: kept,
             rejected: came - kept,
-            left_out: samples.left_out(came - kept),
+            left_out: samples.left_out(came - kept, strips.stuck_and_unreadable()),
             mean: coefficients[columns - 1],
             once_per_revolution: if shape.omega == 0.0 { [zero; 2] } else { [coefficients[0], coefficients[1]] },
             settling: shape.settling.map_or(zero, |_| coefficients[columns - 2]),
             shape: *shape,
             digit: *samples.digit,
             variance: squares / kept as f64,
-            cells: cells(samples, strips, triangle, columns),
+            cells: cells(samples, strips, triangle, coefficients),
         }
     }
 
@@ -144,15 +144,16 @@ fn check_range(samples: &Samples, strips: &Strips, index: usize) -> Result<(), R
 }
 
 /// The strips' sums, gathered by cell.
-fn cells(samples: &Samples, strips: &Strips, triangle: &Triangle, terms: usize) -> Cells {
+fn cells(samples: &Samples, strips: &Strips, triangle: &Triangle, coefficients: &[Vector3<f64>]) -> Cells {
+    let terms = coefficients.len();
     let [from, to] = samples.window.span;
     let mut cells = Cells::empty(triangle, terms, (to - from) / CELLS as f64, samples.interval);
     let mut sums = vec![(0, Vector3::zeros(), [0.0; TERMS]); CELLS];
-    for strip in strips.iter() {
-        let (count, residuals, columns) = &mut sums[strip.cell];
-        *count += strip.sums.count;
-        *residuals += Vector3::from(strip.sums.residuals);
-        columns.iter_mut().zip(strip.sums.columns).for_each(|(sum, of_strip)| *sum += of_strip);
+    for (cell, of_strip) in strips.sums(coefficients) {
+        let (count, residuals, columns) = &mut sums[cell];
+        *count += of_strip.count;
+        *residuals += of_strip.residuals;
+        columns.iter_mut().zip(of_strip.columns).for_each(|(sum, of_strip)| *sum += of_strip);
     }
     for (cell, (count, residuals, columns)) in sums.into_iter().enumerate() {
         cells.fill(cell, count, residuals, &triangle.orthonormal(columns, terms)[..terms]);

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-pub(super) use super::lanes::dot;
+pub(super) use super::lanes::product as dot;
 
 /// `X = Q R`: columns orthonormalised one after another (modified Gram-Schmidt), the constant last.
 #[derive(Debug, Clone)]

@@ -12,15 +12,13 @@ use super::lanes::widest;
 use super::regression::Regression;
 use super::saturation::standing;
 use super::shape::Shape;
-use super::stuck::stuck_on_any_axis;
 use super::window::Window;
 use super::{LeftOut, RecordSlice, ReductionError};
 
-/// Samples of a cell that show its median.
-const OF_CELL: usize = 64;
-
-/// Samples of a window that show their spread.
-const OF_WINDOW: usize = 4096;
+/// Samples of a window that show their spread, and of these the neighbours that are taken together, for they come from the
+/// memory together.
+const SHOWN: usize = 4096;
+const NEIGHBOURS: usize = 8;
 
 /// Samples of a window.
 pub(super) struct Samples<'a> {
@@ -31,18 +29,21 @@ pub(super) struct Samples<'a> {
     pub white: &'a Vector3<f64>,
     pub t: Cow<'a, [f64]>,
     pub f_z: [Cow<'a, [f64]>; 3],
-    /// The stuck ones, if there are any.
-    pub stuck: Option<Vec<bool>>,
+    /// Share of readings that repeat the one before by chance.
+    pub repeat_rate: [f64; 3],
     /// Some of all, that show their spread.
     shown: Shown,
     /// Samples with the stamp of the one before.
     repeated: usize,
+    /// Longest time from one sample to the next [s].
+    longest_step: f64,
     /// Sampling interval [s].
     pub interval: f64,
 }
 
 /// Some of a window's samples with their design.
 struct Shown {
+    t: Vec<f64>,
     columns: Vec<Vec<f64>>,
     f_z: [Vec<f64>; 3],
 }
@@ -52,7 +53,8 @@ impl<'a> Samples<'a> {
     pub fn cut_out(record: RecordSlice<'a>, window: &'a Window, blocks: &'a Blocks) -> Self {
         let RecordSlice { t, f_z } = record.between(window.span);
         let came = t.len();
-        let (t, f_z) = if widest(Steps { t, least: f64::MIN_POSITIVE }) == came.saturating_sub(1) {
+        let steps = widest(Steps { t });
+        let (t, f_z) = if steps[0] > 0.0 {
             (Cow::from(t), f_z.map(Cow::from))
         } else {
             let first_of_stamp = |i: &usize| *i == 0 || t[*i] > t[*i - 1];
@@ -61,10 +63,19 @@ impl<'a> Samples<'a> {
             };
             (pick(t), f_z.map(pick))
         };
-        let stuck = stuck_on_any_axis(f_z.each_ref().map(|f| &**f), &blocks.repeat_rate);
         let shown = Shown::of(&window.shape, &t, f_z.each_ref().map(|f| &**f));
-        let (repeated, interval) = (came - t.len(), blocks.interval);
-        Self { window, digit: &blocks.digit, white: &blocks.sample_noise, t, f_z, stuck, shown, repeated, interval }
+        Self {
+            window,
+            digit: &blocks.digit,
+            white: &blocks.sample_noise,
+            repeat_rate: blocks.repeat_rate,
+            shown,
+            repeated: came - t.len(),
+            longest_step: steps[1],
+            interval: blocks.interval,
+            t,
+            f_z,
+        }
     }
 
     /// How many there are.
@@ -72,24 +83,31 @@ impl<'a> Samples<'a> {
         self.t.len()
     }
 
-    /// Samples of each cell: the times do not decrease.
-    pub fn cells(&self) -> Vec<Range<usize>> {
-        let [from, to] = self.window.span;
-        let cell = |t: f64| whole((t - from) / (to - from) * CELLS as f64).min(CELLS - 1);
-        let mut start = 0;
-        let end_of = |k: usize| self.t.partition_point(|t| cell(*t) <= k);
-        (0..CELLS).map(|k| std::mem::replace(&mut start, end_of(k))..end_of(k)).collect()
+    /// Samples of each cell.
+    pub fn cells(&self) -> impl Iterator<Item = Range<usize>> {
+        self.cells_of(&self.t)
     }
 
-    /// A fit through the medians of the cells, which no spike moves. The once-per-revolution term is not in it: cells
-    /// may be longer than a revolution. A cell of many samples shows its median by some of them.
+    /// The times of each cell: they do not decrease.
+    fn cells_of(&self, t: &[f64]) -> impl Iterator<Item = Range<usize>> {
+        let [from, to] = self.window.span;
+        let cell = move |t: f64| whole((t - from) / (to - from) * CELLS as f64).min(CELLS - 1);
+        let mut start = 0;
+        (0..CELLS).map(move |k| {
+            let end = t.partition_point(|t| cell(*t) <= k);
+            std::mem::replace(&mut start, end)..end
+        })
+    }
+
+    /// A fit through the medians of the cells, which no spike moves, of the samples that are shown. The once-per-revolution
+    /// term is not in it: cells may be longer than a revolution.
     pub fn fit_of_medians(&self) -> Vec<Vector3<f64>> {
         let [from, to] = self.window.span;
         let shape = Shape { omega: 0.0, ..self.window.shape };
         let (mut middles, mut medians) = (Vec::new(), Vec::new());
-        for (cell, range) in self.cells().into_iter().enumerate().filter(|(_, range)| !range.is_empty()) {
+        for (cell, range) in self.cells_of(&self.shown.t).enumerate().filter(|(_, range)| !range.is_empty()) {
             let readings = |axis: usize| {
-                let shown = spread_out(range.len(), OF_CELL).map(|i| self.f_z[axis][range.start + i]);
+                let shown = self.shown.f_z[axis][range.clone()].iter().copied();
                 median(&mut shown.filter(|f| f.is_finite()).collect::<Vec<f64>>())
             };
             middles.push(from + (cell as f64 + 0.5) * (to - from) / CELLS as f64);
@@ -106,20 +124,12 @@ impl<'a> Samples<'a> {
         Vector3::from_fn(|axis, _| cut * MAD * self.shown.median_residual(coefficients, axis) + self.digit[axis])
     }
 
-    /// What is not used, by kind, `rejected` being the samples that came and are not. Samples that never came are counted
-    /// by the intervals between those that did.
-    pub fn left_out(&self, rejected: usize) -> LeftOut {
-        let is_readable = |i: &usize| self.f_z.iter().all(|f| f[*i].is_finite());
-        let unreadable = if rejected == 0 { 0 } else { (0..self.len()).filter(|i| !is_readable(i)).count() };
-        let stuck = self.stuck.as_ref().map_or(0, |stuck| stuck.iter().filter(|stuck| **stuck).count());
+    /// What is not used, by kind, `rejected` being the samples that came and are not, with those among them that are stuck
+    /// and those that are no numbers. Samples that never came are counted by the intervals between those that did.
+    pub fn left_out(&self, rejected: usize, (stuck, unreadable): (usize, usize)) -> LeftOut {
         let gap = 1.5 * self.interval;
-        let missing = if widest(Steps { t: &self.t, least: gap }) == 0 { 0 } else { self.samples_in_gaps(gap) };
-        LeftOut {
-            spikes: rejected.saturating_sub(unreadable + stuck),
-            stuck,
-            missing: unreadable + missing,
-            repeated: self.repeated,
-        }
+        let missing = if self.longest_step < gap { 0 } else { self.samples_in_gaps(gap) };
+        LeftOut { spikes: rejected - stuck - unreadable, stuck, missing: unreadable + missing, repeated: self.repeated }
     }
 
     /// Samples that never came: in steps of at least so long.
@@ -145,26 +155,40 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// Steps of time that are at least so long, to be counted.
+/// Steps of time, of which the shortest and the longest are looked for.
 struct Steps<'a> {
     t: &'a [f64],
-    least: f64,
 }
 
 impl WithSimd for Steps<'_> {
-    type Output = usize;
+    type Output = [f64; 2];
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> usize {
-        let steps = self.t.iter().zip(self.t.get(1..).unwrap_or_default()).map(|(before, after)| after - before);
-        steps.map(|step| usize::from(step >= self.least)).sum()
+    fn with_simd<S: Simd>(self, _: S) -> [f64; 2] {
+        const LANES: usize = 16;
+        let (mut shortest, mut longest) = ([f64::INFINITY; LANES], [0.0_f64; LANES]);
+        let (before, after) = (self.t, self.t.get(1..).unwrap_or_default());
+        for (before, after) in before.chunks(LANES).zip(after.chunks(LANES)) {
+            for (((before, after), shortest), longest) in before.iter().zip(after).zip(&mut shortest).zip(&mut longest)
+            {
+                let step = after - before;
+                *shortest = if step < *shortest { step } else { *shortest };
+                *longest = if step > *longest { step } else { *longest };
+            }
+        }
+        [shortest.into_iter().fold(f64::INFINITY, f64::min), longest.into_iter().fold(0.0, f64::max)]
     }
 }
 
 impl Shown {
     fn of(shape: &Shape, t: &[f64], f_z: [&[f64]; 3]) -> Self {
-        let pick = |values: &[f64]| -> Vec<f64> { spread_out(t.len(), OF_WINDOW).map(|i| values[i]).collect() };
-        Self { columns: shape.columns(&pick(t)), f_z: f_z.map(pick) }
+        let pick = |values: &[f64]| {
+            let mut shown = Vec::with_capacity(SHOWN);
+            spread_out(values.len()).for_each(|part| shown.extend_from_slice(&values[part]));
+            shown
+        };
+        let shown = pick(t);
+        Self { columns: shape.columns(&shown), t: shown, f_z: f_z.map(pick) }
     }
 
     /// Median size of the residuals on an axis, the last terms having these coefficients.
@@ -179,9 +203,12 @@ impl Shown {
     }
 }
 
-/// `count` of the numbers up to `all`, or all of them: one in each of equal ranges, here and there in it, so that nothing
+/// Some of so many samples, or all of them: neighbours in each of equal ranges, here and there in it, so that nothing
 /// periodic is always seen at the same phase.
-fn spread_out(all: usize, count: usize) -> impl Iterator<Item = usize> {
-    let step = all.div_ceil(count).max(1);
-    (0..all).step_by(step).enumerate().map(move |(k, i)| (i + k * 7919 % step).min(all - 1))
+fn spread_out(all: usize) -> impl Iterator<Item = Range<usize>> {
+    let step = (all * NEIGHBOURS).div_ceil(SHOWN).max(NEIGHBOURS);
+    (0..all).step_by(step).enumerate().map(move |(k, from)| {
+        let from = from + k * 7919 % (step - NEIGHBOURS + 1);
+        from.min(all)..(from + NEIGHBOURS).min(all)
+    })
 }

@@ -1,6 +1,12 @@
 //! The shape of a plateau's reading in time: the columns of its design.
 
+use pulp::{Simd, WithSimd};
+
 use super::elementary::{cos_sin, exp};
+use super::lanes::widest;
+
+/// Time constants after which less is left of the settling than rounding leaves of a reading.
+pub(super) const FADED: f64 = 40.0;
 
 /// Which terms a plateau has: `[cos, sin,] [settling,] 1`. The constant stands last.
 #[derive(Debug, Clone, Copy)]
@@ -47,11 +53,12 @@ impl Settling {
     /// The same at many instants.
     #[inline(always)]
     fn values(self, start: f64, t: &[f64], values: &mut [f64]) {
-        // Beyond forty time constants less is left of the settling than rounding leaves of a reading.
-        if t.first().is_some_and(|first| first - start > 40.0 * self.time) {
+        if t.first().is_some_and(|first| first - start > FADED * self.time) {
             values.fill(0.0);
         } else {
-            t.iter().zip(values).for_each(|(t, value)| *value = self.value(t - start));
+            for (t, value) in t.iter().zip(values) {
+                *value = self.value(t - start);
+            }
         }
     }
 }
@@ -65,7 +72,8 @@ impl Shape {
     /// The design at the times `t`, one column a term.
     pub fn columns(&self, t: &[f64]) -> Vec<Vec<f64>> {
         let mut columns = vec![vec![0.0; t.len()]; self.terms()];
-        self.design(t, &mut columns.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>());
+        let mut rooms = columns.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>();
+        widest(Design { shape: self, t, columns: &mut rooms });
         columns
     }
 
@@ -86,5 +94,21 @@ impl Shape {
         if let Some(constant) = columns.next() {
             constant.fill(1.0);
         }
+    }
+}
+
+/// A design to be filled in.
+struct Design<'a, 'b> {
+    shape: &'a Shape,
+    t: &'a [f64],
+    columns: &'a mut [&'b mut [f64]],
+}
+
+impl WithSimd for Design<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.shape.design(self.t, self.columns);
     }
 }

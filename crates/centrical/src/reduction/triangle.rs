@@ -3,8 +3,9 @@
 //! loses a sample is done again alone.
 
 use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
 
-use super::lanes::{dot, subtract};
+use super::lanes::{dot, product, subtract, widest};
 
 /// Columns of a design: two of the revolution, settling, constant.
 pub(super) const TERMS: usize = 4;
@@ -22,29 +23,35 @@ pub(super) struct Triangle {
 }
 
 impl Triangle {
-    /// The triangle of some rows: `terms` columns of a design and three of readings, which are spent.
+    /// The triangle of some rows: `terms` columns of a design, which become those of `Q`, and three of readings, of which
+    /// is left what the design does not reach: `F - Q Z`. For a [`widest`] work.
     #[inline(always)]
-    pub fn of(terms: &mut [&mut [f64]], readings: &mut [&mut [f64]; 3]) -> Self {
+    pub fn of<S: Simd>(simd: S, terms: &mut [&mut [f64]], readings: &mut [&mut [f64]; 3]) -> Self {
         let mut triangle = Self::default();
         for j in 0..terms.len() {
             let (done, rest) = terms.split_at_mut(j);
             let column = &mut *rest[0];
-            let length = dot(column, column).sqrt();
+            let mut taken = 0.0;
             for (i, q) in done.iter().enumerate() {
-                let projection = dot(q, column);
+                let projection = dot(simd, q, column);
                 subtract(column, projection, q);
                 triangle.r[j][i] = projection;
+                taken += projection * projection;
             }
-            let left = dot(column, column).sqrt();
+            let square = dot(simd, column, column);
             // What hangs on the columns before it within a strip adds no direction, and rounding must not make one up.
-            let left = if left > ROUNDING * length { left } else { 0.0 };
+            if square.is_nan() || square <= ROUNDING * ROUNDING * taken {
+                column.fill(0.0);
+                continue;
+            }
+            let left = square.sqrt();
             triangle.r[j][j] = left;
-            let scale = if left > 0.0 { 1.0 / left } else { 0.0 };
+            let scale = 1.0 / left;
             for c in column.iter_mut() {
                 *c *= scale;
             }
             for (axis, f) in readings.iter_mut().enumerate() {
-                let projection = dot(column, f);
+                let projection = dot(simd, column, f);
                 subtract(f, projection, column);
                 triangle.z[j][axis] = projection;
             }
@@ -65,7 +72,20 @@ impl Triangle {
             }
         }
         let mut columns: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
-        Self::of(&mut columns, &mut readings.each_mut().map(Vec::as_mut_slice))
+        let mut readings = readings.each_mut().map(Vec::as_mut_slice);
+        widest(Rows { terms: &mut columns, readings: &mut readings })
+    }
+
+    /// What coefficients, per axis, leave of the readings in the directions of `Q`: `Z - R B`.
+    #[inline(always)]
+    pub fn left(&self, coefficients: &[[f64; 3]]) -> [[f64; 3]; TERMS] {
+        let mut left = self.z;
+        for (column, b) in self.r.iter().zip(coefficients) {
+            for (left, r) in left.iter_mut().zip(column) {
+                left.iter_mut().zip(b).for_each(|(left, b)| *left -= r * b);
+            }
+        }
+        left
     }
 
     /// Coefficients per axis. `None` if a column hangs on those before it to within `1e-6` of its length.
@@ -74,7 +94,7 @@ impl Triangle {
         const DEPENDENT: f64 = 1e-6;
         let mut b: Vec<Vector3<f64>> = self.z[..terms].iter().map(|z| Vector3::from(*z)).collect();
         for j in (0..terms).rev() {
-            let (own, length) = (self.r[j][j], dot(&self.r[j], &self.r[j]).sqrt());
+            let (own, length) = (self.r[j][j], product(&self.r[j], &self.r[j]).sqrt());
             if own.is_nan() || own <= DEPENDENT * length {
                 return None;
             }
@@ -99,6 +119,23 @@ impl Triangle {
     }
 }
 
+/// Rows to be made a triangle of.
+pub(super) struct Rows<'a, 'b> {
+    /// Columns of a design.
+    pub terms: &'a mut [&'b mut [f64]],
+    /// Three columns of readings.
+    pub readings: &'a mut [&'b mut [f64]; 3],
+}
+
+impl WithSimd for Rows<'_, '_> {
+    type Output = Triangle;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Triangle {
+        Triangle::of(simd, self.terms, self.readings)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,7 +156,9 @@ mod tests {
         let of = |range: std::ops::Range<usize>| {
             let (mut x, mut f) =
                 (x.clone().map(|x| x[range.clone()].to_vec()), f.clone().map(|f| f[range.clone()].to_vec()));
-            Triangle::of(&mut x.each_mut().map(Vec::as_mut_slice), &mut f.each_mut().map(Vec::as_mut_slice))
+            let (terms, readings) =
+                (&mut x.each_mut().map(Vec::as_mut_slice), &mut f.each_mut().map(Vec::as_mut_slice));
+            widest(Rows { terms, readings })
         };
         let whole = of(0..rows);
         // The settling is over in the later strips: a column that rounds to the span of the others.
@@ -141,7 +180,8 @@ mod tests {
     fn dependent_columns_are_refused() {
         let (mut a, mut b) = (vec![1.0, 2.0, 3.0], vec![2.0, 4.0, 6.0]);
         let mut f = [vec![1.0; 3], vec![2.0; 3], vec![3.0; 3]];
-        let triangle = Triangle::of(&mut [&mut a, &mut b], &mut f.each_mut().map(Vec::as_mut_slice));
+        let triangle =
+            widest(Rows { terms: &mut [&mut a, &mut b], readings: &mut f.each_mut().map(Vec::as_mut_slice) });
         assert!(triangle.solve(2).is_none());
     }
 }

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use super::block_fit::{BlockFit, Levels, spread};
 use super::blocks::{Blocks, cut, median, whole};
 use super::lanes::{dot, widest};
-use super::shape::{Settling, Shape};
+use super::shape::{FADED, Settling, Shape};
 use super::{ReductionError, ScheduledPlateau};
 
 /// The windows of one mounting.
@@ -271,14 +271,23 @@ impl WithSimd for Explained<'_> {
     /// `sum_k (c^T r_k)^2 / (c^T c - sum_j (q_j^T c)^2)`: the residuals are orthogonal to the design, and at least half of
     /// the settling is, since it fades in a quarter of the plateau.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> f64 {
-        let mut column = vec![0.0; self.of.since.len()];
-        for (value, since) in column.iter_mut().zip(&self.of.since) {
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let Steady { since, q, residuals, .. } = self.of;
+        // What is left after that is nothing beside the rest.
+        let n = since.partition_point(|since| *since < FADED * self.settling.time);
+        let mut column = vec![0.0; n];
+        for (value, since) in column.iter_mut().zip(since) {
             *value = self.settling.value(*since);
         }
-        let taken: f64 = self.of.q.iter().map(|q| dot(q, &column).powi(2)).sum();
-        let square = dot(&column, &column) - taken;
-        self.of.residuals.iter().map(|residuals| dot(&column, residuals).powi(2) / square).sum()
+        let mut square = dot(simd, &column, &column);
+        for q in q {
+            square -= dot(simd, &q[..n], &column).powi(2);
+        }
+        let mut explained = 0.0;
+        for residuals in residuals {
+            explained += dot(simd, &column, &residuals[..n]).powi(2) / square;
+        }
+        explained
     }
 }
 

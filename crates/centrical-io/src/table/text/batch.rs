@@ -1,5 +1,4 @@
-//! Rows of bare numbers, many at a time: the separators of a text first, and then a column of numbers side by side, as the
-//! vectors of the processor have room for them.
+//! A column of bare numbers, many rows at a time, side by side as the vectors of the processor have room for them.
 //!
 //! A number of at most 16 bytes stands at the end of two words of eight. Its point is taken out, and what is before it moves
 //! up; then the digits are joined as in [`super::number`]. As there, such a number is
@@ -19,42 +18,6 @@ pub(super) const ROWS: usize = 64;
 
 /// The top bits of eight bytes.
 const TOPS: u64 = 0x80 * ONES;
-
-/// Where the delimiters and the ends of lines are in a text, in ascending order.
-pub(super) fn separators(text: &[u8], delimiter: u8, places: &mut Vec<u32>) {
-    Arch::new().dispatch(Separators { text, delimiter, places });
-}
-
-struct Separators<'a> {
-    text: &'a [u8],
-    delimiter: u8,
-    places: &'a mut Vec<u32>,
-}
-
-impl WithSimd for Separators<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { text, delimiter, places } = self;
-        places.clear();
-        let is_separator = |byte: u8| byte == delimiter || byte == b'\n';
-        let (steps, rest) = text.as_chunks::<64>();
-        let mut at = 0;
-        for step in steps {
-            let mut found = 0_u64;
-            for (k, byte) in step.iter().enumerate() {
-                found |= u64::from(is_separator(*byte)) << k;
-            }
-            while found != 0 {
-                places.push(at + found.trailing_zeros());
-                found &= found - 1;
-            }
-            at += 64;
-        }
-        places.extend((at..).zip(rest).filter(|(_, byte)| is_separator(**byte)).map(|(at, _)| at));
-    }
-}
 
 /// The texts of a column of numbers.
 pub(super) struct Texts {
@@ -134,7 +97,7 @@ impl WithSimd for Numbers<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{ROWS, Texts, separators};
+    use super::{ROWS, Texts};
 
     /// A column of one number.
     fn read(text: &str) -> Option<f64> {
@@ -184,14 +147,5 @@ mod tests {
         assert_eq!(read("-12345678.1234567"), Some(-12_345_678.123_456_7));
         assert_eq!(read("-123456789.1234567"), None);
         assert_eq!(read("-1234567.1234567"), Some(-1_234_567.123_456_7));
-    }
-
-    #[test]
-    fn every_separator_is_found() {
-        let text: Vec<u8> = (0..1000_u32).map(|i| b"01;\n,.5-"[(i * i / 7 % 8) as usize]).collect();
-        let mut places = Vec::new();
-        separators(&text, b';', &mut places);
-        let expected: Vec<u32> = (0..1000).filter(|i| matches!(text[*i as usize], b';' | b'\n')).collect();
-        assert_eq!(places, expected);
     }
 }

@@ -158,7 +158,7 @@ impl Layout {
         if !is_plain || self.wanted.contains(&None) && memchr2(b'"', b'#', all).is_some() {
             return None;
         }
-        let mut numbers = Vec::with_capacity(block.len());
+        let rows = block[0].len();
         for (column, field) in self.wanted.iter().enumerate() {
             let Some(field) = field else { continue };
             let mut texts = Texts::EMPTY;
@@ -170,15 +170,16 @@ impl Layout {
                 let end = line[column] as usize;
                 let last = text.get(end.wrapping_sub(1));
                 let carriage_return = usize::from(column + 1 == fields && last == Some(&b'\r'));
-                if !texts.take(row, text, start, end - carriage_return) {
-                    return None;
-                }
+                is_plain &= texts.take(row, text, start, end - carriage_return);
                 start = line[fields - 1] as usize + 1;
             }
-            numbers.push((*field, texts.numbers()?));
-        }
-        for (field, numbers) in &numbers {
-            block[*field].extend_from_slice(numbers);
+            let Some(numbers) = is_plain.then(|| texts.numbers()).flatten() else {
+                for values in block.iter_mut() {
+                    values.truncate(rows);
+                }
+                return None;
+            };
+            block[*field].extend_from_slice(&numbers);
         }
         Some(())
     }

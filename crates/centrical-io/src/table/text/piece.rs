@@ -5,7 +5,6 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use memchr::{memchr, memchr_iter, memrchr};
-use rayon::prelude::*;
 
 use super::Piece;
 use crate::error::{Error, quoted};
@@ -18,8 +17,13 @@ const LONGEST_LINE: usize = 1 << 20;
 
 /// A text that comes in pieces.
 pub(in crate::table) trait Lines {
-    /// Fills pieces from the one of that number on; how many there were.
+    /// Fills pieces from the one of that number on, or leaves it to whoever has use for them; how many there are.
     fn fill(&mut self, number: u64, pieces: &mut [Piece]) -> Result<usize, Error>;
+
+    /// Who fills the pieces that were left, each for itself and in any order.
+    fn any_piece(&self) -> Option<&Plain> {
+        None
+    }
 }
 
 /// A text in an ordinary file. A piece has the lines that begin in its range of bytes.
@@ -50,6 +54,12 @@ impl Plain {
     pub fn up_to(mut self, length: u64) -> Self {
         self.length = length;
         self
+    }
+
+    /// Fills the piece of that number, with the file opened for it alone.
+    pub(super) fn fill_alone(&self, number: u64, piece: &mut Piece) -> Result<(), Error> {
+        let read = Self::open(&self.file).and_then(|file| file.up_to(self.length).read(number, &mut piece.text));
+        read.map_err(|e| Error::reading(&self.file, e, TABLE))
     }
 
     /// Reads the piece of that number into `text`, without a mark of the byte order.
@@ -114,13 +124,11 @@ impl Plain {
 impl Lines for Plain {
     fn fill(&mut self, number: u64, pieces: &mut [Piece]) -> Result<usize, Error> {
         let left = self.length.div_ceil(SIZE).saturating_sub(number);
-        let count = usize::try_from(left).unwrap_or(usize::MAX).min(pieces.len());
-        let read = |(number, piece): (u64, &mut Piece)| -> io::Result<()> {
-            Self::open(&self.file)?.up_to(self.length).read(number, &mut piece.text)
-        };
-        let numbered: Vec<_> = (number..).zip(&mut pieces[..count]).collect();
-        numbered.into_par_iter().try_for_each(read).map_err(|e| Error::reading(&self.file, e, TABLE))?;
-        Ok(count)
+        Ok(usize::try_from(left).unwrap_or(usize::MAX).min(pieces.len()))
+    }
+
+    fn any_piece(&self) -> Option<&Plain> {
+        Some(self)
     }
 }
 

@@ -1,0 +1,163 @@
+//! Where the fields of a text end.
+
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::V3;
+
+/// Bytes that are looked at together, and separators that they have at most as a rule: so many places are written at once,
+/// those that are none to be written over. A loop over what is there would end where the processor does not expect it.
+const STEP: usize = 64;
+const OFTEN: usize = 12;
+
+/// The delimiters and the ends of lines of a text.
+#[derive(Default)]
+pub(super) struct Separators {
+    /// Where they are, and room for more.
+    places: Vec<u32>,
+    count: usize,
+    is_ascii: bool,
+}
+
+impl Separators {
+    /// Finds those of a text of less than 4 GB.
+    pub fn find(&mut self, text: &[u8], delimiter: u8) {
+        (self.count, self.is_ascii) = (0, true);
+        let (steps, rest) = text.as_chunks::<STEP>();
+        self.find_in_steps(steps, delimiter);
+        let mut last = [0; STEP];
+        last[..rest.len()].copy_from_slice(rest);
+        self.is_ascii &= rest.is_ascii();
+        // A delimiter may be the byte that stands for nothing here.
+        let there = (1_u64 << rest.len()) - 1;
+        self.take(marks(&last, delimiter) & there, steps.len() * STEP);
+    }
+
+    /// In ascending order.
+    pub fn places(&self) -> &[u32] {
+        &self.places[..self.count]
+    }
+
+    /// Whether all of the text is ASCII.
+    pub fn is_ascii(&self) -> bool {
+        self.is_ascii
+    }
+
+    fn find_in_steps(&mut self, steps: &[[u8; STEP]], delimiter: u8) {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = V3::try_new() {
+            simd.vectorize(Wide { simd, steps, delimiter, found: self });
+            return;
+        }
+        for (k, step) in steps.iter().enumerate() {
+            self.is_ascii &= step.is_ascii();
+            self.take(marks(step, delimiter), k * STEP);
+        }
+    }
+
+    /// Notes the marked ones of a step.
+    #[inline]
+    fn take(&mut self, mut marks: u64, step: usize) {
+        if self.places.len() < self.count + STEP {
+            self.places.resize(2 * self.count + STEP, 0);
+        }
+        let Some(room) = self.places[self.count..].first_chunk_mut::<STEP>() else { return };
+        let count = marks.count_ones() as usize;
+        #[expect(clippy::cast_possible_truncation, reason = "the text is shorter than 4 GB")]
+        let step = step as u32;
+        let mut next = || {
+            let place = step + marks.trailing_zeros();
+            marks &= marks.wrapping_sub(1);
+            place
+        };
+        for place in &mut room[..OFTEN] {
+            *place = next();
+        }
+        if count > OFTEN {
+            for place in &mut room[OFTEN..count] {
+                *place = next();
+            }
+        }
+        self.count += count;
+    }
+}
+
+/// The separators among some bytes, a bit each.
+fn marks(step: &[u8; STEP], delimiter: u8) -> u64 {
+    let is_separator = |byte: u8| byte == delimiter || byte == b'\n';
+    step.iter().enumerate().map(|(k, byte)| u64::from(is_separator(*byte)) << k).sum()
+}
+
+/// Steps to be looked through by a processor with AVX2, 32 bytes at once.
+#[cfg(target_arch = "x86_64")]
+struct Wide<'a> {
+    simd: V3,
+    steps: &'a [[u8; STEP]],
+    delimiter: u8,
+    found: &'a mut Separators,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl pulp::NullaryFnOnce for Wide<'_> {
+    type Output = ();
+
+    #[expect(clippy::inline_always, reason = "what is not inlined is compiled for narrower vectors")]
+    #[inline(always)]
+    fn call(self) {
+        let Self { simd: V3 { avx, avx2, .. }, steps, delimiter, found } = self;
+        let delimiters = avx._mm256_set1_epi8(delimiter.cast_signed());
+        let ends = avx._mm256_set1_epi8(b'\n'.cast_signed());
+        let mut all = avx._mm256_setzero_si256();
+        for (k, step) in steps.iter().enumerate() {
+            let mut marks = 0;
+            for half in step.as_chunks::<32>().0.iter().rev() {
+                let half = pulp::cast(*half);
+                let (delimiters, ends) = (avx2._mm256_cmpeq_epi8(half, delimiters), avx2._mm256_cmpeq_epi8(half, ends));
+                let here = avx2._mm256_movemask_epi8(avx2._mm256_or_si256(delimiters, ends)).cast_unsigned();
+                marks = marks << 32 | u64::from(here);
+                all = avx2._mm256_or_si256(all, half);
+            }
+            found.take(marks, k * STEP);
+        }
+        // The top bits.
+        found.is_ascii &= avx2._mm256_movemask_epi8(all) == 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{STEP, Separators, marks};
+
+    #[test]
+    fn every_separator_is_found() {
+        let texts: [&[u8; 8]; 2] = [b"01;\n,.5-", b";;\n;;\n;1"];
+        for bytes in texts {
+            let text: Vec<u8> = (0..1000_u32).map(|i| bytes[(i * i / 7 % 8) as usize]).collect();
+            let mut separators = Separators::default();
+            for length in [1000, 3, 640, 999, 0] {
+                separators.find(&text[..length], b';');
+                let expected: Vec<u32> = (0..)
+                    .zip(&text[..length])
+                    .filter(|(_, byte)| matches!(byte, b';' | b'\n'))
+                    .map(|(i, _)| i)
+                    .collect();
+                assert_eq!(separators.places(), expected);
+                assert!(separators.is_ascii());
+            }
+            for (k, step) in text.as_chunks::<STEP>().0.iter().enumerate() {
+                let of_step = |place: &&u32| **place as usize / STEP == k;
+                separators.find(&text, b';');
+                assert_eq!(marks(step, b';').count_ones() as usize, separators.places().iter().filter(of_step).count());
+            }
+        }
+    }
+
+    #[test]
+    fn other_letters_are_seen() {
+        let mut separators = Separators::default();
+        for place in [0, 63, 64, 100, 129] {
+            let mut text = vec![b'1'; 130];
+            text[place] = 0xb5;
+            separators.find(&text, b',');
+            assert!(!separators.is_ascii(), "{place}");
+        }
+    }
+}
