@@ -10,6 +10,7 @@ use crate::groups::by_group;
 use crate::language::Language;
 use crate::pdf::{Align, Column, Furniture, Layout, write};
 use crate::reading_error::{error_table, reading_errors};
+use crate::steadiness::facts;
 
 /// The certificate as the bytes of a PDF file, with the results `before` an adjustment beside those after it if the
 /// unit was adjusted. The same data give the same bytes.
@@ -27,6 +28,7 @@ pub fn pdf_certificate(
     dates(&mut layout, laboratory, language);
     method(&mut layout, result, laboratory, language);
     conditions(&mut layout, result, laboratory, language);
+    steadiness(&mut layout, result, language);
     traceability(&mut layout, laboratory, language);
     results(&mut layout, result, language);
     adjustment(&mut layout, result, before, laboratory, language);
@@ -132,6 +134,17 @@ fn conditions(layout: &mut Layout, result: &CalibrationResult, laboratory: &Labo
         (messages.gravity, gravity),
         (messages.speed_uncertainty, language.scientific(result.model.speed_uncertainty)),
     ]);
+}
+
+/// What was observed during the calibration, where records show it; also 7.8.2.1 n, samples that were left out.
+fn steadiness(layout: &mut Layout, result: &CalibrationResult, language: Language) {
+    let messages = language.messages();
+    let facts = facts(result, language);
+    if !facts.is_empty() {
+        layout.heading(messages.steadiness, 60.0);
+        layout.paragraph(messages.steadiness_note);
+        layout.facts(&facts);
+    }
 }
 
 /// 7.8.4.1 c.

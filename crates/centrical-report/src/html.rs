@@ -1,6 +1,5 @@
 //! The report as one HTML file: no network, no scripts, legible on a telephone, on paper and in the dark.
 
-mod steadiness;
 mod table;
 
 use std::fmt::Write;
@@ -12,6 +11,7 @@ use crate::groups::by_group;
 use crate::language::Language;
 use crate::plot::Escaped;
 use crate::reading_error::{ReadingError, error_table, reading_errors};
+use crate::steadiness::facts;
 use crate::terminal::combination;
 use crate::verdict::objections;
 use table::{Table, budget, parameters};
@@ -202,12 +202,18 @@ fn session(html: &mut String, result: &CalibrationResult, language: Language) {
 /// Drift and tilt, where records tell them.
 fn steadiness_section(html: &mut String, result: &CalibrationResult, language: Language) {
     let messages = language.messages();
-    if let Some(table) = steadiness::steadiness(result, language) {
-        section(html, messages.steadiness, |html| {
-            let _ = writeln!(html, "<p class=\"note\">{}</p>", Escaped(messages.steadiness_note));
-            html.push_str(&table);
-        });
+    let facts = facts(result, language);
+    if facts.is_empty() {
+        return;
     }
+    section(html, messages.steadiness, |html| {
+        let _ = writeln!(html, "<p class=\"note\">{}</p>", Escaped(messages.steadiness_note));
+        let mut table = Table::new("facts");
+        for (name, said) in facts {
+            table.row(name, &[said]);
+        }
+        html.push_str(&table.into_html());
+    });
 }
 
 fn parameter_tables(html: &mut String, result: &CalibrationResult, language: Language) {
