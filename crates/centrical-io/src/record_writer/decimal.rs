@@ -91,7 +91,7 @@ impl Digits {
             let number = signed.abs();
             let scaled = number * units_of_one;
             let units = (scaled + SHIFT) - SHIFT;
-            let fits = (scaled < LARGEST) & (!exact | (units / units_of_one == number));
+            let fits = scaled < LARGEST && (!exact || units / units_of_one == number);
             // Within one of the quotient.
             let quotient = (1e-8 * units + SHIFT) - SHIFT;
             let rest = units - 1e8 * quotient;
@@ -99,7 +99,7 @@ impl Digits {
             let (high, low) = (eight_digits(whole(quotient - over)), eight_digits(whole(rest + 1e8 * over)));
             first[row] = fixed_0 | ((high >> 8 | low << 56) & before_0) | (high & after_0);
             last[row] = fixed_1 | ((low >> 8) & before_1) | (low & after_1);
-            let is_zero = !exact & (units == 0.0);
+            let is_zero = !exact && units == 0.0;
             let sign = if is_zero { 0 } else { signed.to_bits() >> 63 };
             minus[row] = if fits { sign } else { OTHER };
         }
@@ -127,7 +127,7 @@ impl Digits {
         }
         text[ROOM - 16..].copy_from_slice(&characters.to_le_bytes());
         text[(ROOM - 1 - length as usize) & (ROOM - 1)] = b'-';
-        Some(length as usize + minus as usize)
+        Some(length as usize + usize::from(minus == 1))
     }
 }
 
