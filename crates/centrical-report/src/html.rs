@@ -128,7 +128,7 @@ fn verdict(html: &mut String, result: &CalibrationResult, language: Language) {
 fn checks(facts: &mut Table, validity: &ValiditySummary, language: Language) {
     let messages = language.messages();
     let listed = |items: Vec<String>| if items.is_empty() { messages.none.to_owned() } else { items.join("; ") };
-    facts.row(messages.chi_squared_chance, &[language.fixed(validity.probability, 3)]);
+    facts.row(messages.chi_squared_chance, &[language.probability(validity.probability)]);
     let outlying = validity.outlying.iter().map(|p| format!("{}:{}", p.mounting, p.index + 1)).collect();
     facts.row(&capitalised(messages.outlying_plateaus), &[listed(outlying)]);
     let patterns = validity.patterns.iter().map(|pattern| messages.pattern(pattern, language)).collect();
@@ -136,7 +136,7 @@ fn checks(facts: &mut Table, validity: &ValiditySummary, language: Language) {
     if let Some(worst) = validity.mountings.iter().min_by(|a, b| a.probability.total_cmp(&b.probability)) {
         let chance = (validity.mountings.len() as f64 * worst.probability).min(1.0);
         let chi_squared = language.fixed(worst.chi_squared, 1);
-        let (nu, p) = (worst.degrees_of_freedom, language.fixed(chance, 3));
+        let (nu, p) = (worst.degrees_of_freedom, language.probability(chance));
         let shown = format!("{}: χ² = {chi_squared}; ν = {nu}; p = {p}", worst.mounting);
         facts.row(messages.worst_mounting, &[shown]);
     }

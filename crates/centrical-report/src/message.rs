@@ -230,7 +230,7 @@ impl Messages {
         };
         let [amplitude, uncertainty] =
             [pattern.amplitude, pattern.standard_uncertainty].map(|a| language.significant(a / MICRO_G, 2));
-        let chance = language.number(&format!("{:.1e}", pattern.probability));
+        let chance = language.probability(pattern.probability);
         let follows = format!("{} {place}", self.word(follows));
         format!(
             "{} {}, {}: {amplitude} ± {uncertainty} {}, {} {chance}",
@@ -249,15 +249,14 @@ impl Messages {
                 format!("{} ({}, {iterations})", self.not_converged, self.word(termination))
             }
             Objection::Residuals { chi_squared, degrees_of_freedom, chance } => {
-                let (chi_squared, chance) =
-                    (language.fixed(*chi_squared, 1), language.number(&format!("{chance:.1e}")));
+                let (chi_squared, chance) = (language.fixed(*chi_squared, 1), language.probability(*chance));
                 format!(
                     "{}: χ² = {chi_squared}, {} {degrees_of_freedom}, {} {chance}",
                     self.residuals_too_large, self.degrees_of_freedom, self.chance
                 )
             }
             Objection::Outlying(plateaus, chance) => {
-                let chance = language.number(&format!("{chance:.1e}"));
+                let chance = language.probability(*chance);
                 format!("{}: {}, {} {chance}", self.outlying_plateaus, plateaus.join(", "), self.chance)
             }
             Objection::Patterns(patterns) => {
