@@ -28,9 +28,10 @@ fn records() -> &'static Path {
             let mut writer = RecordWriter::create(&folder.path().join(name)).unwrap();
             for start in (0..rows()).step_by(16 * 1024) {
                 let k = || (start..rows().min(start + 16 * 1024)).map(|k| k as f64);
-                let t: Vec<f64> = k().map(|k| 1e-4 * k).collect();
-                // Every digit of a reading, as noise would fill them.
-                let f = [1.0, 2.0, 3.0].map(|a| k().map(|k| 1500.0 * (1e-5 * k + a).sin()).collect::<Vec<f64>>());
+                let t: Vec<f64> = k().map(|k| k / 1e4).collect();
+                // Five decimals, as instruments write them.
+                let read = |k: f64, a: f64| (1500e5 * (1e-5 * k + a).sin()).round() / 1e5;
+                let f = [1.0, 2.0, 3.0].map(|a| k().map(|k| read(k, a)).collect::<Vec<f64>>());
                 writer.write(RecordSlice { t: &t, f_z: f.each_ref().map(Vec::as_slice) }).unwrap();
             }
             writer.finish().unwrap();
@@ -60,9 +61,10 @@ fn reader_alone(bencher: Bencher, name: &str) {
     });
 }
 
-#[divan::bench(sample_count = 3, sample_size = 1, args = ["record.csv", "record.parquet"])]
-fn compensate(bencher: Bencher, name: &str) {
-    let (file, out) = (records().join(name), records().join(format!("compensated-{name}")));
+#[divan::bench(sample_count = 3, sample_size = 1, args = ["csv csv", "csv parquet", "parquet csv", "parquet parquet"])]
+fn compensate(bencher: Bencher, from_to: &str) {
+    let (from, to) = from_to.split_once(' ').unwrap();
+    let (file, out) = (records().join(format!("record.{from}")), records().join(format!("compensated.{to}")));
     let terms = kozlov();
     let compensation = Compensation::new(&terms, 2000.0).unwrap();
     bencher

@@ -42,7 +42,7 @@ fn in_place(f: &mut [Vec<f64>; 3]) -> [&mut [f64]; 3] {
     f.each_mut().map(Vec::as_mut_slice)
 }
 
-#[divan::bench(sample_count = 20, args = ["kozlov", "with products"])]
+#[divan::bench(sample_count = 40, args = ["kozlov", "with products"])]
 fn one_thread(bencher: Bencher, model: &str) {
     let terms = if model == "kozlov" { kozlov() } else { with_products() };
     let compensation = Compensation::new(&terms, 2000.0).unwrap();
@@ -50,7 +50,7 @@ fn one_thread(bencher: Bencher, model: &str) {
     bencher.bench_local_refs(|f| compensation.apply_all(in_place(f)).unwrap());
 }
 
-#[divan::bench(sample_count = 20)]
+#[divan::bench(sample_count = 40)]
 fn all_threads(bencher: Bencher) {
     let terms = kozlov();
     let compensation = Compensation::new(&terms, 2000.0).unwrap();
@@ -59,7 +59,7 @@ fn all_threads(bencher: Bencher) {
 }
 
 /// What the memory alone allows: every number of the same arrays read and written, on all threads.
-#[divan::bench(sample_count = 20)]
+#[divan::bench(sample_count = 40)]
 fn reference_memory_all_threads(bencher: Bencher) {
     let factor = black_box(1.000_001);
     let bencher = bencher.counter(ItemsCount::new(READINGS)).with_inputs(readings);
@@ -69,7 +69,7 @@ fn reference_memory_all_threads(bencher: Bencher) {
 }
 
 /// The same on one thread.
-#[divan::bench(sample_count = 20)]
+#[divan::bench(sample_count = 40)]
 fn reference_memory_one_thread(bencher: Bencher) {
     let factor = black_box(1.000_001);
     let bencher = bencher.counter(ItemsCount::new(READINGS)).with_inputs(readings);

@@ -3,6 +3,7 @@
 use crate::compensation::Compensation;
 use crate::error::UnequalLengths;
 use crate::lanes::Lanes;
+use crate::machine::on_this_machine;
 
 /// Readings of a bulk that no specific force within the range gives; they are NaN on all axes afterwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -43,24 +44,11 @@ impl Compensation<'_> {
         Ok(outside.reduce(Outside::default, Outside::and))
     }
 
-    /// With the widest vectors of the machine. They add and multiply as single numbers do, and nothing is fused.
-    #[cfg(feature = "std")]
     fn sweep(&self, f: [&mut [f64]; 3]) -> Outside {
-        struct Sweep<'a, 't>(&'a Compensation<'t>, [&'a mut [f64]; 3]);
-        impl pulp::WithSimd for Sweep<'_, '_> {
-            type Output = Outside;
-
+        on_this_machine(
             #[inline(always)]
-            fn with_simd<S: pulp::Simd>(self, _: S) -> Outside {
-                self.0.sweep_blocks(self.1)
-            }
-        }
-        pulp::Arch::new().dispatch(Sweep(self, f))
-    }
-
-    #[cfg(not(feature = "std"))]
-    fn sweep(&self, f: [&mut [f64]; 3]) -> Outside {
-        self.sweep_blocks(f)
+            || self.sweep_blocks(f),
+        )
     }
 
     #[inline(always)]

@@ -8,9 +8,12 @@
 
 use crate::certificate::{Certificate, START_REGION, Steps};
 use crate::error::{NotInvertible, OutOfRange};
+use crate::fused::dot_and;
 use crate::lanes::Lanes;
-use crate::linear::{Linear, solve};
+use crate::linear::{Linear, corrected};
+use crate::machine::on_this_machine;
 use crate::model::Model;
+use crate::separable::Shift;
 use crate::term::Term;
 
 /// A range ends a few last places beyond its edge, so that what lies on it is not refused for its rounding.
@@ -21,6 +24,7 @@ const EDGE: f64 = 1.0 + 8.0 * f64::EPSILON;
 pub struct Compensation<'t> {
     model: Model<'t>,
     linear: Linear,
+    shift: Shift,
     certificate: Certificate,
     steps: Steps,
 }
@@ -37,7 +41,9 @@ impl<'t> Compensation<'t> {
         let certificate = Certificate::new(terms, &linear, range)?;
         // Half a unit in the last place of the range.
         let steps = certificate.steps(0.5 * f64::EPSILON);
-        Ok(Self { model: Model::new(terms), linear, certificate, steps })
+        let model = Model::new(terms);
+        let shift = model.separable.shift(&linear.inverse);
+        Ok(Self { model, linear, shift, certificate, steps })
     }
 
     /// What was shown of the inverse.
@@ -56,7 +62,10 @@ impl<'t> Compensation<'t> {
     /// [`OutOfRange`] when no `f` of the range has this reading.
     pub fn apply(&self, reading: [f64; 3]) -> Result<[f64; 3], OutOfRange> {
         let mut lane = Lanes(reading.map(|f| [f]));
-        self.invert(&mut lane);
+        on_this_machine(
+            #[inline(always)]
+            || self.invert(&mut lane),
+        );
         let f = lane.at(0);
         if f[0].is_nan() { Err(OutOfRange { reading, range: self.certificate.range }) } else { Ok(f) }
     }
@@ -72,8 +81,12 @@ impl<'t> Compensation<'t> {
     #[inline(always)]
     fn iterate<const W: usize, const FAST: bool>(&self, reading: &mut Lanes<W>) {
         let (mut start, mut f) = (Lanes::ZERO, Lanes::ZERO);
+        let Linear { inverse, bias, .. } = &self.linear;
+        let origin = self.linear.inverse_times(bias.map(|b| -b));
         for w in 0..W {
-            let f_0 = self.or_nan(self.linear.invert(reading.at(w)), START_REGION);
+            let mut f_0 = [0, 1, 2].map(|i| dot_and(inverse[i], reading.at(w), origin[i]));
+            // One is enough: every step mixes all components, and a coefficient of zero does not stop a NaN.
+            f_0[0] = if self.is_within(f_0, START_REGION) { f_0[0] } else { f64::NAN };
             start.put(w, f_0);
             f.put(w, f_0);
         }
@@ -89,7 +102,7 @@ impl<'t> Compensation<'t> {
         }
         for w in 0..W {
             let f = difference(reading.at(w), error.at(w));
-            reading.put(w, self.or_nan(f, EDGE));
+            reading.put(w, if self.is_within(f, EDGE) { f } else { [f64::NAN; 3] });
         }
     }
 
@@ -98,11 +111,11 @@ impl<'t> Compensation<'t> {
     fn fixed_point_step<const W: usize, const FAST: bool>(&self, start: &Lanes<W>, f: &mut Lanes<W>) {
         let others = (!FAST).then(|| self.model.others_error(f));
         for w in 0..W {
-            let mut n = self.model.separable.nonlinear(f.at(w));
+            let mut next = self.shift.step(start.at(w), f.at(w));
             if let Some(others) = &others {
-                n = sum(n, others.at(w));
+                next = difference(next, self.linear.inverse_times(others.at(w)));
             }
-            f.put(w, difference(start.at(w), self.linear.inverse_times(n)));
+            f.put(w, next);
         }
     }
 
@@ -117,23 +130,22 @@ impl<'t> Compensation<'t> {
             self.model.others(&f)
         });
         for w in 0..W {
-            let (mut error, mut gain) = self.model.separable.error_and_gain(difference(reading.at(w), e.at(w)));
+            let e_w = e.at(w);
+            let (mut misfit, mut gain) = self.model.separable.misfit_and_gain(difference(reading.at(w), e_w), e_w);
             if let Some(others) = &others {
-                error = sum(error, others.error.at(w));
+                misfit = sum(misfit, others.error.at(w));
                 gain = [0, 1, 2].map(|j| sum(gain[j], others.gain[j].at(w)));
             }
-            let next = sum(e.at(w), solve(gain, difference(error, e.at(w))));
-            e.put(w, next);
+            e.put(w, corrected(e_w, gain, misfit));
         }
     }
 
-    /// `f` within `scale` times the range, else NaN.
+    /// Whether `f` lies within `scale` times the range.
     #[inline(always)]
-    fn or_nan(&self, f: [f64; 3], scale: f64) -> [f64; 3] {
+    fn is_within(&self, f: [f64; 3], scale: f64) -> bool {
         let h = scale * self.certificate.range;
         // Not short-circuited: a branch would keep the lanes out of vectors.
-        let inside = (f[0].abs() <= h) & (f[1].abs() <= h) & (f[2].abs() <= h);
-        if inside { f } else { [f64::NAN; 3] }
+        (f[0].abs() <= h) & (f[1].abs() <= h) & (f[2].abs() <= h)
     }
 }
 

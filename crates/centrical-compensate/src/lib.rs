@@ -6,7 +6,7 @@
 //! - [`Compensation::new`] certifies that the inverse is unique over the range asked for, by bounds on the
 //!   coefficients alone; only then are readings inverted. A reading of nothing within the range is refused.
 //! - The result is exact to rounding: what is left of Newton's iteration is below the last place of the range.
-//! - One reading or many, one thread or all, narrow vectors or wide: the same bytes.
+//! - One reading or many, one thread or all, narrow vectors or wide, with `std` or without: the same bytes.
 //!
 //! ```
 //! use centrical_compensate::{Compensation, Term, reading};
@@ -25,12 +25,17 @@
     reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
 )]
 
+#[cfg(feature = "std")]
+extern crate std;
+
 mod bulk;
 mod certificate;
 mod compensation;
 mod error;
+mod fused;
 mod lanes;
 mod linear;
+mod machine;
 mod model;
 mod separable;
 mod term;

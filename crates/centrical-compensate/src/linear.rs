@@ -1,5 +1,6 @@
 //! The affine part of the error model and its inverse, and the algebra of three dimensions.
 
+use crate::fused::{cross, dot, fused};
 use crate::term::Term;
 
 /// `f' = A f + b`: the reading without its non-linear terms, and `C = A^-1`.
@@ -32,16 +33,10 @@ impl Linear {
         inverse.as_flattened().iter().all(|c| c.is_finite()).then_some(Self { bias, gain, inverse })
     }
 
-    /// `C (f' - b)`.
-    #[inline(always)]
-    pub(crate) fn invert(&self, reading: [f64; 3]) -> [f64; 3] {
-        self.inverse_times([reading[0] - self.bias[0], reading[1] - self.bias[1], reading[2] - self.bias[2]])
-    }
-
     /// `C d`.
     #[inline(always)]
     pub(crate) fn inverse_times(&self, d: [f64; 3]) -> [f64; 3] {
-        [dot(self.inverse[0], d), dot(self.inverse[1], d), dot(self.inverse[2], d)]
+        self.inverse.map(|row| dot(row, d))
     }
 }
 
@@ -50,23 +45,13 @@ pub(crate) fn is_affine(term: &Term) -> bool {
     term.degree() <= 1 && term.sign_of.is_none()
 }
 
-/// Solves `g x = d` by Cramer's rule, `g` given by columns. Accurate enough for a Newton step, which is
-/// small beside the error it corrects, and without a branch, so that it goes into vectors. Products are shared: the first
-/// unknown is `d . (b x c) = b . (c x d)` over the determinant `a . (b x c) = c . (a x b)`.
+/// `x + g^-1 d` by Cramer's rule, `g` given by columns. Accurate enough for a Newton step, which is small beside the error
+/// `x` it corrects, and without a branch, so that it goes into vectors. Products are shared: the first unknown is
+/// `d . (b x c) = b . (c x d)` over the determinant `a . (b x c) = c . (a x b)`.
 #[inline(always)]
-pub(crate) fn solve(g: [[f64; 3]; 3], d: [f64; 3]) -> [f64; 3] {
+pub(crate) fn corrected(x: [f64; 3], g: [[f64; 3]; 3], d: [f64; 3]) -> [f64; 3] {
     let [a, b, c] = g;
     let (ab, cd) = (cross(a, b), cross(c, d));
     let scale = 1.0 / dot(c, ab);
-    [dot(b, cd) * scale, -dot(a, cd) * scale, dot(d, ab) * scale]
-}
-
-#[inline(always)]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-#[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    [fused(dot(b, cd), scale, x[0]), fused(dot(a, cd), -scale, x[1]), fused(dot(d, ab), scale, x[2])]
 }

@@ -1,5 +1,6 @@
 //! The fast form: errors that are sums of cubics in one component each, as the source's model is [K4.2].
 
+use crate::fused::{dot, fused};
 use crate::term::Term;
 
 /// `E_i(f) = b_i + sum_j (g1_ij f_j + g0_ij) f_j + g2_i f_i^3`.
@@ -27,38 +28,61 @@ impl Separable {
         part
     }
 
-    /// `N(f)`: the quadratic and cubic terms [m/s^2].
+    /// `E(f) - e` [m/s^2], and the columns of the gain `I + dE/df`.
     #[inline(always)]
-    pub fn nonlinear(&self, f: [f64; 3]) -> [f64; 3] {
-        let square = f.map(|f| f * f);
-        [0, 1, 2].map(|i| {
-            let mut g1 = self.g1[i];
-            g1[i] += self.g2[i] * f[i];
-            g1[0] * square[0] + g1[1] * square[1] + g1[2] * square[2]
-        })
-    }
-
-    /// `E(f)` [m/s^2], and the columns of the gain `I + dE/df`.
-    #[inline(always)]
-    pub fn error_and_gain(&self, f: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
-        let mut error = self.bias;
+    pub fn misfit_and_gain(&self, f: [f64; 3], e: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
+        let mut misfit = [0, 1, 2].map(|i| self.bias[i] - e[i]);
         let mut columns = [[0.0; 3]; 3];
         for i in 0..3 {
             for j in 0..3 {
                 let (g0, g1) = (self.g0[i][j], self.g1[i][j]);
                 if i == j {
                     let g2 = self.g2[i];
-                    error[i] += ((g2 * f[j] + g1) * f[j] + g0) * f[j];
-                    columns[j][i] = (3.0 * g2 * f[j] + 2.0 * g1) * f[j] + (1.0 + g0);
+                    misfit[i] = fused(fused(fused(g2, f[j], g1), f[j], g0), f[j], misfit[i]);
+                    columns[j][i] = fused(fused(3.0 * g2, f[j], 2.0 * g1), f[j], 1.0 + g0);
                 } else {
-                    let slope = g1 * f[j];
-                    let chord = slope + g0;
-                    error[i] += chord * f[j];
-                    columns[j][i] = chord + slope;
+                    let chord = fused(g1, f[j], g0);
+                    misfit[i] = fused(chord, f[j], misfit[i]);
+                    columns[j][i] = fused(g1, f[j], chord);
                 }
             }
         }
-        (error, columns)
+        (misfit, columns)
+    }
+
+    /// What a fixed-point step takes off, for the inverse `C` of the gain at zero.
+    pub fn shift(&self, inverse: &[[f64; 3]; 3]) -> Shift {
+        let mut shift = Shift { square: [[0.0; 3]; 3], cube: [[0.0; 3]; 3] };
+        for i in 0..3 {
+            for j in 0..3 {
+                shift.square[i][j] = dot(inverse[i], [0, 1, 2].map(|k| self.g1[k][j]));
+                shift.cube[i][j] = inverse[i][j] * self.g2[j];
+            }
+        }
+        shift
+    }
+}
+
+/// `C N(f)`, the quadratic and cubic terms as the inverse of the gain at zero takes them: in component `i`
+/// `sum_j (square_ij + cube_ij f_j) f_j^2`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shift {
+    square: [[f64; 3]; 3],
+    cube: [[f64; 3]; 3],
+}
+
+impl Shift {
+    /// `start - C N(f)` [m/s^2].
+    #[inline(always)]
+    pub fn step(&self, start: [f64; 3], f: [f64; 3]) -> [f64; 3] {
+        let square = f.map(|f| f * f);
+        let mut next = start;
+        for i in 0..3 {
+            for j in 0..3 {
+                next[i] = fused(-fused(self.cube[i][j], f[j], self.square[i][j]), square[j], next[i]);
+            }
+        }
+        next
     }
 }
 

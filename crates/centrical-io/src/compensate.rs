@@ -20,6 +20,8 @@ pub struct Compensated {
     pub outside: u64,
     /// The first of those.
     pub first_outside: Option<FirstOutside>,
+    /// Decimals of the specific forces as they are written [m/s^2], if they are rounded.
+    pub decimals: Option<u32>,
 }
 
 /// A reading from out of range.
@@ -33,6 +35,9 @@ pub struct FirstOutside {
 
 /// Compensates the record in `input` into `output`, CSV or Parquet by its name. The same bytes on any machine.
 ///
+/// Time is written as it was read, to the bit. So are specific forces as Parquet has them; as CSV has them, they are rounded to at
+/// most `10^-12` of the range ([`RecordWriter::create_rounded`]).
+///
 /// # Errors
 /// As [`scan_record`] for `input` and [`RecordWriter`] for `output`, which is not touched then.
 pub fn compensate_record(
@@ -43,7 +48,7 @@ pub fn compensate_record(
 ) -> Result<Compensated, Error> {
     /// Blocks read ahead: enough that neither side waits for a hiccup of the other.
     const AHEAD: usize = 8;
-    let writer = RecordWriter::create(output)?;
+    let writer = RecordWriter::create_rounded(output, compensation.certificate().range)?;
     let (blocks, received) = sync_channel(AHEAD);
     thread::scope(|scope| {
         let written = scope.spawn(move || write(compensation, input, &received, writer));
@@ -69,9 +74,13 @@ fn write(
     blocks: &Receiver<Block>,
     mut writer: RecordWriter,
 ) -> Result<(Compensated, RecordWriter), Error> {
-    let mut sum = Compensated::default();
-    while let Ok((t, mut f)) = blocks.recv() {
-        let readings = f.clone();
+    let mut sum = Compensated { decimals: writer.decimals(), ..Compensated::default() };
+    let mut f = [const { Vec::new() }; 3];
+    while let Ok((t, readings)) = blocks.recv() {
+        for (f, readings) in f.iter_mut().zip(&readings) {
+            f.clear();
+            f.extend_from_slice(readings);
+        }
         let outside = compensation
             .apply_all(f.each_mut().map(Vec::as_mut_slice))
             .map_err(|unequal| Error::content(input, Place::Whole, unequal.to_string(), "columns of equal length"))?;

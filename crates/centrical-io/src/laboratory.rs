@@ -8,6 +8,7 @@ use serde::de::{self, Deserializer};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Place};
+use crate::result::CalibrationResult;
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -241,6 +242,18 @@ impl Laboratory {
         })?;
         laboratory.check(file)?;
         Ok(laboratory)
+    }
+
+    /// Checks that every limit of the decision is one of a parameter of `result`. `file` is the laboratory's.
+    ///
+    /// # Errors
+    /// [`Error::Content`] with the limit that is not.
+    pub fn check_limits(&self, file: &Path, result: &CalibrationResult) -> Result<(), Error> {
+        let mut limits = self.decision.iter().flat_map(|decision| &decision.limit);
+        let Some(unknown) = limits.find(|limit| result.parameter(&limit.parameter).is_none()) else { return Ok(()) };
+        let place = Place::Key { table: "[[decision.limit]]".to_owned(), key: "parameter".to_owned() };
+        let known = result.parameters.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
+        Err(Error::content(file, place, format!("{:?}", unknown.parameter), format!("one of {known}")))
     }
 
     fn check(&self, file: &Path) -> Result<(), Error> {

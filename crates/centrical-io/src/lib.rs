@@ -18,6 +18,7 @@
 
 mod calibration;
 mod compensate;
+mod digits;
 mod error;
 mod input;
 mod laboratory;

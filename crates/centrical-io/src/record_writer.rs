@@ -1,5 +1,6 @@
 //! Records out, block by block: CSV, or Parquet where the file's name ends in `.parquet`.
 
+mod decimal;
 mod text;
 
 use std::ffi::OsString;
@@ -7,15 +8,18 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use self::decimal::Decimals;
 use self::text::TextTable;
 use crate::error::Error;
 use crate::parquet_table::{Layout, ParquetTable};
 use centrical::reduction::RecordSlice;
 
 /// Writes `t` [s], `f1`, `f2`, `f3` [m/s^2] beside the file and renames at the end: whoever looks sees the whole
-/// record or none. Numbers read back as they were; NaN is written as such.
+/// record or none. Numbers read back as they were unless they are rounded; NaN is written as such.
 pub struct RecordWriter {
     file: PathBuf,
+    /// Decimals of rounded specific forces.
+    decimals: Option<u32>,
     beside: OsString,
     /// The table in the making; none once it is finished.
     table: Option<Box<dyn Table>>,
@@ -47,16 +51,36 @@ impl RecordWriter {
     /// # Errors
     /// [`Error::Io`] if the folder does not take the file.
     pub fn create(file: &Path) -> Result<Self, Error> {
+        Self::begin(file, None)
+    }
+
+    /// Begins a record of specific forces within `range` [m/s^2]. As text they have so many decimals that half of the last
+    /// one is at most `10^-12` of the range; they are shorter so, and sooner made.
+    ///
+    /// # Errors
+    /// As [`RecordWriter::create`].
+    pub fn create_rounded(file: &Path, range: f64) -> Result<Self, Error> {
+        Self::begin(file, Decimals::for_range(range))
+    }
+
+    fn begin(file: &Path, decimals: Option<Decimals>) -> Result<Self, Error> {
         let mut beside = file.as_os_str().to_owned();
         beside.push(".tmp");
         let failed = |error| Error::writing(file, error);
         let output = File::create(&beside).map_err(failed)?;
-        let table: Box<dyn Table> = if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet")) {
+        let is_parquet = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"));
+        let decimals = decimals.filter(|_| !is_parquet);
+        let table: Box<dyn Table> = if is_parquet {
             Box::new(ParquetTable::new(output, Layout::PLAIN, &["t", "f1", "f2", "f3"]).map_err(failed)?)
         } else {
-            Box::new(TextTable::new(output).map_err(failed)?)
+            Box::new(TextTable::new(output, decimals).map_err(failed)?)
         };
-        Ok(Self { file: file.to_owned(), beside, table: Some(table) })
+        Ok(Self { file: file.to_owned(), decimals: decimals.map(Decimals::count), beside, table: Some(table) })
+    }
+
+    /// Decimals that the specific forces have, if they are rounded.
+    pub fn decimals(&self) -> Option<u32> {
+        self.decimals
     }
 
     /// Adds a stretch of the record.

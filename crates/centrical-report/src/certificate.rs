@@ -10,6 +10,8 @@ use crate::groups::by_group;
 use crate::language::Language;
 use crate::pdf::{Align, Column, Furniture, Layout, write};
 use crate::reading_error::{error_table, reading_errors};
+use crate::steadiness::facts;
+use crate::verdict::objections;
 
 /// The certificate as the bytes of a PDF file, with the results `before` an adjustment beside those after it if the
 /// unit was adjusted. The same data give the same bytes.
@@ -22,11 +24,13 @@ pub fn pdf_certificate(
     let messages = language.messages();
     let mut layout = Layout::new();
     layout.title(messages.certificate);
+    warning(&mut layout, result, language);
     parties(&mut layout, laboratory, language);
     item(&mut layout, result, laboratory, language);
     dates(&mut layout, laboratory, language);
     method(&mut layout, result, laboratory, language);
     conditions(&mut layout, result, laboratory, language);
+    steadiness(&mut layout, result, language);
     traceability(&mut layout, laboratory, language);
     results(&mut layout, result, language);
     adjustment(&mut layout, result, before, laboratory, language);
@@ -43,6 +47,18 @@ pub fn pdf_certificate(
         page_of: &|page, count| format!("{} {page} {} {count}", messages.page, messages.of),
     };
     write(layout, &furniture)
+}
+
+/// What speaks against the result, before anything else.
+fn warning(layout: &mut Layout, result: &CalibrationResult, language: Language) {
+    let (messages, objections) = (language.messages(), objections(result));
+    if !objections.is_empty() {
+        layout.heading(messages.not_acceptable, 40.0);
+        layout.paragraph(messages.verdict_bad);
+        for objection in &objections {
+            layout.paragraph(&format!("– {}", messages.objection(objection, language)));
+        }
+    }
 }
 
 /// 7.8.2.1 a, b, d, e.
@@ -134,6 +150,17 @@ fn conditions(layout: &mut Layout, result: &CalibrationResult, laboratory: &Labo
     ]);
 }
 
+/// What was observed during the calibration, where records show it; also 7.8.2.1 n, samples that were left out.
+fn steadiness(layout: &mut Layout, result: &CalibrationResult, language: Language) {
+    let messages = language.messages();
+    let facts = facts(result, language);
+    if !facts.is_empty() {
+        layout.heading(messages.steadiness, 130.0);
+        layout.paragraph(messages.steadiness_note);
+        layout.facts(&facts);
+    }
+}
+
 /// 7.8.4.1 c.
 fn traceability(layout: &mut Layout, laboratory: &Laboratory, language: Language) {
     let messages = language.messages();
@@ -203,6 +230,9 @@ fn adjustment(
         results_before(layout, result, before, language);
     }
     let Some(errors) = reading_errors(result) else { return };
+    if laboratory.item.adjustment.is_none() {
+        layout.paragraph(messages.errors_of_readings);
+    }
     let rows = error_table(&errors, language)
         .map(|(name, cells)| std::iter::once(name.to_owned()).chain(cells).collect::<Vec<String>>());
     let axes = [1, 2, 3].map(|axis| format!("{} {axis}", messages.axis));
@@ -256,7 +286,11 @@ fn conformity_statement(layout: &mut Layout, result: &CalibrationResult, decisio
                 || messages.not_determined.to_owned(),
                 |(value, expanded)| language.plus_minus(value * factor, expanded * factor),
             );
-            let verdict = if judged.conforms { messages.conforms } else { messages.does_not_conform };
+            let verdict = match judged.conforms {
+                Some(true) => messages.conforms,
+                Some(false) => messages.does_not_conform,
+                None => messages.conformity_not_stated,
+            };
             let range = format!("{low} … {high}");
             vec![limit.parameter.clone(), range, value, language.unit(unit), verdict.to_owned()]
         })

@@ -38,8 +38,9 @@ impl NamedTerm {
 /// What the first comment says of a result.
 pub fn heading(result: &CalibrationResult) -> Vec<String> {
     let session = &result.session;
+    let serial = if session.unit_serial.is_empty() { String::new() } else { format!(" No. {}", session.unit_serial) };
     vec![
-        format!("Compensation of {} No. {}, calibrated {}.", session.unit_model, session.unit_serial, session.date),
+        format!("Compensation of {}{serial}, calibrated {}.", session.unit_model, session.date),
         session.title.clone(),
         format!("Made by {} {}; not to be edited.", result.program.name, result.program.version),
     ]

@@ -31,7 +31,11 @@ pub fn customary<'a>(unit: &'a str, group: &str) -> (f64, &'a str) {
 /// (GUM, 7.2.6).
 pub fn with_uncertainty(value: f64, uncertainty: f64) -> (String, String) {
     let places = places_of(uncertainty);
-    (format!("{value:.places$}"), format!("{uncertainty:.places$}"))
+    let shown = format!("{value:.places$}");
+    // A small negative number rounds to a zero, which has no sign.
+    let is_zero = !shown.contains(|c: char| c.is_ascii_digit() && c != '0');
+    let shown = if is_zero { shown.trim_start_matches('-').to_owned() } else { shown };
+    (shown, format!("{uncertainty:.places$}"))
 }
 
 /// Decimal places that show two significant digits of an uncertainty.
@@ -58,5 +62,8 @@ mod tests {
         assert_eq!(shown(744.294, 0.0996), "744.29 ± 0.10");
         assert_eq!(shown(12345.6, 123.0), "12346 ± 123");
         assert_eq!(shown(1.0, 9.96), "1 ± 10");
+        assert_eq!(shown(-0.3, 40.0), "0 ± 40");
+        assert_eq!(shown(-0.04, 3.0), "0.0 ± 3.0");
+        assert_eq!(shown(f64::NAN, 3.0), "NaN ± 3.0");
     }
 }

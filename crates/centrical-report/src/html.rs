@@ -1,6 +1,5 @@
 //! The report as one HTML file: no network, no scripts, legible on a telephone, on paper and in the dark.
 
-mod steadiness;
 mod table;
 
 use std::fmt::Write;
@@ -12,6 +11,7 @@ use crate::groups::by_group;
 use crate::language::Language;
 use crate::plot::Escaped;
 use crate::reading_error::{ReadingError, error_table, reading_errors};
+use crate::steadiness::facts;
 use crate::terminal::combination;
 use crate::verdict::objections;
 use table::{Table, budget, parameters};
@@ -128,7 +128,7 @@ fn verdict(html: &mut String, result: &CalibrationResult, language: Language) {
 fn checks(facts: &mut Table, validity: &ValiditySummary, language: Language) {
     let messages = language.messages();
     let listed = |items: Vec<String>| if items.is_empty() { messages.none.to_owned() } else { items.join("; ") };
-    facts.row(messages.chi_squared_chance, &[language.fixed(validity.probability, 3)]);
+    facts.row(messages.chi_squared_chance, &[language.probability(validity.probability)]);
     let outlying = validity.outlying.iter().map(|p| format!("{}:{}", p.mounting, p.index + 1)).collect();
     facts.row(&capitalised(messages.outlying_plateaus), &[listed(outlying)]);
     let patterns = validity.patterns.iter().map(|pattern| messages.pattern(pattern, language)).collect();
@@ -136,7 +136,7 @@ fn checks(facts: &mut Table, validity: &ValiditySummary, language: Language) {
     if let Some(worst) = validity.mountings.iter().min_by(|a, b| a.probability.total_cmp(&b.probability)) {
         let chance = (validity.mountings.len() as f64 * worst.probability).min(1.0);
         let chi_squared = language.fixed(worst.chi_squared, 1);
-        let (nu, p) = (worst.degrees_of_freedom, language.fixed(chance, 3));
+        let (nu, p) = (worst.degrees_of_freedom, language.probability(chance));
         let shown = format!("{}: χ² = {chi_squared}; ν = {nu}; p = {p}", worst.mounting);
         facts.row(messages.worst_mounting, &[shown]);
     }
@@ -202,12 +202,18 @@ fn session(html: &mut String, result: &CalibrationResult, language: Language) {
 /// Drift and tilt, where records tell them.
 fn steadiness_section(html: &mut String, result: &CalibrationResult, language: Language) {
     let messages = language.messages();
-    if let Some(table) = steadiness::steadiness(result, language) {
-        section(html, messages.steadiness, |html| {
-            let _ = writeln!(html, "<p class=\"note\">{}</p>", Escaped(messages.steadiness_note));
-            html.push_str(&table);
-        });
+    let facts = facts(result, language);
+    if facts.is_empty() {
+        return;
     }
+    section(html, messages.steadiness, |html| {
+        let _ = writeln!(html, "<p class=\"note\">{}</p>", Escaped(messages.steadiness_note));
+        let mut table = Table::new("facts");
+        for (name, said) in facts {
+            table.row(name, &[said]);
+        }
+        html.push_str(&table.into_html());
+    });
 }
 
 fn parameter_tables(html: &mut String, result: &CalibrationResult, language: Language) {

@@ -52,6 +52,16 @@ impl Language {
         self.number(&format!("{value:.places$}"))
     }
 
+    /// A probability to three places, a small one to two digits and a power of ten.
+    pub(crate) fn probability(self, value: f64) -> String {
+        if value >= 1e-3 || value == 0.0 {
+            return self.fixed(value, 3);
+        }
+        let digits = format!("{value:.1e}");
+        let (digits, power) = digits.split_once('e').unwrap_or((&digits, "0"));
+        format!("{}·{}", self.number(digits), power_of_ten(power.parse().unwrap_or(0)))
+    }
+
     /// A number to `digits` significant digits, never in powers of ten.
     pub(crate) fn significant(self, value: f64, digits: i32) -> String {
         let places = usize::try_from(digits - 1 - exponent(value)).unwrap_or(0);
@@ -141,6 +151,8 @@ mod tests {
         assert_eq!(Russian.plus_minus(-3.952_149, 0.001_234), "−3,9521 ± 0,0012");
         assert_eq!(Russian.plus_minus_scientific(-1.6488e-6, 1.2e-9), "(−1,6488 ± 0,0012)·10⁻⁶");
         assert_eq!(Russian.scientific(1.5e-5), "1,5·10⁻⁵");
+        assert_eq!([0.155, 1e-3, 0.0].map(|p| Russian.probability(p)), ["0,155", "0,001", "0,000"]);
+        assert_eq!([9.99e-4, 1.3e-45].map(|p| English.probability(p)), ["1.0·10⁻³", "1.3·10⁻⁴⁵"]);
         assert_eq!(English.significant(1234.5, 3), "1234");
         assert_eq!(Russian.significant(0.012_345, 3), "0,0123");
         assert_eq!((English.unit("ug/g^2"), Russian.unit("ug/g^2")), ("µg/g²".to_owned(), "мкg/g²".to_owned()));

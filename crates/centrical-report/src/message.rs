@@ -177,6 +177,7 @@ pub(crate) struct Messages {
     pub before_adjustment: &'static str,
     pub after_adjustment: &'static str,
     pub no_adjustment: &'static str,
+    pub errors_of_readings: &'static str,
     pub conformity: &'static str,
     pub specification: &'static str,
     pub decision_rule: &'static str,
@@ -185,6 +186,7 @@ pub(crate) struct Messages {
     pub limits: &'static str,
     pub conforms: &'static str,
     pub does_not_conform: &'static str,
+    pub conformity_not_stated: &'static str,
     pub authorised: &'static str,
     pub responsible: &'static str,
     pub signature: &'static str,
@@ -228,7 +230,7 @@ impl Messages {
         };
         let [amplitude, uncertainty] =
             [pattern.amplitude, pattern.standard_uncertainty].map(|a| language.significant(a / MICRO_G, 2));
-        let chance = language.number(&format!("{:.1e}", pattern.probability));
+        let chance = language.probability(pattern.probability);
         let follows = format!("{} {place}", self.word(follows));
         format!(
             "{} {}, {}: {amplitude} ± {uncertainty} {}, {} {chance}",
@@ -247,15 +249,14 @@ impl Messages {
                 format!("{} ({}, {iterations})", self.not_converged, self.word(termination))
             }
             Objection::Residuals { chi_squared, degrees_of_freedom, chance } => {
-                let (chi_squared, chance) =
-                    (language.fixed(*chi_squared, 1), language.number(&format!("{chance:.1e}")));
+                let (chi_squared, chance) = (language.fixed(*chi_squared, 1), language.probability(*chance));
                 format!(
                     "{}: χ² = {chi_squared}, {} {degrees_of_freedom}, {} {chance}",
                     self.residuals_too_large, self.degrees_of_freedom, self.chance
                 )
             }
             Objection::Outlying(plateaus, chance) => {
-                let chance = language.number(&format!("{chance:.1e}"));
+                let chance = language.probability(*chance);
                 format!("{}: {}, {} {chance}", self.outlying_plateaus, plateaus.join(", "), self.chance)
             }
             Objection::Patterns(patterns) => {

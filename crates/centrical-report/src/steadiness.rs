@@ -1,12 +1,15 @@
 //! How steady the readings were: drift, tilt while spinning, samples left out; what of it is no chance, and all of it
 //! in words for the terminal.
 
+mod facts;
+
 use std::fmt::Write;
 
 use centrical::STANDARD_GRAVITY;
 use centrical::uncertainty::chi_squared_tail;
 use centrical_io::{CalibrationResult, DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, TiltSummary};
 
+pub(crate) use self::facts::facts;
 use crate::customary::with_uncertainty;
 
 /// What comes by chance less often than this is said to be there.

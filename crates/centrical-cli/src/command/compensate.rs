@@ -66,7 +66,11 @@ fn tell(compensated: &Compensated, certificate: &Certificate, out: &Path) {
             compensated.outside, first.t
         );
     }
-    println!("Written to {}", out.display());
+    let out = out.display();
+    match compensated.decimals {
+        Some(count) => println!("Written to {out}, specific forces to {count} decimals of a m/s^2"),
+        None => println!("Written to {out}"),
+    }
 }
 
 /// "200 g", or a plain number in m/s^2.

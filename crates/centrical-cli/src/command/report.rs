@@ -6,6 +6,7 @@ use centrical_io::{CalibrationResult, Error, Laboratory, Place, create_folder, r
 use centrical_report::codegen::{NamedTerm, compensation_source, heading};
 use centrical_report::{
     Language, digital_certificate, figures, history_figure, html_report, html_report_with, objections, pdf_certificate,
+    verdict_text,
 };
 use clap::ValueEnum;
 
@@ -71,6 +72,7 @@ impl From<LanguageName> for Language {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let result = CalibrationResult::read(&arguments.result)?;
+    let laboratory = arguments.documents.laboratory(&result)?;
     let language = arguments.documents.language.into();
     if let Some(file) = &arguments.html {
         let history = arguments.history.as_deref().map(read_history).transpose()?.unwrap_or_default();
@@ -78,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         let further = history_figure(&history, &group_of, language);
         write_whole(file, html_report_with(&result, further.as_slice(), language).as_bytes())?;
     }
-    if let Some(laboratory) = arguments.documents.laboratory()? {
+    if let Some(laboratory) = laboratory {
         if let Some(file) = &arguments.pdf {
             let before = arguments.before.as_deref().map(|file| before(file, &result, &laboratory)).transpose()?;
             write_whole(file, &pdf_certificate(&result, before.as_ref(), &laboratory, language))?;
@@ -90,7 +92,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if let Some(folder) = &arguments.c {
         write_source(&result, &arguments.result, folder)?;
     }
-    Ok(if objections(&result).is_empty() { Outcome::Done } else { Outcome::NotAcceptable })
+    let objections = objections(&result);
+    if objections.is_empty() {
+        return Ok(Outcome::Done);
+    }
+    print!("{}", verdict_text(&objections));
+    Ok(Outcome::NotAcceptable)
 }
 
 /// The result before an adjustment, which has to be of the same unit, and the laboratory has to say what it adjusted.
@@ -124,15 +131,20 @@ fn write_source(result: &CalibrationResult, file: &Path, folder: &Path) -> Resul
 }
 
 impl Documents {
-    fn laboratory(&self) -> Result<Option<Laboratory>, Error> {
-        self.laboratory.as_deref().map(Laboratory::read).transpose()
+    /// What the laboratory says, its limits those of parameters of the result.
+    fn laboratory(&self, result: &CalibrationResult) -> Result<Option<Laboratory>, Error> {
+        let Some(file) = &self.laboratory else { return Ok(None) };
+        let laboratory = Laboratory::read(file)?;
+        laboratory.check_limits(file, result)?;
+        Ok(Some(laboratory))
     }
 
     /// Writes the report and its plots to a folder, and the certificates if the laboratory's data are given.
     pub fn write_all(&self, result: &CalibrationResult, folder: &Path) -> Result<(), Error> {
         let language = self.language.into();
+        let laboratory = self.laboratory(result)?;
         write_whole(&folder.join("report.html"), html_report(result, language).as_bytes())?;
-        if let Some(laboratory) = self.laboratory()? {
+        if let Some(laboratory) = laboratory {
             write_whole(&folder.join("certificate.pdf"), &pdf_certificate(result, None, &laboratory, language))?;
             let dcc = digital_certificate(result, &laboratory, language);
             write_whole(&folder.join("certificate.xml"), dcc.as_bytes())?;

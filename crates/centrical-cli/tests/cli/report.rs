@@ -158,7 +158,14 @@ fn certificates_need_the_laboratory() {
     let message = String::from_utf8(run.stderr).unwrap();
     assert_eq!(run.status.code(), Some(2));
     assert!(message.contains("laboratory.toml, line ") && message.contains("costumer"), "{message}");
-    assert!(!copy.out().join("c.pdf").exists());
+    fs::write(copy.out().join("laboratory.toml"), text.replace("\"df_3\"", "\"df_9\"")).unwrap();
+    let arguments = ["report", "result.json", "--html", "r.html", "--pdf", "c.pdf", "--laboratory", "laboratory.toml"];
+    let run = copy.run(&arguments);
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(2));
+    let expected = "laboratory.toml, [[decision.limit]], parameter: found \"df_9\", expected one of";
+    assert!(message.contains(expected), "{message}");
+    assert!(!copy.out().join("c.pdf").exists() && !copy.out().join("r.html").exists());
 }
 
 /// A result that is not acceptable says so first, in the page and by the exit code.

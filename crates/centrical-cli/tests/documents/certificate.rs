@@ -76,6 +76,10 @@ fn the_certificate_has_every_item() {
             ("b, humidity", "Relative humidity 45 ± 5 %"),
             ("b, pressure", "Air pressure 100.9 ± 0.4 kPa"),
             ("b, gravity", "Local gravity 9.81523 m/s²"),
+            ("b, drift", "Drift over a plateau, mean f1 "),
+            ("b, drift", "no drift seen"),
+            ("b, tilt", "300.17 ± 0.72 µrad; χ² = 0.2; ν = 1; they agree"),
+            ("n, samples left out", "Samples not used spikes: 4"),
             ("c, traceability", "traceable to the SI"),
             ("c, standard", "GET 94-2001"),
             ("c, its certificate", "DL-2026-0031"),
@@ -107,6 +111,8 @@ fn in_russian() {
             ("method", "по методу А. В. Козлова"),
             ("conditions", "Температура воздуха 20,3 ± 0,5 °C"),
             ("pressure", "100,9 ± 0,4 кПа"),
+            ("drift", "ухода не видно"),
+            ("tilt", "они согласны"),
             ("a result", "df_1 Смещение нуля −3,9524 ± 0,0040 мg (−3,8760 ± 0,0039)·10⁻² м/с²"),
             ("uncertainty", "коэффициент охвата k = 2"),
             ("adjustment", "Прибор не юстировался и не ремонтировался"),
@@ -175,6 +181,37 @@ fn adjustment_and_decision() {
 
     let unasked = certificate("en", |text| text[..text.find("[decision]").unwrap()].to_owned());
     assert!(!unasked.contains("conform"), "no statement that was not asked for");
+}
+
+/// What speaks against a result stands before everything else, and no conformity is stated from it.
+#[test]
+#[ignore = "needs pdftotext"]
+fn a_result_that_is_not_acceptable_says_so() {
+    let folder = documents("en", |text| text);
+    let result = folder.path().join("result.json");
+    let mut json: serde_json::Value = serde_json::from_str(&fs::read_to_string(&result).unwrap()).unwrap();
+    json["fit"]["chi_squared"] = 1000.0.into();
+    fs::write(&result, json.to_string()).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    command.args(["report", "result.json", "--pdf", "bad.pdf", "--dcc", "bad.xml", "--laboratory", "laboratory.toml"]);
+    let run = command.current_dir(&folder).output().unwrap();
+    assert_eq!(run.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    assert!(said.contains("NOT ACCEPTABLE  residuals are larger"), "{said}");
+    let text = text_of(&folder.path().join("bad.pdf"));
+    has(
+        &text,
+        &[
+            (
+                "verdict",
+                "Calibration certificate Not acceptable The result must not be used as it stands: – residuals are",
+            ),
+            ("conformity", "−3.9524 ± 0.0040 mg not stated"),
+        ],
+    );
+    assert!(!text.contains("conforms"), "{text}");
+    let dcc = fs::read_to_string(folder.path().join("bad.xml")).unwrap();
+    assert!(dcc.contains("Not acceptable: residuals are larger") && !dcc.contains("<dcc:conformity>"));
 }
 
 /// Every font is in the file.

@@ -1,42 +1,54 @@
-//! Records as CSV: every number in its shortest form that reads back the same.
+//! Records as CSV: numbers to a fixed number of decimals, or in the shortest form that reads back the same.
+
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
+)]
 
 use std::fs::File;
 use std::io::{self, Write};
 
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::Table;
+use super::decimal::{self, Decimals, Digits, ROOM};
 use centrical::reduction::RecordSlice;
 
-/// Rows that are turned into text together: some 300 KB.
+/// Rows that are turned into text together: some 250 KB.
 const ROWS: usize = 4096;
 
-/// Bytes of the longest number and what follows it.
-const LONGEST: usize = 25;
+/// What most stamps and many readings have no more decimals than. They need no search for the shortest form.
+const NANO: Decimals = Decimals::exact(9);
 
 /// A CSV file in the making.
 pub(super) struct TextTable {
     output: File,
+    /// Of time and of the specific forces.
+    decimals: [Decimals; 4],
     /// The lines of a block, [`ROWS`] of them in each.
     pieces: Vec<Lines>,
 }
 
 impl TextTable {
-    pub fn new(mut output: File) -> io::Result<Self> {
+    /// Begins the file; the specific forces in their shortest form unless decimals are given.
+    pub fn new(mut output: File, decimals: Option<Decimals>) -> io::Result<Self> {
         output.write_all(b"t,f1,f2,f3\n")?;
-        Ok(Self { output, pieces: Vec::new() })
+        let of_force = decimals.unwrap_or(NANO);
+        Ok(Self { output, decimals: [NANO, of_force, of_force, of_force], pieces: Vec::new() })
     }
 }
 
 impl Table for TextTable {
-    /// On all threads, since this is the slowest part of a compensation; in order, whatever their number.
+    /// On all threads; in order, whatever their number.
     fn write(&mut self, block: RecordSlice) -> io::Result<()> {
         let [f1, f2, f3] = block.f_z.map(|f| f.chunks(ROWS));
         let rows: Vec<[&[f64]; 4]> =
             block.t.chunks(ROWS).zip(f1).zip(f2).zip(f3).map(|(((t, f1), f2), f3)| [t, f1, f2, f3]).collect();
         self.pieces.resize_with(self.pieces.len().max(rows.len()), Lines::default);
-        self.pieces.par_iter_mut().zip(&rows).for_each(|(lines, rows)| lines.set(rows));
-        self.pieces[..rows.len()].iter().try_for_each(|lines| self.output.write_all(&lines.text[..lines.length]))
+        let decimals = self.decimals;
+        self.pieces.par_iter_mut().zip(&rows).for_each(|(lines, rows)| lines.set(decimals, rows));
+        self.pieces[..rows.len()].iter().try_for_each(|lines| self.output.write_all(&lines.text[lines.start..]))
     }
 
     fn finish(self: Box<Self>) -> io::Result<()> {
@@ -47,43 +59,61 @@ impl Table for TextTable {
 /// Lines of text.
 #[derive(Default)]
 struct Lines {
-    /// The text, and room behind it.
+    /// Room, and the text from `start` on.
     text: Vec<u8>,
-    length: usize,
+    start: usize,
 }
 
 impl Lines {
     /// The lines of rows, given by columns.
-    fn set(&mut self, columns: &[&[f64]; 4]) {
-        let rows = columns[0].len();
-        self.text.resize(self.text.len().max(rows * columns.len() * LONGEST), 0);
-        let mut number = zmij::Buffer::new();
-        let mut end = 0;
-        for row in 0..rows {
-            for column in columns {
-                let value = column[row];
-                let digits = if value.is_nan() { "nan" } else { number.format(value) };
-                end += put(&mut self.text[end..], digits.as_bytes());
-                self.text[end] = b',';
-                end += 1;
-            }
-            self.text[end - 1] = b'\n';
-        }
-        self.length = end;
+    fn set(&mut self, decimals: [Decimals; 4], columns: &[&[f64]; 4]) {
+        let room = (columns[0].len() * columns.len() + 1) * ROOM;
+        self.text.resize(self.text.len().max(room), 0);
+        self.start = Arch::new().dispatch(Fill { text: &mut self.text, decimals, columns });
     }
 }
 
-/// Copies a number to the start of `text` and tells its length. Most have 16 digits or more, and two copies of 16 bytes,
-/// which overlap, are no call; one of a length that is not known is.
-#[inline]
-fn put(text: &mut [u8], digits: &[u8]) -> usize {
-    let length = digits.len();
-    match (digits.first_chunk::<16>(), digits.last_chunk::<16>()) {
-        (Some(first), Some(last)) => {
-            text[..16].copy_from_slice(first);
-            text[length - 16..length].copy_from_slice(last);
+/// Fills a text from its end with the lines of rows, and tells where they start.
+struct Fill<'a> {
+    text: &'a mut [u8],
+    decimals: [Decimals; 4],
+    columns: &'a [&'a [f64]; 4],
+}
+
+impl WithSimd for Fill<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> usize {
+        let Self { text, decimals, columns } = self;
+        let mut digits = decimals.map(Digits::new);
+        let mut start = text.len();
+        for end in (1..=columns[0].len()).rev().step_by(decimal::ROWS) {
+            let rows = end.saturating_sub(decimal::ROWS)..end;
+            for (digits, column) in digits.iter_mut().zip(columns) {
+                digits.take(&column[rows.clone()]);
+            }
+            for row in rows.clone().rev() {
+                let mut after = b'\n';
+                for (digits, column) in digits.iter().zip(columns).rev() {
+                    start -= 1;
+                    text[start] = after;
+                    after = b',';
+                    if let Some(room) = text[..start].last_chunk_mut() {
+                        start -= digits.put(row - rows.start, room).unwrap_or_else(|| put_shortest(column[row], room));
+                    }
+                }
+            }
         }
-        _ => text[..length].copy_from_slice(digits),
+        start
     }
-    length
+}
+
+/// Writes a number to the end of `text` in the shortest form that reads back the same, and tells its length.
+#[cold]
+fn put_shortest(number: f64, text: &mut [u8; ROOM]) -> usize {
+    let mut buffer = zmij::Buffer::new();
+    let digits = if number.is_nan() { "nan" } else { buffer.format(number) };
+    text[ROOM - digits.len()..].copy_from_slice(digits.as_bytes());
+    digits.len()
 }

@@ -40,9 +40,32 @@ proptest! {
         writer.write(record.as_slice()).unwrap();
         writer.finish().unwrap();
         let compensated = compensate_record(&compensation, &input, &Columns::default(), &output).unwrap();
-        prop_assert_eq!(compensated, Compensated { readings: rows as u64, outside: 0, first_outside: None });
+        let expected = Compensated { readings: rows as u64, outside: 0, first_outside: None, decimals: None };
+        prop_assert_eq!(compensated, expected);
         compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
         prop_assert!(read_record(&output, &Columns::default()).unwrap() == record);
+    }
+
+    /// As text: time to the bit, specific forces to the decimals that are told, which are below a part in 10^12 of the range.
+    #[test]
+    fn text_is_rounded_as_it_says(rows in 1..20_000_usize, seed in 0.0..1.0_f64, range in 150.0..4000.0_f64) {
+        let folder = tempfile::tempdir().unwrap();
+        let terms = [Term::power(0, 0, 1, 1e-3), Term::power(1, 2, 2, 1e-6), Term::power(2, 0, 0, 0.1)];
+        let compensation = Compensation::new(&terms, range).unwrap();
+        let mut record = record(rows, seed);
+        let [input, output] = ["in.parquet", "out.csv"].map(|name| folder.path().join(name));
+        let mut writer = RecordWriter::create(&input).unwrap();
+        writer.write(record.as_slice()).unwrap();
+        writer.finish().unwrap();
+        let compensated = compensate_record(&compensation, &input, &Columns::default(), &output).unwrap();
+        let half = 0.5 * 10_f64.powi(-i32::try_from(compensated.decimals.unwrap()).unwrap());
+        prop_assert!(half <= 1e-12 * range);
+        compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
+        let back = read_record(&output, &Columns::default()).unwrap();
+        prop_assert!(back.t == record.t);
+        for (f, back) in record.f_z.iter().flatten().zip(back.f_z.iter().flatten()) {
+            prop_assert!((f - back).abs() <= 1.01 * half, "{} as {}", f, back);
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use centrical_io::{Address, CalibrationResult, Contact, DecisionRule, Laboratory
 use super::xml::Xml;
 use crate::conformity::conformity;
 use crate::language::Language;
+use crate::verdict::objections;
 
 pub(super) fn data(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
     xml.element("dcc:administrativeData", |xml| {
@@ -121,6 +122,10 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
                 xml.content("dcc:declaration", text, language);
             });
         };
+        for objection in objections(result) {
+            let told = format!("{}: {}", messages.not_acceptable, messages.objection(&objection, language));
+            statement(xml, "7.8.2.1 m", &told);
+        }
         statement(xml, "7.8.2.1 l", messages.item_only);
         statement(xml, "7.8.2.1", messages.reproduction);
         statement(xml, "7.8.4.1 c", messages.traceability_text);
@@ -129,11 +134,14 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
                 DecisionRule::Simple => messages.rule_simple,
                 DecisionRule::Guarded => messages.rule_guarded,
             };
-            let passes = conformity(result, decision).iter().all(|judged| judged.conforms);
+            let judged: Vec<_> = conformity(result, decision).iter().map(|judged| judged.conforms).collect();
+            let fails = judged.contains(&Some(false));
             xml.element_with("dcc:statement", &[("refType", "basic_conformity")], |xml| {
                 xml.leaf("dcc:norm", &decision.specification);
                 xml.content("dcc:declaration", &format!("{}: {rule}", messages.decision_rule), language);
-                xml.leaf("dcc:conformity", if passes { "pass" } else { "fail" });
+                if fails || !judged.contains(&None) {
+                    xml.leaf("dcc:conformity", if fails { "fail" } else { "pass" });
+                }
             });
         }
     });

@@ -93,9 +93,12 @@ pub(super) fn budget(result: &CalibrationResult, language: Language) -> Option<S
             if value.is_some_and(|value| value < negligible) { "–".to_owned() } else { shown(value) }
         };
         cells.extend(budget.sources.iter().map(of_source));
-        let degrees = budget.degrees_of_freedom.get(j).copied().flatten();
-        let degrees = degrees.map_or("∞".to_owned(), |nu| language.fixed(nu, 0));
-        cells.extend([shown(combined), combined.map_or(String::new(), |_| degrees)]);
+        if combined.is_some() {
+            let degrees = budget.degrees_of_freedom.get(j).copied().flatten();
+            cells.extend([shown(combined), degrees.map_or("∞".to_owned(), |nu| language.fixed(nu, 0))]);
+        } else {
+            cells.extend([messages.not_determined.to_owned(), String::new()]);
+        }
         table.row(&parameter.name, &cells);
     }
     Some(table.into_html())

@@ -194,8 +194,9 @@ pub(crate) const ENGLISH: Messages = Messages {
     adjustment: "Before and after adjustment",
     before_adjustment: "Before adjustment, ± U",
     after_adjustment: "After adjustment, ± U",
-    no_adjustment: "The unit was not adjusted or repaired. Readings as received carry the error “before”; \
-        compensated with the parameters above they carry the error “after”.",
+    no_adjustment: "The unit was not adjusted or repaired.",
+    errors_of_readings: "Readings as received carry the error “before”; compensated with the parameters above they carry the \
+        error “after”.",
     conformity: "Statement of conformity",
     specification: "Specification",
     decision_rule: "Decision rule",
@@ -206,6 +207,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     limits: "Limits",
     conforms: "conforms",
     does_not_conform: "does not conform",
+    conformity_not_stated: "not stated",
     authorised: "Authorised by",
     responsible: "Persons responsible",
     signature: "signature",

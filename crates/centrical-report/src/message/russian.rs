@@ -193,8 +193,9 @@ pub(crate) const RUSSIAN: Messages = Messages {
     adjustment: "До и после юстировки",
     before_adjustment: "До юстировки, ± U",
     after_adjustment: "После юстировки, ± U",
-    no_adjustment: "Прибор не юстировался и не ремонтировался. Показания в состоянии поставки имеют погрешность \
-        «до»; скомпенсированные по приведённым параметрам — погрешность «после».",
+    no_adjustment: "Прибор не юстировался и не ремонтировался.",
+    errors_of_readings: "Показания в состоянии поставки имеют погрешность «до»; скомпенсированные по приведённым \
+        параметрам — погрешность «после».",
     conformity: "Заключение о соответствии",
     specification: "Требования",
     decision_rule: "Правило принятия решения",
@@ -205,6 +206,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     limits: "Пределы",
     conforms: "соответствует",
     does_not_conform: "не соответствует",
+    conformity_not_stated: "не заявляется",
     authorised: "Утвердил",
     responsible: "Ответственные лица",
     signature: "подпись",

@@ -1,27 +1,29 @@
-//! The section of the report on drift and tilt.
+//! What the documents say of drift and tilt, a name and a text each.
 
 use centrical_io::{CalibrationResult, DriftSummary, LeftOutSummary, TiltSummary};
 
-use super::table::Table;
+use super::{MICRO_G, MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter};
 use crate::language::Language;
-use crate::steadiness::{
-    MICRO_G, MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter,
-};
 
-/// What is said of it, a row each; none for a session that came already averaged.
-pub(super) fn steadiness(result: &CalibrationResult, language: Language) -> Option<String> {
-    let mut facts = Table::new("facts");
+/// A name and what is said of it.
+type Fact = (&'static str, String);
+
+/// What is said of drift, tilt and samples left out; nothing for a session that came already averaged.
+pub(crate) fn facts(result: &CalibrationResult, language: Language) -> Vec<Fact> {
+    let mut facts = Vec::new();
     if let Some(drift) = &result.drift {
         drifts(&mut facts, drift, language);
     }
     if let Some(tilt) = &result.tilt {
         tilts(&mut facts, tilt, language);
     }
-    left_out(&mut facts, result, language);
-    (result.drift.is_some() || result.tilt.is_some()).then(|| facts.into_html())
+    if result.drift.is_some() || result.tilt.is_some() {
+        left_out(&mut facts, result, language);
+    }
+    facts
 }
 
-fn drifts(facts: &mut Table, drift: &DriftSummary, language: Language) {
+fn drifts(facts: &mut Vec<Fact>, drift: &DriftSummary, language: Language) {
     let messages = language.messages();
     let per_minute = MICRO_G * MINUTE;
     let slopes = drift.slope.iter().zip(&drift.slope_uncertainty).enumerate();
@@ -31,7 +33,7 @@ fn drifts(facts: &mut Table, drift: &DriftSummary, language: Language) {
         format!("χ² = {}; ν = {}", language.fixed(drift.chi_squared, 1), drift.degrees_of_freedom),
         (if plateaus_drift(drift) { messages.plateaus_drift } else { messages.no_drift }).to_owned(),
     ];
-    facts.row(messages.drift_over_plateau, &[said.join("; ")]);
+    facts.push((messages.drift_over_plateau, said.join("; ")));
     if !drift.over_session.is_empty() {
         let changes = drift.over_session.iter().map(|trend| {
             axis(trend.axis, &language.plus_minus(MICRO_G * trend.change, MICRO_G * trend.standard_uncertainty))
@@ -42,7 +44,7 @@ fn drifts(facts: &mut Table, drift: &DriftSummary, language: Language) {
             SessionDrift::Seen => messages.session_drifts,
         };
         let said = [with_unit(changes, "ug", language), verdict.to_owned()];
-        facts.row(messages.drift_over_session, &[said.join("; ")]);
+        facts.push((messages.drift_over_session, said.join("; ")));
     }
     if let Some((worst, differ)) = farthest_apart(drift) {
         let [first, second] = worst.indices.map(|index| format!("{}:{}", worst.mounting, index + 1));
@@ -52,14 +54,14 @@ fn drifts(facts: &mut Table, drift: &DriftSummary, language: Language) {
             format!("{}: {first}, {second}, χ² = {chi_squared}, ν = 3", messages.farthest_apart),
             if differ { messages.differ } else { messages.no_difference }.to_owned(),
         ];
-        facts.row(messages.run_again, &[said.join("; ")]);
+        facts.push((messages.run_again, said.join("; ")));
     }
 }
 
-fn tilts(facts: &mut Table, tilt: &TiltSummary, language: Language) {
+fn tilts(facts: &mut Vec<Fact>, tilt: &TiltSummary, language: Language) {
     let messages = language.messages();
     let shown = |value: f64, u: f64| format!("{} {}", language.plus_minus(1e6 * value, 1e6 * u), language.unit("urad"));
-    facts.row(messages.tilt_at_rest, &[shown(tilt.at_rest, tilt.at_rest_uncertainty)]);
+    facts.push((messages.tilt_at_rest, shown(tilt.at_rest, tilt.at_rest_uncertainty)));
     let mut said = vec![
         shown(tilt.spinning, tilt.spinning_uncertainty),
         format!("χ² = {}; ν = 1", language.fixed(tilt.chi_squared, 1)),
@@ -75,10 +77,10 @@ fn tilts(facts: &mut Table, tilt: &TiltSummary, language: Language) {
         let (chi_squared, nu) = (language.fixed(tilt.scatter_chi_squared, 1), tilt.plateaus.saturating_sub(1));
         said.push(format!("{}: χ² = {chi_squared}; ν = {nu}", messages.tilts_scatter));
     }
-    facts.row(messages.tilt_spinning, &[said.join("; ")]);
+    facts.push((messages.tilt_spinning, said.join("; ")));
 }
 
-fn left_out(facts: &mut Table, result: &CalibrationResult, language: Language) {
+fn left_out(facts: &mut Vec<Fact>, result: &CalibrationResult, language: Language) {
     let messages = language.messages();
     let LeftOutSummary { spikes, stuck, missing, repeated } = not_used(result);
     let kinds = [
@@ -89,7 +91,7 @@ fn left_out(facts: &mut Table, result: &CalibrationResult, language: Language) {
     ];
     let named = kinds.iter().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{kind}: {count}"));
     let named = named.collect::<Vec<_>>().join("; ");
-    facts.row(messages.not_used, &[if named.is_empty() { messages.none.to_owned() } else { named }]);
+    facts.push((messages.not_used, if named.is_empty() { messages.none.to_owned() } else { named }));
 }
 
 /// What is said of a newtonometer.
