@@ -10,6 +10,9 @@ use crate::table::Index;
 /// Bytes that records take at most: an hour at 1 kHz and more.
 const MOST: usize = 125_000_000;
 
+/// Bytes of a sample: three readings, and a time in equal steps.
+const BYTES: usize = 25;
+
 /// Room for records.
 pub(crate) struct Room {
     left: AtomicUsize,
@@ -73,7 +76,11 @@ impl<'a> Kept<'a> {
     /// Begins another record, in the place of the last one.
     pub(super) fn begin(&mut self) {
         self.times.clear();
-        self.f_z.iter_mut().for_each(Vec::clear);
+        for f in &mut self.f_z {
+            f.clear();
+            // All at once: readings that move to larger places leave the old ones behind, and what is not used costs nothing.
+            f.reserve(self.room.all / BYTES);
+        }
         self.room.give_back(std::mem::take(&mut self.bytes));
         (self.index, self.is_whole) = (None, true);
     }

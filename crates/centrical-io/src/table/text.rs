@@ -212,18 +212,18 @@ impl Piece {
         let mut separators = of_text.places();
         let mut from = 0;
         let read = loop {
+            let rows = ROWS.min(separators.len() / layout.fields());
+            let of_batch = &separators[..rows * layout.fields()];
             // Of a text that is read up to a fault, some are beyond it.
-            let of_batch = separators.get(..ROWS * layout.fields());
-            let of_batch = of_batch.filter(|places| places.last().is_some_and(|last| (*last as usize) < text.len()));
-            let Some(of_batch) = of_batch else {
+            if of_batch.last().is_none_or(|last| *last as usize >= text.len()) {
                 break self.read_rows(&text[from..], layout, fields, block);
-            };
+            }
             let rest = if layout.batch(text, from, of_batch, block).is_some() {
-                self.lines += ROWS as u64;
+                self.lines += rows as u64;
                 of_batch[of_batch.len() - 1] as usize + 1
             } else {
                 // As many lines, or what there is: a line may have more separators than it should.
-                let lines = piece::before_line(&text[from..], ROWS as u64);
+                let lines = piece::before_line(&text[from..], rows as u64);
                 let rest = if lines == 0 { text.len() } else { from + lines };
                 if let Err(fault) = self.read_rows(&text[from..rest], layout, fields, block) {
                     break Err(fault);

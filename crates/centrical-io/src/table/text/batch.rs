@@ -31,7 +31,9 @@ pub(super) struct Texts {
 }
 
 impl Texts {
-    pub const EMPTY: Self = Self { low: [0; ROWS], high: [0; ROWS], length: [0; ROWS], sign: [0; ROWS] };
+    /// Zeros: what rows that are not there leave.
+    pub const ZEROS: Self =
+        Self { low: [(b'0' as u64) << 56; ROWS], high: [0; ROWS], length: [1; ROWS], sign: [0; ROWS] };
 
     /// Takes the text from `start` to `end` for the number of a row. Whether it can be one of this kind.
     #[inline]
@@ -102,7 +104,7 @@ mod tests {
     /// A column of one number.
     fn read(text: &str) -> Option<f64> {
         let line = format!("0123456789abcdef,{text},");
-        let mut texts = Texts::EMPTY;
+        let mut texts = Texts::ZEROS;
         let taken = (0..ROWS).all(|row| texts.take(row, line.as_bytes(), 17, line.len() - 1));
         let numbers = taken.then(|| texts.numbers())??;
         assert!(numbers.iter().all(|number| number.to_bits() == numbers[0].to_bits()));

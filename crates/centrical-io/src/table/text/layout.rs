@@ -142,7 +142,7 @@ impl Layout {
         self.wanted.len()
     }
 
-    /// Reads [`ROWS`] rows of bare numbers that begin at `from` and have these separators; nothing where one of them is
+    /// Reads rows of bare numbers, [`ROWS`] at most, that begin at `from` and have these separators; nothing where one of them is
     /// anything else, right or wrong.
     pub fn batch(&self, text: &[u8], from: usize, separators: &[u32], block: &mut Block) -> Option<()> {
         let fields = self.wanted.len();
@@ -161,7 +161,7 @@ impl Layout {
         let rows = block[0].len();
         for (column, field) in self.wanted.iter().enumerate() {
             let Some(field) = field else { continue };
-            let mut texts = Texts::EMPTY;
+            let mut texts = Texts::ZEROS;
             let mut start = from;
             for (row, line) in lines.clone().enumerate() {
                 if column > 0 {
@@ -179,7 +179,7 @@ impl Layout {
                 }
                 return None;
             };
-            block[*field].extend_from_slice(&numbers);
+            block[*field].extend_from_slice(&numbers[..lines.len()]);
         }
         Some(())
     }

@@ -10,7 +10,7 @@ use super::Piece;
 use crate::error::{Error, quoted};
 
 /// Bytes in a piece, more or less a line: several make up a plateau, and each is worth the way to it.
-pub(super) const SIZE: u64 = 1 << 18;
+pub(super) const SIZE: u64 = 1 << 17;
 
 /// The longest line [bytes].
 const LONGEST_LINE: usize = 1 << 20;
