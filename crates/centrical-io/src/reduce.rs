@@ -140,8 +140,10 @@ fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Re
 }
 
 /// Mountings under way at a time: while one is searched for its plateaus, which threads cannot share well, the other is
-/// read.
-const AT_A_TIME: usize = 2;
+/// read. What every thread holds beside grows with their number: more of them have room for one mounting.
+fn at_a_time() -> usize {
+    if rayon::current_num_threads() > 3 { 1 } else { 2 }
+}
 
 /// The first mounting on all threads: it tells how many records there is room for. Then the others.
 fn all_mountings(
@@ -155,7 +157,7 @@ fn all_mountings(
     let room = Room::default();
     let mut kept = Kept::new(&room);
     let first = one_mounting(session, 0, &mut kept, progress)?;
-    let lanes = kept.fit_in().min(AT_A_TIME);
+    let lanes = kept.fit_in().min(at_a_time());
     let next = AtomicUsize::new(1);
     let lane = |mut kept: Kept| {
         let mut done = Vec::new();
