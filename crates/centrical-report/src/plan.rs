@@ -47,6 +47,11 @@ fn heading(text: &mut String, report: &PlanReport) {
         span(set_ups)
     );
     let _ = writeln!(text, "  {}: {}", criterion(report), value(report, report.value));
+    if report.for_typical {
+        text.push_str(
+            "  for a unit of typical errors, signs in turn: the shortest plan for one without errors misses goals with such errors\n",
+        );
+    }
     let percent = |part: f64| format!("{:.2} %", 100.0 * part);
     if let Some(least) = report.least_time {
         let _ = writeln!(

@@ -43,7 +43,7 @@ const FACTORS: [f64; 8] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0];
 
 /// Runs the command. Not acceptable: a parameter of the instrument is not determined, or a goal is missed.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let planning = Planning::read(&arguments.plan)?;
+    let mut planning = Planning::read(&arguments.plan)?;
     let plan = planning.plan(arguments.certify)?;
     let request = PlanRequest {
         frontier: if arguments.frontier { FACTORS.to_vec() } else { Vec::new() },

@@ -99,5 +99,5 @@ pub fn shortest_for_goals(
     resolution: f64,
     effort: Effort,
 ) -> Result<Plan, PlanError> {
-    shortest::Shortest::new(&Problem::new(candidates, criterion)?, resolution, effort)?.run()
+    Ok(shortest::Shortest::new(&Problem::new(candidates, criterion)?, resolution, effort)?.run())
 }

@@ -42,7 +42,8 @@ impl Tree<'_> {
 
     /// The continuous design on a set of mountings that are all set up.
     fn restricted(&self, set: &[bool], start: &[f64]) -> Option<Relaxed> {
-        self.relaxed(self.node(decided(set)), Some(start)).ok().map(|node| node.relaxed)
+        let mut node = self.node(decided(set));
+        self.relax(&mut node, Some(start)).then_some(node.relaxed)
     }
 
     /// A schedule from a continuous design that may hold a better one than the best so far. Where whole visits cost much it
@@ -94,12 +95,8 @@ impl Tree<'_> {
                     node.high[x] = node.low[x];
                 }
             }
-            match self.relaxed_to(DIVING, node, Some(&visits)) {
-                Ok(better) => node = better,
-                Err(same) => {
-                    node = same;
-                    break;
-                }
+            if !self.relax_to(DIVING, &mut node, Some(&visits)) {
+                break;
             }
             if node.relaxed.bound >= self.threshold() {
                 break;

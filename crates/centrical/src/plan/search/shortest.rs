@@ -48,7 +48,7 @@ impl<'a> Shortest<'a> {
         Ok(Self { problem, resolution, effort, needs, below, everything: everything.time })
     }
 
-    pub fn run(mut self) -> Result<Plan, PlanError> {
+    pub fn run(mut self) -> Plan {
         let mut plan = self.first();
         let mut open = f64::INFINITY;
         let searches = if self.effort.mounting_nodes > Effort::FAIR.mounting_nodes { SEARCHES } else { 0 };
@@ -66,7 +66,7 @@ impl<'a> Shortest<'a> {
                 Answer::Open => open = time,
             }
         }
-        Ok(self.thorough(plan))
+        self.thorough(plan)
     }
 
     /// A first schedule, made short, in times that rise from the least there can be.

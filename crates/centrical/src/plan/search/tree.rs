@@ -86,9 +86,9 @@ impl<'a> Tree<'a> {
             self.seek_on_all(&root);
         }
         self.exchange_mountings();
-        if let Some(root) = self.with_needs(root) {
+        if let Some(mut root) = self.with_needs(root) {
             let start = root.relaxed.visits.clone();
-            let root = self.relaxed(root, Some(&start)).unwrap_or_else(|node| node);
+            self.relax(&mut root, Some(&start));
             self.open.push(root);
         }
         while !self.is_reached() {
@@ -104,8 +104,9 @@ impl<'a> Tree<'a> {
     }
 
     fn root(&self) -> Node {
-        let node = self.node(vec![None; self.problem.mountings()]);
-        self.relaxed_to(self.tolerance(), node, None).unwrap_or_else(|node| node)
+        let mut node = self.node(vec![None; self.problem.mountings()]);
+        self.relax_to(self.tolerance(), &mut node, None);
+        node
     }
 
     /// A node with these mountings decided and no visit, without a continuous design yet.
@@ -165,14 +166,14 @@ impl<'a> Tree<'a> {
     fn divide(&mut self, nodes: Vec<Node>) {
         let children: Vec<Node> = nodes.into_iter().flat_map(|node| self.children(node)).collect();
         let children: Vec<Node> = children.into_iter().filter_map(|child| self.with_needs(child)).collect();
-        let relaxed = |child: Node| {
+        let relaxed = |mut child: Node| {
             let start = child.relaxed.visits.clone();
-            self.relaxed(child, Some(&start))
+            self.relax(&mut child, Some(&start)).then_some(child)
         };
         let children: Vec<_> = children.into_par_iter().map(relaxed).collect();
         for child in children {
             self.nodes += 1;
-            if let Ok(child) = child {
+            if let Some(child) = child {
                 if child.relaxed.bound < self.threshold() {
                     self.open.push(child);
                 } else {
@@ -188,28 +189,23 @@ impl<'a> Tree<'a> {
         let set_up: Vec<bool> = node.mountings.iter().map(|m| *m == Some(true)).collect();
         let open: Vec<bool> = node.mountings.iter().map(|m| *m != Some(false)).collect();
         let least = self.needs.least_set_up(self.problem, &set_up, &open, value);
-        match least.filter(|least| *least < self.time) {
-            Some(least) => {
-                node.set_up = least;
-                Some(node)
-            }
-            None => {
-                self.nodes += 1;
-                self.bound = self.bound.min(value);
-                None
-            }
-        }
+        let Some(least) = least.filter(|least| *least < self.time) else {
+            self.nodes += 1;
+            self.bound = self.bound.min(value);
+            return None;
+        };
+        node.set_up = least;
+        Some(node)
     }
 
     /// Two nodes that decide one thing more, with the continuous design of theirs, or none at the end of a branch.
-    fn children(&mut self, node: Node) -> Vec<Node> {
+    fn children(&mut self, mut node: Node) -> Vec<Node> {
         let is_end = |of_mountings: Option<usize>| of_mountings.is_none() || self.nodes >= self.effort.mounting_nodes;
-        let node = &if is_end(self.undecided(&node)) && node.relaxed.bound < self.bound {
+        if is_end(self.undecided(&node)) && node.relaxed.bound < self.bound {
             let start = node.relaxed.visits.clone();
-            self.relaxed_to(self.tolerance(), node, Some(&start)).unwrap_or_else(|node| node)
-        } else {
-            node
-        };
+            self.relax_to(self.tolerance(), &mut node, Some(&start));
+        }
+        let node = &node;
         let of_mountings = self.undecided(node);
         let decided = match of_mountings {
             Some(m) if self.nodes < self.effort.mounting_nodes => {
@@ -272,23 +268,23 @@ impl<'a> Tree<'a> {
         node.mountings[self.problem.mounting_of(atom)] != Some(false)
     }
 
-    /// The node with its continuous design; the node itself if nothing fits into it.
-    pub fn relaxed(&self, node: Node, start: Option<&[f64]>) -> Result<Node, Node> {
+    /// Gives a node its continuous design; whether anything fits into it.
+    pub fn relax(&self, node: &mut Node, start: Option<&[f64]>) -> bool {
         let is_decided = node.mountings.iter().all(Option::is_some);
-        self.relaxed_to(if is_decided { self.tolerance() } else { LOOSE }, node, start)
+        self.relax_to(if is_decided { self.tolerance() } else { LOOSE }, node, start)
     }
 
-    pub fn relaxed_to(&self, loose: f64, mut node: Node, start: Option<&[f64]>) -> Result<Node, Node> {
-        let polytope = self.polytope(&node);
-        if !polytope.is_feasible() {
-            return Err(node);
+    pub fn relax_to(&self, loose: f64, node: &mut Node, start: Option<&[f64]>) -> bool {
+        let polytope = self.polytope(node);
+        let fits = polytope.is_feasible();
+        if fits {
+            let precision = Precision { tolerance: self.tolerance(), loose, enough: self.threshold() };
+            // What bounds all below the parent bounds all below its child.
+            let inherited = node.relaxed.bound;
+            node.relaxed = relax(&self.problem.scenes, &polytope, start, precision);
+            node.relaxed.bound = node.relaxed.bound.max(inherited);
         }
-        let precision = Precision { tolerance: self.tolerance(), loose, enough: self.threshold() };
-        // What bounds all below the parent bounds all below its child.
-        let inherited = node.relaxed.bound;
-        node.relaxed = relax(&self.problem.scenes, &polytope, start, precision);
-        node.relaxed.bound = node.relaxed.bound.max(inherited);
-        Ok(node)
+        fits
     }
 
     /// The bounds of a node, with set-ups paid where they are decided and in proportion where they are not; or with the least
