@@ -64,6 +64,10 @@ pub struct PlanReport {
     pub continuous_gap: f64,
     /// Nodes of the branch and bound over sets of mountings.
     pub nodes: usize,
+    /// Of a plan for goals: no schedule of the candidates that is shorter keeps them, with type B as in this plan [s].
+    pub least_time: Option<f64>,
+    /// Whether it is for a unit of typical errors, signs in turn: see [`Planning::plan`].
+    pub for_typical: bool,
     /// Plateaus to choose from.
     pub candidates: usize,
     /// Time of the plan [s].
@@ -164,15 +168,36 @@ impl Planning {
     /// The best plan for the time, or the shortest for the goals; `certify`: searched until its bound is within 0.25 % or all
     /// sets of mountings are done with.
     ///
+    /// A plan that leaves combinations of unknowns open may keep its goals for a unit without errors and miss them for any other
+    /// (see [`predict`]). One that does is planned again for a unit of typical errors, which `self` expects from then on.
+    ///
     /// # Errors
     /// [`Error::Planning`] when there is none.
-    pub fn plan(&self, certify: bool) -> Result<Plan, Error> {
+    pub fn plan(&mut self, certify: bool) -> Result<Plan, Error> {
+        let plan = self.search(certify)?;
+        let expects_none = self.candidates.scenarios.iter().all(|s| s.nominal.iter().all(|value| *value == 0.0));
+        if self.time.is_some() || !expects_none || self.keeps_goals(&plan)? {
+            return Ok(plan);
+        }
+        for scenario in &mut self.candidates.scenarios {
+            scenario.nominal = scenario.model.parameters().typical_in_turn();
+        }
+        self.search(certify)
+    }
+
+    /// Whether every goal is kept as predicted, type B included.
+    fn keeps_goals(&self, plan: &Plan) -> Result<bool, Error> {
+        let goals = self.goals_of(&self.predict(&plan.schedule)?);
+        Ok(goals.iter().all(|goal| goal.combined.is_some_and(|u| u <= goal.wanted)))
+    }
+
+    fn search(&self, certify: bool) -> Result<Plan, Error> {
         let usual = Effort::usual(self.candidates.len());
         let effort = match (certify, self.time) {
             (true, _) => Effort::CERTIFIED,
             (false, Some(_)) => usual,
             // The shortest plan is sought by a search for each of some times.
-            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 4, ..usual },
+            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 6, ..usual },
         };
         let Criterion::Worst(goals) = &self.criterion else { return self.best(&self.criterion, effort) };
         if self.type_b == TypeB::default() {
@@ -186,12 +211,14 @@ impl Planning {
                 return Err(self.failed(PlanError::BelowTypeB { name: name.to_owned(), factor: floor / wanted }));
             }
         }
-        for effort in [Effort::QUICK, Effort::QUICK, effort, effort] {
+        for effort in [Effort::QUICK, Effort::QUICK, Effort::QUICK, effort, effort] {
             let plan = self.best(&Criterion::Worst(for_type_a(goals, &floors)), effort)?;
             let there = self.floors(&plan.schedule)?;
             let is_settled = there.iter().zip(&floors).all(|(there, floor)| there <= floor);
             floors.iter_mut().zip(there).for_each(|(floor, there)| *floor = floor.max(MARGIN * there));
-            if is_settled && effort != Effort::QUICK {
+            // A shortest plan that keeps the goals is one, whatever it was reckoned with.
+            let is_kept = self.time.is_none() && self.keeps_goals(&plan)?;
+            if (is_settled || is_kept) && effort != Effort::QUICK {
                 return Ok(plan);
             }
         }
@@ -255,6 +282,8 @@ impl Planning {
             continuous: (0.5 * plan.continuous.value).exp(),
             continuous_gap: (1.0 + plan.continuous.gap()).sqrt() - 1.0,
             nodes: plan.nodes,
+            least_time: plan.least_time,
+            for_typical: candidates.scenarios[0].nominal == self.model().parameters().typical_in_turn(),
             candidates: candidates.len(),
             time: schedule.time,
             time_by_use: [measuring, visits - measuring, schedule.time - visits],
@@ -332,7 +361,7 @@ impl Planning {
                     wanted: *uncertainty,
                     type_a: j.and_then(|j| prediction.type_a(j)),
                     type_b: None,
-                    combined: j.and_then(|j| prediction.budget().standard_uncertainty(j)),
+                    combined: j.and_then(|j| prediction.standard_uncertainty(j)),
                 }
                 .with_type_b()
             }
@@ -359,7 +388,8 @@ impl Planning {
             return Ok(Vec::new());
         }
         let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
-        let points = frontier(&self.candidates, &self.criterion, &times, Effort::FAIR);
+        let effort = Effort::usual(self.candidates.len());
+        let points = frontier(&self.candidates, &self.criterion, &times, effort);
         let points = points.map_err(|source| self.failed(source))?;
         let uniform = with_set_points(&self.candidates, &uniform_set_points(self.candidates.experiment()));
         let normalised =

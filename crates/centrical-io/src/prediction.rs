@@ -42,6 +42,8 @@ pub struct PredictedParameter {
     pub expanded: Option<f64>,
     /// Effective degrees of freedom; null when infinite.
     pub degrees_of_freedom: Option<f64>,
+    /// Whether lost combinations of unknowns leave doubt in it that is not in its uncertainties.
+    pub leans_on_lost: bool,
 }
 
 impl PredictionReport {
@@ -51,7 +53,7 @@ impl PredictionReport {
         let parameters = prediction.model().parameters();
         let parameter = |j: usize| {
             let degrees = budget.degrees_of_freedom(j);
-            let combined = budget.standard_uncertainty(j);
+            let combined = prediction.standard_uncertainty(j);
             PredictedParameter {
                 name: parameters[j].name.clone(),
                 unit: parameters[j].unit.clone(),
@@ -63,6 +65,7 @@ impl PredictionReport {
                     Degrees::Finite(nu) => Some(nu),
                     Degrees::Infinite => None,
                 }),
+                leans_on_lost: combined.is_some() && prediction.leans_on_lost(j),
             }
         };
         // The curve is symmetric but for rounding: the half from 0 on is shown.

@@ -163,7 +163,7 @@ fn priors(text: &mut String, report: &ObservationReport) {
 
 /// Parameters of one group and unit on a line.
 fn uncertainties(text: &mut String, report: &ObservationReport) {
-    text.push_str("\nSTANDARD UNCERTAINTIES to be expected\n");
+    text.push_str("\nSTANDARD UNCERTAINTIES to be expected of a unit without errors\n");
     let mut rest: &[ObservedParameter] = &report.parameters;
     while let Some(first) = rest.first() {
         let same = rest.iter().take_while(|p| p.group == first.group && p.unit == first.unit).count();

@@ -47,14 +47,28 @@ fn heading(text: &mut String, report: &PlanReport) {
         span(set_ups)
     );
     let _ = writeln!(text, "  {}: {}", criterion(report), value(report, report.value));
+    if report.for_typical {
+        text.push_str(
+            "  for a unit of typical errors, signs in turn: the shortest plan for one without errors misses goals with such errors\n",
+        );
+    }
     let percent = |part: f64| format!("{:.2} %", 100.0 * part);
-    let _ = writeln!(
-        text,
-        "  no plan of these candidates in this time is below {}: at most {} better ({} nodes over mountings)",
-        value(report, report.bound),
-        percent(1.0 - report.bound / report.value),
-        report.nodes
-    );
+    if let Some(least) = report.least_time {
+        let _ = writeln!(
+            text,
+            "  no plan of these candidates keeps the goals in less than {}: at most {} shorter",
+            span(least),
+            percent(1.0 - least / report.time)
+        );
+    } else {
+        let _ = writeln!(
+            text,
+            "  no plan of these candidates in this time is below {}: at most {} better ({} nodes over mountings)",
+            value(report, report.bound),
+            percent(1.0 - report.bound / report.value),
+            report.nodes
+        );
+    }
     let _ = writeln!(
         text,
         "  continuous design on these mountings: {}, certified to {} by the equivalence theorem; whole visits cost {}",
@@ -146,6 +160,9 @@ fn goals(text: &mut String, report: &PlanReport) {
     }
 }
 
+/// Said of a parameter in which lost combinations leave doubt that no number beside it holds.
+pub(crate) const LEANING: &str = "  leans on what is lost";
+
 /// What will be known: parameters, and the compensated reading.
 pub fn prediction_text(prediction: &PredictionReport) -> String {
     let mut text = String::new();
@@ -164,13 +181,9 @@ pub fn prediction_text(prediction: &PredictionReport) -> String {
         let _ = write!(text, "  {:<12}{unit:<9}", p.name);
         let _ = match (p.type_a, p.combined, p.expanded) {
             (Some(a), Some(all), Some(expanded)) => {
-                writeln!(
-                    text,
-                    "{:>10}{:>10}{:>10}",
-                    digits(a * factor),
-                    digits(all * factor),
-                    digits(expanded * factor)
-                )
+                let note = if p.leans_on_lost { LEANING } else { "" };
+                let [a, all, expanded] = [a, all, expanded].map(|u| digits(u * factor));
+                writeln!(text, "{a:>10}{all:>10}{expanded:>10}{note}")
             }
             _ => writeln!(text, "  not determined"),
         };

@@ -27,12 +27,13 @@ pub fn monte_carlo_table(parameters: &Parameters, monte_carlo: &MonteCarlo, cove
         };
         let _ = writeln!(
             text,
-            "{:>10}{:>10}{:>8.3}{:>14.3}{:>12.2}",
+            "{:>10}{:>10}{:>8.3}{:>14.3}{:>12.2}{}",
             short(s.stated * factor),
             short(s.standard_deviation * factor),
             s.standard_deviation / s.stated,
             s.bias / s.stated,
-            100.0 * s.coverage
+            100.0 * s.coverage,
+            if s.leans_on_lost { crate::plan::LEANING } else { "" }
         );
     }
     let chance = 2.0 * (percent * (100.0 - percent) / monte_carlo.runs.max(1) as f64).sqrt();

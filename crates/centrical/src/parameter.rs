@@ -23,6 +23,14 @@ pub struct Parameter {
     pub typical: f64,
 }
 
+impl Parameter {
+    /// Whether a standard uncertainty [its unit] tells anything of it: one of [`NULL_HOLD`](crate::fit::NULL_HOLD) typical
+    /// magnitudes and more is as much as is known without any data, and so far from the estimate the model is not linear.
+    pub fn is_told_by(&self, standard_uncertainty: f64) -> bool {
+        standard_uncertainty < crate::fit::NULL_HOLD * self.typical
+    }
+}
+
 /// What a parameter is in the measurement model. Axes are 0, 1, 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -199,6 +207,12 @@ impl Parameters {
             extend(experiment, extension, &mut list);
         }
         Self { list, turn, shift, proof_mass, terms, extensions: first_extension }
+    }
+
+    /// Unknowns of typical size, signs in turn: those of a unit that nothing is known of.
+    pub fn typical_in_turn(&self) -> Vec<f64> {
+        let sign = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
+        self.iter().enumerate().map(|(j, parameter)| sign(j) * parameter.typical).collect()
     }
 
     /// Number of unknowns.

@@ -79,9 +79,8 @@ impl Case {
         let weights = noise.map_or_else(|| weights.clone(), equal);
         let observation =
             |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
-        let sign = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let typical = || model.parameters().iter().enumerate().map(|(j, p)| sign(j) * p.typical).collect();
-        let truth = if nominal.iter().any(|value| *value != 0.0) { nominal } else { typical() };
+        let is_expected = nominal.iter().any(|value| *value != 0.0);
+        let truth = if is_expected { nominal } else { model.parameters().typical_in_turn() };
         let observations = weights.into_iter().map(observation).collect();
         Self { model, observations, truth, speed_uncertainty, stated: type_b }
     }

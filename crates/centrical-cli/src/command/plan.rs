@@ -27,7 +27,7 @@ pub struct Arguments {
     /// Levels m of [K5.5] on the frontier
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = USUAL_LEVELS, value_parser = level)]
     levels: Vec<f64>,
-    /// Search until no other set of mountings can hold a plan better by more than 0.25 %, however long that takes
+    /// Search until every set of mountings is settled to 0.25 %, however long that takes; what whole visits cost stays open
     #[arg(long)]
     certify: bool,
     /// Probability that expanded uncertainties are to cover
@@ -43,7 +43,7 @@ const FACTORS: [f64; 8] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0];
 
 /// Runs the command. Not acceptable: a parameter of the instrument is not determined, or a goal is missed.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let planning = Planning::read(&arguments.plan)?;
+    let mut planning = Planning::read(&arguments.plan)?;
     let plan = planning.plan(arguments.certify)?;
     let request = PlanRequest {
         frontier: if arguments.frontier { FACTORS.to_vec() } else { Vec::new() },

@@ -1,7 +1,9 @@
 //! The best schedule for a time, and the shortest for given goals: by branch and bound over mountings ([`tree`]).
 
+mod needs;
 mod problem;
 mod seek;
+mod shortest;
 mod tree;
 
 pub(super) use self::problem::Problem;
@@ -25,7 +27,7 @@ pub struct Effort {
 impl Effort {
     /// Some seconds' worth: fewer nodes over mountings where there are more plateaus to choose from.
     pub fn usual(plateaus: usize) -> Self {
-        Self { mounting_nodes: (200_000 / plateaus.max(1)).clamp(20, 1000), visit_nodes: 0, trials: 120 }
+        Self { mounting_nodes: (300_000 / plateaus.max(1)).clamp(20, 1000), visit_nodes: 0, trials: 120 }
     }
 
     /// Until no other set of mountings can hold a plan that is better by more than 0.25 % of the uncertainty.
@@ -56,6 +58,8 @@ pub struct Plan {
     pub continuous: Relaxed,
     /// Nodes of the branch and bound.
     pub nodes: usize,
+    /// Of a plan for goals: no schedule of these candidates that is shorter than this keeps them [s].
+    pub least_time: Option<f64>,
 }
 
 impl Plan {
@@ -85,7 +89,7 @@ pub fn best_for_time(
     Ok(Tree::new(&problem, time, effort).run())
 }
 
-/// The shortest schedule that keeps every goal, to `resolution` of its time (0.01: 1 %).
+/// The shortest schedule that keeps every goal, to `resolution` of its time (0.01: 1 %), and a time in which none does.
 ///
 /// # Errors
 /// [`PlanError::OutOfReach`] when no schedule does; otherwise as [`best_for_time`].
@@ -95,59 +99,5 @@ pub fn shortest_for_goals(
     resolution: f64,
     effort: Effort,
 ) -> Result<Plan, PlanError> {
-    let problem = Problem::new(candidates, criterion)?;
-    let everything = problem.everything();
-    if everything.value > 0.0 {
-        return Err(PlanError::OutOfReach { factor: (0.5 * everything.value).exp() });
-    }
-    // A plan that reaches them in a time, or none; where the search ran to its end there is none.
-    let fast = Effort { mounting_nodes: effort.mounting_nodes.div_ceil(4), ..effort };
-    let search = |time: f64| Tree { wanted: Some(0.0), ..Tree::new(&problem, time, fast) };
-    let reached = |time: f64| Some(search(time).run()).filter(|plan| plan.criterion <= 1.0);
-    // The shortest plan on the mountings of one that reaches them.
-    let on_its_mountings = |mut plan: Plan| {
-        let used = problem.mountings_of(&plan.schedule);
-        let (mut low, mut time) = (candidates.set_up_time(&used), plan.schedule.time);
-        while time / low > 1.0 + resolution {
-            let middle = (low * time).sqrt();
-            let shorter = search(middle).run_on(used.clone(), &plan.continuous.visits);
-            if shorter.criterion <= 1.0 {
-                (time, plan) = (middle, shorter);
-            } else {
-                low = middle;
-            }
-        }
-        (time, plan)
-    };
-    // No schedule is shorter than the continuous design that reaches the goals.
-    let (mut below, mut above) = (problem.least_time(), everything.time);
-    while above / below > 1.0 + 0.25 * resolution {
-        let middle = (below * above).sqrt();
-        let reaches = Tree::new(&problem, middle, effort).relaxed_reaches();
-        if reaches { above = middle } else { below = middle }
-    }
-    let mut step = resolution;
-    let mut best = loop {
-        let time = (below * (1.0 + step)).min(everything.time);
-        if let Some(plan) = reached(time) {
-            break plan;
-        }
-        if time >= everything.time {
-            let plan = Tree::new(&problem, time, effort).run();
-            return Ok(Plan { schedule: candidates.schedule(everything.visits(candidates)), ..plan });
-        }
-        step *= 2.0;
-    };
-    // The best plan for that time reaches more than the goals: its mountings reach them in less, and so on.
-    loop {
-        let (time, shorter) = on_its_mountings(best);
-        let thorough = Tree::new(&problem, time, effort).run();
-        let is_better = thorough.criterion < shorter.criterion;
-        let (next_time, next) = if is_better { on_its_mountings(thorough.clone()) } else { (time, shorter.clone()) };
-        if next_time * (1.0 + resolution) > time {
-            // What else this time is good for, and a bound of its own.
-            return Ok(if thorough.criterion <= 1.0 { thorough } else { shorter });
-        }
-        best = next;
-    }
+    Ok(shortest::Shortest::new(&Problem::new(candidates, criterion)?, resolution, effort)?.run())
 }

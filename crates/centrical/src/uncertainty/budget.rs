@@ -14,6 +14,9 @@ use crate::error::FitError;
 use crate::fit::{Fit, Gain};
 use crate::measurement::MeasurementModel;
 
+/// Part of its variance by which a parameter leans on lost combinations.
+const LEANING: f64 = 0.1;
+
 /// What every source leaves in every parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Budget {
@@ -121,6 +124,14 @@ impl Budget {
     /// Combined standard uncertainty of parameter `j`, if it is determined [its unit].
     pub fn standard_uncertainty(&self, j: usize) -> Option<f64> {
         self.covariance(j, j).map(f64::sqrt)
+    }
+
+    /// Whether the lost combinations of unknowns leave more doubt in parameter `j` than a tenth of the variance of what `fit`, of
+    /// which this is the budget, weighs: products of two unknowns let them in, and only the hold keeps them
+    /// ([`crate::fit::NULL_HOLD`] typical magnitudes), which is no source of the budget.
+    pub fn leans_on_lost(&self, fit: &Fit, j: usize) -> bool {
+        let weighed: f64 = self.contributions.iter().filter(|c| c.source.is_weighed()).map(|c| c.variance(j)).sum();
+        fit.covariance(j, j).is_some_and(|all| all > (1.0 + LEANING) * weighed)
     }
 
     /// Correlation of the estimates of parameters `i` and `j`, if both are determined.

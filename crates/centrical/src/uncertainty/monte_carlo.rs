@@ -48,7 +48,8 @@ pub struct MonteCarlo {
     pub runs: usize,
     /// Runs that did not.
     pub failures: usize,
-    /// By parameter; `None` for those that the data do not determine.
+    /// By parameter; `None` for those that the data do not determine, or of which what is stated tells nothing
+    /// ([`crate::Parameter::is_told_by`]).
     pub parameters: Vec<Option<ParameterStatistics>>,
     /// `e^T C^-1 e` of the determined parameters with the covariance stated in each run.
     pub weighted_square: WeightedSquare,
@@ -67,6 +68,8 @@ pub struct ParameterStatistics {
     pub stated: f64,
     /// Part of the runs whose interval covers the truth.
     pub coverage: f64,
+    /// Whether lost combinations leave doubt in it that is not in `stated`: see [`Budget::leans_on_lost`].
+    pub leans_on_lost: bool,
 }
 
 /// A quadratic form over all runs, beside the chi^2 distribution it should have.
@@ -123,6 +126,8 @@ struct Laboratory<'a> {
     /// Indices of the parameters that the data determine.
     determined: Vec<usize>,
     budget: Budget,
+    /// By parameter: whether it leans on what is lost.
+    leans: Vec<bool>,
     /// Combined covariance of type B, of the determined parameters.
     type_b: DMatrix<f64>,
     speed_uncertainty: f64,
@@ -166,6 +171,7 @@ impl<'a> Laboratory<'a> {
             structure,
             type_b: type_b.select_rows(&determined).select_columns(&determined),
             determined,
+            leans: (0..truth.len()).map(|j| budget.leans_on_lost(&fit, j)).collect(),
             budget,
             speed_uncertainty,
             coverage_factor: coverage_factor(settings.coverage, Degrees::Infinite),
@@ -289,11 +295,14 @@ impl Tally {
     fn into_monte_carlo(self, laboratory: &Laboratory) -> MonteCarlo {
         let mut parameters = vec![None; laboratory.truth.len()];
         for (a, &j) in laboratory.determined.iter().enumerate() {
-            parameters[j] = laboratory.budget.standard_uncertainty(j).map(|stated| ParameterStatistics {
+            let stated = laboratory.budget.standard_uncertainty(j);
+            let told = stated.filter(|stated| laboratory.model.parameters()[j].is_told_by(*stated));
+            parameters[j] = told.map(|stated| ParameterStatistics {
                 bias: self.mean[a],
                 standard_deviation: (self.squares[a] / (self.runs.max(2) - 1) as f64).sqrt(),
                 stated,
                 coverage: self.covered[a] as f64 / self.runs.max(1) as f64,
+                leans_on_lost: laboratory.leans[j],
             });
         }
         MonteCarlo {

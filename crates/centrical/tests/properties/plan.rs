@@ -477,6 +477,54 @@ fn shortest_plans_keep_their_goals() {
     assert!(matches!(error, PlanError::OutOfReach { factor } if factor > 1.0), "{error}");
 }
 
+/// No plan of a small case that keeps its goal is shorter than the time in which none is said to, and the one found is hardly
+/// longer than the shortest of all.
+#[test]
+fn least_times_for_goals_are_below_all_that_keep_them() {
+    let mut random = Random::new(17);
+    let (mut cases, mut ratios, mut bounds) = (0, Vec::new(), Vec::new());
+    while cases < 24 {
+        let candidates = small(&mut random);
+        let longest = |plateau| Visit { plateau, duration: candidates.durations[1] };
+        let everything: Vec<Visit> = (0..candidates.len()).map(longest).collect();
+        let reached = value(&Criterion::Reading(RANGE), &candidates, &everything).sqrt();
+        let uncertainty = reached * (1.02 + random.uniform());
+        let goal = Criterion::Worst(vec![Goal::Reading { range: RANGE, uncertainty }]);
+        let plan = shortest_for_goals(&candidates, &goal, 0.01, Effort::EXHAUSTIVE).unwrap();
+        let mut shortest = f64::INFINITY;
+        enumerated(&candidates, plan.schedule.time, &mut |visits| {
+            let time = candidates.time_of(visits);
+            if time < shortest && value(&goal, &candidates, visits) <= 1.0 {
+                shortest = time;
+            }
+        });
+        let least = plan.least_time.unwrap();
+        assert!(plan.criterion <= 1.0 && shortest <= plan.schedule.time * (1.0 + 1e-9));
+        assert!(least <= shortest * (1.0 + 1e-9), "said {least}, found {shortest}");
+        ratios.push(plan.schedule.time / shortest);
+        bounds.push(least / shortest);
+        cases += 1;
+    }
+    for list in [&mut ratios, &mut bounds] {
+        list.sort_by(f64::total_cmp);
+    }
+    println!("times over the shortest {ratios:.3?}, bounds over it {bounds:.3?}");
+    assert!(ratios[ratios.len() / 2] < 1.02 && bounds[bounds.len() / 2] > 0.9);
+}
+
+/// Where time hardly suffices for the set-ups, whole visits do not lose what they are there for: some mountings are tried of which
+/// rounding loses a parameter.
+#[test]
+fn plans_of_little_time_see_what_they_are_to_see() {
+    let candidates = large(8, &[30.0, 60.0]);
+    let criterion = Criterion::Reading(RANGE);
+    let plan = best_for_time(&candidates, &criterion, 2.4 * 3600.0, Effort::usual(candidates.len())).unwrap();
+    println!("{:.2e} {:.2e}, {} nodes", plan.gap(), plan.rounding(), plan.nodes);
+    assert!((1.0 + plan.gap()).sqrt() < 1.1, "{}", plan.gap());
+    let more = best_for_time(&candidates, &criterion, 2.6 * 3600.0, Effort::usual(candidates.len())).unwrap();
+    assert!(more.criterion < plan.criterion && more.bound < plan.bound);
+}
+
 /// The plateau that is said to be the best next one is that after which the uncertainty is least, by a design of its own.
 #[test]
 fn next_best_is_the_best() {

@@ -69,10 +69,15 @@ impl<'a> Problem<'a> {
 
     /// Every plateau as often and as long as may be.
     pub fn everything(&self) -> Whole {
+        self.everything_on(&vec![true; self.mountings()])
+    }
+
+    /// Every plateau of a set of mountings as often and as long as may be.
+    pub fn everything_on(&self, set: &[bool]) -> Whole {
         let options = self.candidates.durations.len();
         let repeats = u32::try_from(self.candidates.repeats).unwrap_or(u32::MAX);
-        let counts = (0..self.atoms()).map(|x| if x % options == options - 1 { repeats } else { 0 }).collect();
-        let open = vec![true; self.mountings()];
-        self.exchange(f64::INFINITY, &open, 0).whole(counts)
+        let is_longest = |x: usize| x % options == options - 1 && set[self.mounting_of(x)];
+        let counts = (0..self.atoms()).map(|x| if is_longest(x) { repeats } else { 0 }).collect();
+        self.exchange(f64::INFINITY, set, 0).whole(counts)
     }
 }

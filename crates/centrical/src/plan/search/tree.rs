@@ -8,13 +8,16 @@
 //! and what an undecided mounting pays there, `f x / U` for the time `x` in it, is at most its set-up `f`, since no schedule
 //! spends more than `U` in it: every plateau as often and as long as may be, or all the time there is. The difference between
 //! a position and a seat is paid so once for the position, by the time in all its undecided mountings together. So the
-//! schedule's time holds what the polytope asks for. (2) The equivalence theorem bounds the criterion on the polytope from
+//! schedule's time holds what the polytope asks for. Or the polytope asks for the least that the set-ups of a schedule of this
+//! node cost that is better than the best so far ([`Needs`]), and nothing in proportion: where time hardly suffices for the
+//! set-ups this is much more. (2) The equivalence theorem bounds the criterion on the polytope from
 //! below at whatever design its sensitivities are taken, converged or not (see [`relax`](super::relaxation)). (3) The two
 //! children of a node hold all its schedules, a child inherits the bound of its parent, and [`Plan::bound`] is the lowest bound
 //! of the ends of all branches: left open, cut off against the best schedule, or not divided any further.
 
 use rayon::prelude::*;
 
+use super::needs::Needs;
 use super::problem::Problem;
 use super::{Effort, Plan};
 use crate::plan::exchange::Whole;
@@ -27,6 +30,8 @@ pub(super) struct Node {
     pub mountings: Vec<Option<bool>>,
     pub low: Vec<f64>,
     pub high: Vec<f64>,
+    /// Least set-up time of its schedules that are better than what is known [s].
+    pub set_up: f64,
     pub relaxed: Relaxed,
 }
 
@@ -44,6 +49,8 @@ pub(super) struct Tree<'a> {
     /// Lowest bound of the nodes that are not divided any further.
     pub bound: f64,
     pub nodes: usize,
+    /// What is known of sets of mountings.
+    pub needs: Needs,
 }
 
 /// A node that no bound can cut off is known this well before it is divided (3 % of an uncertainty).
@@ -67,18 +74,23 @@ impl<'a> Tree<'a> {
             wanted: None,
             bound: f64::INFINITY,
             nodes: 0,
+            needs: Needs::default(),
         }
     }
 
     pub fn run(mut self) -> Plan {
         let root = self.root();
         self.nodes = 1;
-        self.seek(&root);
+        self.seek(&root, false);
         if !self.is_reached() {
             self.seek_on_all(&root);
         }
         self.exchange_mountings();
-        self.open.push(root);
+        if let Some(mut root) = self.with_needs(root) {
+            let start = root.relaxed.visits.clone();
+            self.relax(&mut root, Some(&start));
+            self.open.push(root);
+        }
         while !self.is_reached() {
             // Two at once keep two processors busy; the number is fixed, so that the plan does not depend on theirs.
             let nodes: Vec<Node> = [self.next(), self.next()].into_iter().flatten().collect();
@@ -92,21 +104,23 @@ impl<'a> Tree<'a> {
     }
 
     fn root(&self) -> Node {
+        let mut node = self.node(vec![None; self.problem.mountings()]);
+        self.relax_to(self.tolerance(), &mut node, None);
+        node
+    }
+
+    /// A node with these mountings decided and no visit, without a continuous design yet.
+    pub fn node(&self, mountings: Vec<Option<bool>>) -> Node {
         let atoms = self.problem.atoms();
         #[expect(clippy::cast_precision_loss, reason = "a handful of visits")]
         let high = self.problem.candidates.repeats as f64;
-        let node = Node {
-            mountings: vec![None; self.problem.mountings()],
+        Node {
+            mountings,
             low: vec![0.0; atoms],
             high: vec![high; atoms],
+            set_up: 0.0,
             relaxed: Relaxed { visits: Vec::new(), value: f64::INFINITY, bound: f64::NEG_INFINITY, models: 0 },
-        };
-        self.relaxed_to(self.tolerance(), node, None).unwrap_or_else(|node| node)
-    }
-
-    /// Whether the continuous design reaches goals of 1.
-    pub fn relaxed_reaches(&self) -> bool {
-        self.root().relaxed.value <= 0.0
+        }
     }
 
     /// How near to the best schedule a bound is as good as the same.
@@ -151,14 +165,15 @@ impl<'a> Tree<'a> {
     /// Relaxes the children of some nodes and keeps those that may hold something better.
     fn divide(&mut self, nodes: Vec<Node>) {
         let children: Vec<Node> = nodes.into_iter().flat_map(|node| self.children(node)).collect();
-        let relaxed = |child: Node| {
+        let children: Vec<Node> = children.into_iter().filter_map(|child| self.with_needs(child)).collect();
+        let relaxed = |mut child: Node| {
             let start = child.relaxed.visits.clone();
-            self.relaxed(child, Some(&start))
+            self.relax(&mut child, Some(&start)).then_some(child)
         };
         let children: Vec<_> = children.into_par_iter().map(relaxed).collect();
         for child in children {
             self.nodes += 1;
-            if let Ok(child) = child {
+            if let Some(child) = child {
                 if child.relaxed.bound < self.threshold() {
                     self.open.push(child);
                 } else {
@@ -168,15 +183,29 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// Two nodes that decide one thing more, with the continuous design of theirs, or none at the end of a branch.
-    fn children(&mut self, node: Node) -> Vec<Node> {
-        let is_end = |of_mountings: Option<usize>| of_mountings.is_none() || self.nodes >= self.effort.mounting_nodes;
-        let node = &if is_end(self.undecided(&node)) && node.relaxed.bound < self.bound {
-            let start = node.relaxed.visits.clone();
-            self.relaxed_to(self.tolerance(), node, Some(&start)).unwrap_or_else(|node| node)
-        } else {
-            node
+    /// The node with what its set-ups cost at least; none if it holds no schedule that is better than what is known.
+    fn with_needs(&mut self, mut node: Node) -> Option<Node> {
+        let value = self.incumbent().min(self.wanted.unwrap_or(f64::INFINITY));
+        let set_up: Vec<bool> = node.mountings.iter().map(|m| *m == Some(true)).collect();
+        let open: Vec<bool> = node.mountings.iter().map(|m| *m != Some(false)).collect();
+        let least = self.needs.least_set_up(self.problem, &set_up, &open, value);
+        let Some(least) = least.filter(|least| *least < self.time) else {
+            self.nodes += 1;
+            self.bound = self.bound.min(value);
+            return None;
         };
+        node.set_up = least;
+        Some(node)
+    }
+
+    /// Two nodes that decide one thing more, with the continuous design of theirs, or none at the end of a branch.
+    fn children(&mut self, mut node: Node) -> Vec<Node> {
+        let is_end = |of_mountings: Option<usize>| of_mountings.is_none() || self.nodes >= self.effort.mounting_nodes;
+        if is_end(self.undecided(&node)) && node.relaxed.bound < self.bound {
+            let start = node.relaxed.visits.clone();
+            self.relax_to(self.tolerance(), &mut node, Some(&start));
+        }
+        let node = &node;
         let of_mountings = self.undecided(node);
         let decided = match of_mountings {
             Some(m) if self.nodes < self.effort.mounting_nodes => {
@@ -188,7 +217,7 @@ impl<'a> Tree<'a> {
                 vec![with(true), with(false)]
             }
             None => {
-                self.seek(node);
+                self.seek(node, true);
                 self.take_whole(node);
                 let is_left = self.nodes < self.effort.visit_nodes && node.relaxed.bound < self.threshold();
                 match self.split_visit(node).filter(|_| is_left) {
@@ -239,27 +268,47 @@ impl<'a> Tree<'a> {
         node.mountings[self.problem.mounting_of(atom)] != Some(false)
     }
 
-    /// The node with its continuous design; the node itself if nothing fits into it.
-    pub fn relaxed(&self, node: Node, start: Option<&[f64]>) -> Result<Node, Node> {
+    /// Gives a node its continuous design; whether anything fits into it.
+    pub fn relax(&self, node: &mut Node, start: Option<&[f64]>) -> bool {
         let is_decided = node.mountings.iter().all(Option::is_some);
-        self.relaxed_to(if is_decided { self.tolerance() } else { LOOSE }, node, start)
+        self.relax_to(if is_decided { self.tolerance() } else { LOOSE }, node, start)
     }
 
-    fn relaxed_to(&self, loose: f64, mut node: Node, start: Option<&[f64]>) -> Result<Node, Node> {
-        let polytope = self.polytope(&node);
-        if !polytope.is_feasible() {
-            return Err(node);
+    pub fn relax_to(&self, loose: f64, node: &mut Node, start: Option<&[f64]>) -> bool {
+        let polytope = self.polytope(node);
+        let fits = polytope.is_feasible();
+        if fits {
+            let precision = Precision { tolerance: self.tolerance(), loose, enough: self.threshold() };
+            // What bounds all below the parent bounds all below its child.
+            let inherited = node.relaxed.bound;
+            node.relaxed = relax(&self.problem.scenes, &polytope, start, precision);
+            node.relaxed.bound = node.relaxed.bound.max(inherited);
         }
-        let precision = Precision { tolerance: self.tolerance(), loose, enough: self.threshold() };
-        // What bounds all below the parent bounds all below its child.
-        let inherited = node.relaxed.bound;
-        node.relaxed = relax(&self.problem.scenes, &polytope, start, precision);
-        node.relaxed.bound = node.relaxed.bound.max(inherited);
-        Ok(node)
+        fits
     }
 
-    /// The bounds of a node, with set-ups paid where they are decided and in proportion where they are not.
-    fn polytope(&self, node: &Node) -> Polytope {
+    /// The bounds of a node, with set-ups paid where they are decided and in proportion where they are not; or with the least
+    /// that the set-ups can cost, where that is more at the design there is.
+    pub fn polytope(&self, node: &Node) -> Polytope {
+        let (left, factors) = self.in_proportion(node);
+        let proportional: f64 = self.times(node).iter().zip(&factors).map(|(time, factor)| time * (factor - 1.0)).sum();
+        let is_least = node.set_up > self.time - left + proportional;
+        let factor = |x: usize| if is_least { 1.0 } else { factors[self.problem.mounting_of(x)] };
+        let high = |x: usize| if self.is_open(node, x) { node.high[x] } else { node.low[x] };
+        let atoms = self.problem.atoms();
+        Polytope {
+            price: (0..atoms).map(|x| self.problem.price(x) * factor(x)).collect(),
+            time: if is_least { self.time - node.set_up } else { left },
+            low: node.low.clone(),
+            high: (0..atoms).map(high).collect(),
+            options: self.problem.candidates.durations.len(),
+            repeats: self.problem.candidates.repeats as f64,
+        }
+    }
+
+    /// Time left by the set-ups that are decided [s], and the factor by which visits of each mounting cost more where its
+    /// set-up is paid in proportion to the time in it.
+    fn in_proportion(&self, node: &Node) -> (f64, Vec<f64>) {
         let problem = self.problem;
         let candidates = problem.candidates;
         let experiment = candidates.experiment();
@@ -286,16 +335,7 @@ impl<'a> Tree<'a> {
             let of_position = if has_paid { 0.0 } else { (costs.position - costs.seat) / in_position[k].min(time) };
             (costs.seat + costs.run_up) / in_mounting[m].min(time) + of_position
         };
-        let factors: Vec<f64> = (0..problem.mountings()).map(|m| 1.0 + surcharge(m).max(0.0)).collect();
-        let high = |x: usize| if self.is_open(node, x) { node.high[x] } else { node.low[x] };
-        Polytope {
-            price: (0..problem.atoms()).map(|x| problem.price(x) * factors[problem.mounting_of(x)]).collect(),
-            time,
-            low: node.low.clone(),
-            high: (0..problem.atoms()).map(high).collect(),
-            options,
-            repeats: candidates.repeats as f64,
-        }
+        (time, (0..problem.mountings()).map(|m| 1.0 + surcharge(m).max(0.0)).collect())
     }
 
     pub fn into_plan(self) -> Plan {
@@ -307,21 +347,8 @@ impl<'a> Tree<'a> {
             exchange.improve(exchange.fill(exchange.whole(vec![0; self.problem.atoms()])))
         });
         let bound = self.open.iter().map(|node| node.relaxed.bound).fold(self.bound, f64::min).min(best.value);
-        let used: Vec<Option<bool>> = {
-            let mut used = vec![false; self.problem.mountings()];
-            (0..best.counts.len())
-                .filter(|&x| best.counts[x] > 0)
-                .for_each(|x| used[self.problem.mounting_of(x)] = true);
-            used.into_iter().map(Some).collect()
-        };
         let start: Vec<f64> = best.counts.iter().map(|n| f64::from(*n)).collect();
-        let atoms = self.problem.atoms();
-        let node = Node {
-            mountings: used,
-            low: vec![0.0; atoms],
-            high: vec![candidates.repeats as f64; atoms],
-            relaxed: Relaxed { visits: start.clone(), value: best.value, bound: f64::NEG_INFINITY, models: 0 },
-        };
+        let node = self.node(self.mountings_of(&best).into_iter().map(Some).collect());
         let polytope = self.polytope(&node);
         let continuous = relax(&self.problem.scenes, &polytope, Some(&start), Precision::of(5e-4));
         Plan {
@@ -331,6 +358,7 @@ impl<'a> Tree<'a> {
             bound: bound.exp(),
             continuous,
             nodes: self.nodes,
+            least_time: None,
         }
     }
 }

@@ -1,0 +1,131 @@
+//! The shortest schedule that keeps every goal, from both sides: a schedule that keeps them and is made shorter, and a time in
+//! which none does. A search for a time that comes to its end without a schedule that keeps the goals proves that there is none
+//! in that time, and so none in less: every branch of it has a bound above them.
+
+use super::needs::Needs;
+use super::tree::Tree;
+use super::{Effort, Plan, PlanError, Problem};
+
+/// Searches after the first schedule, at most.
+const SEARCHES: usize = 3;
+
+/// The search for the shortest schedule.
+pub(super) struct Shortest<'a> {
+    problem: &'a Problem<'a>,
+    resolution: f64,
+    effort: Effort,
+    /// Which sets of mountings can keep the goals: the same in any time.
+    needs: Needs,
+    /// No schedule is shorter than this [s].
+    below: f64,
+    /// Time of everything there is [s].
+    everything: f64,
+}
+
+/// What a search for a time says.
+enum Answer {
+    /// A plan that keeps the goals.
+    Reached(Box<Plan>),
+    /// There is none.
+    None,
+    /// Neither is known.
+    Open,
+}
+
+impl<'a> Shortest<'a> {
+    pub fn new(problem: &'a Problem<'a>, resolution: f64, effort: Effort) -> Result<Self, PlanError> {
+        let everything = problem.everything();
+        let out_of_reach = PlanError::OutOfReach { factor: (0.5 * everything.value).exp() };
+        if everything.value > 0.0 {
+            return Err(out_of_reach);
+        }
+        let mut needs = Needs::default();
+        let all = vec![true; problem.mountings()];
+        let none = vec![false; problem.mountings()];
+        // Everything keeps the goals, so some set does; what just does not count for `value` is left to `everything`.
+        let set_up = needs.least_set_up(problem, &none, &all, f64::MIN_POSITIVE).unwrap_or(0.0);
+        let below = problem.least_time().max(set_up);
+        Ok(Self { problem, resolution, effort, needs, below, everything: everything.time })
+    }
+
+    pub fn run(mut self) -> Plan {
+        let mut plan = self.first();
+        let mut open = f64::INFINITY;
+        let searches = if self.effort.mounting_nodes > Effort::FAIR.mounting_nodes { SEARCHES } else { 0 };
+        for _ in 0..searches {
+            let above = plan.schedule.time.min(open);
+            // Just below what is known, where that is to be proven; else half way.
+            let is_near = above / self.below < 1.0 + 4.0 * self.resolution;
+            let time = if is_near { above / (1.0 + self.resolution) } else { (self.below * above).sqrt() };
+            if time <= self.below * (1.0 + 0.1 * self.resolution) {
+                break;
+            }
+            match self.search(time, self.effort) {
+                Answer::Reached(shorter) => (plan, open) = (self.shortened(*shorter), f64::INFINITY),
+                Answer::None => self.below = time,
+                Answer::Open => open = time,
+            }
+        }
+        self.thorough(plan)
+    }
+
+    /// A first schedule, made short, in times that rise from the least there can be.
+    fn first(&mut self) -> Plan {
+        let (start, mut step) = (self.below, 2.0 * self.resolution);
+        loop {
+            let time = (start * (1.0 + step)).min(self.everything);
+            match self.search(time, self.quick()) {
+                Answer::Reached(plan) => return self.shortened(*plan),
+                Answer::None => self.below = time,
+                Answer::Open => {}
+            }
+            if time >= self.everything {
+                let visits = self.problem.everything().visits(self.problem.candidates);
+                let plan = self.tree(time, self.quick()).run();
+                return Plan { schedule: self.problem.candidates.schedule(visits), ..plan };
+            }
+            step *= 2.0;
+        }
+    }
+
+    /// Effort where much is sought: mountings exchanged, no branches.
+    fn quick(&self) -> Effort {
+        Effort { mounting_nodes: self.effort.mounting_nodes.min(Effort::FAIR.mounting_nodes), ..Effort::FAIR }
+    }
+
+    fn search(&self, time: f64, effort: Effort) -> Answer {
+        match self.wanted(time, effort).run() {
+            plan if plan.criterion <= 1.0 => Answer::Reached(Box::new(plan)),
+            plan if plan.bound >= 1.0 => Answer::None,
+            _ => Answer::Open,
+        }
+    }
+
+    fn wanted(&self, time: f64, effort: Effort) -> Tree<'a> {
+        Tree { wanted: Some(0.0), needs: self.needs.clone(), ..self.tree(time, effort) }
+    }
+
+    fn tree(&self, time: f64, effort: Effort) -> Tree<'a> {
+        Tree::new(self.problem, time, effort)
+    }
+
+    /// The shortest plan on the mountings of one that keeps the goals.
+    fn shortened(&self, mut plan: Plan) -> Plan {
+        let used = self.problem.mountings_of(&plan.schedule);
+        let mut low = self.below.max(self.problem.candidates.set_up_time(&used));
+        while plan.schedule.time / low > 1.0 + 0.5 * self.resolution {
+            let middle = (low * plan.schedule.time).sqrt();
+            let shorter = self.wanted(middle, self.effort).run_on(used.clone(), &plan.continuous.visits);
+            if shorter.criterion <= 1.0 { plan = shorter } else { low = middle }
+        }
+        plan
+    }
+
+    /// What else the time of a plan is good for, and a bound.
+    fn thorough(&self, plan: Plan) -> Plan {
+        let other = self.tree(plan.schedule.time, self.quick()).run();
+        let bound = other.bound.min(plan.criterion);
+        let better = if other.criterion < plan.criterion { other } else { plan };
+        Plan { bound, least_time: Some(self.below.min(better.schedule.time)), ..better }
+    }
+}
