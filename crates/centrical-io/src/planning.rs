@@ -174,15 +174,33 @@ impl Planning {
     /// # Errors
     /// [`Error::Planning`] when there is none.
     pub fn plan(&mut self, certify: bool) -> Result<Plan, Error> {
-        let plan = self.search(certify)?;
+        let effort = self.effort(certify);
         let expects_none = self.candidates.scenarios.iter().all(|s| s.nominal.iter().all(|value| *value == 0.0));
-        if self.time.is_some() || !expects_none || self.keeps_goals(&plan)? {
-            return Ok(plan);
+        if self.time.is_some() || !expects_none {
+            return self.search(effort);
+        }
+        // A hasty plan shows mostly what a good one would.
+        let hasty = self.search(Effort::QUICK)?;
+        if self.keeps_goals(&hasty)? {
+            let plan = self.search(effort)?;
+            if self.keeps_goals(&plan)? {
+                return Ok(plan);
+            }
         }
         for scenario in &mut self.candidates.scenarios {
             scenario.nominal = scenario.model.parameters().typical_in_turn();
         }
-        self.search(certify)
+        self.search(effort)
+    }
+
+    fn effort(&self, certify: bool) -> Effort {
+        let usual = Effort::usual(self.candidates.len());
+        match (certify, self.time) {
+            (true, _) => Effort::CERTIFIED,
+            (false, Some(_)) => usual,
+            // The shortest plan is sought by a search for each of some times.
+            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 6, ..usual },
+        }
     }
 
     /// Whether every goal is kept as predicted, type B included.
@@ -191,14 +209,7 @@ impl Planning {
         Ok(goals.iter().all(|goal| goal.combined.is_some_and(|u| u <= goal.wanted)))
     }
 
-    fn search(&self, certify: bool) -> Result<Plan, Error> {
-        let usual = Effort::usual(self.candidates.len());
-        let effort = match (certify, self.time) {
-            (true, _) => Effort::CERTIFIED,
-            (false, Some(_)) => usual,
-            // The shortest plan is sought by a search for each of some times.
-            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 6, ..usual },
-        };
+    fn search(&self, effort: Effort) -> Result<Plan, Error> {
         let Criterion::Worst(goals) = &self.criterion else { return self.best(&self.criterion, effort) };
         if self.type_b == TypeB::default() {
             return self.best(&self.criterion, effort);
@@ -211,14 +222,14 @@ impl Planning {
                 return Err(self.failed(PlanError::BelowTypeB { name: name.to_owned(), factor: floor / wanted }));
             }
         }
-        for effort in [Effort::QUICK, Effort::QUICK, Effort::QUICK, effort, effort] {
-            let plan = self.best(&Criterion::Worst(for_type_a(goals, &floors)), effort)?;
+        for now in [Effort::QUICK, Effort::QUICK, Effort::QUICK, effort, effort] {
+            let plan = self.best(&Criterion::Worst(for_type_a(goals, &floors)), now)?;
             let there = self.floors(&plan.schedule)?;
             let is_settled = there.iter().zip(&floors).all(|(there, floor)| there <= floor);
             floors.iter_mut().zip(there).for_each(|(floor, there)| *floor = floor.max(MARGIN * there));
             // A shortest plan that keeps the goals is one, whatever it was reckoned with.
             let is_kept = self.time.is_none() && self.keeps_goals(&plan)?;
-            if (is_settled || is_kept) && effort != Effort::QUICK {
+            if (is_settled || is_kept) && now == effort {
                 return Ok(plan);
             }
         }

@@ -49,7 +49,7 @@ fn heading(text: &mut String, report: &PlanReport) {
     let _ = writeln!(text, "  {}: {}", criterion(report), value(report, report.value));
     if report.for_typical {
         text.push_str(
-            "  for a unit of typical errors, signs in turn: the shortest plan for one without errors misses goals with such errors\n",
+            "  for a unit of typical errors, signs in turn: a plan for one without errors misses goals with such errors\n",
         );
     }
     let percent = |part: f64| format!("{:.2} %", 100.0 * part);

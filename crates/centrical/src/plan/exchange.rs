@@ -178,6 +178,14 @@ impl Exchange<'_> {
         self.with_factors(counts, factors)
     }
 
+    /// A schedule with more visits, of plateaus that it has none of.
+    pub fn with(&self, whole: &Whole, more: &[u32]) -> Whole {
+        let counts = whole.counts.iter().zip(more).map(|(there, more)| there + more).collect();
+        let scenes = self.scenes.all.iter().zip(&whole.factors);
+        let factors = scenes.map(|(scene, factor)| scene.with(factor, &self.information(scene, more))).collect();
+        self.with_factors(counts, factors)
+    }
+
     fn with_factors(&self, counts: Vec<u32>, factors: Vec<Factor>) -> Whole {
         Whole { value: self.scenes.value(&factors), time: self.time_of(&counts), counts, factors }
     }

@@ -30,24 +30,27 @@ impl Needs {
             if self.value(problem, &set) < value {
                 return Some(time);
             }
-            let useless = self.enlarged(problem, set, value);
-            self.useless.push(useless);
+            self.useless.push(enlarged(problem, set, value));
         }
     }
 
     fn value(&mut self, problem: &Problem, set: &[bool]) -> f64 {
         *self.values.entry(set.to_vec()).or_insert_with(|| problem.everything_on(set).value)
     }
+}
 
-    /// A set of no use with all mountings that leave it so.
-    fn enlarged(&mut self, problem: &Problem, mut set: Vec<bool>, value: f64) -> Vec<bool> {
-        for m in 0..set.len() {
-            if !std::mem::replace(&mut set[m], true) {
-                set[m] = self.value(problem, &set) >= value;
+/// A set of no use with all mountings that leave it so.
+fn enlarged(problem: &Problem, mut set: Vec<bool>, value: f64) -> Vec<bool> {
+    let mut everything = problem.everything_on(&set);
+    for m in 0..set.len() {
+        if !set[m] {
+            let more = problem.with_everything_on(&everything, m);
+            if more.value >= value {
+                (set[m], everything) = (true, more);
             }
         }
-        set
     }
+    set
 }
 
 /// The search for the cheapest set with a mounting outside of each useless one.

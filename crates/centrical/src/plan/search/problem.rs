@@ -74,10 +74,20 @@ impl<'a> Problem<'a> {
 
     /// Every plateau of a set of mountings as often and as long as may be.
     pub fn everything_on(&self, set: &[bool]) -> Whole {
+        self.exchange(f64::INFINITY, set, 0).whole(self.most_visits(set))
+    }
+
+    /// A schedule and everything on one mounting more.
+    pub fn with_everything_on(&self, whole: &Whole, mounting: usize) -> Whole {
+        let mut set = vec![false; self.mountings()];
+        set[mounting] = true;
+        self.exchange(f64::INFINITY, &set, 0).with(whole, &self.most_visits(&set))
+    }
+
+    fn most_visits(&self, set: &[bool]) -> Vec<u32> {
         let options = self.candidates.durations.len();
         let repeats = u32::try_from(self.candidates.repeats).unwrap_or(u32::MAX);
         let is_longest = |x: usize| x % options == options - 1 && set[self.mounting_of(x)];
-        let counts = (0..self.atoms()).map(|x| if is_longest(x) { repeats } else { 0 }).collect();
-        self.exchange(f64::INFINITY, set, 0).whole(counts)
+        (0..self.atoms()).map(|x| if is_longest(x) { repeats } else { 0 }).collect()
     }
 }
