@@ -137,8 +137,8 @@ impl Times {
     fn of(start: usize, t: &[f64]) -> Self {
         let span = [t[0], t[t.len() - 1]];
         let even = t.iter().zip(even(span, t.len())).map(|(t, even)| last_places(*t, even)).collect();
-        let off = if let Some(off) = even { Law::Even(off) } else { Law::Any(t.to_vec()) };
-        Self { range: start..start + t.len(), span, law: off }
+        let law = if let Some(off) = even { Law::Even(off) } else { Law::Any(t.to_vec()) };
+        Self { range: start..start + t.len(), span, law }
     }
 
     fn bytes(&self) -> usize {

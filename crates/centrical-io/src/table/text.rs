@@ -180,10 +180,7 @@ impl Piece {
             text = split_line(text).1;
         }
         (self.lines, self.first_row, self.fault) = (skipped, skipped, None);
-        if let Some(delimiter) = layout.delimiter() {
-            self.separators.find(text, delimiter);
-        }
-        let is_ascii = layout.delimiter().is_some() && self.separators.is_ascii();
+        let is_ascii = layout.delimiter().is_some_and(|delimiter| self.separators.find(text, delimiter));
         if !is_ascii && let Err((at, column, found)) = piece::check_utf8(text) {
             self.fault = Some((skipped + at, Fault { column, found, expected: "text in UTF-8".to_owned() }));
             text = &text[..piece::before_line(text, at)];

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
 use super::blocks::{MAD, SAMPLES, cut, median};
-use super::lanes::{fold, sum, widest};
+use super::lanes::{fold, range, sum, widest};
 use super::record::RecordSlice;
 
 /// What is kept of the samples of one block of time.
@@ -85,14 +85,6 @@ impl WithSimd for OneAxis<'_> {
         let is_whole = sum(f, |value| value).is_finite();
         Axis { is_whole, range: [low, high], step: smallest_above(differences, rounding), fresh, repeated, level }
     }
-}
-
-/// Lowest and highest of the values that are numbers.
-#[inline(always)]
-fn range(f: &[f64]) -> [f64; 2] {
-    let low = fold(f, f64::INFINITY, |low, value| if value < low { value } else { low }, f64::min);
-    let high = fold(f, f64::NEG_INFINITY, |high, value| if value > high { value } else { high }, f64::max);
-    [low, high]
 }
 
 /// The smallest size above a limit; infinite if there is none.

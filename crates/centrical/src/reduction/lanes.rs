@@ -33,6 +33,14 @@ pub(super) fn fold<T: Copy>(values: &[f64], start: T, step: impl Fn(T, f64) -> T
     joined(lanes, join)
 }
 
+/// Lowest and highest of the values that are numbers.
+#[inline(always)]
+pub(super) fn range(values: &[f64]) -> [f64; 2] {
+    let low = fold(values, f64::INFINITY, |low, value| if value < low { value } else { low }, f64::min);
+    let high = fold(values, f64::NEG_INFINITY, |high, value| if value > high { value } else { high }, f64::max);
+    [low, high]
+}
+
 /// Sum of a function of values.
 #[inline(always)]
 pub(super) fn sum(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {

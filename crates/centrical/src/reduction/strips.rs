@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::lanes::{dot, fold, subtract, widest};
+use super::lanes::{dot, fold, range, subtract, widest};
 use super::samples::Samples;
 use super::stuck::{longest_run, may_be_longer, stuck_on_any_axis};
 use super::triangle::{TERMS, Triangle};
@@ -322,13 +322,6 @@ impl Strip {
             squares: each_axis(&|axis| self.squares[axis] + left.iter().map(|of| of[axis] * of[axis]).sum::<f64>()),
         }
     }
-}
-
-/// Lowest and highest of values.
-#[inline(always)]
-fn range(f: &[f64]) -> [f64; 2] {
-    let low = fold(f, f64::INFINITY, |low, f| if f < low { f } else { low }, f64::min);
-    [low, fold(f, f64::NEG_INFINITY, |high, f| if f > high { f } else { high }, f64::max)]
 }
 
 /// The largest size.

@@ -142,8 +142,8 @@ impl Layout {
         self.wanted.len()
     }
 
-    /// Reads rows of bare numbers, [`ROWS`] at most, that begin at `from` and have these separators; nothing where one of them is
-    /// anything else, right or wrong.
+    /// Reads rows of bare numbers, [`ROWS`] at most, that begin at `from` and have these separators; nothing where one of
+    /// them is anything else, right or wrong.
     pub fn batch(&self, text: &[u8], from: usize, separators: &[u32], block: &mut Block) -> Option<()> {
         let fields = self.wanted.len();
         let lines = separators.chunks_exact(fields);

@@ -18,8 +18,8 @@ pub(super) struct Separators {
 }
 
 impl Separators {
-    /// Finds those of a text of less than 4 GB.
-    pub fn find(&mut self, text: &[u8], delimiter: u8) {
+    /// Finds those of a text of less than 4 GB; whether all of it is ASCII.
+    pub fn find(&mut self, text: &[u8], delimiter: u8) -> bool {
         (self.count, self.is_ascii) = (0, true);
         let (steps, rest) = text.as_chunks::<STEP>();
         self.find_in_steps(steps, delimiter);
@@ -29,16 +29,12 @@ impl Separators {
         // A delimiter may be the byte that stands for nothing here.
         let there = (1_u64 << rest.len()) - 1;
         self.take(marks(&last, delimiter) & there, steps.len() * STEP);
+        self.is_ascii
     }
 
     /// In ascending order.
     pub fn places(&self) -> &[u32] {
         &self.places[..self.count]
-    }
-
-    /// Whether all of the text is ASCII.
-    pub fn is_ascii(&self) -> bool {
-        self.is_ascii
     }
 
     fn find_in_steps(&mut self, steps: &[[u8; STEP]], delimiter: u8) {
@@ -133,14 +129,13 @@ mod tests {
             let text: Vec<u8> = (0..1000_u32).map(|i| bytes[(i * i / 7 % 8) as usize]).collect();
             let mut separators = Separators::default();
             for length in [1000, 3, 640, 999, 0] {
-                separators.find(&text[..length], b';');
+                assert!(separators.find(&text[..length], b';'));
                 let expected: Vec<u32> = (0..)
                     .zip(&text[..length])
                     .filter(|(_, byte)| matches!(byte, b';' | b'\n'))
                     .map(|(i, _)| i)
                     .collect();
                 assert_eq!(separators.places(), expected);
-                assert!(separators.is_ascii());
             }
             for (k, step) in text.as_chunks::<STEP>().0.iter().enumerate() {
                 let of_step = |place: &&u32| **place as usize / STEP == k;
@@ -156,8 +151,7 @@ mod tests {
         for place in [0, 63, 64, 100, 129] {
             let mut text = vec![b'1'; 130];
             text[place] = 0xb5;
-            separators.find(&text, b',');
-            assert!(!separators.is_ascii(), "{place}");
+            assert!(!separators.find(&text, b','), "{place}");
         }
     }
 }
