@@ -30,7 +30,7 @@ impl<'a> RecordFile<'a> {
         let mut beginning = Record::default();
         let mut survey: Option<Survey> = None;
         kept.begin();
-        kept.index = self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks: &[Block]| {
+        kept.index = self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks: &mut [Block]| {
             if let Some(survey) = &mut survey {
                 let condense = || blocks.par_iter().map(|block| survey.condense(stretch(block))).collect();
                 let keep = || blocks.iter().for_each(|block| kept.extend(stretch(block)));
