@@ -94,8 +94,7 @@ fn encode(
 ) -> Result<(Bytes, ColumnCloseResult), ParquetError> {
     let mut pages = TrackedWrite::new(Vec::with_capacity(size_of_val(values.as_slice()) + 4096));
     let page_writer = Box::new(SerializedPageWriter::new(&mut pages));
-    let mut writer =
-        ColumnWriterImpl::<DoubleType>::new(Arc::clone(description), Arc::clone(properties), page_writer);
+    let mut writer = ColumnWriterImpl::<DoubleType>::new(Arc::clone(description), Arc::clone(properties), page_writer);
     writer.write_batch(values, None, None)?;
     values.clear();
     let closed = writer.close()?;

@@ -76,7 +76,8 @@ impl Output {
     /// Waits for what is under way and tells how it went.
     fn end(&mut self) -> io::Result<()> {
         self.pieces = None;
-        let ended = self.thread.take().map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        let ended =
+            self.thread.take().map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         ended.unwrap_or_else(|| Err(io::Error::other("the file has been given up")))
     }
 }
