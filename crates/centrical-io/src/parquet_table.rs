@@ -1,6 +1,7 @@
 //! Tables of numbers as Parquet.
 
 use std::io::{self, Write};
+use std::mem;
 use std::sync::Arc;
 
 use bytes::Bytes;
@@ -33,8 +34,16 @@ const GROUP: usize = 1 << 17;
 /// A table that is written row group by row group.
 pub(crate) struct ParquetTable<W: Write + Send> {
     file: SerializedFileWriter<W>,
-    /// Rows of the next group, by columns.
-    columns: Vec<Vec<f64>>,
+    /// The next row group.
+    columns: Vec<Column>,
+}
+
+/// A column of a row group.
+#[derive(Default)]
+struct Column {
+    values: Vec<f64>,
+    /// Room for its pages: memory that is asked for anew would be faulted in anew, page by page.
+    room: Vec<u8>,
 }
 
 impl<W: Write + Send> ParquetTable<W> {
@@ -54,15 +63,15 @@ impl<W: Write + Send> ParquetTable<W> {
             .set_column_statistics_enabled(time.into(), EnabledStatistics::Chunk)
             .build();
         let file = SerializedFileWriter::new(output, Arc::new(schema), Arc::new(properties)).map_err(failed)?;
-        Ok(Self { file, columns: vec![Vec::new(); names.len()] })
+        Ok(Self { file, columns: names.iter().map(|_| Column::default()).collect() })
     }
 
     /// Adds rows, given as columns of equal length.
     pub fn write<C: AsRef<[f64]>>(&mut self, columns: &[C]) -> io::Result<()> {
-        for (whole, piece) in self.columns.iter_mut().zip(columns) {
-            whole.extend_from_slice(piece.as_ref());
+        for (column, piece) in self.columns.iter_mut().zip(columns) {
+            column.values.extend_from_slice(piece.as_ref());
         }
-        if self.columns[0].len() >= GROUP { self.flush().map_err(failed) } else { Ok(()) }
+        if self.columns[0].values.len() >= GROUP { self.flush().map_err(failed) } else { Ok(()) }
     }
 
     /// Ends the table and gives its output back.
@@ -75,30 +84,36 @@ impl<W: Write + Send> ParquetTable<W> {
     fn flush(&mut self) -> Result<(), ParquetError> {
         let descriptions = self.file.schema_descr().columns();
         let properties = self.file.properties();
-        let encode = |(values, description): (&mut Vec<f64>, _)| encode(values, description, properties);
+        let encode = |(column, description): (&mut Column, _)| column.encode(description, properties);
         let encoded: Vec<_> = self.columns.par_iter_mut().zip(descriptions).map(encode).collect();
         let mut group = self.file.next_row_group()?;
-        for column in encoded {
-            let (pages, closed) = column?;
+        for (column, encoded) in self.columns.iter_mut().zip(encoded) {
+            let (pages, closed) = encoded?;
             group.append_column(&pages, closed)?;
+            column.room = pages.try_into_mut().map_or_else(|_| Vec::new(), Vec::from);
         }
         group.close().map(|_| ())
     }
 }
 
-/// The pages of a column of a row group, and what the footer says of them. The values are taken.
-fn encode(
-    values: &mut Vec<f64>,
-    description: &ColumnDescPtr,
-    properties: &WriterPropertiesPtr,
-) -> Result<(Bytes, ColumnCloseResult), ParquetError> {
-    let mut pages = TrackedWrite::new(Vec::with_capacity(size_of_val(values.as_slice()) + 4096));
-    let page_writer = Box::new(SerializedPageWriter::new(&mut pages));
-    let mut writer = ColumnWriterImpl::<DoubleType>::new(Arc::clone(description), Arc::clone(properties), page_writer);
-    writer.write_batch(values, None, None)?;
-    values.clear();
-    let closed = writer.close()?;
-    Ok((pages.into_inner()?.into(), closed))
+impl Column {
+    /// Its pages, and what the footer says of them. The values are taken.
+    fn encode(
+        &mut self,
+        description: &ColumnDescPtr,
+        properties: &WriterPropertiesPtr,
+    ) -> Result<(Bytes, ColumnCloseResult), ParquetError> {
+        let mut room = mem::take(&mut self.room);
+        room.clear();
+        let mut pages = TrackedWrite::new(room);
+        let page_writer = Box::new(SerializedPageWriter::new(&mut pages));
+        let (description, properties) = (Arc::clone(description), Arc::clone(properties));
+        let mut writer = ColumnWriterImpl::<DoubleType>::new(description, properties, page_writer);
+        writer.write_batch(&self.values, None, None)?;
+        self.values.clear();
+        let closed = writer.close()?;
+        Ok((pages.into_inner()?.into(), closed))
+    }
 }
 
 /// The library's complaint as one of writing.
