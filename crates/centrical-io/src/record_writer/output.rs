@@ -96,7 +96,8 @@ impl Write for Output {
             return Ok(());
         }
         let mut room = self.room();
-        (room.start, _) = (0, room.text.clear());
+        room.start = 0;
+        room.text.clear();
         let gathered = mem::replace(&mut self.gathered, room);
         self.send(gathered)
     }

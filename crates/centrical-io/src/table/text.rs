@@ -207,28 +207,28 @@ impl Piece {
             return self.read_rows(text, layout, fields, block);
         }
         let of_text = std::mem::take(&mut self.separators);
-        let mut separators = of_text.places();
+        let [mut separators, mut ends] = of_text.places();
         let mut from = 0;
         let read = loop {
-            let rows = ROWS.min(separators.len() / layout.fields());
-            let of_batch = &separators[..rows * layout.fields()];
+            let rows = ROWS.min(separators.len() / layout.fields()).min(ends.len());
+            let (of_batch, ends_of_batch) = (&separators[..rows * layout.fields()], &ends[..rows]);
             // Of a text that is read up to a fault, some are beyond it.
             if of_batch.last().is_none_or(|last| *last as usize >= text.len()) {
                 break self.read_rows(&text[from..], layout, fields, block);
             }
-            let rest = if layout.batch(text, from, of_batch, block).is_some() {
+            if layout.batch(text, from, of_batch, ends_of_batch, block).is_some() {
                 self.lines += rows as u64;
-                of_batch[of_batch.len() - 1] as usize + 1
-            } else {
-                // As many lines, or what there is: a line may have more separators than it should.
-                let lines = piece::before_line(&text[from..], rows as u64);
-                let rest = if lines == 0 { text.len() } else { from + lines };
-                if let Err(fault) = self.read_rows(&text[from..rest], layout, fields, block) {
-                    break Err(fault);
-                }
-                rest
-            };
-            separators = &separators[separators.partition_point(|place| (*place as usize) < rest)..];
+                from = of_batch[of_batch.len() - 1] as usize + 1;
+                (separators, ends) = (&separators[of_batch.len()..], &ends[rows..]);
+                continue;
+            }
+            // As many lines: one may have more separators than it should, or fewer.
+            let rest = text.len().min(ends_of_batch[rows - 1] as usize + 1);
+            if let Err(fault) = self.read_rows(&text[from..rest], layout, fields, block) {
+                break Err(fault);
+            }
+            let left = |places: &[u32]| places.partition_point(|place| (*place as usize) < rest);
+            (separators, ends) = (&separators[left(separators)..], &ends[left(ends)..]);
             from = rest;
         };
         self.separators = of_text;
