@@ -58,21 +58,43 @@ impl WithSimd for Numbers<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Option<[f64; ROWS]> {
         let Self(texts) = self;
+        let [mut shortest, mut longest] = [u64::MAX, 0];
+        for length in texts.length {
+            (shortest, longest) = (shortest.min(length), longest.max(length));
+        }
+        // What is known of all of them need not be asked of each.
+        if shortest == 0 || longest > 16 {
+            None
+        } else if longest <= 8 {
+            texts.numbers_of::<true, false>()
+        } else if shortest > 8 {
+            texts.numbers_of::<false, true>()
+        } else {
+            texts.numbers_of::<true, true>()
+        }
+    }
+}
+
+impl Texts {
+    /// The numbers, where some of their texts may be of up to 8 bytes, and some of 9 to 16.
+    #[inline(always)]
+    fn numbers_of<const SHORT: bool, const LONG: bool>(&self) -> Option<[f64; ROWS]> {
         let mut numbers = [0.0; ROWS];
         let mut wrong = 0;
         for row in 0..ROWS {
+            let length = self.length[row];
+            let is_long = LONG && (!SHORT || length > 8);
             // Bytes less the character 0, those before the number pushed out.
-            let length = texts.length[row];
-            let (short, long) = (8 - length.clamp(1, 8), 16 - length.clamp(8, 16));
-            let low = (texts.low[row] ^ (0x30 * ONES)) >> (8 * short);
-            let high = (texts.high[row] ^ (0x30 * ONES)) >> (4 * long) >> (4 * long);
-            let is_long = length > 8;
+            let low = self.low[row] ^ (0x30 * ONES);
+            let high = self.high[row] ^ (0x30 * ONES);
+            let before_low = if SHORT { 64 - 8 * length.min(8) } else { 0 };
+            let before_high = if LONG { 64 - 4 * length.max(8) } else { 32 };
+            let low = low >> before_low;
+            let high = if LONG { high >> before_high >> before_high } else { 0 };
             let minus = u64::from((if is_long { high } else { low }) & 0xff == 0x30 ^ 0x2d);
             let without_sign = !(0xff * minus);
-            let low = (if is_long { low } else { low & without_sign }) << (8 * short);
-            let high = (high & without_sign) << (4 * long) << (4 * long);
-            wrong |= u64::from(length.wrapping_sub(1 + minus) >= 16 - minus);
-            let length = length.wrapping_sub(minus);
+            let low = if is_long { low } else { low & without_sign } << before_low;
+            let high = if LONG { (high & without_sign) << before_high << before_high } else { 0 };
             // The point: the top bit of its byte, if it is among the last eight bytes.
             let others = low ^ ((0x30 ^ 0x2e) * ONES);
             let point = !(((others & !TOPS) + !TOPS) | others) & TOPS;
@@ -82,13 +104,17 @@ impl WithSimd for Numbers<'_> {
             let digits_low = (low & after) | ((low & before) << 8) | (high >> 56);
             let (digits_low, digits_high) = if has_point { (digits_low, high << 8) } else { (low, high) };
             let decimals = if has_point { u64::from(point.leading_zeros()) / 8 } else { 0 };
-            for digits in [digits_low, digits_high] {
-                wrong |= (digits.wrapping_add(0x76 * ONES) | digits) & TOPS;
+            wrong |= (digits_low.wrapping_add(0x76 * ONES) | digits_low) & TOPS;
+            if LONG {
+                wrong |= (digits_high.wrapping_add(0x76 * ONES) | digits_high) & TOPS;
             }
-            // A point with nothing after it, a number of nothing but a point, one of 16 digits.
-            wrong |= u64::from(has_point && (decimals == 0 || decimals + 1 == length));
-            wrong |= u64::from(!has_point && length == 16);
-            let whole = joined(digits_high) * 100_000_000 + joined(digits_low);
+            // Nothing but a sign, a point with nothing before or after it, a number of 16 digits.
+            let whole_digits = length.wrapping_sub(minus + if has_point { decimals + 1 } else { 0 });
+            wrong |= u64::from(whole_digits == 0) | u64::from(has_point && decimals == 0);
+            if LONG {
+                wrong |= u64::from(!has_point && whole_digits == 16);
+            }
+            let whole = if LONG { joined(digits_high) * 100_000_000 } else { 0 } + joined(digits_low);
             #[expect(clippy::cast_possible_wrap, reason = "at most 15 digits, below 2^53")]
             let number = divided(whole as i64 as f64, decimals);
             numbers[row] = f64::from_bits(number.to_bits() | minus << 63);
