@@ -1,6 +1,5 @@
 //! Records out, block by block: CSV, or Parquet where the file's name ends in `.parquet`.
 
-mod decimal;
 mod output;
 mod text;
 
@@ -9,11 +8,11 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use self::decimal::Decimals;
 use self::output::Output;
 use self::text::TextTable;
 use crate::error::Error;
 use crate::parquet_table::{Layout, ParquetTable};
+use crate::text_lines::Decimals;
 use centrical::reduction::RecordSlice;
 
 /// Writes `t` [s], `f1`, `f2`, `f3` [m/s^2] beside the file and renames at the end: whoever looks sees the whole

@@ -1,22 +1,13 @@
-//! Records as CSV: numbers to a fixed number of decimals, or in the shortest form that reads back the same.
-
-#![allow(
-    clippy::inline_always,
-    reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
-)]
+//! Records as CSV.
 
 use std::io::{self, Write};
 
-use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::Table;
-use super::decimal::{self, Decimals, Digits, ROOM};
 use super::output::{Output, Piece};
+use crate::text_lines::{Decimals, ROWS, write_lines};
 use centrical::reduction::RecordSlice;
-
-/// Rows that are turned into text together: some 250 KB.
-const ROWS: usize = 4096;
 
 /// What most stamps and many readings have no more decimals than. They need no search for the shortest form.
 const NANO: Decimals = Decimals::exact(9);
@@ -47,64 +38,15 @@ impl Table for TextTable {
         });
         let (decimals, output) = (self.decimals, &self.output);
         let lines: Vec<(Piece, [&[f64]; 4])> = rows.map(|rows| (output.room(), rows)).collect();
-        let lines: Vec<Piece> = lines.into_par_iter().map(|(room, rows)| lines_of(room, decimals, &rows)).collect();
+        let written = lines.into_par_iter().map(|(mut piece, rows)| {
+            piece.start = write_lines(&mut piece.text, decimals, rows);
+            piece
+        });
+        let lines: Vec<Piece> = written.collect();
         lines.into_iter().try_for_each(|lines| self.output.send(lines))
     }
 
     fn finish(self: Box<Self>) -> io::Result<()> {
         self.output.finish()
     }
-}
-
-/// The lines of rows, given by columns.
-fn lines_of(mut room: Piece, decimals: [Decimals; 4], columns: &[&[f64]; 4]) -> Piece {
-    let most = (columns[0].len() * columns.len() + 1) * ROOM;
-    room.text.resize(room.text.len().max(most), 0);
-    room.start = Arch::new().dispatch(Fill { text: &mut room.text, decimals, columns });
-    room
-}
-
-/// Fills a text from its end with the lines of rows, and tells where they start.
-struct Fill<'a> {
-    text: &'a mut [u8],
-    decimals: [Decimals; 4],
-    columns: &'a [&'a [f64]; 4],
-}
-
-impl WithSimd for Fill<'_> {
-    type Output = usize;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> usize {
-        let Self { text, decimals, columns } = self;
-        let mut digits = decimals.map(Digits::new);
-        let mut start = text.len();
-        for end in (1..=columns[0].len()).rev().step_by(decimal::ROWS) {
-            let rows = end.saturating_sub(decimal::ROWS)..end;
-            for (digits, column) in digits.iter_mut().zip(columns) {
-                digits.take(&column[rows.clone()]);
-            }
-            for row in rows.clone().rev() {
-                let mut after = b'\n';
-                for (digits, column) in digits.iter().zip(columns).rev() {
-                    start -= 1;
-                    text[start] = after;
-                    after = b',';
-                    if let Some(room) = text[..start].last_chunk_mut() {
-                        start -= digits.put(row - rows.start, room).unwrap_or_else(|| put_shortest(column[row], room));
-                    }
-                }
-            }
-        }
-        start
-    }
-}
-
-/// Writes a number to the end of `text` in the shortest form that reads back the same, and tells its length.
-#[cold]
-fn put_shortest(number: f64, text: &mut [u8; ROOM]) -> usize {
-    let mut buffer = zmij::Buffer::new();
-    let digits = if number.is_nan() { "nan" } else { buffer.format(number) };
-    text[ROOM - digits.len()..].copy_from_slice(digits.as_bytes());
-    digits.len()
 }
