@@ -53,7 +53,7 @@ impl Grid {
 
     /// The number of the block that an instant falls in.
     pub fn number(&self, t: f64) -> usize {
-        whole(((t - self.start) / self.width).floor())
+        whole((t - self.start) / self.width)
     }
 
     /// The middle of a block [s].
@@ -63,28 +63,28 @@ impl Grid {
 
     /// The samples of each block that a stretch has samples of.
     pub fn divide<'a>(&self, stretch: RecordSlice<'a>) -> impl Iterator<Item = (usize, RecordSlice<'a>)> {
-        let (mut from, mut usual) = (0, 0);
+        let mut from = 0;
         std::iter::from_fn(move || {
             let number = self.number(*stretch.t.get(from)?);
-            let count = self.samples_up_to(number, &stretch.t[from..], usual);
-            // The next block is as long, as a rule.
-            usual = count;
-            let to = from + count;
+            let to = from + self.samples_up_to(number, &stretch.t[from..]);
             let part = stretch.part(from..to);
             from = to;
             Some((number, part))
         })
     }
 
-    /// How many of the times, that do not decrease, are in a block of that number at most: as many as usual, or else the end is
-    /// looked for from the beginning, as a block is short beside a stretch.
-    fn samples_up_to(&self, number: usize, t: &[f64], usual: usize) -> usize {
+    /// How many of the times, that do not decrease, are in a block of that number at most: those of equal steps up to its end, or
+    /// else it is looked for from the beginning, as a block is short beside a stretch.
+    fn samples_up_to(&self, number: usize, t: &[f64]) -> usize {
         let is_in = |i: usize| self.number(t[i]) <= number;
-        if (1..t.len()).contains(&usual) && is_in(usual - 1) && !is_in(usual) {
-            return usual;
+        let steps = whole((self.middle(number) + 0.5 * self.width - t[0]) / self.interval);
+        for end in steps..steps.saturating_add(3).min(t.len()) {
+            if end > 0 && is_in(end - 1) && !is_in(end) {
+                return end;
+            }
         }
         let mut step = 1;
-        while step < t.len() && self.number(t[step]) <= number {
+        while step < t.len() && is_in(step) {
             step *= 2;
         }
         let from = step / 2;

@@ -44,33 +44,37 @@ impl Texts {
         true
     }
 
-    /// The numbers; none if one of them is no bare number, or has more than 15 digits or more than 7 decimals.
-    pub fn numbers(&self) -> Option<[f64; ROWS]> {
-        Arch::new().dispatch(Numbers(self))
+    /// The numbers. Whether there are any: none of the texts is another one than a bare number, of more than 15 digits or of more
+    /// than 7 decimals.
+    pub fn read(&self, numbers: &mut [f64; ROWS]) -> bool {
+        Arch::new().dispatch(Numbers { texts: self, numbers })
     }
 }
 
-struct Numbers<'a>(&'a Texts);
+struct Numbers<'a> {
+    texts: &'a Texts,
+    numbers: &'a mut [f64; ROWS],
+}
 
 impl WithSimd for Numbers<'_> {
-    type Output = Option<[f64; ROWS]>;
+    type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Option<[f64; ROWS]> {
-        let Self(texts) = self;
+    fn with_simd<S: Simd>(self, _: S) -> bool {
+        let Self { texts, numbers } = self;
         let [mut shortest, mut longest] = [u64::MAX, 0];
         for length in texts.length {
             (shortest, longest) = (shortest.min(length), longest.max(length));
         }
         // What is known of all of them need not be asked of each.
         if shortest == 0 || longest > 16 {
-            None
+            false
         } else if longest <= 8 {
-            texts.numbers_of::<true, false>()
+            texts.read_all::<true, false>(numbers)
         } else if shortest > 8 {
-            texts.numbers_of::<false, true>()
+            texts.read_all::<false, true>(numbers)
         } else {
-            texts.numbers_of::<true, true>()
+            texts.read_all::<true, true>(numbers)
         }
     }
 }
@@ -78,8 +82,7 @@ impl WithSimd for Numbers<'_> {
 impl Texts {
     /// The numbers, where some of their texts may be of up to 8 bytes, and some of 9 to 16.
     #[inline(always)]
-    fn numbers_of<const SHORT: bool, const LONG: bool>(&self) -> Option<[f64; ROWS]> {
-        let mut numbers = [0.0; ROWS];
+    fn read_all<const SHORT: bool, const LONG: bool>(&self, numbers: &mut [f64; ROWS]) -> bool {
         let mut wrong = 0;
         for row in 0..ROWS {
             let length = self.length[row];
@@ -119,7 +122,7 @@ impl Texts {
             let number = divided(whole as i64 as f64, decimals);
             numbers[row] = f64::from_bits(number.to_bits() | minus << 63);
         }
-        (wrong == 0).then_some(numbers)
+        wrong == 0
     }
 }
 
@@ -161,7 +164,10 @@ mod tests {
         let line = format!("0123456789abcdef,{text},");
         let mut texts = Texts::ZEROS;
         let taken = (0..ROWS).all(|row| texts.take(row, line.as_bytes(), 17, line.len() - 1));
-        let numbers = taken.then(|| texts.numbers())??;
+        let mut numbers = [0.0; ROWS];
+        if !(taken && texts.read(&mut numbers)) {
+            return None;
+        }
         assert!(numbers.iter().all(|number| number.to_bits() == numbers[0].to_bits()));
         Some(numbers[0])
     }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use memchr::{memchr, memchr2, memchr3};
 
-use super::batch::Texts;
+use super::batch::{ROWS, Texts};
 use super::number::plain;
 use crate::error::quoted;
 use crate::table::{Block, ColumnName, Field, LARGEST, Rule, stamp};
@@ -161,10 +161,10 @@ impl Layout {
         if with_return && !ends.iter().all(is_return) {
             return None;
         }
-        let rows = block[0].len();
+        let before = block[0].len();
+        let mut texts = Texts::ZEROS;
         for (column, field) in self.wanted.iter().enumerate() {
             let Some(field) = field else { continue };
-            let mut texts = Texts::ZEROS;
             let mut is_plain = true;
             let with_return = usize::from(with_return && column + 1 == fields);
             let mut start = from;
@@ -175,13 +175,16 @@ impl Layout {
                 is_plain &= texts.take(row, text, start, line[column] as usize - with_return);
                 start = line[fields - 1] as usize + 1;
             }
-            let Some(numbers) = is_plain.then(|| texts.numbers()).flatten() else {
+            let values = &mut block[*field];
+            values.resize(before + ROWS, 0.0);
+            is_plain = is_plain && values[before..].first_chunk_mut().is_some_and(|numbers| texts.read(numbers));
+            values.truncate(before + lines.len());
+            if !is_plain {
                 for values in block.iter_mut() {
-                    values.truncate(rows);
+                    values.truncate(before);
                 }
                 return None;
-            };
-            block[*field].extend_from_slice(&numbers[..lines.len()]);
+            }
         }
         Some(())
     }
