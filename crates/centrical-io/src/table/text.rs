@@ -210,7 +210,9 @@ impl Piece {
         let [mut separators, mut ends] = of_text.places();
         let mut from = 0;
         let read = loop {
-            let rows = ROWS.min(separators.len() / layout.fields()).min(ends.len());
+            // A number is taken with what is before it: the first ones of all are left to be read one by one.
+            let most = if from < batch::REACH { 1 } else { ROWS };
+            let rows = most.min(separators.len() / layout.fields()).min(ends.len());
             let (of_batch, ends_of_batch) = (&separators[..rows * layout.fields()], &ends[..rows]);
             // Of a text that is read up to a fault, some are beyond it.
             if of_batch.last().is_none_or(|last| *last as usize >= text.len()) {

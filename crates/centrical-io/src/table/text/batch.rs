@@ -16,6 +16,9 @@ use super::number::{ONES, joined};
 /// Rows that are read together.
 pub(super) const ROWS: usize = 64;
 
+/// Bytes up to the end of a number that are looked at.
+pub(super) const REACH: usize = 16;
+
 /// The top bits of eight bytes.
 const TOPS: u64 = 0x80 * ONES;
 
@@ -35,7 +38,7 @@ impl Texts {
     /// Takes the text from `start` to `end` for the number of a row, unless it is too near to the begin of all.
     #[inline]
     pub fn take(&mut self, row: usize, text: &[u8], start: usize, end: usize) -> bool {
-        let words = text.get(end.wrapping_sub(16)..end).and_then(|words| words.first_chunk::<16>());
+        let words = text.get(end.wrapping_sub(REACH)..end).and_then(|words| words.first_chunk::<REACH>());
         let Some(words) = words else { return false };
         let (high, low) = words.split_at(8);
         self.low[row] = u64::from_le_bytes(low.try_into().unwrap_or_default());
