@@ -5,6 +5,7 @@ mod problem;
 mod seek;
 mod shortest;
 mod tree;
+mod visits;
 
 pub(super) use self::problem::Problem;
 use self::tree::Tree;
@@ -22,25 +23,32 @@ pub struct Effort {
     pub visit_nodes: usize,
     /// Exchanges tried in each schedule.
     pub trials: usize,
+    /// Whether nothing that is any better is left: for small problems.
+    pub is_exact: bool,
 }
 
 impl Effort {
     /// Some seconds' worth: fewer nodes over mountings where there are more plateaus to choose from.
     pub fn usual(plateaus: usize) -> Self {
-        Self { mounting_nodes: (300_000 / plateaus.max(1)).clamp(20, 1000), visit_nodes: 0, trials: 120 }
+        Self {
+            mounting_nodes: (300_000 / plateaus.max(1)).clamp(20, 1000),
+            visit_nodes: 300,
+            trials: 120,
+            is_exact: false,
+        }
     }
 
     /// Until no other set of mountings can hold a plan that is better by more than 0.25 % of the uncertainty.
-    pub const CERTIFIED: Self = Self { mounting_nodes: 1 << 20, visit_nodes: 0, trials: 120 };
+    pub const CERTIFIED: Self = Self { mounting_nodes: 1 << 20, visit_nodes: 2000, trials: 120, is_exact: false };
 
     /// Until nothing is left to find: for small problems.
-    pub const EXHAUSTIVE: Self = Self { mounting_nodes: 1 << 20, visit_nodes: 1 << 20, trials: 200 };
+    pub const EXHAUSTIVE: Self = Self { mounting_nodes: 1 << 20, visit_nodes: 1 << 20, trials: 200, is_exact: true };
 
     /// One schedule, with no exchange of mountings and no bound over sets of them.
-    pub const QUICK: Self = Self { mounting_nodes: 1, visit_nodes: 0, trials: 60 };
+    pub const QUICK: Self = Self { mounting_nodes: 1, visit_nodes: 0, trials: 60, is_exact: false };
 
     /// Mountings exchanged, and the bound of the first continuous design.
-    pub const FAIR: Self = Self { mounting_nodes: 2, visit_nodes: 0, trials: 60 };
+    pub const FAIR: Self = Self { mounting_nodes: 2, visit_nodes: 0, trials: 60, is_exact: false };
 }
 
 /// A plan, and how far it can be from the best one.
