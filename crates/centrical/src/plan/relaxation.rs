@@ -36,6 +36,9 @@ const FAR: f64 = 1.0;
 /// Quadratic models made at most, for each exponent.
 const MODELS: usize = 25;
 
+/// After so many models a design that does not keep its totals is left: there is hardly any that does.
+const UNKEPT: usize = 4;
+
 /// How well an optimum has to be known, in the logarithm of the criterion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Precision {
@@ -244,7 +247,8 @@ impl Search<'_> {
         for _ in 0..MODELS {
             let (point, lambda) = self.look(factors);
             let is_kept = self.polytope.keeps_totals(&w);
-            if self.best >= self.precision.enough || is_kept && self.is_done(point.value) {
+            let is_lost = !is_kept && self.models >= UNKEPT;
+            if self.best >= self.precision.enough || is_kept && self.is_done(point.value) || is_lost {
                 break;
             }
             self.models += 1;

@@ -61,6 +61,39 @@ impl Polytope {
     pub fn is_feasible(&self) -> bool {
         self.spent(&self.low) <= self.time * (1.0 + 1e-12)
             && (0..self.plateaus()).all(|c| self.low[self.atoms_of(c)].iter().sum::<f64>() <= self.repeats)
+            && self.least_time().is_some_and(|least| least <= self.time * (1.0 + 1e-12))
+    }
+
+    /// Least time that the totals ask for [s], of sets any two of which hold one another or have nothing in common; none where
+    /// they contradict each other.
+    fn least_time(&self) -> Option<f64> {
+        let mut order: Vec<&Total> = self.totals.iter().collect();
+        order.sort_by_key(|total| total.atoms.len());
+        // Least visits and their time, of sets that no larger one has taken in yet.
+        let mut outermost: Vec<(&Total, f64, f64)> = Vec::new();
+        let low_of = |atoms: &mut dyn Iterator<Item = usize>| {
+            atoms.fold((0.0, 0.0), |(n, time), x| (n + self.low[x], time + self.low[x] * self.price[x]))
+        };
+        for total in order {
+            let is_inside = |(inner, _, _): &(&Total, f64, f64)| total.atoms.binary_search(&inner.atoms[0]).is_ok();
+            let (inside, others): (Vec<_>, Vec<_>) = outermost.into_iter().partition(is_inside);
+            let is_free = |x: &usize| inside.iter().all(|(inner, _, _)| inner.atoms.binary_search(x).is_err());
+            let (mut visits, mut time) = low_of(&mut total.atoms.iter().copied().filter(is_free));
+            inside.iter().for_each(|(_, n, t)| (visits, time) = (visits + n, time + t));
+            let room = |&x: &usize| (self.high[x] > self.low[x]).then_some(self.price[x]);
+            if visits < total.low - KEPT {
+                time += (total.low - visits) * total.atoms.iter().filter_map(room).reduce(f64::min)?;
+                visits = total.low;
+            }
+            if visits > total.high + KEPT {
+                return None;
+            }
+            outermost = others;
+            outermost.push((total, visits, time));
+        }
+        let is_free = |x: &usize| outermost.iter().all(|(total, _, _)| total.atoms.binary_search(x).is_err());
+        let rest = low_of(&mut (0..self.price.len()).filter(is_free)).1;
+        Some(rest + outermost.iter().map(|(_, _, time)| time).sum::<f64>())
     }
 
     /// Whether a design keeps the totals.

@@ -144,7 +144,8 @@ impl Tree<'_> {
     /// both sides most, as tried or as often seen before. A side that is cut off needs no division: all that is found on the
     /// way to hold for the whole node is put into it.
     pub fn divide_by_visits(&mut self, node: &Node) -> bool {
-        if self.visit_nodes >= self.effort.visit_nodes || node.relaxed.bound >= self.threshold() {
+        let is_near = node.relaxed.bound >= self.threshold().min(self.incumbent() - self.effort.visits_open);
+        if self.visit_nodes >= self.effort.visit_nodes || is_near {
             return false;
         }
         if !self.effort.is_exact && self.visit_nodes.is_multiple_of(SOUGHT_EVERY) {
