@@ -1,15 +1,15 @@
 //! From a record of readings to a record of specific forces, in memory that does not grow with it.
 
 use std::path::Path;
-use std::sync::mpsc::{Receiver, sync_channel};
-use std::thread;
 
 use centrical::reduction::RecordSlice;
 use centrical_compensate::Compensation;
+use rayon::prelude::*;
 
 use crate::error::{Error, Place};
-use crate::record::{Columns, scan_record};
+use crate::record::{Columns, scan_blocks, stretch};
 use crate::record_writer::RecordWriter;
+use crate::table::Block;
 
 /// What became of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -46,49 +46,51 @@ pub fn compensate_record(
     columns: &Columns,
     output: &Path,
 ) -> Result<Compensated, Error> {
-    /// Blocks read ahead: enough that neither side waits for a hiccup of the other.
-    const AHEAD: usize = 8;
-    let writer = RecordWriter::create_rounded(output, compensation.certificate().range)?;
-    let (blocks, received) = sync_channel(AHEAD);
-    thread::scope(|scope| {
-        let written = scope.spawn(move || write(compensation, input, &received, writer));
-        let scanned = scan_record(input, columns, &mut |block| {
-            // A writer that has failed no longer listens; its error is told below.
-            let _ = blocks.send((block.t.to_vec(), block.f_z.map(<[f64]>::to_vec)));
-        });
-        drop(blocks);
-        let (compensated, writer) = written.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-        scanned?;
-        writer.finish()?;
-        Ok(compensated)
+    let mut writer = RecordWriter::create_rounded(output, compensation.certificate().range)?;
+    let mut sum = Compensated { decimals: writer.decimals(), ..Compensated::default() };
+    let mut written = Ok(());
+    scan_blocks(input, columns, &mut |blocks| {
+        let mut write = || {
+            let compensated = blocks.par_iter_mut().map(|block| compensate(compensation, input, block));
+            for block in compensated.collect::<Vec<_>>() {
+                sum.add(&block?);
+            }
+            let stretches: Vec<RecordSlice> = blocks.iter().map(stretch).collect();
+            writer.write_all(&stretches)
+        };
+        // A writer that has failed is not asked again; its error is told below.
+        if written.is_ok() {
+            written = write();
+        }
+    })?;
+    written?;
+    writer.finish()?;
+    Ok(sum)
+}
+
+/// Compensates the readings of a block in place.
+fn compensate(compensation: &Compensation, input: &Path, block: &mut Block) -> Result<Compensated, Error> {
+    let [t, f @ ..] = block.as_mut_slice() else { return Ok(Compensated::default()) };
+    let readings = f.to_vec();
+    let mut columns = f.iter_mut();
+    let f = [(); 3].map(|()| columns.next().map_or_else(Default::default, Vec::as_mut_slice));
+    let outside = compensation
+        .apply_all(f)
+        .map_err(|unequal| Error::content(input, Place::Whole, unequal.to_string(), "columns of equal length"))?;
+    let reading = |k: usize| [0, 1, 2].map(|axis: usize| readings[axis][k]);
+    Ok(Compensated {
+        readings: t.len() as u64,
+        outside: outside.count as u64,
+        first_outside: outside.first.map(|k| FirstOutside { t: t[k], reading: reading(k) }),
+        decimals: None,
     })
 }
 
-/// A stretch of a record on its way from reader to writer.
-type Block = (Vec<f64>, [Vec<f64>; 3]);
-
-/// Compensates and writes blocks until no more come.
-fn write(
-    compensation: &Compensation,
-    input: &Path,
-    blocks: &Receiver<Block>,
-    mut writer: RecordWriter,
-) -> Result<(Compensated, RecordWriter), Error> {
-    let mut sum = Compensated { decimals: writer.decimals(), ..Compensated::default() };
-    let mut f = [const { Vec::new() }; 3];
-    while let Ok((t, readings)) = blocks.recv() {
-        for (f, readings) in f.iter_mut().zip(&readings) {
-            f.clear();
-            f.extend_from_slice(readings);
-        }
-        let outside = compensation
-            .apply_all(f.each_mut().map(Vec::as_mut_slice))
-            .map_err(|unequal| Error::content(input, Place::Whole, unequal.to_string(), "columns of equal length"))?;
-        let first = || outside.first.map(|k| FirstOutside { t: t[k], reading: readings.each_ref().map(|f| f[k]) });
-        sum.readings += t.len() as u64;
-        sum.outside += outside.count as u64;
-        sum.first_outside = sum.first_outside.or_else(first);
-        writer.write(RecordSlice { t: &t, f_z: f.each_ref().map(Vec::as_slice) })?;
+impl Compensated {
+    /// What became of these readings and of later ones.
+    fn add(&mut self, later: &Self) {
+        self.readings += later.readings;
+        self.outside += later.outside;
+        self.first_outside = self.first_outside.or(later.first_outside);
     }
-    Ok((sum, writer))
 }

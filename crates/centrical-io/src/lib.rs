@@ -18,7 +18,6 @@
 
 mod calibration;
 mod compensate;
-mod digits;
 mod error;
 mod input;
 mod laboratory;
@@ -39,6 +38,7 @@ mod session;
 mod simulate;
 mod steadiness;
 mod table;
+mod text_lines;
 mod watch;
 mod write;
 

@@ -117,6 +117,14 @@ pub fn scan_record(file: &Path, columns: &Columns, visit: &mut dyn FnMut(RecordS
     columns.of_record().scan(file, Extent::Whole, visit)
 }
 
+/// Hands the blocks of the record over, several at a time, to be worked on where they are.
+///
+/// # Errors
+/// As [`scan_record`].
+pub(crate) fn scan_blocks(file: &Path, columns: &Columns, visit: &mut dyn FnMut(&mut [Block])) -> Result<(), Error> {
+    columns.of_record().read(file, Extent::Whole, &|_| {}, visit).map(|_| ())
+}
+
 /// Reads the telemetry of `file`.
 ///
 /// # Errors
@@ -152,7 +160,7 @@ impl Columns {
 }
 
 /// A block of a record, in SI.
-fn stretch(block: &Block) -> RecordSlice<'_> {
+pub(crate) fn stretch(block: &Block) -> RecordSlice<'_> {
     RecordSlice { t: &block[0], f_z: [&block[1], &block[2], &block[3]] }
 }
 
@@ -195,7 +203,7 @@ impl Wanted<'_> {
         file: &Path,
         extent: Extent,
         progress: &(dyn Fn(u64) + Sync),
-        visit: &mut dyn FnMut(&[Block]),
+        visit: &mut dyn FnMut(&mut [Block]),
     ) -> Result<Option<Index>, Error> {
         let mut rows = 0;
         let mut to_si = |blocks: &mut [Block]| {
@@ -215,7 +223,7 @@ impl Wanted<'_> {
 
     /// Hands the stretches of a record over, one by one.
     fn scan(&self, file: &Path, extent: Extent, visit: &mut dyn FnMut(RecordSlice)) -> Result<(), Error> {
-        let mut each = |blocks: &[Block]| blocks.iter().for_each(|block| visit(stretch(block)));
+        let mut each = |blocks: &mut [Block]| blocks.iter().for_each(|block| visit(stretch(block)));
         self.read(file, extent, &|_| {}, &mut each).map(|_| ())
     }
 }

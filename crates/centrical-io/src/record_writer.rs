@@ -1,6 +1,6 @@
 //! Records out, block by block: CSV, or Parquet where the file's name ends in `.parquet`.
 
-mod decimal;
+mod output;
 mod text;
 
 use std::ffi::OsString;
@@ -8,10 +8,11 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use self::decimal::Decimals;
+use self::output::Output;
 use self::text::TextTable;
 use crate::error::Error;
 use crate::parquet_table::{Layout, ParquetTable};
+use crate::text_lines::Decimals;
 use centrical::reduction::RecordSlice;
 
 /// Writes `t` [s], `f1`, `f2`, `f3` [m/s^2] beside the file and renames at the end: whoever looks sees the whole
@@ -28,20 +29,22 @@ pub struct RecordWriter {
 /// A format.
 trait Table: Send {
     /// Adds rows.
-    fn write(&mut self, block: RecordSlice) -> io::Result<()>;
+    fn write(&mut self, blocks: &[RecordSlice]) -> io::Result<()>;
 
     /// Writes what is left and sees it to the disk.
     fn finish(self: Box<Self>) -> io::Result<()>;
 }
 
-impl Table for ParquetTable<File> {
-    fn write(&mut self, block: RecordSlice) -> io::Result<()> {
-        let [f1, f2, f3] = block.f_z;
-        self.write(&[block.t, f1, f2, f3])
+impl Table for ParquetTable<Output> {
+    fn write(&mut self, blocks: &[RecordSlice]) -> io::Result<()> {
+        blocks.iter().try_for_each(|block| {
+            let [f1, f2, f3] = block.f_z;
+            self.write(&[block.t, f1, f2, f3])
+        })
     }
 
     fn finish(self: Box<Self>) -> io::Result<()> {
-        (*self).finish()?.sync_all()
+        (*self).finish()?.finish()
     }
 }
 
@@ -67,7 +70,7 @@ impl RecordWriter {
         let mut beside = file.as_os_str().to_owned();
         beside.push(".tmp");
         let failed = |error| Error::writing(file, error);
-        let output = File::create(&beside).map_err(failed)?;
+        let output = Output::new(File::create(&beside).map_err(failed)?);
         let is_parquet = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"));
         let decimals = decimals.filter(|_| !is_parquet);
         let table: Box<dyn Table> = if is_parquet {
@@ -88,7 +91,15 @@ impl RecordWriter {
     /// # Errors
     /// [`Error::Io`] if it cannot be written.
     pub fn write(&mut self, block: RecordSlice) -> Result<(), Error> {
-        let written = self.table.as_mut().map_or(Ok(()), |table| table.write(block));
+        self.write_all(&[block])
+    }
+
+    /// Adds several, on all threads.
+    ///
+    /// # Errors
+    /// As [`RecordWriter::write`].
+    pub fn write_all(&mut self, blocks: &[RecordSlice]) -> Result<(), Error> {
+        let written = self.table.as_mut().map_or(Ok(()), |table| table.write(blocks));
         written.map_err(|error| Error::writing(&self.file, error))
     }
 

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use centrical::reduction::{ClockOffset, NoiseModel, PlateauMean, RecordSlice, ReducedMounting, ScheduledPlateau};
 use centrical::{Observation, SetPoint, linear};
 use nalgebra::{Matrix3, Vector3};
+use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 use crate::error::Error;
@@ -124,8 +125,8 @@ impl Reduced {
 
 /// The mountings, then the noise of all of them together, then the covariances.
 fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Reduced, Error> {
-    let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) =
-        all_mountings(session, progress)?.into_iter().unzip();
+    let mountings = by_few_threads(|| all_mountings(session, progress))?;
+    let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) = mountings.into_iter().unzip();
     let noise = NoiseModel::pool(&reduced);
     let means = reduced.iter().flat_map(|mounting| mounting.means(&noise));
     let findings =
@@ -139,10 +140,22 @@ fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Re
     })
 }
 
+/// Does a work on so many threads that they have enough to do, or on fewer if there are not so many: each holds some MB that it
+/// has worked with, and a batch of pieces does not give work to more.
+fn by_few_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    const FEW: usize = 6;
+    let few = (rayon::current_num_threads() > FEW).then(|| ThreadPoolBuilder::new().num_threads(FEW).build());
+    match few {
+        Some(Ok(few)) => few.install(work),
+        // Without more threads there is still this one.
+        _ => work(),
+    }
+}
+
 /// Mountings under way at a time: while one is searched for its plateaus, which threads cannot share well, the other is
 /// read. What every thread holds beside grows with their number: more of them have room for one mounting.
 fn at_a_time() -> usize {
-    if rayon::current_num_threads() > 3 { 1 } else { 2 }
+    if rayon::current_num_threads() > 2 { 1 } else { 2 }
 }
 
 /// The first mounting on all threads: it tells how many records there is room for. Then the others.

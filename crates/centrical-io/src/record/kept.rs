@@ -111,11 +111,18 @@ impl<'a> Kept<'a> {
         }
     }
 
+    /// How many samples there are in a window, more or less.
+    pub(super) fn samples_in(&self, window: [f64; 2]) -> usize {
+        self.touched(window).map(|times| times.range.len()).sum()
+    }
+
+    fn touched(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = &Times> {
+        self.times.iter().filter(move |times| from <= times.span[1] && times.span[0] <= to)
+    }
+
     /// Gives `visit` the samples of a window, from and to [s].
     pub(super) fn between<T>(&self, window: [f64; 2], visit: impl FnOnce(RecordSlice) -> T) -> T {
-        let [from, to] = window;
-        let touched: Vec<&Times> =
-            self.times.iter().filter(|times| from <= times.span[1] && times.span[0] <= to).collect();
+        let touched: Vec<&Times> = self.touched(window).collect();
         let mut t = Vec::with_capacity(touched.iter().map(|times| times.range.len()).sum());
         for times in &touched {
             times.write(&mut t);
@@ -136,8 +143,16 @@ impl Times {
     /// The times of the samples from `start` on, at least one.
     fn of(start: usize, t: &[f64]) -> Self {
         let span = [t[0], t[t.len() - 1]];
-        let even = t.iter().zip(even(span, t.len())).map(|(t, even)| last_places(*t, even)).collect();
-        let law = if let Some(off) = even { Law::Even(off) } else { Law::Any(t.to_vec()) };
+        let mut is_even = true;
+        let off = t.iter().zip(even(span, t.len())).map(|(t, even)| {
+            let off = last_places(*t, even);
+            #[expect(clippy::cast_possible_truncation, reason = "what is lost is seen")]
+            let short = off as i8;
+            is_even &= i64::from(short) == off;
+            short
+        });
+        let off = off.collect();
+        let law = if is_even { Law::Even(off) } else { Law::Any(t.to_vec()) };
         Self { range: start..start + t.len(), span, law }
     }
 
@@ -169,9 +184,9 @@ fn even([first, last]: [f64; 2], count: usize) -> impl Iterator<Item = f64> {
     (0..count).map(move |i| first + i as f64 * step)
 }
 
-/// How many units of its last place a number is above another; none if that does not fit.
-fn last_places(of: f64, above: f64) -> Option<i8> {
-    i8::try_from(of.to_bits().wrapping_sub(above.to_bits()).cast_signed()).ok()
+/// How many units of its last place a number is above another.
+fn last_places(of: f64, above: f64) -> i64 {
+    of.to_bits().wrapping_sub(above.to_bits()).cast_signed()
 }
 
 #[cfg(test)]

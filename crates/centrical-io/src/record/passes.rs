@@ -11,6 +11,10 @@ use super::{Columns, Wanted, stretch};
 use crate::error::Error;
 use crate::table::{Block, Extent, Index};
 
+/// Samples of the windows that are averaged at a time, however many threads there are: a window without its repeated stamps is
+/// a copy, of 32 bytes a sample.
+const AT_A_TIME: usize = 1_500_000;
+
 /// The record in a file.
 pub(crate) struct RecordFile<'a> {
     file: &'a Path,
@@ -30,7 +34,7 @@ impl<'a> RecordFile<'a> {
         let mut beginning = Record::default();
         let mut survey: Option<Survey> = None;
         kept.begin();
-        kept.index = self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks: &[Block]| {
+        kept.index = self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks: &mut [Block]| {
             if let Some(survey) = &mut survey {
                 let condense = || blocks.par_iter().map(|block| survey.condense(stretch(block))).collect();
                 let keep = || blocks.iter().for_each(|block| kept.extend(stretch(block)));
@@ -63,7 +67,19 @@ impl<'a> RecordFile<'a> {
     ) -> Result<Vec<T>, Error> {
         if kept.is_whole {
             let of = |(k, window): (usize, &[f64; 2])| kept.between(*window, |samples| average(k, samples));
-            let averaged = windows.par_iter().enumerate().map(of).collect();
+            let numbered: Vec<(usize, &[f64; 2])> = windows.iter().enumerate().collect();
+            let mut averaged = Vec::with_capacity(windows.len());
+            let mut rest = numbered.as_slice();
+            while !rest.is_empty() {
+                let mut samples = 0;
+                let is_beyond = |(_, window): &(usize, &[f64; 2])| {
+                    samples += kept.samples_in(**window);
+                    samples > AT_A_TIME
+                };
+                let (together, later) = rest.split_at(rest.iter().position(is_beyond).unwrap_or(rest.len()).max(1));
+                averaged.par_extend(together.par_iter().copied().map(of));
+                rest = later;
+            }
             (self.progress)(std::fs::metadata(self.file).map_or(0, |file| file.len()));
             return Ok(averaged);
         }

@@ -19,6 +19,7 @@ use rayon::prelude::*;
 
 use self::batch::ROWS;
 use self::layout::{Fault, Layout, Prologue};
+use self::piece::Text;
 pub(super) use self::piece::{Lines, Packed, Plain};
 use self::separators::Separators;
 use super::{ASCENDING, Block, Field, Rows};
@@ -47,7 +48,7 @@ struct IndexedPiece {
 /// A piece on its way from the file to the rows.
 #[derive(Default)]
 pub(super) struct Piece {
-    text: Vec<u8>,
+    text: Text,
     /// Lines read without a fault.
     lines: u64,
     /// The line of the first row, counted within the piece from 0.
@@ -75,7 +76,7 @@ pub(super) fn read(file: &Path, lines: &mut dyn Lines, rows: &mut Rows) -> Resul
         let (pieces, blocks) = (&mut pieces[..filled], &mut blocks[..filled]);
         let any_piece = lines.any_piece();
         let fill =
-            |(number, piece): (u64, &mut Piece)| any_piece.map_or(Ok(()), |lines| lines.fill_alone(number, piece));
+            |(number, piece): (u64, &mut Piece)| any_piece.map_or(Ok(()), |lines| lines.read(number, &mut piece.text));
         let mut skipped = 0;
         let is_first = index.is_none();
         if is_first {
@@ -142,12 +143,12 @@ impl Index {
         [from, to]: [f64; 2],
         visit: &mut dyn FnMut(u64, &mut Block),
     ) -> Result<(), Error> {
-        let mut plain = Plain::open(file).map_err(|e| Error::reading(file, e, "a table of numbers as text"))?;
+        let plain = Plain::open(file).map_err(|e| Error::reading(file, e, piece::TABLE))?;
         let mut piece = Piece::default();
         let mut block = vec![Vec::new(); fields.len()];
         let wanted = self.pieces.iter().filter(|piece| piece.range[0] <= to && from <= piece.range[1]);
         for (k, wanted) in wanted.enumerate() {
-            plain.read(wanted.number, &mut piece.text).map_err(|e| Error::reading(file, e, "a table of numbers"))?;
+            plain.read(wanted.number, &mut piece.text)?;
             let mut skipped = 0;
             if wanted.first_row == 0 && k == 0 {
                 let start = Prologue::default().read(&piece.text, fields);
@@ -175,7 +176,7 @@ impl Piece {
     fn read(&mut self, layout: &Layout, skipped: u64, fields: &[Field], block: &mut Block) {
         block.iter_mut().for_each(Vec::clear);
         let whole = std::mem::take(&mut self.text);
-        let mut text = whole.as_slice();
+        let mut text = &*whole;
         for _ in 0..skipped {
             text = split_line(text).1;
         }
@@ -206,28 +207,28 @@ impl Piece {
             return self.read_rows(text, layout, fields, block);
         }
         let of_text = std::mem::take(&mut self.separators);
-        let mut separators = of_text.places();
+        let [mut separators, mut ends] = of_text.places();
         let mut from = 0;
         let read = loop {
-            let rows = ROWS.min(separators.len() / layout.fields());
-            let of_batch = &separators[..rows * layout.fields()];
+            let rows = ROWS.min(separators.len() / layout.fields()).min(ends.len());
+            let (of_batch, ends_of_batch) = (&separators[..rows * layout.fields()], &ends[..rows]);
             // Of a text that is read up to a fault, some are beyond it.
             if of_batch.last().is_none_or(|last| *last as usize >= text.len()) {
                 break self.read_rows(&text[from..], layout, fields, block);
             }
-            let rest = if layout.batch(text, from, of_batch, block).is_some() {
+            if layout.batch(text, from, of_batch, ends_of_batch, block).is_some() {
                 self.lines += rows as u64;
-                of_batch[of_batch.len() - 1] as usize + 1
-            } else {
-                // As many lines, or what there is: a line may have more separators than it should.
-                let lines = piece::before_line(&text[from..], rows as u64);
-                let rest = if lines == 0 { text.len() } else { from + lines };
-                if let Err(fault) = self.read_rows(&text[from..rest], layout, fields, block) {
-                    break Err(fault);
-                }
-                rest
-            };
-            separators = &separators[separators.partition_point(|place| (*place as usize) < rest)..];
+                from = of_batch[of_batch.len() - 1] as usize + 1;
+                (separators, ends) = (&separators[of_batch.len()..], &ends[rows..]);
+                continue;
+            }
+            // As many lines: one may have more separators than it should, or fewer.
+            let rest = text.len().min(ends_of_batch[rows - 1] as usize + 1);
+            if let Err(fault) = self.read_rows(&text[from..rest], layout, fields, block) {
+                break Err(fault);
+            }
+            let left = |places: &[u32]| places.partition_point(|place| (*place as usize) < rest);
+            (separators, ends) = (&separators[left(separators)..], &ends[left(ends)..]);
             from = rest;
         };
         self.separators = of_text;
@@ -265,7 +266,10 @@ impl Piece {
     /// Sees that what should ascend does, row after row.
     fn check_times(&mut self, skipped: u64, fields: &[Field], block: &Block) {
         for (field, column) in fields.iter().zip(block).filter(|(field, _)| field.rule.ascends()) {
-            if let Some(row) = column.windows(2).position(|pair| pair[1] < pair[0]) {
+            let backwards = column.windows(2).map(|pair| usize::from(pair[1] < pair[0])).sum::<usize>();
+            if backwards > 0
+                && let Some(row) = column.windows(2).position(|pair| pair[1] < pair[0])
+            {
                 let found = format!("{} after {}", column[row + 1], column[row]);
                 let fault = Fault { column: Some(field.name.to_string()), found, expected: ASCENDING.to_owned() };
                 self.fault = Some((self.line_of(row + 1, skipped), fault));
@@ -276,7 +280,7 @@ impl Piece {
     /// The line of a row, both counted from 0.
     #[cold]
     fn line_of(&self, row: usize, skipped: u64) -> u64 {
-        let (mut text, mut line) = (self.text.as_slice(), 0);
+        let (mut text, mut line) = (&*self.text, 0);
         let mut left = row;
         while !text.is_empty() {
             let (this, rest) = split_line(text);

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
 use super::blocks::{MAD, SAMPLES, cut, median};
-use super::lanes::{fold, range, sum, widest};
+use super::lanes::{LANES, joined, range, sum, widest};
 use super::record::RecordSlice;
 
 /// What is kept of the samples of one block of time.
@@ -39,9 +39,9 @@ struct Axis {
 }
 
 impl Block {
-    /// Condenses the samples of a block; `differences` is room to work in.
-    pub fn of(number: usize, samples: RecordSlice, differences: &mut Vec<f64>) -> Self {
-        let axes = samples.f_z.map(|f| widest(OneAxis { f, differences }));
+    /// Condenses the samples of a block.
+    pub fn of(number: usize, samples: RecordSlice) -> Self {
+        let axes = samples.f_z.map(|f| widest(OneAxis(f)));
         let finite = |i: &usize| samples.f_z.iter().all(|f| f[*i].is_finite());
         let whole = axes.iter().all(|axis| axis.is_whole);
         let readable = if whole { samples.t.len() } else { (0..samples.t.len()).filter(finite).count() };
@@ -61,68 +61,98 @@ impl Block {
     }
 }
 
-/// The samples of one axis, with room to work in.
-struct OneAxis<'a> {
-    f: &'a [f64],
-    differences: &'a mut Vec<f64>,
-}
+/// The samples of one axis.
+struct OneAxis<'a>(&'a [f64]);
 
 impl WithSimd for OneAxis<'_> {
     type Output = Axis;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Axis {
-        let Self { f, differences } = self;
+        let Self(f) = self;
         let [low, high] = range(f);
-        differences.clear();
-        differences.extend(f.windows(2).map(|pair| pair[1] - pair[0]));
         // A converted unit leaves steps of f64's own rounding.
         let rounding = (low.abs().max(high.abs()) * 1e-12).max(f64::MIN_POSITIVE);
-        let (fresh, repeated) = repeats(differences);
+        let Walk { sum, step, fresh, repeated, squares } = Walk::along(f, low, rounding);
         // Half-filled blocks stand beside a gap: too few samples for a median that a spike cannot move.
-        let level = if f.len() > SAMPLES / 2 { level(f, [low, high]) } else { None };
-        let level = level.map(|level| (level, noise(differences)));
-        let is_whole = sum(f, |value| value).is_finite();
-        Axis { is_whole, range: [low, high], step: smallest_above(differences, rounding), fresh, repeated, level }
-    }
-}
-
-/// The smallest size above a limit; infinite if there is none.
-#[inline(always)]
-fn smallest_above(differences: &[f64], limit: f64) -> f64 {
-    let smaller = |smallest: f64, d: f64| if d.abs() > limit && d.abs() < smallest { d.abs() } else { smallest };
-    fold(differences, f64::INFINITY, smaller, f64::min)
-}
-
-/// Readings different from the one before, and of these the ones that the next repeats: a long run counts once.
-#[inline(always)]
-fn repeats(differences: &[f64]) -> (u64, u64) {
-    let pairs = differences.iter().zip(differences.get(1..).unwrap_or_default());
-    pairs.fold((0, 0), |(fresh, repeated), (before, after)| {
-        let is_fresh = *before != 0.0;
-        (fresh + u64::from(is_fresh), repeated + u64::from(is_fresh && *after == 0.0))
-    })
-}
-
-/// Standard deviation of white noise by its second differences, whose variance is six-fold.
-#[inline(always)]
-fn noise(differences: &[f64]) -> f64 {
-    let (before, after) = (&differences[..differences.len() - 1], &differences[1..]);
-    let mut lanes = [0.0; 8];
-    for (a, b) in before.chunks(lanes.len()).zip(after.chunks(lanes.len())) {
-        for ((lane, a), b) in lanes.iter_mut().zip(a).zip(b) {
-            *lane += (b - a) * (b - a);
+        let level = if f.len() > SAMPLES / 2 { level(f, sum, [low, high]) } else { None };
+        // White noise by its second differences, whose variance is six-fold.
+        let noise = (squares / (6 * f.len().saturating_sub(2)) as f64).sqrt();
+        Axis {
+            is_whole: sum.is_finite(),
+            range: [low, high],
+            step,
+            fresh,
+            repeated,
+            level: level.map(|level| (level, noise)),
         }
     }
-    (lanes.iter().sum::<f64>() / (6 * before.len()) as f64).sqrt()
+}
+
+/// What is seen on the way from reading to reading.
+struct Walk {
+    /// Sum of the readings above the lowest.
+    sum: f64,
+    /// The smallest step above a limit; infinite if there is none.
+    step: f64,
+    /// Readings different from the one before, and of these the ones that the next repeats: a long run counts once.
+    fresh: u64,
+    repeated: u64,
+    /// Sum of the squared second differences.
+    squares: f64,
+}
+
+impl Walk {
+    /// In one pass, in lanes: each reading with the next and the one after.
+    #[inline(always)]
+    fn along(f: &[f64], low: f64, limit: f64) -> Self {
+        let [mut sums, mut steps, mut squares] = [[0.0; LANES], [f64::INFINITY; LANES], [0.0; LANES]];
+        let [mut fresh, mut repeated] = [[0_u64; LANES]; 2];
+        let with_step = f.len().saturating_sub(1);
+        let with_two = f.len().saturating_sub(2) / LANES * LANES;
+        let smaller = |step: f64, d: f64| if d.abs() > limit && d.abs() < step { d.abs() } else { step };
+        let three = [0, 1, 2].map(|k| f[k.min(f.len())..][..with_two].as_chunks::<LANES>().0);
+        for ((these, next), after) in three[0].iter().zip(three[1]).zip(three[2]) {
+            for lane in 0..LANES {
+                let (before, after) = (next[lane] - these[lane], after[lane] - next[lane]);
+                let is_fresh = before != 0.0;
+                sums[lane] += these[lane] - low;
+                steps[lane] = smaller(steps[lane], before);
+                fresh[lane] += u64::from(is_fresh);
+                repeated[lane] += u64::from(is_fresh && after == 0.0);
+                squares[lane] += (after - before) * (after - before);
+            }
+        }
+        for i in with_two..f.len() {
+            let lane = i % LANES;
+            sums[lane] += f[i] - low;
+            if i < with_step {
+                let before = f[i + 1] - f[i];
+                steps[lane] = smaller(steps[lane], before);
+                if let Some(after) = f.get(i + 2).map(|after| after - f[i + 1]) {
+                    let is_fresh = before != 0.0;
+                    fresh[lane] += u64::from(is_fresh);
+                    repeated[lane] += u64::from(is_fresh && after == 0.0);
+                    squares[lane] += (after - before) * (after - before);
+                }
+            }
+        }
+        Self {
+            sum: joined(sums, |a, b| a + b),
+            step: joined(steps, f64::min),
+            fresh: fresh.iter().sum(),
+            repeated: repeated.iter().sum(),
+            squares: squares.iter().sum(),
+        }
+    }
 }
 
 /// Mean of the values that are no spikes. A mean, since the median of part of a revolution is no linear function of
-/// its phase. `None` of too few values.
+/// its phase. The sum of the values above the lowest is given. `None` of too few values.
 #[inline(always)]
-fn level(f: &[f64], [low, high]: [f64; 2]) -> Option<f64> {
+fn level(f: &[f64], above_low: f64, [low, high]: [f64; 2]) -> Option<f64> {
     let count = f.len() as f64;
-    let mean = low + sum(f, |value| value - low) / count;
+    let mean = low + above_low / count;
     if mean.is_finite() && (high - low).is_finite() {
         // What the robust spread must be at least for the value farthest from the mean to be no spike. If it is that,
         // half the values being at least so far from the mean, there are no spikes to look for.
@@ -155,7 +185,7 @@ mod tests {
     #[test]
     fn the_short_way_to_a_level_is_the_long_way() {
         let mut f = noisy(100);
-        let level = |f: &[f64]| level(f, range(f)).unwrap();
+        let level = |f: &[f64]| level(f, sum(f, |value| value - range(f)[0]), range(f)).unwrap();
         assert!((level(&f) - level_without_spikes(&mut f.clone())).abs() < 1e-14);
         f[3] += 1.0;
         assert_eq!(level(&f), level_without_spikes(&mut f.clone()));
@@ -166,17 +196,29 @@ mod tests {
     fn readings_that_are_no_numbers_are_not_counted() {
         let mut f = noisy(40);
         f[7] = f64::NAN;
-        let block = Block::of(0, RecordSlice { t: &vec![0.0; 40], f_z: [&f; 3] }, &mut Vec::new());
+        let block = Block::of(0, RecordSlice { t: &vec![0.0; 40], f_z: [&f; 3] });
         assert_eq!(block.readable, 39);
         assert!((block.level.unwrap().0.x - 9.81).abs() < 2e-4);
         f[..36].fill(f64::NAN);
-        let block = Block::of(0, RecordSlice { t: &vec![0.0; 40], f_z: [&f; 3] }, &mut Vec::new());
+        let block = Block::of(0, RecordSlice { t: &vec![0.0; 40], f_z: [&f; 3] });
         assert!(block.level.is_none());
     }
 
     #[test]
     fn runs_count_once() {
-        assert_eq!(repeats(&[1.0, 0.0, 0.0, 0.0, 2.0, 1.0, 0.0]), (3, 2));
-        assert_eq!(smallest_above(&[1.0, -0.25, 0.0, 1e-20, 2.0], 1e-12), 0.25);
+        for before in 0..20 {
+            // A rise before, so that some of them fall into the lanes and some behind.
+            let rise = (0..before).map(|i| f64::from(i - before));
+            let f: Vec<f64> = rise.chain([0.0, 1.0, 1.0, 1.0, 1.0, 3.0, 4.0, 4.0, 3.75]).collect();
+            let Walk { sum, step, fresh, repeated, squares } = Walk::along(&f, f[0], 1e-12);
+            assert_eq!((step, fresh, repeated), (0.25, u64::try_from(before).unwrap() + 3, 2), "{before}");
+            assert_eq!(sum, f.iter().map(|value| value - f[0]).sum::<f64>());
+            let second: f64 = f.windows(3).map(|f| (f[2] - 2.0 * f[1] + f[0]).powi(2)).sum();
+            assert_eq!(squares, second);
+            let all_differ = Walk::along(&f, f[0], 0.5);
+            assert_eq!(all_differ.step, 1.0);
+        }
+        let one = Walk::along(&[1.0], 1.0, 0.0);
+        assert_eq!((one.sum, one.step, one.fresh, one.squares), (0.0, f64::INFINITY, 0, 0.0));
     }
 }

@@ -63,19 +63,26 @@ impl Grid {
 
     /// The samples of each block that a stretch has samples of.
     pub fn divide<'a>(&self, stretch: RecordSlice<'a>) -> impl Iterator<Item = (usize, RecordSlice<'a>)> {
-        let mut from = 0;
+        let (mut from, mut usual) = (0, 0);
         std::iter::from_fn(move || {
             let number = self.number(*stretch.t.get(from)?);
-            let to = from + self.samples_up_to(number, &stretch.t[from..]);
+            let count = self.samples_up_to(number, &stretch.t[from..], usual);
+            // The next block is as long, as a rule.
+            usual = count;
+            let to = from + count;
             let part = stretch.part(from..to);
             from = to;
             Some((number, part))
         })
     }
 
-    /// How many of the times, that do not decrease, are in a block of that number at most. A block is short beside a
-    /// stretch: its end is looked for from its beginning.
-    fn samples_up_to(&self, number: usize, t: &[f64]) -> usize {
+    /// How many of the times, that do not decrease, are in a block of that number at most: as many as usual, or else the end is
+    /// looked for from the beginning, as a block is short beside a stretch.
+    fn samples_up_to(&self, number: usize, t: &[f64], usual: usize) -> usize {
+        let is_in = |i: usize| self.number(t[i]) <= number;
+        if (1..t.len()).contains(&usual) && is_in(usual - 1) && !is_in(usual) {
+            return usual;
+        }
         let mut step = 1;
         while step < t.len() && self.number(t[step]) <= number {
             step *= 2;

@@ -6,7 +6,7 @@
 use pulp::{Arch, Simd, WithSimd};
 
 /// Lanes: as many as the widest processor has for one instruction.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 
 /// Lanes of a long product: a processor has as many instructions under way.
 const LONG: usize = 4 * LANES;
@@ -102,7 +102,7 @@ impl WithSimd for Product<'_> {
 
 /// Lanes joined by halves, each of which is a vector of its own.
 #[inline(always)]
-fn joined<T: Copy>(lanes: [T; LANES], join: impl Fn(T, T) -> T) -> T {
+pub(super) fn joined<T: Copy>(lanes: [T; LANES], join: impl Fn(T, T) -> T) -> T {
     let [a, b, c, d, e, f, g, h] = lanes;
     let [a, b, c, d] = [join(a, e), join(b, f), join(c, g), join(d, h)];
     join(join(a, c), join(b, d))

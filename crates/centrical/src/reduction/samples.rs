@@ -57,9 +57,17 @@ impl<'a> Samples<'a> {
         let (t, f_z) = if steps[0] > 0.0 {
             (Cow::from(t), f_z.map(Cow::from))
         } else {
-            let first_of_stamp = |i: &usize| *i == 0 || t[*i] > t[*i - 1];
+            let repeated: Vec<usize> = (1..t.len()).filter(|i| t[*i] <= t[*i - 1]).collect();
+            // Few as a rule: what is between them is copied at once.
             let pick = |values: &[f64]| -> Cow<[f64]> {
-                (0..t.len()).filter(first_of_stamp).map(|i| values[i]).collect::<Vec<f64>>().into()
+                let mut picked = Vec::with_capacity(values.len() - repeated.len());
+                let mut start = 0;
+                for &i in &repeated {
+                    picked.extend_from_slice(&values[start..i]);
+                    start = i + 1;
+                }
+                picked.extend_from_slice(&values[start..]);
+                picked.into()
             };
             (pick(t), f_z.map(pick))
         };

@@ -61,7 +61,6 @@ impl Survey {
 
     /// Condenses a stretch: nearly all the work, and nothing of it depends on other stretches.
     pub fn condense(&self, stretch: RecordSlice) -> Condensed {
-        let mut differences = Vec::new();
         let mut parts = self.grid.divide(stretch);
         let of = |part: Option<(usize, RecordSlice)>| {
             part.map(|(number, samples)| {
@@ -75,7 +74,7 @@ impl Survey {
         let mut last = None;
         for part in parts {
             if let Some((number, samples)) = last.replace(part) {
-                whole.push(Block::of(number, samples, &mut differences));
+                whole.push(Block::of(number, samples));
             }
         }
         Condensed { first, whole, last: of(last) }
@@ -103,7 +102,7 @@ impl Survey {
 
     fn close(&mut self) {
         if !self.open.t.is_empty() {
-            self.blocks.push(Block::of(self.number, self.open.as_slice(), &mut Vec::new()));
+            self.blocks.push(Block::of(self.number, self.open.as_slice()));
             self.open.clear();
         }
     }

@@ -142,35 +142,37 @@ impl Layout {
         self.wanted.len()
     }
 
-    /// Reads rows of bare numbers, [`ROWS`] at most, that begin at `from` and have these separators; nothing where one of
-    /// them is anything else, right or wrong.
-    pub fn batch(&self, text: &[u8], from: usize, separators: &[u32], block: &mut Block) -> Option<()> {
+    /// Reads rows of bare numbers, [`ROWS`] at most, that begin at `from`, have these separators and end at these; nothing where
+    /// one of them is anything else, right or wrong.
+    pub fn batch(&self, text: &[u8], from: usize, separators: &[u32], ends: &[u32], block: &mut Block) -> Option<()> {
         let fields = self.wanted.len();
         let lines = separators.chunks_exact(fields);
-        let ends = |line: &[u32]| text[line[fields - 1] as usize] == b'\n';
-        let divides = |place: &u32| text[*place as usize] != b'\n';
-        let mut is_plain = text[from] != b'#';
-        for line in lines.clone() {
-            is_plain &= ends(line) && line[..fields - 1].iter().all(divides);
-        }
+        // If each line's last separator ends it, no other one does.
+        let wrong: u32 =
+            lines.clone().zip(ends).map(|(line, end)| line[fields - 1] ^ end).fold(0, |all, one| all | one);
         let all = &text[from..*separators.last()? as usize];
         // A delimiter within quotes divides nothing.
-        if !is_plain || self.wanted.contains(&None) && memchr2(b'"', b'#', all).is_some() {
+        if wrong != 0 || text[from] == b'#' || self.wanted.contains(&None) && memchr2(b'"', b'#', all).is_some() {
+            return None;
+        }
+        // All of the lines end alike, or this is not for numbers that are taken together.
+        let with_return = all.ends_with(b"\r");
+        let is_return = |end: &u32| text[(*end as usize).wrapping_sub(1)] == b'\r';
+        if with_return && !ends.iter().all(is_return) {
             return None;
         }
         let rows = block[0].len();
         for (column, field) in self.wanted.iter().enumerate() {
             let Some(field) = field else { continue };
             let mut texts = Texts::ZEROS;
+            let mut is_plain = true;
+            let with_return = usize::from(with_return && column + 1 == fields);
             let mut start = from;
             for (row, line) in lines.clone().enumerate() {
                 if column > 0 {
                     start = line[column - 1] as usize + 1;
                 }
-                let end = line[column] as usize;
-                let last = text.get(end.wrapping_sub(1));
-                let carriage_return = usize::from(column + 1 == fields && last == Some(&b'\r'));
-                is_plain &= texts.take(row, text, start, end - carriage_return);
+                is_plain &= texts.take(row, text, start, line[column] as usize - with_return);
                 start = line[fields - 1] as usize + 1;
             }
             let Some(numbers) = is_plain.then(|| texts.numbers()).flatten() else {

@@ -10,7 +10,7 @@ pub(super) const ONES: u64 = 0x0101_0101_0101_0101;
 /// Bytes that are looked at: sign, eight bytes of whole digits and point, eight of decimals, and the byte after.
 const REACH: usize = 18;
 
-pub(super) const POWERS: [f64; 8] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
+const POWERS: [f64; 8] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 const WHOLE_POWERS: [u64; 8] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000];
 
 /// The number that a text starts with, and its length; nothing if it is not of the plain kind or its end may not be in
@@ -77,7 +77,8 @@ fn value(word: u64, count: u32) -> u64 {
 pub(super) fn joined(digits: u64) -> u64 {
     let pairs = (digits.wrapping_mul(10).wrapping_add(digits >> 8)) & 0x00ff_00ff_00ff_00ff;
     let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_ffff_0000_ffff;
-    (fours.wrapping_mul(10_000).wrapping_add(fours >> 32)) & 0xffff_ffff
+    // Of factors below 2^32: one instruction instead of three.
+    (fours & 0xffff_ffff) * 10_000 + (fours >> 32)
 }
 
 #[cfg(test)]

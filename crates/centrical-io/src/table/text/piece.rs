@@ -1,7 +1,8 @@
 //! A text in pieces of whole lines: of a file any piece by its number, of a packed one each after the other.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Read};
+use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
 
 use memchr::{memchr, memchr_iter, memrchr};
@@ -14,6 +15,31 @@ pub(super) const SIZE: u64 = 1 << 17;
 
 /// The longest line [bytes].
 const LONGEST_LINE: usize = 1 << 20;
+
+/// Whole lines, within bytes that were read together.
+#[derive(Default)]
+pub(in crate::table) struct Text {
+    bytes: Vec<u8>,
+    lines: Range<usize>,
+}
+
+impl Deref for Text {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        &self.bytes[self.lines.clone()]
+    }
+}
+
+impl Text {
+    /// Leaves out a mark of the byte order.
+    fn skip_mark(&mut self) {
+        let mark = "\u{feff}".as_bytes();
+        if self.starts_with(mark) {
+            self.lines.start += mark.len();
+        }
+    }
+}
 
 /// A text that comes in pieces.
 pub(in crate::table) trait Lines {
@@ -56,69 +82,69 @@ impl Plain {
         self
     }
 
-    /// Fills the piece of that number, with the file opened for it alone.
-    pub(super) fn fill_alone(&self, number: u64, piece: &mut Piece) -> Result<(), Error> {
-        let read = Self::open(&self.file).and_then(|file| file.up_to(self.length).read(number, &mut piece.text));
-        read.map_err(|e| Error::reading(&self.file, e, TABLE))
+    /// Reads the piece of that number; any thread may read any piece.
+    pub(super) fn read(&self, number: u64, text: &mut Text) -> Result<(), Error> {
+        self.try_read(number, text).map_err(|e| Error::reading(&self.file, e, TABLE))
     }
 
-    /// Reads the piece of that number into `text`, without a mark of the byte order.
-    pub(super) fn read(&mut self, number: u64, text: &mut Vec<u8>) -> io::Result<()> {
-        text.clear();
-        let end = ((number + 1) * SIZE).min(self.length);
-        let Some(begin) = self.first_line(number * SIZE, end)? else { return Ok(()) };
-        self.input.seek(SeekFrom::Start(begin))?;
-        (&mut self.input).take(end - begin).read_to_end(text)?;
-        if text.last() != Some(&b'\n') {
-            self.complete(begin + text.len() as u64, text)?;
-        }
-        let mark = "\u{feff}".as_bytes();
-        if number == 0 && text.starts_with(mark) {
-            text.drain(..mark.len());
-        }
-        Ok(())
-    }
-
-    /// Where the first line begins from `begin` on, if one does before `end`.
-    fn first_line(&mut self, begin: u64, end: u64) -> io::Result<Option<u64>> {
-        const STEP: u64 = 256;
+    fn try_read(&self, number: u64, text: &mut Text) -> io::Result<()> {
+        /// Where the last line most likely ends.
+        const BEYOND: usize = 512;
         // The byte before: if it ends a line, the next line begins here.
-        let Some(mut at) = begin.checked_sub(1) else { return Ok(Some(0)) };
-        self.input.seek(SeekFrom::Start(at))?;
-        let mut step = Vec::new();
-        while at < end {
-            step.clear();
-            (&mut self.input).take(STEP.min(end - at)).read_to_end(&mut step)?;
-            if let Some(end_of_line) = memchr(b'\n', &step) {
-                let begin = at + end_of_line as u64 + 1;
-                return Ok(Some(begin).filter(|begin| *begin < end));
-            }
-            if step.is_empty() {
+        let from = (number * SIZE).saturating_sub(1);
+        let size = usize::try_from(((number + 1) * SIZE).min(self.length).saturating_sub(from)).unwrap_or(0);
+        let mut read = self.fill(&mut text.bytes, 0, size + BEYOND, from)?;
+        let size = size.min(read);
+        let begin = if number == 0 { Some(0) } else { memchr(b'\n', &text.bytes[..size]).map(|end| end + 1) };
+        text.lines = 0..0;
+        let Some(begin) = begin.filter(|begin| *begin < size) else { return Ok(()) };
+        // The rest of the last line.
+        let mut end = size;
+        while text.bytes[end - 1] != b'\n' && end - size <= LONGEST_LINE {
+            if let Some(line_end) = memchr(b'\n', &text.bytes[end..read]) {
+                end += line_end + 1;
                 break;
             }
-            at += step.len() as u64;
+            end = read;
+            read = self.fill(&mut text.bytes, read, 2 * BEYOND.max(read - size), from)?;
+            if read == end {
+                break;
+            }
         }
-        Ok(None)
-    }
-
-    /// Adds the rest of the last line.
-    fn complete(&mut self, mut from: u64, text: &mut Vec<u8>) -> io::Result<()> {
-        const STEP: u64 = 4096;
-        let line = text.len();
-        while from < self.length && text.len() - line <= LONGEST_LINE {
-            let before = text.len();
-            (&mut self.input).take(STEP.min(self.length - from)).read_to_end(text)?;
-            if text.len() == before {
-                break;
-            }
-            from += (text.len() - before) as u64;
-            if let Some(end) = memchr(b'\n', &text[before..]) {
-                text.truncate(before + end + 1);
-                break;
-            }
+        text.lines = begin..end;
+        if number == 0 {
+            text.skip_mark();
         }
         Ok(())
     }
+
+    /// Reads up to `count` more bytes behind the first `filled`, which stand at `from` in the file; how many there are then.
+    fn fill(&self, bytes: &mut Vec<u8>, mut filled: usize, count: usize, from: u64) -> io::Result<usize> {
+        let left = self.length.saturating_sub(from + filled as u64);
+        let most = filled + usize::try_from(left).unwrap_or(usize::MAX).min(count);
+        bytes.resize(bytes.len().max(most), 0);
+        while filled < most {
+            match read_at(&self.input, &mut bytes[filled..most], from + filled as u64) {
+                Ok(0) => break,
+                Ok(read) => filled += read,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(filled)
+    }
+}
+
+/// Reads at a place in a file, wherever others read.
+#[cfg(unix)]
+fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
+    std::os::unix::fs::FileExt::read_at(file, bytes, place)
+}
+
+/// Reads at a place in a file, wherever others read.
+#[cfg(windows)]
+fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
+    std::os::windows::fs::FileExt::seek_read(file, bytes, place)
 }
 
 impl Lines for Plain {
@@ -138,24 +164,25 @@ impl<'a> Packed<'a> {
         Self { file, input: Box::new(input), rest: Vec::new(), at_end: false }
     }
 
-    fn read(&mut self, first: bool, text: &mut Vec<u8>) -> Result<(), Error> {
-        text.clear();
-        text.append(&mut self.rest);
+    fn read(&mut self, first: bool, text: &mut Text) -> Result<(), Error> {
+        let bytes = &mut text.bytes;
+        bytes.clear();
+        bytes.append(&mut self.rest);
         let mut end = None;
-        while end.is_none() && !self.at_end && text.len() <= LONGEST_LINE {
-            let before = text.len();
-            let read = (&mut self.input).take(SIZE).read_to_end(text);
+        while end.is_none() && !self.at_end && bytes.len() <= LONGEST_LINE {
+            let before = bytes.len();
+            let read = (&mut self.input).take(SIZE).read_to_end(bytes);
             let read = read.map_err(|e| Error::unpacking(self.file, e, TABLE))?;
             self.at_end = (read as u64) < SIZE;
-            end = memrchr(b'\n', &text[before..]).map(|end| before + end + 1);
+            end = memrchr(b'\n', &bytes[before..]).map(|end| before + end + 1);
         }
         if !self.at_end {
-            self.rest.extend_from_slice(&text[end.unwrap_or(text.len())..]);
-            text.truncate(end.unwrap_or(text.len()));
+            self.rest.extend_from_slice(&bytes[end.unwrap_or(bytes.len())..]);
+            bytes.truncate(end.unwrap_or(bytes.len()));
         }
-        let mark = "\u{feff}".as_bytes();
-        if first && text.starts_with(mark) {
-            text.drain(..mark.len());
+        text.lines = 0..bytes.len();
+        if first {
+            text.skip_mark();
         }
         Ok(())
     }

@@ -3,24 +3,32 @@
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::V3;
 
-/// Bytes that are looked at together, and separators that they have at most as a rule: so many places are written at once,
-/// those that are none to be written over. A loop over what is there would end where the processor does not expect it.
+/// Bytes that are looked at together.
 const STEP: usize = 64;
-const OFTEN: usize = 12;
 
 /// The delimiters and the ends of lines of a text.
 #[derive(Default)]
 pub(super) struct Separators {
-    /// Where they are, and room for more.
+    /// All of them; of 64 bytes at most a dozen as a rule.
+    all: Places<12>,
+    /// The ends of lines.
+    ends: Places<4>,
+    is_ascii: bool,
+}
+
+/// Places in a text, in ascending order, `OFTEN` in a step at most as a rule: so many are written at once, those that are none to
+/// be written over. A loop over what is there would end where the processor does not expect it.
+#[derive(Default)]
+struct Places<const OFTEN: usize> {
+    /// The places, and room for more.
     places: Vec<u32>,
     count: usize,
-    is_ascii: bool,
 }
 
 impl Separators {
     /// Finds those of a text of less than 4 GB; whether all of it is ASCII.
     pub fn find(&mut self, text: &[u8], delimiter: u8) -> bool {
-        (self.count, self.is_ascii) = (0, true);
+        (self.all.count, self.ends.count, self.is_ascii) = (0, 0, true);
         let (steps, rest) = text.as_chunks::<STEP>();
         self.find_in_steps(steps, delimiter);
         let mut last = [0; STEP];
@@ -28,13 +36,14 @@ impl Separators {
         self.is_ascii &= rest.is_ascii();
         // A delimiter may be the byte that stands for nothing here.
         let there = (1_u64 << rest.len()) - 1;
-        self.take(marks(&last, delimiter) & there, steps.len() * STEP);
+        self.all.take(marks(&last, |byte| byte == delimiter || byte == b'\n') & there, steps.len() * STEP);
+        self.ends.take(marks(&last, |byte| byte == b'\n') & there, steps.len() * STEP);
         self.is_ascii
     }
 
-    /// In ascending order.
-    pub fn places(&self) -> &[u32] {
-        &self.places[..self.count]
+    /// All of them, and the ends of lines among them.
+    pub fn places(&self) -> [&[u32]; 2] {
+        [self.all.get(), self.ends.get()]
     }
 
     fn find_in_steps(&mut self, steps: &[[u8; STEP]], delimiter: u8) {
@@ -45,11 +54,18 @@ impl Separators {
         }
         for (k, step) in steps.iter().enumerate() {
             self.is_ascii &= step.is_ascii();
-            self.take(marks(step, delimiter), k * STEP);
+            self.all.take(marks(step, |byte| byte == delimiter || byte == b'\n'), k * STEP);
+            self.ends.take(marks(step, |byte| byte == b'\n'), k * STEP);
         }
     }
+}
 
-    /// Notes the marked ones of a step.
+impl<const OFTEN: usize> Places<OFTEN> {
+    fn get(&self) -> &[u32] {
+        &self.places[..self.count]
+    }
+
+    /// Adds the marked ones of a step.
     #[inline]
     fn take(&mut self, mut marks: u64, step: usize) {
         if self.places.len() < self.count + STEP {
@@ -76,10 +92,9 @@ impl Separators {
     }
 }
 
-/// The separators among some bytes, a bit each.
-fn marks(step: &[u8; STEP], delimiter: u8) -> u64 {
-    let is_separator = |byte: u8| byte == delimiter || byte == b'\n';
-    step.iter().enumerate().map(|(k, byte)| u64::from(is_separator(*byte)) << k).sum()
+/// What is asked for among some bytes, a bit each.
+fn marks(step: &[u8; STEP], is_asked: impl Fn(u8) -> bool) -> u64 {
+    step.iter().enumerate().map(|(k, byte)| u64::from(is_asked(*byte)) << k).sum()
 }
 
 /// Steps to be looked through by a processor with AVX2, 32 bytes at once.
@@ -103,15 +118,18 @@ impl pulp::NullaryFnOnce for Wide<'_> {
         let ends = avx._mm256_set1_epi8(b'\n'.cast_signed());
         let mut all = avx._mm256_setzero_si256();
         for (k, step) in steps.iter().enumerate() {
-            let mut marks = 0;
+            let [mut all_marks, mut end_marks] = [0; 2];
             for half in step.as_chunks::<32>().0.iter().rev() {
                 let half = pulp::cast(*half);
                 let (delimiters, ends) = (avx2._mm256_cmpeq_epi8(half, delimiters), avx2._mm256_cmpeq_epi8(half, ends));
-                let here = avx2._mm256_movemask_epi8(avx2._mm256_or_si256(delimiters, ends)).cast_unsigned();
-                marks = marks << 32 | u64::from(here);
+                let delimiters = avx2._mm256_movemask_epi8(delimiters).cast_unsigned();
+                let ends = avx2._mm256_movemask_epi8(ends).cast_unsigned();
+                all_marks = all_marks << 32 | u64::from(delimiters | ends);
+                end_marks = end_marks << 32 | u64::from(ends);
                 all = avx2._mm256_or_si256(all, half);
             }
-            found.take(marks, k * STEP);
+            found.all.take(all_marks, k * STEP);
+            found.ends.take(end_marks, k * STEP);
         }
         // The top bits.
         found.is_ascii &= avx2._mm256_movemask_epi8(all) == 0;
@@ -135,12 +153,15 @@ mod tests {
                     .filter(|(_, byte)| matches!(byte, b';' | b'\n'))
                     .map(|(i, _)| i)
                     .collect();
-                assert_eq!(separators.places(), expected);
+                let [all, ends] = separators.places();
+                assert_eq!(all, expected);
+                assert_eq!(ends, expected.into_iter().filter(|i| text[*i as usize] == b'\n').collect::<Vec<u32>>());
             }
+            separators.find(&text, b';');
             for (k, step) in text.as_chunks::<STEP>().0.iter().enumerate() {
-                let of_step = |place: &&u32| **place as usize / STEP == k;
-                separators.find(&text, b';');
-                assert_eq!(marks(step, b';').count_ones() as usize, separators.places().iter().filter(of_step).count());
+                let count = |places: &[u32]| places.iter().filter(|place| **place as usize / STEP == k).count();
+                let expected = [marks(step, |byte| matches!(byte, b';' | b'\n')), marks(step, |byte| byte == b'\n')];
+                assert_eq!(separators.places().map(count), expected.map(|marks| marks.count_ones() as usize));
             }
         }
     }

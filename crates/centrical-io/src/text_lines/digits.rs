@@ -5,13 +5,10 @@
     reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
 )]
 
-/// Eight times the character 0.
-pub(crate) const ZEROS: u64 = 0x3030_3030_3030_3030;
-
 /// The eight digits of a number below 10^8, the first in the lowest byte: halves, quarters and eighths are split off
 /// in all parts of the word at once, by products with rounded reciprocals of 10^4, 100 and 10.
 #[inline(always)]
-pub(crate) fn eight_digits(number: u64) -> u64 {
+pub(super) fn eight_digits(number: u64) -> u64 {
     let first = ((number & 0xffff_ffff) * 3_518_437_209) >> 45;
     let halves = first | ((number - 10_000 * first) << 32);
     let hundreds = ((halves * 10_486) >> 20) & 0x0000_007F_0000_007F;
@@ -27,7 +24,7 @@ mod tests {
     #[test]
     fn all_digits_are_split() {
         for number in (0..100_000_000).step_by(97).chain([99_999_999, 9_999, 10_000, 99_990_000]) {
-            let bytes = (eight_digits(number) | ZEROS).to_le_bytes();
+            let bytes = (eight_digits(number) | 0x3030_3030_3030_3030).to_le_bytes();
             assert_eq!(bytes, format!("{number:08}").as_bytes());
         }
     }
