@@ -79,7 +79,8 @@ impl Polytope {
             let (inside, others): (Vec<_>, Vec<_>) = outermost.into_iter().partition(is_inside);
             let is_free = |x: &usize| inside.iter().all(|(inner, _, _)| inner.atoms.binary_search(x).is_err());
             let (mut visits, mut time) = low_of(&mut total.atoms.iter().copied().filter(is_free));
-            inside.iter().for_each(|(_, n, t)| (visits, time) = (visits + n, time + t));
+            visits += inside.iter().map(|(_, visits, _)| visits).sum::<f64>();
+            time += inside.iter().map(|(_, _, time)| time).sum::<f64>();
             let room = |&x: &usize| (self.high[x] > self.low[x]).then_some(self.price[x]);
             if visits < total.low - KEPT {
                 time += (total.low - visits) * total.atoms.iter().filter_map(room).reduce(f64::min)?;

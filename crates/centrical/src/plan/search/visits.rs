@@ -28,6 +28,7 @@ const TRIED: usize = 6;
 
 /// Totals that are whole but for this part are left until there are no others.
 const NEARLY_WHOLE: f64 = 0.02;
+const WHOLE: f64 = 1e-3;
 
 /// A bound rises by no less, for comparison.
 const LEAST_RISE: f64 = 1e-5;
@@ -151,7 +152,10 @@ impl Tree<'_> {
         if !self.effort.is_exact && self.visit_nodes.is_multiple_of(SOUGHT_EVERY) {
             self.round_visits(node);
         }
-        let mut parts = if self.effort.is_exact { Vec::new() } else { self.in_parts(node) };
+        let mut parts = if self.effort.is_exact { Vec::new() } else { self.in_parts(node, NEARLY_WHOLE) };
+        if parts.is_empty() && !self.effort.is_exact {
+            parts = self.in_parts(node, WHOLE);
+        }
         if parts.is_empty() {
             let Some(sides) = self.by_one_visit(node) else { return false };
             let sides = self.relaxed(vec![sides]).swap_remove(0);
@@ -255,7 +259,7 @@ impl Tree<'_> {
     }
 
     /// Sets whose visits are not whole, the most promising first.
-    fn in_parts(&self, node: &Node) -> Vec<InParts> {
+    fn in_parts(&self, node: &Node, whole: f64) -> Vec<InParts> {
         let w = &node.relaxed.visits;
         let cut_off = (self.threshold() - node.relaxed.bound).max(LEAST_RISE);
         let mut all: Vec<InParts> = Vec::new();
@@ -264,7 +268,7 @@ impl Tree<'_> {
             let is_same = |other: &InParts| {
                 self.alike[other.set].mounting == alike.mounting && (other.total - total).abs() < SAME_TOTAL
             };
-            if (total - total.round()).abs() <= NEARLY_WHOLE
+            if (total - total.round()).abs() <= whole
                 || node.mountings[alike.mounting] == Some(false)
                 || all.iter().any(is_same)
             {
