@@ -27,7 +27,7 @@ pub struct Arguments {
     /// Levels m of [K5.5] on the frontier
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = USUAL_LEVELS, value_parser = level)]
     levels: Vec<f64>,
-    /// Search until every set of mountings is settled to 0.25 %, however long that takes; what whole visits cost stays open
+    /// Search until every set of mountings is settled to 0.25 %, however long that takes, and decide on visits over 2000 nodes
     #[arg(long)]
     certify: bool,
     /// Probability that expanded uncertainties are to cover

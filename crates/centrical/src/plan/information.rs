@@ -5,7 +5,9 @@
 //! is never formed. A change `dN` at plateau `c` changes it by `-C J^T Q J C`, `Q = dN (E + A dN)^-1`, `A = J C J^T`, so a
 //! goal `r = sum |P^T k|^2` changes by `-tr(Q G)`, `G = sum (J C k)(J C k)^T`: all in 3x3.
 
-use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix3xX, Vector3};
+mod triangle;
+
+use nalgebra::{Cholesky, DMatrix, Matrix3, MatrixXx3, Vector3};
 
 use super::candidates::{Candidates, Scenario};
 use super::criterion::{Columns, Criterion};
@@ -14,6 +16,9 @@ use crate::design::{Weight, total_covariance};
 use crate::experiment::SetPoint;
 use crate::fit::NULL_HOLD;
 use crate::measurement::{Linearisation, MeasurementModel};
+
+/// Plateaus whose rows are folded in at once: as many as stay in the nearest cache with the triangle.
+const AT_ONCE: usize = 16;
 
 /// A scenario made ready: rows of all plateaus, precisions of all visits, what is judged.
 #[derive(Debug, Clone)]
@@ -36,7 +41,7 @@ pub(super) struct Factor {
     triangle: DMatrix<f64>,
     /// `P^T = R^-T`: its columns are the unknowns.
     root: DMatrix<f64>,
-    /// `C K`, with `K` whitened by its own covariance for a determinant, `p x m`.
+    /// `(C K)^T`, with `K` whitened by its own covariance for a determinant, `m x p`.
     reach: DMatrix<f64>,
     /// `r_j`; for a determinant its `s`-th root.
     pub goals: Vec<f64>,
@@ -111,15 +116,18 @@ impl Scene {
 
     fn stacked(&self, triangle: &DMatrix<f64>, information: &[(usize, Matrix3<f64>)]) -> Factor {
         let p = self.prior.len();
-        let mut rows = triangle.clone().resize_vertically(p + 3 * information.len(), 0.0);
-        for (n, (plateau, precision)) in information.iter().enumerate() {
-            // What is no information adds no rows.
-            let Some(half) = Cholesky::new(*precision).map(|factor| factor.l().transpose()) else { continue };
-            for (column, derivative) in &self.jacobians[*plateau] {
-                rows.fixed_view_mut::<3, 1>(p + 3 * n, *column).copy_from(&(half * derivative));
+        let mut triangle = triangle.clone();
+        for some in information.chunks(AT_ONCE) {
+            let mut rows = DMatrix::zeros(3 * some.len(), p);
+            for (n, (plateau, precision)) in some.iter().enumerate() {
+                // What is no information adds no rows.
+                let Some(half) = Cholesky::new(*precision).map(|factor| factor.l().transpose()) else { continue };
+                for (column, derivative) in &self.jacobians[*plateau] {
+                    rows.fixed_view_mut::<3, 1>(3 * n, *column).copy_from(&(half * derivative));
+                }
             }
+            triangle::fold(&mut triangle, &mut rows);
         }
-        let triangle = if information.is_empty() { rows } else { rows.qr().unpack_r() };
         let mut root = DMatrix::identity(p, p);
         // The hold leaves no zero on the diagonal.
         let solved = triangle.solve_upper_triangular_mut(&mut root);
@@ -127,7 +135,7 @@ impl Scene {
         let transposed = root.transpose();
         let mut seen = &transposed * &self.columns.k;
         let goals = if self.columns.is_determinant { Self::whiten(&mut seen) } else { self.sums(&seen) };
-        Factor { triangle, reach: root * seen, root: transposed, goals }
+        Factor { triangle, reach: seen.transpose() * &transposed, root: transposed, goals }
     }
 
     fn sums(&self, seen: &DMatrix<f64>) -> Vec<f64> {
@@ -173,13 +181,12 @@ impl Scene {
         }
     }
 
-    /// `f_m = J C k_m` of a plateau, `3 x m`.
-    pub fn response(&self, factor: &Factor, plateau: usize) -> Matrix3xX<f64> {
-        let mut response = Matrix3xX::zeros(factor.reach.ncols());
+    /// `f_m = J C k_m` of a plateau in rows, `m x 3`.
+    pub fn response(&self, factor: &Factor, plateau: usize) -> MatrixXx3<f64> {
+        let mut response = MatrixXx3::zeros(factor.reach.nrows());
         for (column, derivative) in &self.jacobians[plateau] {
-            for (m, reach) in factor.reach.row(*column).iter().enumerate() {
-                let mut target = response.column_mut(m);
-                target += derivative * *reach;
+            for i in (0..3).filter(|&i| derivative[i] != 0.0) {
+                response.column_mut(i).axpy(derivative[i], &factor.reach.column(*column), 1.0);
             }
         }
         response
@@ -202,17 +209,30 @@ impl Scene {
     }
 
     /// `G = sum v_m f_m f_m^T`.
-    pub fn weighed(response: &Matrix3xX<f64>, weights: &[f64]) -> Matrix3<f64> {
-        let mut sum = Matrix3::zeros();
-        for (f, weight) in response.column_iter().zip(weights) {
-            sum += f * f.transpose() * *weight;
-        }
-        sum
+    pub fn weighed(response: &MatrixXx3<f64>, weights: &[f64]) -> Matrix3<f64> {
+        Self::weighed_rows(response, 0..weights.len(), |m| weights[m])
     }
 
-    /// Goal by column.
-    pub fn goal_of(&self, column: usize) -> usize {
-        self.columns.goal[column]
+    /// `G` of each goal, all columns weighing the same.
+    pub fn by_goal(&self, response: &MatrixXx3<f64>) -> Vec<Matrix3<f64>> {
+        let of_goal = |goal: usize| {
+            let columns = (0..response.nrows()).filter(move |&m| self.columns.goal[m] == goal);
+            Self::weighed_rows(response, columns, |_| 1.0)
+        };
+        (0..self.goals).map(of_goal).collect()
+    }
+
+    fn weighed_rows(
+        response: &MatrixXx3<f64>,
+        rows: impl Iterator<Item = usize>,
+        weight: impl Fn(usize) -> f64,
+    ) -> Matrix3<f64> {
+        let mut sum = Matrix3::zeros();
+        for m in rows {
+            let f = response.fixed_view::<1, 3>(m, 0);
+            sum += f.transpose() * (f * weight(m));
+        }
+        sum
     }
 
     /// Number of goals.
@@ -229,12 +249,8 @@ impl Scene {
     pub fn insight(&self, factor: &Factor, plateau: usize) -> Insight {
         let view = self.views(factor, &[plateau]);
         let response = self.response(factor, plateau);
-        let mut by_goal = vec![Matrix3::zeros(); self.goals];
-        for (m, f) in response.column_iter().enumerate() {
-            by_goal[self.columns.goal[m]] += f * f.transpose();
-        }
         let a = view.transpose() * &view;
-        Insight { a: Matrix3::from_fn(|i, j| a[(i, j)]), by_goal }
+        Insight { a: Matrix3::from_fn(|i, j| a[(i, j)]), by_goal: self.by_goal(&response) }
     }
 
     /// Logarithm of the criterion after a change `dn` of the information at a plateau; infinite if it would take away what
@@ -257,7 +273,7 @@ impl Scene {
     /// Part of the priors and the hold in the sensitivities: `sum v_m |M_0^(1/2) C k_m|^2`.
     pub fn prior_part(&self, factor: &Factor, weights: &[f64]) -> f64 {
         let column = |m: usize| {
-            factor.reach.column(m).iter().zip(&self.prior).map(|(reach, prior)| (reach * prior).powi(2)).sum::<f64>()
+            factor.reach.row(m).iter().zip(&self.prior).map(|(reach, prior)| (reach * prior).powi(2)).sum::<f64>()
         };
         weights.iter().enumerate().map(|(m, weight)| weight * column(m)).sum()
     }

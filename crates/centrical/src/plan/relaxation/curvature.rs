@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector, Matrix3};
+use nalgebra::{DMatrix, DVector, MatrixXx3};
 
 use crate::plan::information::{Factor, Scene, Smooth, trace_of_product};
 
@@ -49,7 +49,7 @@ pub(super) fn add_curvature(
     let mut roots = DMatrix::zeros(m, 3 * plateaus.len());
     for (n, response) in responses.iter().enumerate() {
         for (column, weight) in smooth.columns.iter().enumerate() {
-            (0..3).for_each(|i| roots[(column, 3 * n + i)] = response[(i, column)] * weight.sqrt());
+            (0..3).for_each(|i| roots[(column, 3 * n + i)] = response[(column, i)] * weight.sqrt());
         }
     }
     let g = roots.transpose() * &roots;
@@ -86,7 +86,7 @@ pub(super) fn add_curvature(
 /// `d ln r_j / d w_x` without its sign, active atoms by goals.
 fn by_goal(
     scene: &Scene,
-    responses: &[nalgebra::Matrix3xX<f64>],
+    responses: &[MatrixXx3<f64>],
     active: &[usize],
     groups: &[Range<usize>],
     factor: &Factor,
@@ -96,10 +96,7 @@ fn by_goal(
         return by_goal;
     }
     for (group, response) in groups.iter().zip(responses) {
-        let mut of_goal = vec![Matrix3::zeros(); scene.goals()];
-        for (m, f) in response.column_iter().enumerate() {
-            of_goal[scene.goal_of(m)] += f * f.transpose();
-        }
+        let of_goal = scene.by_goal(response);
         for k in group.clone() {
             for (goal, g) in of_goal.iter().enumerate() {
                 by_goal[(k, goal)] = trace_of_product(scene.precision(active[k]), g) / factor.goals[goal];

@@ -1,7 +1,7 @@
 //! Branch and bound. A node has decided on some mountings (their set-ups are paid in full, or they are closed) and on bounds
 //! of visits; its continuous design bounds all schedules below it. Mountings are decided first, the most used one first, the
-//! lowest bound first. Where a problem is small, visits are decided too, until nothing is left to find; where it is large,
-//! the branches end with the mountings, and the lowest bound of their ends says how far the schedule can be from the best.
+//! lowest bound first, and then visits ([`super::visits`]), as far as the effort goes. Where a problem is small, that is until
+//! nothing is left to find; where it is large, the lowest bound of the ends says how far the schedule can be from the best.
 //!
 //! **The bound is one.** Let a schedule belong to a node: it uses the mountings that are set up and perhaps some that are not
 //! decided, none that is closed. (1) Its visits are a point of the node's polytope: bounds and repeats are the schedule's own;
@@ -19,9 +19,10 @@ use rayon::prelude::*;
 
 use super::needs::Needs;
 use super::problem::Problem;
+use super::visits::{Alike, Experience};
 use super::{Effort, Plan};
 use crate::plan::exchange::Whole;
-use crate::plan::relaxation::{Polytope, Precision, Relaxed, relax};
+use crate::plan::relaxation::{Polytope, Precision, Relaxed, Total, relax};
 
 /// What is decided.
 #[derive(Debug, Clone)]
@@ -30,6 +31,8 @@ pub(super) struct Node {
     pub mountings: Vec<Option<bool>>,
     pub low: Vec<f64>,
     pub high: Vec<f64>,
+    /// Bounds of visits of sets of atoms together.
+    pub totals: Vec<Total>,
     /// Least set-up time of its schedules that are better than what is known [s].
     pub set_up: f64,
     pub relaxed: Relaxed,
@@ -49,6 +52,12 @@ pub(super) struct Tree<'a> {
     /// Lowest bound of the nodes that are not divided any further.
     pub bound: f64,
     pub nodes: usize,
+    /// Of them those that decide on visits.
+    pub visit_nodes: usize,
+    /// Sets of visits whose totals are decided on.
+    pub alike: Vec<Alike>,
+    /// What divisions by these have shown.
+    pub experience: Experience,
     /// What is known of sets of mountings.
     pub needs: Needs,
 }
@@ -64,6 +73,7 @@ const NEARLY_MET: f64 = 2e-3;
 
 impl<'a> Tree<'a> {
     pub fn new(problem: &'a Problem<'a>, time: f64, effort: Effort) -> Self {
+        let alike = if effort.visit_nodes > 0 { Alike::all(problem) } else { Vec::new() };
         Self {
             problem,
             time,
@@ -74,6 +84,9 @@ impl<'a> Tree<'a> {
             wanted: None,
             bound: f64::INFINITY,
             nodes: 0,
+            visit_nodes: 0,
+            experience: Experience::of(&alike),
+            alike,
             needs: Needs::default(),
         }
     }
@@ -118,6 +131,7 @@ impl<'a> Tree<'a> {
             mountings,
             low: vec![0.0; atoms],
             high: vec![high; atoms],
+            totals: Vec::new(),
             set_up: 0.0,
             relaxed: Relaxed { visits: Vec::new(), value: f64::INFINITY, bound: f64::NEG_INFINITY, models: 0 },
         }
@@ -126,14 +140,14 @@ impl<'a> Tree<'a> {
     /// How near to the best schedule a bound is as good as the same.
     pub fn same(&self) -> f64 {
         match self.wanted {
-            _ if self.effort.visit_nodes > 0 => SAME,
+            _ if self.effort.is_exact => SAME,
             Some(_) => NEARLY_MET,
             None => NEARLY,
         }
     }
 
     /// How well a continuous design is known at the end of a branch.
-    fn tolerance(&self) -> f64 {
+    pub fn tolerance(&self) -> f64 {
         0.5 * self.same()
     }
 
@@ -198,17 +212,18 @@ impl<'a> Tree<'a> {
         Some(node)
     }
 
-    /// Two nodes that decide one thing more, with the continuous design of theirs, or none at the end of a branch.
+    /// Two nodes that decide on a mounting more, or none at the end of a branch, where visits are decided on.
     fn children(&mut self, mut node: Node) -> Vec<Node> {
-        let is_end = |of_mountings: Option<usize>| of_mountings.is_none() || self.nodes >= self.effort.mounting_nodes;
-        if is_end(self.undecided(&node)) && node.relaxed.bound < self.bound {
+        let is_end = |of_mountings: Option<usize>| of_mountings.is_none() || self.is_out_of_nodes();
+        let is_loose = node.mountings.contains(&None) && node.relaxed.bound < self.bound;
+        if is_loose && is_end(self.undecided(&node)) {
             let start = node.relaxed.visits.clone();
             self.relax_to(self.tolerance(), &mut node, Some(&start));
         }
         let node = &node;
         let of_mountings = self.undecided(node);
         let decided = match of_mountings {
-            Some(m) if self.nodes < self.effort.mounting_nodes => {
+            Some(m) if !self.is_out_of_nodes() => {
                 let with = |set_up| {
                     let mut child = node.clone();
                     child.mountings[m] = Some(set_up);
@@ -219,16 +234,11 @@ impl<'a> Tree<'a> {
             None => {
                 self.seek(node, true);
                 self.take_whole(node);
-                let is_left = self.nodes < self.effort.visit_nodes && node.relaxed.bound < self.threshold();
-                match self.split_visit(node).filter(|_| is_left) {
-                    Some((x, below, above)) => {
-                        let (mut fewer, mut more) = (node.clone(), node.clone());
-                        fewer.high[x] = below;
-                        more.low[x] = above;
-                        vec![more, fewer]
-                    }
-                    None => vec![],
+                // Its parts are open or counted already.
+                if self.divide_by_visits(node) {
+                    return vec![];
                 }
+                vec![]
             }
             Some(_) => vec![],
         };
@@ -236,6 +246,10 @@ impl<'a> Tree<'a> {
             self.bound = self.bound.min(node.relaxed.bound);
         }
         decided
+    }
+
+    fn is_out_of_nodes(&self) -> bool {
+        self.nodes - self.visit_nodes >= self.effort.mounting_nodes
     }
 
     /// The undecided mounting that the continuous design uses most.
@@ -254,17 +268,7 @@ impl<'a> Tree<'a> {
         times
     }
 
-    /// The atom whose visits are farthest from whole, or any that is not decided; and whole visits below and above.
-    fn split_visit(&self, node: &Node) -> Option<(usize, f64, f64)> {
-        let apart = |x: &usize| (node.relaxed.visits[*x] - node.relaxed.visits[*x].round()).abs();
-        let free = || (0..node.low.len()).filter(|&x| node.high[x] > node.low[x] && self.is_open(node, x));
-        let x = free().max_by(|a, b| apart(a).total_cmp(&apart(b)).then(b.cmp(a)))?;
-        let w = node.relaxed.visits[x].clamp(node.low[x], node.high[x]);
-        let below = if w >= node.high[x] { node.high[x] - 1.0 } else { w.floor() };
-        Some((x, below, below + 1.0))
-    }
-
-    fn is_open(&self, node: &Node, atom: usize) -> bool {
+    pub fn is_open(&self, node: &Node, atom: usize) -> bool {
         node.mountings[self.problem.mounting_of(atom)] != Some(false)
     }
 
@@ -303,6 +307,7 @@ impl<'a> Tree<'a> {
             high: (0..atoms).map(high).collect(),
             options: self.problem.candidates.durations.len(),
             repeats: self.problem.candidates.repeats as f64,
+            totals: node.totals.clone(),
         }
     }
 
