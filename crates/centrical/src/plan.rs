@@ -37,7 +37,7 @@ pub use error::PlanError;
 pub use frontier::{FrontierPoint, frontier};
 pub use next::{Gain, next_best};
 pub use normalised::Normalised;
-pub use prediction::{Prediction, predict};
+pub use prediction::{Prediction, predict, unit_of};
 pub use relaxation::Relaxed;
 pub use robustness::Robustness;
 pub use search::{Effort, Plan, best_for_time, shortest_for_goals};

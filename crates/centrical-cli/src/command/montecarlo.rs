@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
+use centrical::plan::unit_of;
 use centrical::uncertainty::{Method, MonteCarlo, Settings, TypeB, monte_carlo};
 use centrical::{FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight, fit};
 use centrical_io::{Error, Plan, Problem, Session};
@@ -32,6 +33,10 @@ pub struct Arguments {
     /// White noise of the means of a plan, in ug, in place of its own noise and durations
     #[arg(long, value_name = "UG")]
     noise: Option<f64>,
+    /// Draw for a unit of typical errors, signs in turn, in place of the one that a plan is predicted for, which has none unless
+    /// the plan says so or leaves combinations of unknowns open; or in place of a session's own estimates
+    #[arg(long)]
+    typical: bool,
 }
 
 /// Runs the command.
@@ -39,13 +44,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let inside = arguments.session.join("experiment.toml");
     let file = if arguments.session.is_dir() { &inside } else { &arguments.session };
     let failed = |source| Error::Fit { file: file.clone(), source };
-    let case = match Plan::read(file)? {
-        Some(plan) => Case::planned(plan, arguments.noise),
+    let mut case = match Plan::read(file)? {
+        Some(plan) => Case::planned(plan, arguments.noise).map_err(failed)?,
         None => Case::measured(&Session::read(file)?)?,
     };
+    if arguments.typical {
+        case.truth = case.model.parameters().typical_in_turn();
+    }
     let monte_carlo = draw(arguments, &case).map_err(failed)?;
     let text = monte_carlo_table(case.model.parameters(), &monte_carlo, arguments.coverage);
-    let _ = io::stdout().write_all(text.as_bytes());
+    let _ = io::stdout().write_all(format!("{}{text}", case.unit()).as_bytes());
     Ok(Outcome::Done)
 }
 
@@ -72,17 +80,27 @@ impl Case {
         Ok(Self { model, observations, truth, speed_uncertainty, stated: session.type_b })
     }
 
-    /// A plan: every unknown is as the plan expects it, or where it expects nothing of typical size, signs in turn.
-    fn planned(plan: Plan, noise: Option<f64>) -> Self {
+    /// A plan: the unit that it is predicted for.
+    fn planned(plan: Plan, noise: Option<f64>) -> Result<Self, FitError> {
         let Plan { model, nominal, weights, speed_uncertainty, type_b, .. } = plan;
+        let truth = unit_of(&model, &weights, speed_uncertainty, &nominal)?;
         let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
         let weights = noise.map_or_else(|| weights.clone(), equal);
         let observation =
             |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
-        let is_expected = nominal.iter().any(|value| *value != 0.0);
-        let truth = if is_expected { nominal } else { model.parameters().typical_in_turn() };
         let observations = weights.into_iter().map(observation).collect();
-        Self { model, observations, truth, speed_uncertainty, stated: type_b }
+        Ok(Self { model, observations, truth, speed_uncertainty, stated: type_b })
+    }
+
+    /// Says for which unit is drawn, where that is not what was found of it.
+    fn unit(&self) -> &'static str {
+        if self.truth.iter().all(|value| *value == 0.0) {
+            "A unit without errors, as it is predicted; --typical draws for one of typical errors\n"
+        } else if self.truth == self.model.parameters().typical_in_turn() {
+            "A unit of typical errors, signs in turn\n"
+        } else {
+            ""
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The commands that say how far a calibration can be trusted, on the example.
 
+use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -50,6 +51,42 @@ fn montecarlo_draws_from_a_preset_plan() {
     let plan = example().join("../plans/normalised.toml");
     let told = text(&run(&["montecarlo", plan.to_str().unwrap(), "--runs", "30"]));
     assert!(told.contains("MONTE CARLO  30 calibrations"), "{told}");
+    assert!(told.starts_with("A unit of typical errors"), "its rank is short: {told}");
+}
+
+/// What calibrations state of the unit that is drawn for by default is what `observe` predicts.
+#[test]
+fn montecarlo_draws_for_the_unit_that_is_predicted() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = folder.path().join("plan.toml");
+    let text_of_plan = fs::read_to_string(example().join("../plans/normalised.toml")).unwrap();
+    fs::write(&plan, text_of_plan.replace("\"opposite\"", "\"common\"")).unwrap();
+    let plan = plan.to_str().unwrap();
+    let uncertainties = |told: &str, heading: &str, column: usize| -> HashMap<String, f64> {
+        let table = &told[told.find(heading).unwrap()..];
+        let row = |line: &str| {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            Some((words.first()?.to_string(), words.get(column)?.parse().ok()?))
+        };
+        table.lines().skip(2).map_while(row).collect()
+    };
+    let drawn = text(&run(&["montecarlo", plan, "--runs", "20"]));
+    assert!(drawn.starts_with("A unit without errors"), "{drawn}");
+    let drawn = uncertainties(&drawn, "MONTE CARLO", 2);
+    let predicted = uncertainties(&text(&run(&["observe", plan])), "PREDICTION", 3);
+    assert_eq!((drawn.len(), predicted.len()), (49, 49));
+    let agree = |name: &str, drawn: &HashMap<String, f64>| {
+        // One digit is told of a small number, two or more of others.
+        let rounding = if drawn[name] < 1e-3 { 0.5 } else { 0.05 };
+        (drawn[name] / predicted[name] - 1.0).abs() < 0.02 + rounding
+    };
+    for name in predicted.keys() {
+        assert!(agree(name, &drawn), "{name}: {} drawn, {} predicted", drawn[name], predicted[name]);
+    }
+    let typical = text(&run(&["montecarlo", plan, "--runs", "20", "--typical"]));
+    assert!(typical.starts_with("A unit of typical errors"), "{typical}");
+    let typical = uncertainties(&typical, "MONTE CARLO", 2);
+    assert!(!predicted.keys().all(|name| agree(name, &typical)), "it makes no difference");
 }
 
 #[test]

@@ -45,25 +45,40 @@ pub fn predict(
     stated: &TypeB,
     truth: &[f64],
 ) -> Result<Prediction, FitError> {
-    let observations = |truth: &[f64]| -> Vec<Observation> {
-        let reading = |set_point: usize| {
-            let set_point = model.experiment().set_points.get(set_point);
-            set_point.map_or_else(Vector3::zeros, |set_point| model.reading(set_point, truth))
-        };
-        let of =
-            |w: &Weight| Observation { set_point: w.set_point, mean: reading(w.set_point), covariance: w.covariance };
-        weights.iter().map(of).collect()
-    };
-    let mut perfect = observations(truth);
+    let truth = unit_of(model, weights, speed_uncertainty, truth)?;
+    let perfect = readings(model, weights, &truth);
     let structure = Structure::of(model, &perfect, speed_uncertainty)?;
-    let is_short = structure.observability().rank() < truth.len();
-    if is_short && truth.iter().all(|value| *value == 0.0) {
-        perfect = observations(&model.parameters().typical_in_turn());
-    }
     let fit = fit::exact_with(&structure, model, &perfect, speed_uncertainty)?;
     let budget = Budget::new(&fit, model, &perfect, speed_uncertainty, stated)?;
     let leans = (0..truth.len()).map(|j| budget.leans_on_lost(&fit, j)).collect();
     Ok(Prediction { model: model.clone(), budget, leans })
+}
+
+/// The unknowns that a plan is predicted for, and its calibrations are drawn for: those expected, or where none is and the
+/// rank is short, typical ones, signs in turn.
+///
+/// # Errors
+/// As [`predict`].
+pub fn unit_of(
+    model: &MeasurementModel,
+    weights: &[Weight],
+    speed_uncertainty: f64,
+    expected: &[f64],
+) -> Result<Vec<f64>, FitError> {
+    let perfect = readings(model, weights, expected);
+    let is_short = || Ok(Structure::of(model, &perfect, speed_uncertainty)?.observability().rank() < expected.len());
+    let expects_none = expected.iter().all(|value| *value == 0.0);
+    Ok(if expects_none && is_short()? { model.parameters().typical_in_turn() } else { expected.to_vec() })
+}
+
+/// Perfect readings of a unit.
+fn readings(model: &MeasurementModel, weights: &[Weight], truth: &[f64]) -> Vec<Observation> {
+    let reading = |set_point: usize| {
+        let set_point = model.experiment().set_points.get(set_point);
+        set_point.map_or_else(Vector3::zeros, |set_point| model.reading(set_point, truth))
+    };
+    let of = |w: &Weight| Observation { set_point: w.set_point, mean: reading(w.set_point), covariance: w.covariance };
+    weights.iter().map(of).collect()
 }
 
 impl Prediction {
