@@ -53,6 +53,52 @@ fn every_row_once_and_in_order() {
     }
 }
 
+/// Numbers of every length and form, lines that end either way, now and then many that could be read together: each number is
+/// what the standard library reads.
+#[test]
+fn every_number_is_read_to_the_last_bit() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.csv");
+    let mut state = 5_u64;
+    let mut below = |end: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        usize::try_from(state >> 33).unwrap() % end
+    };
+    for plainness in [2, 100, 3000] {
+        let mut text = "t,f1,f2,f3\n".to_owned();
+        let mut expected = Record::default();
+        let mut usual = 3;
+        for row in 0..30_000 {
+            let is_plain = below(plainness) > 0;
+            if below(500) == 0 {
+                usual = below(8);
+            }
+            let time = format!("{:.4}", row as f64 * 1e-4);
+            expected.t.push(time.parse().unwrap());
+            text.push_str(&time);
+            for column in &mut expected.f_z {
+                let decimals = if is_plain { usual } else { below(18) };
+                let size = 10_f64.powi(i32::try_from(below(if is_plain { 5 } else { 9 })).unwrap());
+                let value = size * (below(2_000_001) as f64 / 1e6 - 1.0);
+                let number = match if is_plain { 9 } else { below(5) } {
+                    0 => format!("{value:e}"),
+                    1 => format!("+{:.decimals$}", value.abs()),
+                    _ => format!("{value:.decimals$}"),
+                };
+                column.push(number.parse().unwrap());
+                write!(text, ",{number}").unwrap();
+            }
+            text.push_str(if is_plain || below(3) == 0 { "\n" } else { "\r\n" });
+        }
+        fs::write(&file, &text).unwrap();
+        let found = read_record(&file, &Columns::default()).unwrap();
+        let bits = |record: &Record| -> Vec<u64> {
+            record.t.iter().chain(record.f_z.iter().flatten()).map(|value| value.to_bits()).collect()
+        };
+        assert!(bits(&found) == bits(&expected), "one number of {plainness} lines is not plain");
+    }
+}
+
 #[test]
 fn a_fault_is_on_its_line() {
     let folder = TempDir::new().unwrap();
