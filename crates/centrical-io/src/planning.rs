@@ -1,16 +1,14 @@
-//! A plan as a document: schema `centrical-plan/1`; and as the plan file of a session. The same input gives the same bytes.
+//! A plan as a document: schema `centrical-plan/1`. The same input gives the same bytes.
 
-use std::path::Path;
+mod frontier;
+mod schedule_file;
+mod search;
 
-use centrical::plan::{
-    Account, Candidates, Criterion, Effort, Goal, Plan, PlanError, Prediction, Reason, Robustness, Schedule, Visit,
-    best_for_time, frontier, predict, shortest_for_goals,
-};
-use centrical::uncertainty::TypeB;
-use centrical::{Experiment, MeasurementModel, SetPoint};
+use centrical::plan::{Account, Criterion, Goal, Plan, PlanError, Prediction, Reason, Robustness, Schedule, predict};
+use centrical::{MeasurementModel, SetPoint};
 use serde::Serialize;
 
-use crate::error::{Error, Place};
+use crate::error::Error;
 use crate::prediction::PredictionReport;
 use crate::result::Program;
 use crate::session::Planning;
@@ -20,12 +18,6 @@ const SCHEMA: &str = "centrical-plan/1";
 
 /// Levels `m` of [K5.5] on the frontier unless others are given.
 pub const USUAL_LEVELS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
-
-/// Type B is reckoned with this much above that of the plan before, so that the next one keeps within it.
-const MARGIN: f64 = 1.01;
-
-/// Speeds of a uniform plan at most, in each mounting.
-const UNIFORM_SPEEDS: usize = 8;
 
 /// What of a plan is asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -165,100 +157,6 @@ pub struct FrontierRow {
 }
 
 impl Planning {
-    /// The best plan for the time, or the shortest for the goals; `certify`: searched until its bound is within 0.25 % or all
-    /// sets of mountings are done with.
-    ///
-    /// A plan that leaves combinations of unknowns open may keep its goals for a unit without errors and miss them for any other
-    /// (see [`predict`]). One that does is planned again for a unit of typical errors, which `self` expects from then on.
-    ///
-    /// # Errors
-    /// [`Error::Planning`] when there is none.
-    pub fn plan(&mut self, certify: bool) -> Result<Plan, Error> {
-        let effort = self.effort(certify);
-        let expects_none = self.candidates.scenarios.iter().all(|s| s.nominal.iter().all(|value| *value == 0.0));
-        if self.time.is_some() || !expects_none {
-            return self.search(effort);
-        }
-        // A hasty plan shows mostly what a good one would.
-        let hasty = self.search(Effort::QUICK)?;
-        if self.keeps_goals(&hasty)? {
-            let plan = self.search(effort)?;
-            if self.keeps_goals(&plan)? {
-                return Ok(plan);
-            }
-        }
-        for scenario in &mut self.candidates.scenarios {
-            scenario.nominal = scenario.model.parameters().typical_in_turn();
-        }
-        self.search(effort)
-    }
-
-    fn effort(&self, certify: bool) -> Effort {
-        let usual = Effort::usual(self.candidates.len());
-        match (certify, self.time) {
-            (true, Some(_)) => Effort::CERTIFIED,
-            (true, None) => Effort { visit_nodes: 0, ..Effort::CERTIFIED },
-            (false, Some(_)) => usual,
-            // The shortest plan is sought by a search for each of some times.
-            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 6, visit_nodes: 0, ..usual },
-        }
-    }
-
-    /// Whether every goal is kept as predicted, type B included.
-    fn keeps_goals(&self, plan: &Plan) -> Result<bool, Error> {
-        let goals = self.goals_of(&self.predict(&plan.schedule)?);
-        Ok(goals.iter().all(|goal| goal.combined.is_some_and(|u| u <= goal.wanted)))
-    }
-
-    fn search(&self, effort: Effort) -> Result<Plan, Error> {
-        let Criterion::Worst(goals) = &self.criterion else { return self.best(&self.criterion, effort) };
-        if self.type_b == TypeB::default() {
-            return self.best(&self.criterion, effort);
-        }
-        // Type B hardly depends on the plan: what it leaves of the goals for type A settles in a few plans.
-        let mut floors = self.floors(&self.everything())?;
-        for (goal, floor) in goals.iter().zip(&floors).filter(|_| self.time.is_none()) {
-            let (name, wanted) = named(goal);
-            if *floor >= wanted {
-                return Err(self.failed(PlanError::BelowTypeB { name: name.to_owned(), factor: floor / wanted }));
-            }
-        }
-        for now in [Effort::QUICK, Effort::QUICK, Effort::QUICK, effort, effort] {
-            let plan = self.best(&Criterion::Worst(for_type_a(goals, &floors)), now)?;
-            let there = self.floors(&plan.schedule)?;
-            let is_settled = there.iter().zip(&floors).all(|(there, floor)| there <= floor);
-            floors.iter_mut().zip(there).for_each(|(floor, there)| *floor = floor.max(MARGIN * there));
-            // A shortest plan that keeps the goals is one, whatever it was reckoned with.
-            let is_kept = self.time.is_none() && self.keeps_goals(&plan)?;
-            if (is_settled || is_kept) && now == effort {
-                return Ok(plan);
-            }
-        }
-        self.best(&Criterion::Worst(for_type_a(goals, &floors)), effort)
-    }
-
-    fn best(&self, criterion: &Criterion, effort: Effort) -> Result<Plan, Error> {
-        let plan = match self.time {
-            Some(time) => best_for_time(&self.candidates, criterion, time, effort),
-            None => shortest_for_goals(&self.candidates, criterion, 0.01, effort),
-        };
-        plan.map_err(|source| self.failed(source))
-    }
-
-    /// Every plateau as often and as long as may be.
-    fn everything(&self) -> Schedule {
-        let candidates = &self.candidates;
-        let longest = candidates.durations.last().copied().unwrap_or(0.0);
-        let visit = |n: usize| Visit { plateau: n % candidates.len(), duration: longest };
-        candidates.schedule((0..candidates.len() * candidates.repeats).map(visit).collect())
-    }
-
-    /// What the stated type B leaves of each goal with a schedule, none where it is lost altogether.
-    fn floors(&self, schedule: &Schedule) -> Result<Vec<f64>, Error> {
-        let floor = |goal: &GoalReport| goal.type_b.unwrap_or(0.0);
-        Ok(self.goals_of(&self.predict(schedule)?).iter().map(floor).collect())
-    }
-
     /// What there is to say of a plan.
     ///
     /// # Errors
@@ -394,36 +292,6 @@ impl Planning {
         goals.iter().map(report).collect()
     }
 
-    /// The frontier about `time`, with the uniform plan and [K5.5] beside it.
-    fn frontier(&self, time: f64, request: &PlanRequest) -> Result<Vec<FrontierRow>, Error> {
-        if request.frontier.is_empty() {
-            return Ok(Vec::new());
-        }
-        let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
-        let effort = Effort::usual(self.candidates.len());
-        let points = frontier(&self.candidates, &self.criterion, &times, effort);
-        let points = points.map_err(|source| self.failed(source))?;
-        let uniform = with_set_points(&self.candidates, &uniform_set_points(self.candidates.experiment()));
-        let normalised =
-            with_set_points(&self.candidates, &normalised_set_points(self.candidates.experiment(), &request.levels));
-        let of = |candidates: &Candidates, time: f64| {
-            let found = candidates.uniform(&self.criterion, time).map_err(|source| self.failed(source))?;
-            Ok::<_, Error>(found.map(|(_, value)| value.sqrt()))
-        };
-        points
-            .into_iter()
-            .map(|point| {
-                Ok(FrontierRow {
-                    time: point.time,
-                    best: point.plan.criterion.sqrt(),
-                    bound: point.plan.bound.sqrt(),
-                    uniform: of(&uniform, point.time)?,
-                    normalised: of(&normalised, point.time)?,
-                })
-            })
-            .collect()
-    }
-
     fn failed(&self, source: PlanError) -> Error {
         Error::Planning { file: self.file.clone(), source }
     }
@@ -437,118 +305,4 @@ impl PlanReport {
         text.push('\n');
         text
     }
-
-    /// The plan as the plan file of a session: the text that it was planned from, with mountings in place of candidates.
-    ///
-    /// # Errors
-    /// [`Error`] when the file cannot be read any more.
-    pub fn session_text(&self, file: &Path) -> Result<String, Error> {
-        let text = std::fs::read_to_string(file).map_err(|source| Error::reading(file, source, "a plan"))?;
-        let form = |error: toml_edit::TomlError| Error::Form {
-            file: file.to_owned(),
-            place: Place::Whole,
-            message: error.message().to_owned(),
-        };
-        let mut document: toml_edit::DocumentMut = text.parse().map_err(form)?;
-        for key in ["candidates", "cost", "target", "robust"] {
-            document.remove(key);
-        }
-        // The plan may be written to another folder than the one it was read from.
-        let nominal = document.get_mut("plan").and_then(|plan| plan.get_mut("nominal"));
-        if let Some(nominal) = nominal.filter(|item| item.is_str()) {
-            let from = file.parent().unwrap_or(Path::new("")).join(nominal.as_str().unwrap_or_default());
-            let whole = std::path::absolute(&from).unwrap_or(from);
-            *nominal = toml_edit::value(whole.to_string_lossy().into_owned());
-        }
-        // A position that is not used has no mounting, and no parameters.
-        if let Some(toml_edit::Item::ArrayOfTables(positions)) = document.get_mut("position") {
-            positions.retain(|table| {
-                let id = table.get("id").map(|id| id.as_str().map_or_else(|| id.to_string(), str::to_owned));
-                id.is_some_and(|id| self.mountings.iter().any(|m| m.position == id.trim()))
-            });
-        }
-        let mut text = document.to_string();
-        text.truncate(text.trim_end().len());
-        text.push('\n');
-        for mounting in &self.mountings {
-            text.push_str(&mounting.text());
-        }
-        Ok(text)
-    }
-}
-
-impl PlannedMounting {
-    fn text(&self) -> String {
-        let plateau = |p: &PlannedPlateau| {
-            let angle = if p.speed == 0.0 { format!(", angle = {:?}", p.angle) } else { String::new() };
-            format!("  {{ speed = {:?}{angle}, duration = {:?} }},\n", p.speed, p.duration)
-        };
-        let plateaus: String = self.plateaus.iter().map(plateau).collect();
-        let (position, radius) = (&self.position, self.radius);
-        format!("\n[[mounting]]\nposition = {position:?}\narm = [{radius:?}, 0, 0]\nplateaus = [\n{plateaus}]\n")
-    }
-}
-
-/// Name and wanted standard uncertainty of a goal.
-fn named(goal: &Goal) -> (&str, f64) {
-    match goal {
-        Goal::Parameter { name, uncertainty } => (name, *uncertainty),
-        Goal::Reading { uncertainty, .. } => ("reading", *uncertainty),
-    }
-}
-
-/// What is left of goals for type A, `sqrt(wanted^2 - floor^2)`; a goal that type B alone misses is sought as it stands.
-fn for_type_a(goals: &[Goal], floors: &[f64]) -> Vec<Goal> {
-    let left = |(goal, floor): (&Goal, &f64)| {
-        let (_, wanted) = named(goal);
-        let rest = (wanted - floor) * (wanted + floor);
-        let uncertainty = if rest > 0.0 { rest.sqrt() } else { wanted };
-        match goal {
-            Goal::Parameter { name, .. } => Goal::Parameter { name: name.clone(), uncertainty },
-            Goal::Reading { range, .. } => Goal::Reading { range: *range, uncertainty },
-        }
-    };
-    goals.iter().zip(floors).map(left).collect()
-}
-
-/// The candidates with other plateaus in the same mountings.
-fn with_set_points(candidates: &Candidates, set_points: &[SetPoint]) -> Candidates {
-    let mut other = candidates.clone();
-    for scenario in &mut other.scenarios {
-        let experiment = Experiment { set_points: set_points.to_vec(), ..scenario.model.experiment().clone() };
-        // The same positions and mountings have the same unknowns.
-        scenario.model = scenario.model.in_experiment(experiment);
-    }
-    other
-}
-
-/// All rests, and of each mounting's speeds some at equal distances.
-fn uniform_set_points(experiment: &Experiment) -> Vec<SetPoint> {
-    let mut chosen = Vec::new();
-    for m in 0..experiment.mountings.len() {
-        let (rests, spins): (Vec<SetPoint>, Vec<SetPoint>) =
-            experiment.set_points.iter().filter(|s| s.mounting == m).partition(|s| s.is_rest());
-        chosen.extend(rests);
-        let count = spins.len().min(UNIFORM_SPEEDS);
-        chosen.extend((1..=count).map(|n| spins[n * spins.len() / count - 1]));
-    }
-    chosen
-}
-
-/// [K5.5] on the same mountings: `Omega^2 = 10 g m / R*`, `R*` the largest radius; rest at 0 and pi.
-fn normalised_set_points(experiment: &Experiment, levels: &[f64]) -> Vec<SetPoint> {
-    let largest = experiment.mountings.iter().map(|m| m.arm_y.x).fold(0.0, f64::max);
-    let unit = (10.0 * experiment.site.gravity / largest).sqrt();
-    let sign = if experiment.set_points.iter().any(|s| s.omega < 0.0) { -1.0 } else { 1.0 };
-    let mut chosen = Vec::new();
-    for mounting in 0..experiment.mountings.len() {
-        for &m in levels {
-            if m == 0.0 {
-                chosen.extend([0.0, std::f64::consts::PI].map(|angle| SetPoint { mounting, omega: 0.0, angle }));
-            } else {
-                chosen.push(SetPoint { mounting, omega: sign * unit * m.sqrt(), angle: 0.0 });
-            }
-        }
-    }
-    chosen
 }
