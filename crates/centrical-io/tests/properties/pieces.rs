@@ -73,7 +73,7 @@ fn every_number_is_read_to_the_last_bit() {
             if below(500) == 0 {
                 usual = below(8);
             }
-            let time = format!("{:.4}", row as f64 * 1e-4);
+            let time = format!("{:.4}", f64::from(row) * 1e-4);
             expected.t.push(time.parse().unwrap());
             text.push_str(&time);
             for column in &mut expected.f_z {
