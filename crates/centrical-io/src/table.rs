@@ -341,6 +341,11 @@ impl<'a> Rows<'a> {
     }
 }
 
+/// Whether any value is below the one before. All are looked at, several at a time.
+fn runs_backwards(values: &[f64]) -> bool {
+    values.windows(2).map(|pair| usize::from(pair[1] < pair[0])).sum::<usize>() > 0
+}
+
 /// What an ascending column should be.
 const ASCENDING: &str = "a time that does not run backwards";
 

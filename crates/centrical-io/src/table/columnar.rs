@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::{ASCENDING, LARGEST, Rows, Rule};
+use super::{ASCENDING, LARGEST, Rows, Rule, runs_backwards};
 use crate::error::{Error, Place};
 
 /// Appends the next values of a column, [`super::BLOCK`] at most, and none at its end.
@@ -65,7 +65,6 @@ fn check(file: &Path, first_row: u64, rows: &mut Rows) -> Result<(), Error> {
 /// Whether there is nothing to say of any of the values, the last one before them being that.
 fn is_plain(values: &[f64], last: f64, rule: Rule) -> bool {
     let wrong = values.iter().map(|value| usize::from(value.is_nan() || value.abs() > LARGEST)).sum::<usize>();
-    let backwards = || values.windows(2).map(|pair| usize::from(pair[1] < pair[0])).sum::<usize>();
-    let ascends = || values.first().is_none_or(|first| *first >= last) && backwards() == 0;
+    let ascends = || values.first().is_none_or(|first| *first >= last) && !runs_backwards(values);
     wrong == 0 && (!rule.ascends() || ascends())
 }

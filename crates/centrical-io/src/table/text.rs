@@ -22,7 +22,7 @@ use self::layout::{Fault, Layout, Prologue};
 use self::piece::Text;
 pub(super) use self::piece::{Lines, Packed, Plain};
 use self::separators::Separators;
-use super::{ASCENDING, Block, Field, Rows};
+use super::{ASCENDING, Block, Field, Rows, runs_backwards};
 use crate::error::{Error, Place};
 
 /// Pieces read at a time.
@@ -268,8 +268,7 @@ impl Piece {
     /// Sees that what should ascend does, row after row.
     fn check_times(&mut self, skipped: u64, fields: &[Field], block: &Block) {
         for (field, column) in fields.iter().zip(block).filter(|(field, _)| field.rule.ascends()) {
-            let backwards = column.windows(2).map(|pair| usize::from(pair[1] < pair[0])).sum::<usize>();
-            if backwards > 0
+            if runs_backwards(column)
                 && let Some(row) = column.windows(2).position(|pair| pair[1] < pair[0])
             {
                 let found = format!("{} after {}", column[row + 1], column[row]);
