@@ -45,9 +45,8 @@ pub fn predict(
     stated: &TypeB,
     truth: &[f64],
 ) -> Result<Prediction, FitError> {
-    let truth = unit_of(model, weights, speed_uncertainty, truth)?;
+    let (truth, structure) = unit_with_structure(model, weights, speed_uncertainty, truth)?;
     let perfect = readings(model, weights, &truth);
-    let structure = Structure::of(model, &perfect, speed_uncertainty)?;
     let fit = fit::exact_with(&structure, model, &perfect, speed_uncertainty)?;
     let budget = Budget::new(&fit, model, &perfect, speed_uncertainty, stated)?;
     let leans = (0..truth.len()).map(|j| budget.leans_on_lost(&fit, j)).collect();
@@ -65,10 +64,20 @@ pub fn unit_of(
     speed_uncertainty: f64,
     expected: &[f64],
 ) -> Result<Vec<f64>, FitError> {
-    let perfect = readings(model, weights, expected);
-    let is_short = || Ok(Structure::of(model, &perfect, speed_uncertainty)?.observability().rank() < expected.len());
+    unit_with_structure(model, weights, speed_uncertainty, expected).map(|(unit, _)| unit)
+}
+
+fn unit_with_structure(
+    model: &MeasurementModel,
+    weights: &[Weight],
+    speed_uncertainty: f64,
+    expected: &[f64],
+) -> Result<(Vec<f64>, Structure), FitError> {
+    let structure = Structure::of(model, &readings(model, weights, expected), speed_uncertainty)?;
+    let is_short = structure.observability().rank() < expected.len();
     let expects_none = expected.iter().all(|value| *value == 0.0);
-    Ok(if expects_none && is_short()? { model.parameters().typical_in_turn() } else { expected.to_vec() })
+    let unit = if expects_none && is_short { model.parameters().typical_in_turn() } else { expected.to_vec() };
+    Ok((unit, structure))
 }
 
 /// Perfect readings of a unit.

@@ -20,7 +20,7 @@ mod polytope;
 mod program;
 
 use self::model::Model;
-pub(super) use self::polytope::{Polytope, Total};
+pub(super) use self::polytope::{Polytope, Total, visits_in};
 use super::information::{Factor, Scene, Smooth, sum_of, trace_of_product};
 use super::robustness::Scenes;
 

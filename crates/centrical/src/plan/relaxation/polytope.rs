@@ -33,11 +33,9 @@ pub(in crate::plan) struct Total {
     pub high: f64,
 }
 
-impl Total {
-    /// Visits of a design in the set.
-    pub fn of(&self, w: &[f64]) -> f64 {
-        self.atoms.iter().map(|&x| w[x]).sum()
-    }
+/// Visits of a design in a set of atoms.
+pub(in crate::plan) fn visits_in(atoms: &[usize], w: &[f64]) -> f64 {
+    atoms.iter().map(|&x| w[x]).sum()
 }
 
 /// A design keeps a total to this.
@@ -99,7 +97,7 @@ impl Polytope {
 
     /// Whether a design keeps the totals.
     pub fn keeps_totals(&self, w: &[f64]) -> bool {
-        self.totals.iter().all(|total| (total.low - KEPT..=total.high + KEPT).contains(&total.of(w)))
+        self.totals.iter().all(|total| (total.low - KEPT..=total.high + KEPT).contains(&visits_in(&total.atoms, w)))
     }
 
     /// Gains less what a visit is charged for the totals that it counts in.

@@ -221,8 +221,8 @@ impl<'a> Tree<'a> {
             self.relax_to(self.tolerance(), &mut node, Some(&start));
         }
         let node = &node;
-        let of_mountings = self.undecided(node);
-        let decided = match of_mountings {
+        let mut is_divided = false;
+        let decided = match self.undecided(node) {
             Some(m) if !self.is_out_of_nodes() => {
                 let with = |set_up| {
                     let mut child = node.clone();
@@ -234,15 +234,13 @@ impl<'a> Tree<'a> {
             None => {
                 self.seek(node, true);
                 self.take_whole(node);
-                // Its parts are open or counted already.
-                if self.divide_by_visits(node) {
-                    return vec![];
-                }
+                is_divided = self.divide_by_visits(node);
                 vec![]
             }
             Some(_) => vec![],
         };
-        if decided.is_empty() {
+        // The parts of a node that is divided by visits are open or counted already.
+        if decided.is_empty() && !is_divided {
             self.bound = self.bound.min(node.relaxed.bound);
         }
         decided

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::problem::Problem;
 use super::tree::{Node, Tree};
-use crate::plan::relaxation::Total;
+use crate::plan::relaxation::{Total, visits_in};
 
 /// A set of visits that are alike.
 #[derive(Debug, Clone)]
@@ -61,10 +61,6 @@ impl Alike {
             }
         }
         all
-    }
-
-    fn of(&self, w: &[f64]) -> f64 {
-        self.atoms.iter().map(|&x| w[x]).sum()
     }
 }
 
@@ -152,10 +148,9 @@ impl Tree<'_> {
         if !self.effort.is_exact && self.visit_nodes.is_multiple_of(SOUGHT_EVERY) {
             self.round_visits(node);
         }
-        let mut parts = if self.effort.is_exact { Vec::new() } else { self.in_parts(node, NEARLY_WHOLE) };
-        if parts.is_empty() && !self.effort.is_exact {
-            parts = self.in_parts(node, WHOLE);
-        }
+        let all = [NEARLY_WHOLE, WHOLE].into_iter().filter(|_| !self.effort.is_exact);
+        let mut all = all.map(|whole| self.in_parts(node, whole)).filter(|parts| !parts.is_empty());
+        let mut parts = all.next().unwrap_or_default();
         if parts.is_empty() {
             let Some(sides) = self.by_one_visit(node) else { return false };
             let sides = self.relaxed(vec![sides]).swap_remove(0);
@@ -264,7 +259,7 @@ impl Tree<'_> {
         let cut_off = (self.threshold() - node.relaxed.bound).max(LEAST_RISE);
         let mut all: Vec<InParts> = Vec::new();
         for (set, alike) in self.alike.iter().enumerate() {
-            let total = alike.of(w);
+            let total = visits_in(&alike.atoms, w);
             let is_same = |other: &InParts| {
                 self.alike[other.set].mounting == alike.mounting && (other.total - total).abs() < SAME_TOTAL
             };
