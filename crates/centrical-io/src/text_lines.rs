@@ -44,14 +44,12 @@ impl<const N: usize> WithSimd for Fill<'_, N> {
                 digits.take(&column[rows.clone()]);
             }
             for row in rows.clone().rev() {
-                let mut after = b'\n';
+                let mut ended_by = b'\n';
                 for (digits, column) in digits.iter().zip(&columns).rev() {
-                    start -= 1;
-                    text[start] = after;
-                    after = b',';
-                    if let Some(room) = text[..start].last_chunk_mut() {
-                        start -= digits.put(row - rows.start, room).unwrap_or_else(|| put_shortest(column[row], room));
-                    }
+                    let Some(room) = text[..start].last_chunk_mut() else { break };
+                    let put = digits.put(row - rows.start, ended_by, room);
+                    start -= put.unwrap_or_else(|| put_shortest(column[row], ended_by, room));
+                    ended_by = b',';
                 }
             }
         }
@@ -59,11 +57,12 @@ impl<const N: usize> WithSimd for Fill<'_, N> {
     }
 }
 
-/// Writes a number to the end of `text` in the shortest form that reads back the same, and tells its length.
+/// Writes a number in the shortest form that reads back the same, and what ends it, to the end of `text`, and tells the length of both.
 #[cold]
-fn put_shortest(number: f64, text: &mut [u8; ROOM]) -> usize {
+fn put_shortest(number: f64, ended_by: u8, text: &mut [u8; ROOM]) -> usize {
     let mut buffer = zmij::Buffer::new();
     let digits = if number.is_nan() { "nan" } else { buffer.format(number) };
-    text[ROOM - digits.len()..].copy_from_slice(digits.as_bytes());
-    digits.len()
+    text[ROOM - 1 - digits.len()..ROOM - 1].copy_from_slice(digits.as_bytes());
+    text[ROOM - 1] = ended_by;
+    digits.len() + 1
 }

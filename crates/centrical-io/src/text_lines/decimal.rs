@@ -1,25 +1,24 @@
 //! Numbers as text to a fixed number of decimals, many at a time: the digits side by side, as the vectors of the processor
 //! have room for them, then each number where it belongs.
 //!
-//! A number in units of its last decimal is a whole one below 10^15: two halves of eight digits, each split in all parts of
-//! a word at once. Sixteen characters have them with the point in its place, and zeros before them. Who fills a text from its end
-//! writes the next number over these.
+//! A number in units of its last decimal is a whole one below 10^15: two halves of eight digits. Sixteen characters have them
+//! with the point in its place, and zeros before them. Who fills a text from its end writes the next number over these.
 
 #![allow(
     clippy::inline_always,
     reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
 )]
 
-use super::digits::eight_digits;
+use super::digits::split;
 
 /// Numbers that are worked on together.
 pub(super) const ROWS: usize = 64;
 
-/// Room for the longest number.
+/// Room for the longest number and what ends it.
 pub(super) const ROOM: usize = 32;
 
-/// Sixteen times the character 0.
-const ZEROS: u128 = u128::from_ne_bytes([b'0'; 16]);
+/// Eight times the character 0.
+const ZEROS: u64 = u64::from_ne_bytes([b'0'; 8]);
 
 /// Units of the last decimal that sixteen characters have room for, the point among them.
 const LARGEST: f64 = 1e15;
@@ -43,12 +42,14 @@ pub(super) struct Digits {
     decimals: Decimals,
     /// Sixteen characters for each number, the first in the lowest byte of the first word: zeros, digits, the point.
     words: [[u64; ROWS]; 2],
-    /// One for each number that is negative, as written; [`OTHER`] for one that has no such text.
-    minus: [u64; ROWS],
+    /// How many of them each number has, without its sign; [`OTHER`] of one that has no such text.
+    length: [usize; ROWS],
+    /// One for each number that is negative, as written.
+    minus: [usize; ROWS],
 }
 
 /// A number that has to be written otherwise.
-const OTHER: u64 = 2;
+const OTHER: usize = 0;
 
 /// Powers of ten.
 const POWERS: [f64; 15] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
@@ -78,66 +79,110 @@ impl Decimals {
     pub fn count(self) -> u32 {
         self.count
     }
+
+    /// The sizes of numbers in units of the last decimal, whole ones; NaN for a number that has no such text.
+    #[inline(always)]
+    fn units(self, numbers: &[f64; ROWS]) -> [f64; ROWS] {
+        let units_of_one = POWERS[self.count as usize];
+        let mut all = [0.0; ROWS];
+        for (units, number) in all.iter_mut().zip(numbers) {
+            let scaled = number.abs() * units_of_one;
+            *units = if scaled < LARGEST { (scaled + SHIFT) - SHIFT } else { f64::NAN };
+        }
+        if self.exact {
+            for (units, number) in all.iter_mut().zip(numbers) {
+                *units = if *units / units_of_one == number.abs() { *units } else { f64::NAN };
+            }
+        }
+        all
+    }
 }
 
 impl Digits {
     pub const fn new(decimals: Decimals) -> Self {
-        Self { decimals, words: [[0; ROWS]; 2], minus: [OTHER; ROWS] }
+        Self { decimals, words: [[0; ROWS]; 2], length: [OTHER; ROWS], minus: [0; ROWS] }
     }
 
     /// Takes at most [`ROWS`] numbers.
     #[inline(always)]
     pub fn take(&mut self, numbers: &[f64]) {
-        let Self { decimals: Decimals { count, exact, .. }, words: [first, last], minus } = self;
-        let (count, exact) = (*count, *exact);
-        let units_of_one = POWERS[count as usize];
-        let before = (1_u128 << (8 * (15 - count))) - 1;
-        let after = !(before << 8 | 0xff);
-        let ([before_0, before_1], [after_0, after_1]) = (halves(before), halves(after));
-        let [fixed_0, fixed_1] = halves(ZEROS ^ (u128::from(b'0' ^ b'.') << (8 * (15 - count))));
+        let Decimals { count, short, exact } = self.decimals;
         let mut padded = [0.0; ROWS];
         padded[..numbers.len()].copy_from_slice(numbers);
-        for (row, signed) in padded.into_iter().enumerate() {
-            let number = signed.abs();
-            let scaled = number * units_of_one;
-            let units = (scaled + SHIFT) - SHIFT;
-            let fits = scaled < LARGEST && (!exact || units / units_of_one == number);
+        let units = self.decimals.units(&padded);
+        for ((minus, number), units) in self.minus.iter_mut().zip(&padded).zip(&units) {
+            *minus = usize::from(number.is_sign_negative() && (exact || *units != 0.0));
+        }
+        // A digit before the point, the point, and the decimals.
+        self.length = [count as usize + 2; ROWS];
+        for power in &POWERS[count as usize + 1..] {
+            for (length, units) in self.length.iter_mut().zip(&units) {
+                *length += usize::from(units >= power);
+            }
+        }
+        self.write(&units);
+        if short {
+            self.shorten();
+        }
+        for (length, units) in self.length.iter_mut().zip(&units) {
+            *length = if units.is_nan() { OTHER } else { *length };
+        }
+    }
+
+    /// Writes numbers, given in units of the last decimal, with the point in its place and zeros before them.
+    #[inline(always)]
+    fn write(&mut self, units: &[f64; ROWS]) {
+        let [first, last] = &mut self.words;
+        for ((first, last), units) in first.iter_mut().zip(last.iter_mut()).zip(units) {
             // Within one of the quotient.
             let quotient = (1e-8 * units + SHIFT) - SHIFT;
             let rest = units - 1e8 * quotient;
             let over = if rest < 0.0 { 1.0 } else { 0.0 };
-            let (high, low) = (eight_digits(whole(quotient - over)), eight_digits(whole(rest + 1e8 * over)));
-            first[row] = fixed_0 | ((high >> 8 | low << 56) & before_0) | (high & after_0);
-            last[row] = fixed_1 | ((low >> 8) & before_1) | (low & after_1);
-            let is_zero = !exact && units == 0.0;
-            let sign = if is_zero { 0 } else { signed.to_bits() >> 63 };
-            minus[row] = if fits { sign } else { OTHER };
+            (*first, *last) = (whole(quotient - over), whole(rest + 1e8 * over));
+        }
+        split(first);
+        split(last);
+        // What is before the point moves up.
+        let point = 8 * (15 - self.decimals.count);
+        let before = (1_u128 << point) - 1;
+        let ([before_0, before_1], [after_0, after_1]) = (halves(before), halves(!(before << 8 | 0xff)));
+        let [point_0, point_1] = halves(u128::from(b'0' ^ b'.') << point);
+        for (first, last) in first.iter_mut().zip(last) {
+            let (high, low) = (*first, *last);
+            *first = ZEROS ^ point_0 | ((high >> 8 | low << 56) & before_0) | (high & after_0);
+            *last = ZEROS ^ point_1 | ((low >> 8) & before_1) | (low & after_1);
         }
     }
 
-    /// Writes number `row` to the end of `text`, zeros before it, and tells its length; none if it has no such text.
+    /// Leaves out zeros at the end, and the point if nothing is left behind it.
     #[inline(always)]
-    pub fn put(&self, row: usize, text: &mut [u8; ROOM]) -> Option<usize> {
-        let minus = self.minus[row];
-        if minus == OTHER {
+    fn shorten(&mut self) {
+        let count = self.decimals.count as usize;
+        let zeros_of = |word: u64| (word ^ ZEROS).leading_zeros() as usize / 8;
+        let [first, last] = &mut self.words;
+        for ((first, last), length) in first.iter_mut().zip(last).zip(&mut self.length) {
+            let zeros = if zeros_of(*last) == 8 { 8 + zeros_of(*first) } else { zeros_of(*last) };
+            let left_out = zeros + usize::from(zeros == count);
+            let (before, end) = if left_out < 8 { (*first, *last) } else { (0, *first) };
+            let bits = 8 * (left_out % 8);
+            (*first, *last) = (before << bits, end << bits | before >> 1 >> (63 - bits));
+            *length -= left_out;
+        }
+    }
+
+    /// Writes number `row` and what ends it to the end of `text`, zeros before it, and tells the length of both; none if the number has
+    /// no such text.
+    #[inline(always)]
+    pub fn put(&self, row: usize, ended_by: u8, text: &mut [u8; ROOM]) -> Option<usize> {
+        let length = self.length[row];
+        if length == OTHER {
             return None;
         }
-        let Decimals { count, short, .. } = self.decimals;
-        let mut characters = u128::from(self.words[0][row]) | u128::from(self.words[1][row]) << 64;
-        // Zeros are zero, the point is not.
-        let digits = characters ^ ZEROS;
-        // The last digit before the point is written in any case.
-        let leading = (digits.trailing_zeros() / 8).min(14 - count);
-        let mut length = 16 - leading;
-        if short {
-            let zeros = digits.leading_zeros() / 8;
-            let left_out = zeros + u32::from(zeros == count);
-            characters <<= 8 * left_out;
-            length -= left_out;
-        }
-        text[ROOM - 16..].copy_from_slice(&characters.to_le_bytes());
-        text[(ROOM - 1 - length as usize) & (ROOM - 1)] = b'-';
-        Some(length as usize + usize::from(minus == 1))
+        text[ROOM - 17..ROOM - 9].copy_from_slice(&self.words[0][row].to_le_bytes());
+        text[ROOM - 9..ROOM - 1].copy_from_slice(&self.words[1][row].to_le_bytes());
+        text[ROOM - 1] = ended_by;
+        text[(ROOM - 2 - length) % ROOM] = b'-';
+        Some(length + self.minus[row] + 1)
     }
 }
 
@@ -163,8 +208,8 @@ mod tests {
         digits.take(numbers);
         let text = |row| {
             let mut room = [0; ROOM];
-            let length = digits.put(row, &mut room)?;
-            Some(String::from_utf8(room[ROOM - length..].to_vec()).unwrap())
+            let length = digits.put(row, b',', &mut room)?;
+            Some(String::from_utf8(room[ROOM - length..].to_vec()).unwrap().strip_suffix(',').unwrap().to_owned())
         };
         (0..numbers.len()).map(text).collect()
     }
