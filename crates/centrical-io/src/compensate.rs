@@ -46,6 +46,16 @@ pub fn compensate_record(
     columns: &Columns,
     output: &Path,
 ) -> Result<Compensated, Error> {
+    // On a thread of those that share the work: another one would be waited for, batch by batch.
+    rayon::scope(|_| on_this_thread(compensation, input, columns, output))
+}
+
+fn on_this_thread(
+    compensation: &Compensation,
+    input: &Path,
+    columns: &Columns,
+    output: &Path,
+) -> Result<Compensated, Error> {
     let mut writer = RecordWriter::create_rounded(output, compensation.certificate().range)?;
     let mut sum = Compensated { decimals: writer.decimals(), ..Compensated::default() };
     let mut written = Ok(());
