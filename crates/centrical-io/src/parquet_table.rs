@@ -4,15 +4,12 @@ use std::io::{self, Write};
 use std::mem;
 use std::sync::Arc;
 
-use bytes::Bytes;
 use parquet::basic::{Compression, Repetition, Type as Physical};
-use parquet::column::writer::{ColumnCloseResult, ColumnWriterImpl};
 use parquet::data_type::DoubleType;
 use parquet::errors::ParquetError;
-use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPropertiesPtr};
-use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
-use parquet::schema::types::{ColumnDescPtr, Type};
-use rayon::prelude::*;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::Type;
 
 /// How a table is laid out in its file.
 #[derive(Debug, Clone, Copy)]
@@ -29,21 +26,13 @@ impl Layout {
 }
 
 /// Rows in a row group: a MB a column, which the processor's caches hold from the first number to the last page.
-const GROUP: usize = 1 << 17;
+pub(crate) const GROUP: usize = 1 << 17;
 
 /// A table that is written row group by row group.
 pub(crate) struct ParquetTable<W: Write + Send> {
     file: SerializedFileWriter<W>,
     /// The next row group.
-    columns: Vec<Column>,
-}
-
-/// A column of a row group.
-#[derive(Default)]
-struct Column {
-    values: Vec<f64>,
-    /// Room for its pages: memory that is asked for anew would be faulted in anew, page by page.
-    room: Vec<u8>,
+    columns: Vec<Vec<f64>>,
 }
 
 impl<W: Write + Send> ParquetTable<W> {
@@ -63,56 +52,44 @@ impl<W: Write + Send> ParquetTable<W> {
             .set_column_statistics_enabled(time.into(), EnabledStatistics::Chunk)
             .build();
         let file = SerializedFileWriter::new(output, Arc::new(schema), Arc::new(properties)).map_err(failed)?;
-        Ok(Self { file, columns: names.iter().map(|_| Column::default()).collect() })
+        Ok(Self { file, columns: vec![Vec::new(); names.len()] })
     }
 
     /// Adds rows, given as columns of equal length.
     pub fn write<C: AsRef<[f64]>>(&mut self, columns: &[C]) -> io::Result<()> {
         for (column, piece) in self.columns.iter_mut().zip(columns) {
-            column.values.extend_from_slice(piece.as_ref());
+            column.extend_from_slice(piece.as_ref());
         }
-        if self.columns[0].values.len() >= GROUP { self.flush().map_err(failed) } else { Ok(()) }
+        if self.columns[0].len() >= GROUP { self.flush() } else { Ok(()) }
+    }
+
+    /// Adds a row group, unless it has no rows.
+    pub fn write_group(&mut self, columns: &[Vec<f64>]) -> io::Result<()> {
+        if columns[0].is_empty() { Ok(()) } else { self.try_group(columns).map_err(failed) }
     }
 
     /// Ends the table and gives its output back.
     pub fn finish(mut self) -> io::Result<W> {
-        self.flush().map_err(failed)?;
+        self.flush()?;
         self.file.into_inner().map_err(failed)
     }
 
-    /// Ends the row group. Columns are encoded side by side.
-    fn flush(&mut self) -> Result<(), ParquetError> {
-        let descriptions = self.file.schema_descr().columns();
-        let properties = self.file.properties();
-        let encode = |(column, description): (&mut Column, _)| column.encode(description, properties);
-        let encoded: Vec<_> = self.columns.par_iter_mut().zip(descriptions).map(encode).collect();
+    fn flush(&mut self) -> io::Result<()> {
+        let mut columns = mem::take(&mut self.columns);
+        self.write_group(&columns)?;
+        columns.iter_mut().for_each(Vec::clear);
+        self.columns = columns;
+        Ok(())
+    }
+
+    fn try_group(&mut self, columns: &[Vec<f64>]) -> Result<(), ParquetError> {
         let mut group = self.file.next_row_group()?;
-        for (column, encoded) in self.columns.iter_mut().zip(encoded) {
-            let (pages, closed) = encoded?;
-            group.append_column(&pages, closed)?;
-            column.room = pages.try_into_mut().map_or_else(|_| Vec::new(), Vec::from);
+        for values in columns {
+            let mut column = group.next_column()?.ok_or_else(|| ParquetError::General("one column more".to_owned()))?;
+            column.typed::<DoubleType>().write_batch(values, None, None)?;
+            column.close()?;
         }
         group.close().map(|_| ())
-    }
-}
-
-impl Column {
-    /// Its pages, and what the footer says of them. The values are taken.
-    fn encode(
-        &mut self,
-        description: &ColumnDescPtr,
-        properties: &WriterPropertiesPtr,
-    ) -> Result<(Bytes, ColumnCloseResult), ParquetError> {
-        let mut room = mem::take(&mut self.room);
-        room.clear();
-        let mut pages = TrackedWrite::new(room);
-        let page_writer = Box::new(SerializedPageWriter::new(&mut pages));
-        let (description, properties) = (Arc::clone(description), Arc::clone(properties));
-        let mut writer = ColumnWriterImpl::<DoubleType>::new(description, properties, page_writer);
-        writer.write_batch(&self.values, None, None)?;
-        self.values.clear();
-        let closed = writer.close()?;
-        Ok((pages.into_inner()?.into(), closed))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Records out, block by block: CSV, or Parquet where the file's name ends in `.parquet`.
 
 mod output;
+mod parquet;
 mod text;
 
 use std::ffi::OsString;
@@ -8,10 +9,10 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use self::output::Output;
+use self::output::SteadyFile;
+use self::parquet::RowGroups;
 use self::text::TextTable;
 use crate::error::Error;
-use crate::parquet_table::{Layout, ParquetTable};
 use crate::text_lines::Decimals;
 use centrical::reduction::RecordSlice;
 
@@ -33,19 +34,6 @@ trait Table: Send {
 
     /// Writes what is left and sees it to the disk.
     fn finish(self: Box<Self>) -> io::Result<()>;
-}
-
-impl Table for ParquetTable<Output> {
-    fn write(&mut self, blocks: &[RecordSlice]) -> io::Result<()> {
-        blocks.iter().try_for_each(|block| {
-            let [f1, f2, f3] = block.f_z;
-            self.write(&[block.t, f1, f2, f3])
-        })
-    }
-
-    fn finish(self: Box<Self>) -> io::Result<()> {
-        (*self).finish()?.finish()
-    }
 }
 
 impl RecordWriter {
@@ -70,11 +58,11 @@ impl RecordWriter {
         let mut beside = file.as_os_str().to_owned();
         beside.push(".tmp");
         let failed = |error| Error::writing(file, error);
-        let output = Output::new(File::create(&beside).map_err(failed)?);
+        let output = File::create(&beside).and_then(SteadyFile::new).map_err(failed)?;
         let is_parquet = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"));
         let decimals = decimals.filter(|_| !is_parquet);
         let table: Box<dyn Table> = if is_parquet {
-            Box::new(ParquetTable::new(output, Layout::PLAIN, &["t", "f1", "f2", "f3"]).map_err(failed)?)
+            Box::new(RowGroups::new(output).map_err(failed)?)
         } else {
             Box::new(TextTable::new(output, decimals).map_err(failed)?)
         };

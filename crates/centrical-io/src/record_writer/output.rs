@@ -1,78 +1,72 @@
-//! A file that is written while the next bytes are being made, and seen to the disk as it grows.
+//! A file that is written while what comes next is being made, and seen to the disk as it grows.
 
 use std::fs::File;
 use std::io::{self, Write};
-use std::mem;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread::{self, JoinHandle};
-
-/// Pieces that may wait to be written: enough that neither side waits for a hiccup of the other.
-const AHEAD: usize = 32;
 
 /// Bytes after which the disk is asked to take what there is: what is left at the end is soon done.
 const STEP: usize = 32 << 20;
 
-/// Bytes that [`Write`] gathers.
-const GATHERED: usize = 1 << 20;
+/// What takes pieces of a table and has them in a file.
+pub(super) trait Sink<P>: Send + 'static {
+    /// Writes the next piece.
+    fn write(&mut self, piece: &mut P) -> io::Result<()>;
 
-/// Bytes on their way to the file: those of `text` from `start` on.
-#[derive(Debug, Default)]
-pub(super) struct Piece {
-    pub text: Vec<u8>,
-    pub start: usize,
+    /// Ends the file, all of it on the disk.
+    fn finish(self) -> io::Result<()>;
 }
 
-/// The file. What goes wrong is told by a later call, at the latest by [`Output::finish`].
-pub(super) struct Output {
+/// A sink on a thread of its own. What goes wrong is told by a later call, at the latest by [`Output::finish`].
+pub(super) struct Output<P> {
     /// To the thread that writes; none after the last piece.
-    pieces: Option<SyncSender<Message>>,
+    pieces: Option<SyncSender<Message<P>>>,
     /// Pieces that are written: room for the next.
-    written: Receiver<Piece>,
+    written: Receiver<P>,
     thread: Option<JoinHandle<io::Result<()>>>,
-    /// What [`Write`] has gathered.
-    gathered: Piece,
 }
 
-enum Message {
-    Write(Piece),
-    /// That was all: see it to the disk.
+enum Message<P> {
+    Write(P),
+    /// That was all.
     Finish,
 }
 
-impl Output {
-    /// Writes to `file` from its start.
-    pub fn new(file: File) -> Self {
-        let (pieces, received) = sync_channel(AHEAD);
+impl<P: Default + Send + 'static> Output<P> {
+    /// Begins; so many pieces may wait to be written that neither side waits for a hiccup of the other.
+    pub fn new(sink: impl Sink<P>, ahead: usize) -> Self {
+        let (pieces, received) = sync_channel(ahead);
         let (done, written) = channel();
-        let thread = thread::spawn(move || write_behind(file, &received, &done));
-        Self { pieces: Some(pieces), written, thread: Some(thread), gathered: Piece::default() }
+        let thread = thread::spawn(move || write_behind(sink, &received, &done));
+        Self { pieces: Some(pieces), written, thread: Some(thread) }
     }
 
     /// Room for a piece; what is in it may be anything.
-    pub fn room(&self) -> Piece {
+    pub fn room(&self) -> P {
         self.written.try_recv().unwrap_or_default()
     }
 
     /// Adds a piece.
-    pub fn send(&mut self, piece: Piece) -> io::Result<()> {
+    pub fn send(&mut self, piece: P) -> io::Result<()> {
         self.tell(Message::Write(piece))
     }
 
     /// Ends the file, all of it on the disk.
     pub fn finish(mut self) -> io::Result<()> {
-        self.flush()?;
         self.tell(Message::Finish)?;
         self.end()
     }
 
-    fn tell(&mut self, message: Message) -> io::Result<()> {
+    fn tell(&mut self, message: Message<P>) -> io::Result<()> {
         match self.pieces.as_ref().map(|pieces| pieces.send(message)) {
             Some(Ok(())) => Ok(()),
             // Who no longer listens has failed.
             _ => self.end(),
         }
     }
+}
 
+impl<P> Output<P> {
     /// Waits for what is under way and tells how it went.
     fn end(&mut self) -> io::Result<()> {
         self.pieces = None;
@@ -82,28 +76,7 @@ impl Output {
     }
 }
 
-impl Write for Output {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.gathered.text.extend_from_slice(bytes);
-        if self.gathered.text.len() >= GATHERED {
-            self.flush()?;
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        if self.gathered.text.is_empty() {
-            return Ok(());
-        }
-        let mut room = self.room();
-        room.start = 0;
-        room.text.clear();
-        let gathered = mem::replace(&mut self.gathered, room);
-        self.send(gathered)
-    }
-}
-
-impl Drop for Output {
+impl<P> Drop for Output<P> {
     /// Nobody writes any more afterwards.
     fn drop(&mut self) {
         if self.thread.is_some() {
@@ -114,27 +87,59 @@ impl Drop for Output {
 }
 
 /// Writes pieces until no more come.
-fn write_behind(mut file: File, pieces: &Receiver<Message>, written: &Sender<Piece>) -> io::Result<()> {
-    let (ask, asked) = sync_channel(1);
-    let same = file.try_clone()?;
-    let syncing = thread::spawn(move || asked.iter().try_for_each(|()| same.sync_data()));
-    let mut since = 0;
-    let mut is_whole = false;
+fn write_behind<P>(mut sink: impl Sink<P>, pieces: &Receiver<Message<P>>, written: &Sender<P>) -> io::Result<()> {
     for message in pieces {
         match message {
-            Message::Write(piece) => {
-                file.write_all(&piece.text[piece.start..])?;
-                since += piece.text.len() - piece.start;
-                // Nobody may have use for the room, and the disk may still be busy with the last time.
+            Message::Write(mut piece) => {
+                sink.write(&mut piece)?;
+                // Nobody may have use for the room.
                 let _ = written.send(piece);
-                if since >= STEP && ask.try_send(()).is_ok() {
-                    since = 0;
-                }
             }
-            Message::Finish => is_whole = true,
+            Message::Finish => return sink.finish(),
         }
     }
-    drop(ask);
-    syncing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-    if is_whole { file.sync_all() } else { Ok(()) }
+    Ok(())
+}
+
+/// A file that the disk is asked to take while it grows.
+pub(super) struct SteadyFile {
+    file: File,
+    /// Bytes since the disk was last asked.
+    since: usize,
+    /// To the thread that asks it.
+    ask: SyncSender<()>,
+    asking: JoinHandle<io::Result<()>>,
+}
+
+impl SteadyFile {
+    /// Writes to `file` from its start.
+    pub fn new(file: File) -> io::Result<Self> {
+        let same = file.try_clone()?;
+        let (ask, asked) = sync_channel(1);
+        let asking = thread::spawn(move || asked.iter().try_for_each(|()| same.sync_data()));
+        Ok(Self { file, since: 0, ask, asking })
+    }
+
+    /// Ends the file, all of it on the disk.
+    pub fn finish(self) -> io::Result<()> {
+        drop(self.ask);
+        self.asking.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+        self.file.sync_all()
+    }
+}
+
+impl Write for SteadyFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.since += written;
+        // The disk may still be busy with the last time.
+        if self.since >= STEP && self.ask.try_send(()).is_ok() {
+            self.since = 0;
+        }
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
 }
