@@ -1,6 +1,7 @@
 //! The samples of a plateau's window, and what is looked up in them before and after the fit.
 
 use std::borrow::Cow;
+use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -211,12 +212,53 @@ impl Shown {
     }
 }
 
-/// Some of so many samples, or all of them: neighbours in each of equal ranges, here and there in it, so that nothing
-/// periodic is always seen at the same phase.
+/// Some of so many samples, or all of them: neighbours in each of equal ranges, at a place in it that is as good as random, so that
+/// nothing periodic is always seen at the same phase. Places in steps would not do: with the ranges they make steps again, and some
+/// rotation has whole turns in each.
 fn spread_out(all: usize) -> impl Iterator<Item = Range<usize>> {
     let step = (all * NEIGHBOURS).div_ceil(SHOWN).max(NEIGHBOURS);
     (0..all).step_by(step).enumerate().map(move |(k, from)| {
-        let from = from + k * 7919 % (step - NEIGHBOURS + 1);
+        // Multiples of an irrational number by squares are equally distributed (Weyl 1916), whatever is added in steps.
+        let place = ((k * k) as f64 * SQRT_2).fract();
+        let from = from + whole(place * (step - NEIGHBOURS + 1) as f64);
         from.min(all)..(from + NEIGHBOURS).min(all)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::{NEIGHBOURS, spread_out};
+
+    /// How much the samples that are shown are seen at one phase of something with so many turns per sample: 1 if always.
+    fn concentration(all: usize, turns: f64) -> f64 {
+        let phases = spread_out(all).map(|part| TAU * (turns * part.start as f64).fract());
+        let (count, cosines, sines) =
+            phases.fold((0.0, 0.0, 0.0), |(n, c, s), phase| (n + 1.0, c + phase.cos(), s + phase.sin()));
+        f64::hypot(cosines, sines) / count
+    }
+
+    #[test]
+    fn nothing_periodic_is_always_seen_at_the_same_phase() {
+        for all in [254_937, 3_994_948, 3_994_949, 20_000_000] {
+            let range = all as f64 / 512.0;
+            // From some turns in all to hundreds in each range.
+            let worst =
+                (0..20_000).map(|i| concentration(all, (0.03 + f64::from(i) * 0.0137) / range)).fold(0.0, f64::max);
+            assert!(worst < 0.3, "{worst} of {all}");
+        }
+        // A plateau at 378.4 revolutions a minute, at 10 kHz.
+        assert!(concentration(3_994_948, 378.4 / 60.0 * 1e-4) < 0.3);
+    }
+
+    #[test]
+    fn all_ranges_are_shown_from_their_places() {
+        for all in [1, 7, 8, 9, 4095, 4096, 4097, 70_001] {
+            let shown: Vec<_> = spread_out(all).collect();
+            assert!(shown.is_sorted_by(|a, b| a.end <= b.start) && shown.last().unwrap().end <= all);
+            let count: usize = shown.iter().map(ExactSizeIterator::len).sum();
+            assert!(count <= 4096 && count + NEIGHBOURS > all.min(4096) / 2, "{count} of {all}");
+        }
+    }
 }
