@@ -64,7 +64,8 @@ struct Fit {
     once_out: bool,
 }
 
-/// Room to work in.
+/// Room to work in, in lines of the fastest memory.
+#[repr(align(64))]
 struct Room {
     columns: [[f64; STRIP]; TERMS],
     readings: [[f64; STRIP]; 3],
