@@ -1,10 +1,10 @@
 //! Records that are kept in memory between the two passes over them, in room that all of them share.
 
-use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical::reduction::RecordSlice;
 
+use super::times::Times;
 use crate::table::Index;
 
 /// Bytes that records take at most: an hour at 1 kHz and more.
@@ -29,22 +29,6 @@ pub(crate) struct Kept<'a> {
     /// Where they stand, if they are not kept and the file can be read from anywhere.
     pub(super) index: Option<Index>,
     pub(super) is_whole: bool,
-}
-
-/// The times of neighbouring samples.
-struct Times {
-    /// The samples, counted in the record.
-    range: Range<usize>,
-    span: [f64; 2],
-    law: Law,
-}
-
-/// How they follow each other.
-enum Law {
-    /// In equal steps from the first to the last, each as many units of its last place off as this: a byte instead of
-    /// eight.
-    Even(Vec<i8>),
-    Any(Vec<f64>),
 }
 
 impl Default for Room {
@@ -136,77 +120,5 @@ impl<'a> Kept<'a> {
 impl Drop for Kept<'_> {
     fn drop(&mut self) {
         self.room.give_back(self.bytes);
-    }
-}
-
-impl Times {
-    /// The times of the samples from `start` on, at least one.
-    fn of(start: usize, t: &[f64]) -> Self {
-        let span = [t[0], t[t.len() - 1]];
-        let mut is_even = true;
-        let off = t.iter().zip(even(span, t.len())).map(|(t, even)| {
-            let off = last_places(*t, even);
-            #[expect(clippy::cast_possible_truncation, reason = "what is lost is seen")]
-            let short = off as i8;
-            is_even &= i64::from(short) == off;
-            short
-        });
-        let off = off.collect();
-        let law = if is_even { Law::Even(off) } else { Law::Any(t.to_vec()) };
-        Self { range: start..start + t.len(), span, law }
-    }
-
-    fn bytes(&self) -> usize {
-        match &self.law {
-            Law::Even(off) => off.len(),
-            Law::Any(t) => size_of_val(t.as_slice()),
-        }
-    }
-
-    fn write(&self, t: &mut Vec<f64>) {
-        match &self.law {
-            Law::Even(off) => {
-                let even = even(self.span, off.len());
-                t.extend(
-                    off.iter()
-                        .zip(even)
-                        .map(|(off, even)| f64::from_bits(even.to_bits().wrapping_add_signed(i64::from(*off)))),
-                );
-            }
-            Law::Any(times) => t.extend_from_slice(times),
-        }
-    }
-}
-
-/// Equal steps from one time to another.
-fn even([first, last]: [f64; 2], count: usize) -> impl Iterator<Item = f64> {
-    let step = (last - first) / (count.max(2) - 1) as f64;
-    (0..count).map(move |i| first + i as f64 * step)
-}
-
-/// How many units of its last place a number is above another.
-fn last_places(of: f64, above: f64) -> i64 {
-    of.to_bits().wrapping_sub(above.to_bits()).cast_signed()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Times;
-
-    #[test]
-    fn times_are_kept_to_the_last_bit() {
-        type Law = fn(f64) -> f64;
-        let even: [Law; 4] = [|i| i / 1000.0, |i| i * 1e-3, |i| 1_699_999_000.25 + i / 1000.0, |_| 0.0];
-        let others: [Law; 2] = [|i| i / 300.0 - 50.0, |i| (i + i % 2.0) / 1000.0];
-        for (law, is_even) in even.map(|law| (law, true)).into_iter().chain(others.map(|law| (law, false))) {
-            for n in [1, 2, 3, 20_000] {
-                let t: Vec<f64> = (0..n).map(f64::from).map(law).collect();
-                let times = Times::of(7, &t);
-                let mut again = Vec::new();
-                times.write(&mut again);
-                assert!(t.iter().zip(&again).all(|(a, b)| a.to_bits() == b.to_bits()) && again.len() == t.len());
-                assert!(n < 20_000 || matches!(times.law, super::Law::Even(_)) == is_even);
-            }
-        }
     }
 }
