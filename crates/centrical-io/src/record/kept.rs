@@ -26,6 +26,9 @@ pub(crate) struct Kept<'a> {
     bytes: usize,
     times: Vec<Times>,
     f_z: [Vec<f64>; 3],
+    /// Stamp of the last sample, and those of samples that had the stamp of the one before: these are not kept.
+    last: f64,
+    repeated: Vec<f64>,
     /// Where they stand, if they are not kept and the file can be read from anywhere.
     pub(super) index: Option<Index>,
     pub(super) is_whole: bool,
@@ -54,12 +57,23 @@ impl Room {
 impl<'a> Kept<'a> {
     /// No record yet.
     pub fn new(room: &'a Room) -> Self {
-        Self { room, bytes: 0, times: Vec::new(), f_z: [const { Vec::new() }; 3], index: None, is_whole: false }
+        Self {
+            room,
+            bytes: 0,
+            times: Vec::new(),
+            f_z: [const { Vec::new() }; 3],
+            last: f64::NEG_INFINITY,
+            repeated: Vec::new(),
+            index: None,
+            is_whole: false,
+        }
     }
 
     /// Begins another record, in the place of the last one.
     pub(super) fn begin(&mut self) {
         self.times.clear();
+        self.repeated.clear();
+        self.last = f64::NEG_INFINITY;
         for f in &mut self.f_z {
             f.clear();
             // All at once: readings that move to larger places leave the old ones behind, and what is not used costs nothing.
@@ -74,25 +88,43 @@ impl<'a> Kept<'a> {
         if self.is_whole { self.room.all / self.bytes.max(1) } else { 1 }
     }
 
+    /// Keeps the next stretch.
     pub(super) fn extend(&mut self, stretch: RecordSlice) {
+        let repeated = stretch.repeated(self.last);
+        self.last = stretch.t.last().copied().unwrap_or(self.last);
+        if repeated.is_empty() {
+            self.keep(stretch);
+        } else if self.take(size_of_val(repeated.as_slice())) {
+            self.repeated.extend(repeated.iter().map(|i| stretch.t[*i]));
+            self.keep(stretch.without(&repeated).as_slice());
+        }
+    }
+
+    fn keep(&mut self, stretch: RecordSlice) {
         if !self.is_whole || stretch.t.is_empty() {
             return;
         }
         let from = self.f_z[0].len();
         let times = Times::of(from, stretch.t);
-        let bytes = times.bytes() + 3 * size_of_val(stretch.t);
-        self.is_whole = self.room.take(bytes);
-        if self.is_whole {
-            self.bytes += bytes;
+        if self.take(times.bytes() + 3 * size_of_val(stretch.t)) {
             self.times.push(times);
             for (whole, part) in self.f_z.iter_mut().zip(stretch.f_z) {
                 whole.extend_from_slice(part);
             }
+        }
+    }
+
+    /// Takes more room, or gives back all if there is not so much.
+    fn take(&mut self, bytes: usize) -> bool {
+        self.is_whole = self.is_whole && self.room.take(bytes);
+        if self.is_whole {
+            self.bytes += bytes;
         } else {
-            self.times = Vec::new();
+            (self.times, self.repeated) = (Vec::new(), Vec::new());
             self.f_z = [const { Vec::new() }; 3];
             self.room.give_back(std::mem::take(&mut self.bytes));
         }
+        self.is_whole
     }
 
     /// How many samples there are in a window, more or less.
@@ -104,8 +136,9 @@ impl<'a> Kept<'a> {
         self.times.iter().filter(move |times| from <= times.span[1] && times.span[0] <= to)
     }
 
-    /// Gives `visit` the samples of a window, from and to [s].
-    pub(super) fn between<T>(&self, window: [f64; 2], visit: impl FnOnce(RecordSlice) -> T) -> T {
+    /// Gives `visit` the samples of a window, from and to [s], and how many with the stamp of the one before are not among
+    /// them.
+    pub(super) fn between<T>(&self, window: [f64; 2], visit: impl FnOnce(RecordSlice, usize) -> T) -> T {
         let touched: Vec<&Times> = self.touched(window).collect();
         let mut t = Vec::with_capacity(touched.iter().map(|times| times.range.len()).sum());
         for times in &touched {
@@ -113,7 +146,9 @@ impl<'a> Kept<'a> {
         }
         let start = touched.first().map_or(0, |times| times.range.start);
         let f_z = self.f_z.each_ref().map(|f| &f[start..start + t.len()]);
-        visit(RecordSlice { t: &t, f_z }.between(window))
+        let [from, to] = window;
+        let repeated = self.repeated.iter().filter(|t| (from..=to).contains(*t)).count();
+        visit(RecordSlice { t: &t, f_z }.between(window), repeated)
     }
 }
 
