@@ -2,6 +2,7 @@
 
 mod kept;
 mod passes;
+mod times;
 
 use std::path::Path;
 

@@ -211,7 +211,7 @@ fn one_mounting(
     let survey = record.survey(kept)?;
     let telemetry = session.telemetry(mounting)?;
     let located = survey.locate(telemetry.as_ref(), &schedule).map_err(refused)?;
-    let average = |plateau: usize, samples: RecordSlice| located.average(plateau, samples);
+    let average = |plateau: usize, samples: RecordSlice, repeated: usize| located.average(plateau, samples, repeated);
     let averaged = record.windows(kept, &located.windows(), &average)?;
     let averaged = averaged.into_iter().collect::<Result<_, _>>().map_err(refused)?;
     let overview = RecordOverview::of(mounting + 1, &survey.extremes().collect::<Vec<_>>());

@@ -146,7 +146,7 @@ pub fn reduce(
     survey.append(survey.condense(record.as_slice()));
     survey.finish();
     let located = survey.locate(telemetry, schedule)?;
-    let average = |plateau| located.average(plateau, record.as_slice());
+    let average = |plateau| located.average(plateau, record.as_slice(), 0);
     let plateaus = (0..schedule.len()).map(average).collect::<Result<_, _>>()?;
     Ok(located.into_mounting(plateaus))
 }

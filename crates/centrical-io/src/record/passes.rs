@@ -57,16 +57,18 @@ impl<'a> RecordFile<'a> {
         Ok(survey)
     }
 
-    /// Second pass: calls `average` with the number of each window, from and to [s], in ascending order, and its samples.
-    /// Of a record that is not kept, one window at a time is held.
+    /// Second pass: calls `average` with the number of each window, from and to [s], in ascending order, its samples, and
+    /// how many with the stamp of the one before are not among them. Of a record that is not kept, one window at a time is held.
     pub fn windows<T: Send>(
         &self,
         kept: &Kept,
         windows: &[[f64; 2]],
-        average: &(dyn Fn(usize, RecordSlice) -> T + Sync),
+        average: &(dyn Fn(usize, RecordSlice, usize) -> T + Sync),
     ) -> Result<Vec<T>, Error> {
         if kept.is_whole {
-            let of = |(k, window): (usize, &[f64; 2])| kept.between(*window, |samples| average(k, samples));
+            let of = |(k, window): (usize, &[f64; 2])| {
+                kept.between(*window, |samples, repeated| average(k, samples, repeated))
+            };
             let numbered: Vec<(usize, &[f64; 2])> = windows.iter().enumerate().collect();
             let mut averaged = Vec::with_capacity(windows.len());
             let mut rest = numbered.as_slice();
@@ -86,7 +88,7 @@ impl<'a> RecordFile<'a> {
         match &kept.index {
             Some(index) => {
                 let one = |(k, window): (usize, &[f64; 2])| {
-                    self.samples(index, *window).map(|samples| average(k, samples.as_slice()))
+                    self.samples(index, *window).map(|samples| average(k, samples.as_slice(), 0))
                 };
                 windows.iter().enumerate().map(one).collect()
             }
@@ -117,7 +119,7 @@ impl<'a> RecordFile<'a> {
     fn windows_in_order<T>(
         &self,
         windows: &[[f64; 2]],
-        average: &(dyn Fn(usize, RecordSlice) -> T + Sync),
+        average: &(dyn Fn(usize, RecordSlice, usize) -> T + Sync),
     ) -> Result<Vec<T>, Error> {
         let mut averaged = Vec::with_capacity(windows.len());
         let mut samples = vec![Record::default(); windows.len()];
@@ -130,7 +132,7 @@ impl<'a> RecordFile<'a> {
                 && stretch.t.last().is_some_and(|last| last > to)
             {
                 let k = averaged.len();
-                averaged.push(average(k, std::mem::take(&mut samples[k]).as_slice()));
+                averaged.push(average(k, std::mem::take(&mut samples[k]).as_slice(), 0));
             }
         };
         self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks| {
@@ -139,7 +141,7 @@ impl<'a> RecordFile<'a> {
             }
         })?;
         for k in averaged.len()..windows.len() {
-            averaged.push(average(k, samples[k].as_slice()));
+            averaged.push(average(k, samples[k].as_slice(), 0));
         }
         Ok(averaged)
     }
@@ -166,30 +168,32 @@ mod tests {
     fn a_window_is_the_same_kept_or_read_again() {
         let folder = tempfile::tempdir().unwrap();
         let (plain, packed) = (folder.path().join("record.csv"), folder.path().join("record.csv.gz"));
-        let rows =
-            (0..40_000).map(|i| format!("{},{},-{}.5,{}e-3\n", f64::from(i) * 1e-3, i % 977, i % 11, i * i % 1009));
+        // Every thousandth stamp is that of the one before.
+        let t = |i: i32| f64::from(i - i32::from(i % 1000 == 999)) * 1e-3;
+        let rows = (0..40_000).map(|i| format!("{},{},-{}.5,{}e-3\n", t(i), i % 977, i % 11, i * i % 1009));
         let text: String = std::iter::once("t,f1,f2,f3\n".to_owned()).chain(rows).collect();
         fs::write(&plain, &text).unwrap();
         let mut encoder = GzEncoder::new(File::create(&packed).unwrap(), Compression::fast());
         encoder.write_all(text.as_bytes()).unwrap();
         encoder.finish().unwrap();
         let windows = [[0.0, 3.0], [3.5, 17.25], [17.3, 17.3], [20.0, 39.5]];
-        let samples = |file: &Path, most: usize| -> Vec<(usize, Record)> {
+        let samples = |file: &Path, most: usize| -> Vec<(usize, Record, usize)> {
             let (columns, room) = (Columns::default(), Room::of(most));
             let mut kept = Kept::new(&room);
             let record = RecordFile::new(file, &columns, &|_| {});
             record.survey(&mut kept).unwrap();
             assert_eq!(kept.is_whole, most > 0);
-            let whole = |k: usize, samples: RecordSlice| {
-                let mut record = Record::default();
-                record.extend(samples);
-                (k, record)
+            let once = |k: usize, samples: RecordSlice, left_out: usize| {
+                let repeated = samples.repeated(f64::NEG_INFINITY);
+                (k, samples.without(&repeated), left_out + repeated.len())
             };
-            record.windows(&kept, &windows, &whole).unwrap()
+            record.windows(&kept, &windows, &once).unwrap()
         };
         let all = 40_000 * 32;
         let expected = samples(&plain, all);
-        assert_eq!(expected.iter().map(|(_, record)| record.t.len()).collect::<Vec<_>>(), [3001, 13_751, 1, 19_501]);
+        let counts: Vec<(usize, usize)> =
+            expected.iter().map(|(_, record, repeated)| (record.t.len(), *repeated)).collect();
+        assert_eq!(counts, [(2998, 3), (13_737, 14), (1, 0), (19_482, 19)]);
         assert!(samples(&plain, 0) == expected && samples(&packed, 0) == expected && samples(&packed, all) == expected);
     }
 }

@@ -118,10 +118,12 @@ impl<'a> Evidence<'a> {
             return axes.map(|axis| (0..n).map(|i| at(axis, i)).collect());
         }
         axes.map(|axis| {
-            let of = InnerChanges { levels: &self.levels[axis], sums: &self.sums[axis], reach, inside: inside.clone() };
-            let mut changes: Vec<f64> = (0..inside.start).map(|i| at(axis, i)).collect();
-            changes.extend(widest(of));
-            changes.extend((inside.end..n).map(|i| at(axis, i)));
+            let mut changes = vec![0.0; n];
+            for i in (0..inside.start).chain(inside.end..n) {
+                changes[i] = at(axis, i);
+            }
+            let (levels, sums) = (&self.levels[axis], &self.sums[axis]);
+            widest(InnerChanges { levels, sums, reach, from: inside.start, changes: &mut changes[inside.clone()] });
             changes
         })
     }
@@ -142,35 +144,34 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// Changes of level about blocks that have all of the reach to both sides.
+/// Changes of level about the blocks from one on, that have all of the reach to both sides.
 struct InnerChanges<'a> {
     levels: &'a [f64],
     sums: &'a [f64],
     reach: f64,
-    inside: Range<usize>,
+    from: usize,
+    changes: &'a mut [f64],
 }
 
 impl WithSimd for InnerChanges<'_> {
-    type Output = Vec<f64>;
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
-        let Self { levels, sums, reach, inside } = self;
-        let n = inside.len();
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { levels, sums, reach, from, changes } = self;
         // Where the mean ahead ends, `reach` on, and the mean behind begins, `reach - 1` back: whole blocks and parts.
         let (ahead, behind) = (whole(reach), whole((reach - 1.0).ceil()));
         let (part_ahead, part_behind) = (reach - ahead as f64, behind as f64 - (reach - 1.0));
-        let from = |start: usize| start..start + n;
-        let (ends, ends_sums) = (&levels[from(inside.start + ahead)], &sums[from(inside.start + ahead)]);
-        let (begins, begins_sums) = (&levels[from(inside.start - behind)], &sums[from(inside.start - behind)]);
-        let (here_sums, next_sums) = (&sums[from(inside.start)], &sums[from(inside.start + 1)]);
-        let mut changes = vec![0.0; n];
+        let n = changes.len();
+        let blocks = |start: usize| start..start + n;
+        let (ends, ends_sums) = (&levels[blocks(from + ahead)], &sums[blocks(from + ahead)]);
+        let (begins, begins_sums) = (&levels[blocks(from - behind)], &sums[blocks(from - behind)]);
+        let (here_sums, next_sums) = (&sums[blocks(from)], &sums[blocks(from + 1)]);
         for (i, change) in changes.iter_mut().enumerate() {
             let after = ends_sums[i] + ends[i] * part_ahead - here_sums[i];
             let before = next_sums[i] - (begins_sums[i] + begins[i] * part_behind);
             *change = (after - before) / reach;
         }
-        changes
     }
 }
 

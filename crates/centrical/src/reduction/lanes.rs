@@ -19,7 +19,7 @@ pub(super) fn widest<W: WithSimd>(work: W) -> W::Output {
 
 /// Folds values into lanes, and the lanes into one.
 #[inline(always)]
-pub(super) fn fold<T: Copy>(values: &[f64], start: T, step: impl Fn(T, f64) -> T, join: impl Fn(T, T) -> T) -> T {
+fn fold<T: Copy>(values: &[f64], start: T, step: impl Fn(T, f64) -> T, join: impl Fn(T, T) -> T) -> T {
     let mut lanes = [start; LANES];
     let (whole, rest) = values.as_chunks::<LANES>();
     for chunk in whole {
@@ -71,6 +71,26 @@ pub(super) fn dot<S: Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
     S::as_mut_simd_f64s(&mut lanes).0.copy_from_slice(&sums[..vectors]);
     joined(lanes, |a, b| a + b)
+}
+
+/// The largest size, of numbers.
+#[inline(always)]
+pub(super) fn largest<S: Simd>(simd: S, values: &[f64]) -> f64 {
+    const CHAINS: usize = 4;
+    let mut most = [simd.splat_f64s(0.0); CHAINS];
+    let (vectors, rest) = S::as_simd_f64s(values);
+    let (whole, last) = vectors.as_chunks::<CHAINS>();
+    for vectors in whole {
+        for (most, vector) in most.iter_mut().zip(vectors) {
+            *most = simd.max_f64s(*most, simd.abs_f64s(*vector));
+        }
+    }
+    for vector in last {
+        most[0] = simd.max_f64s(most[0], simd.abs_f64s(*vector));
+    }
+    let [a, b, c, d] = most;
+    let most = simd.reduce_max_f64s(simd.max_f64s(simd.max_f64s(a, b), simd.max_f64s(c, d)));
+    rest.iter().fold(most, |most, value| most.max(value.abs()))
 }
 
 /// `y - factor x`.

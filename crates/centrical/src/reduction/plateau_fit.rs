@@ -38,14 +38,15 @@ pub struct PlateauFit {
 }
 
 impl PlateauFit {
-    /// Fits the plateau `index` in its window.
+    /// Fits the plateau `index` in its window; so many samples with repeated stamps were left out before.
     pub(super) fn new(
         record: RecordSlice,
+        repeated: usize,
         index: usize,
         window: &Window,
         blocks: &Blocks,
     ) -> Result<Self, ReductionError> {
-        let samples = Samples::cut_out(record, window, blocks);
+        let samples = Samples::cut_out(record, repeated, window, blocks);
         let mut strips = Strips::of(&samples);
         strips.judge(&samples.fit_of_medians(), false);
         let mut once_out = false;

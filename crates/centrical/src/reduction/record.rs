@@ -64,6 +64,33 @@ impl Record {
 }
 
 impl<'a> RecordSlice<'a> {
+    /// Samples that have the stamp of the one before, in ascending order; `before` is the stamp before the first.
+    #[must_use]
+    pub fn repeated(&self, before: f64) -> Vec<usize> {
+        let next = self.t.get(1..).unwrap_or_default();
+        // All are looked at, side by side: nearly always there is none.
+        let count = self.t.iter().zip(next).filter(|(t, next)| next <= t).count();
+        if count == 0 && self.t.first().is_none_or(|first| *first > before) {
+            return Vec::new();
+        }
+        let is_repeated = |i: &usize| self.t[*i] <= i.checked_sub(1).map_or(before, |i| self.t[i]);
+        (0..self.t.len()).filter(is_repeated).collect()
+    }
+
+    /// The record without these samples, in ascending order: few as a rule, and what is between them is copied at once.
+    #[must_use]
+    pub fn without(&self, samples: &[usize]) -> Record {
+        let room = || Vec::with_capacity(self.t.len() - samples.len());
+        let mut record = Record { t: room(), f_z: [room(), room(), room()] };
+        let mut start = 0;
+        for &i in samples {
+            record.extend(self.part(start..i));
+            start = i + 1;
+        }
+        record.extend(self.part(start..self.t.len()));
+        record
+    }
+
     /// Samples `from..to`.
     #[must_use]
     pub fn part(&self, range: std::ops::Range<usize>) -> RecordSlice<'a> {

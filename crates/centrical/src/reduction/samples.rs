@@ -50,27 +50,17 @@ struct Shown {
 }
 
 impl<'a> Samples<'a> {
-    /// The samples of a record in a window, without repeated stamps.
-    pub fn cut_out(record: RecordSlice<'a>, window: &'a Window, blocks: &'a Blocks) -> Self {
-        let RecordSlice { t, f_z } = record.between(window.span);
+    /// The samples of a record in a window, without repeated stamps; so many of these had been left out of it before.
+    pub fn cut_out(record: RecordSlice<'a>, repeated: usize, window: &'a Window, blocks: &'a Blocks) -> Self {
+        let record = record.between(window.span);
+        let RecordSlice { t, f_z } = record;
         let came = t.len();
         let steps = widest(Steps { t });
         let (t, f_z) = if steps[0] > 0.0 {
             (Cow::from(t), f_z.map(Cow::from))
         } else {
-            let repeated: Vec<usize> = (1..t.len()).filter(|i| t[*i] <= t[*i - 1]).collect();
-            // Few as a rule: what is between them is copied at once.
-            let pick = |values: &[f64]| -> Cow<[f64]> {
-                let mut picked = Vec::with_capacity(values.len() - repeated.len());
-                let mut start = 0;
-                for &i in &repeated {
-                    picked.extend_from_slice(&values[start..i]);
-                    start = i + 1;
-                }
-                picked.extend_from_slice(&values[start..]);
-                picked.into()
-            };
-            (pick(t), f_z.map(pick))
+            let samples = record.without(&record.repeated(f64::NEG_INFINITY));
+            (Cow::from(samples.t), samples.f_z.map(Cow::from))
         };
         let shown = Shown::of(&window.shape, &t, f_z.each_ref().map(|f| &**f));
         Self {
@@ -79,7 +69,7 @@ impl<'a> Samples<'a> {
             white: &blocks.sample_noise,
             repeat_rate: blocks.repeat_rate,
             shown,
-            repeated: came - t.len(),
+            repeated: repeated + came - t.len(),
             longest_step: steps[1],
             interval: blocks.interval,
             t,

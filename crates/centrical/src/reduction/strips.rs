@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::lanes::{dot, fold, range, subtract, widest};
+use super::lanes::{dot, largest, range, subtract, widest};
 use super::samples::Samples;
 use super::stuck::{longest_run, may_be_longer, stuck_on_any_axis};
 use super::triangle::{TERMS, Triangle};
@@ -64,7 +64,8 @@ struct Fit {
     once_out: bool,
 }
 
-/// Room to work in.
+/// Room to work in, in lines of the fastest memory.
+#[repr(align(64))]
 struct Room {
     columns: [[f64; STRIP]; TERMS],
     readings: [[f64; STRIP]; 3],
@@ -245,10 +246,10 @@ impl Strip {
         }
         self.triangle = Triangle::of(simd, columns, &mut readings);
         for (reach, q) in self.reach.iter_mut().zip(columns) {
-            *reach = largest(q);
+            *reach = largest(simd, q);
         }
         for (axis, left) in readings.iter().enumerate() {
-            (self.largest[axis], self.squares[axis]) = (largest(left), dot(simd, left, left));
+            (self.largest[axis], self.squares[axis]) = (largest(simd, left), dot(simd, left, left));
         }
     }
 
@@ -322,10 +323,4 @@ impl Strip {
             squares: each_axis(&|axis| self.squares[axis] + left.iter().map(|of| of[axis] * of[axis]).sum::<f64>()),
         }
     }
-}
-
-/// The largest size.
-#[inline(always)]
-fn largest(values: &[f64]) -> f64 {
-    fold(values, 0.0, |most, value| if value.abs() > most { value.abs() } else { most }, f64::max)
 }

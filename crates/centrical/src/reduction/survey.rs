@@ -143,12 +143,13 @@ impl Located {
         self.windows.plateaus.iter().map(|window| window.span).collect()
     }
 
-    /// Averages a plateau from the samples of its window; others are left aside.
+    /// Averages a plateau from the samples of its window; others are left aside. Samples with the stamp of the one before
+    /// are counted and not used; `repeated` such ones of the window do not come, and are counted as well.
     ///
     /// # Errors
     /// [`ReductionError`] if the samples are not steady, or do not tell the mean from the once-per-revolution term.
-    pub fn average(&self, plateau: usize, samples: RecordSlice) -> Result<PlateauFit, ReductionError> {
-        PlateauFit::new(samples, plateau, &self.windows.plateaus[plateau], &self.blocks)
+    pub fn average(&self, plateau: usize, samples: RecordSlice, repeated: usize) -> Result<PlateauFit, ReductionError> {
+        PlateauFit::new(samples, repeated, plateau, &self.windows.plateaus[plateau], &self.blocks)
     }
 
     /// The mounting, its plateaus being averaged, in the order of the schedule.

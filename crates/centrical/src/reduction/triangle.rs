@@ -61,19 +61,21 @@ impl Triangle {
 
     /// The triangle of all rows from those of the strips.
     pub fn joined(strips: &[&Self], terms: usize) -> Self {
-        let mut columns = vec![vec![0.0; strips.len() * terms]; terms];
-        let mut readings = [const { Vec::new() }; 3];
+        let rows = strips.len() * terms;
+        let mut room = vec![0.0; rows * (terms + 3)];
+        let (design, readings) = room.split_at_mut(rows * terms);
         for (s, strip) in strips.iter().enumerate() {
-            for (j, column) in columns.iter_mut().enumerate() {
-                column[s * terms..][..=j].copy_from_slice(&strip.r[j][..=j]);
-            }
-            for (axis, z) in readings.iter_mut().enumerate() {
-                z.extend((0..terms).map(|j| strip.z[j][axis]));
+            for j in 0..terms {
+                design[j * rows + s * terms..][..=j].copy_from_slice(&strip.r[j][..=j]);
+                for axis in 0..3 {
+                    readings[axis * rows + s * terms + j] = strip.z[j][axis];
+                }
             }
         }
-        let mut columns: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
-        let mut readings = readings.each_mut().map(Vec::as_mut_slice);
-        widest(Rows { terms: &mut columns, readings: &mut readings })
+        let mut columns: Vec<&mut [f64]> = design.chunks_exact_mut(rows).collect();
+        let (first, rest) = readings.split_at_mut(rows);
+        let (second, third) = rest.split_at_mut(rows);
+        widest(Rows { terms: &mut columns, readings: &mut [first, second, third] })
     }
 
     /// What coefficients, per axis, leave of the readings in the directions of `Q`: `Z - R B`.

@@ -200,17 +200,19 @@ struct Guess {
 }
 
 /// The greatest of `0..=most` that is accepted, by steps halved on refusal. Passes are repeated while they gain: chance
-/// may refuse a value below the limit, and hardly its neighbours too.
+/// may refuse a value below the limit, and hardly its neighbours too. What was refused once is not asked for again.
 fn furthest(most: usize, accepted: impl Fn(usize) -> bool) -> usize {
-    let mut reached = 0;
+    let (mut reached, mut refused) = (0, Vec::new());
     loop {
         let before = reached;
         let mut step = most - reached;
         while step > 0 {
-            if accepted(reached + step) {
-                reached += step;
+            let next = reached + step;
+            if !refused.contains(&next) && accepted(next) {
+                reached = next;
                 step = step.min(most - reached);
             } else {
+                refused.push(next);
                 step /= 2;
             }
         }

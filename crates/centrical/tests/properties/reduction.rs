@@ -237,7 +237,8 @@ fn in_stretches_as_whole() {
         survey.finish();
         let located = survey.locate(None, &schedule).expect("plateaus are there");
         let windows = located.windows();
-        let average = |k: usize| located.average(k, record.as_slice().between(windows[k])).expect("a steady plateau");
+        let average =
+            |k: usize| located.average(k, record.as_slice().between(windows[k]), 0).expect("a steady plateau");
         let averaged = (0..windows.len()).map(average).collect();
         assert_eq!(located.into_mounting(averaged).means(&noise), whole.means(&noise), "stretches of {length}");
     }
