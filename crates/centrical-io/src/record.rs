@@ -9,7 +9,7 @@ use std::path::Path;
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 
 pub(crate) use self::kept::{Kept, Room};
-pub(crate) use self::passes::RecordFile;
+pub(crate) use self::passes::{RecordFile, Windows};
 use crate::error::Error;
 use crate::table::{self, Block, ColumnName, Extent, Field, Index, Rule, Visitor};
 

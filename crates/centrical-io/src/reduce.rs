@@ -3,7 +3,10 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use centrical::reduction::{ClockOffset, NoiseModel, PlateauMean, RecordSlice, ReducedMounting, ScheduledPlateau};
+use centrical::reduction::{
+    ClockOffset, Located, NoiseModel, Plateau, PlateauFit, PlateauMean, RecordSlice, ReducedMounting, ReductionError,
+    ScheduledPlateau,
+};
 use centrical::{Observation, SetPoint, linear};
 use nalgebra::{Matrix3, Vector3};
 use rayon::ThreadPoolBuilder;
@@ -13,7 +16,7 @@ use crate::error::Error;
 use crate::input::Input;
 use crate::overview::RecordOverview;
 use crate::plateaus::PlateauMean as TabledPlateau;
-use crate::record::{Kept, RecordFile, Room};
+use crate::record::{Kept, RecordFile, Room, Windows};
 use crate::session::Session;
 use crate::steadiness::Steadiness;
 
@@ -211,11 +214,35 @@ fn one_mounting(
     let survey = record.survey(kept)?;
     let telemetry = session.telemetry(mounting)?;
     let located = survey.locate(telemetry.as_ref(), &schedule).map_err(refused)?;
-    let average = |plateau: usize, samples: RecordSlice, repeated: usize| located.average(plateau, samples, repeated);
-    let averaged = record.windows(kept, &located.windows(), &average)?;
+    let averaged = record.windows(kept, &&located)?;
     let averaged = averaged.into_iter().collect::<Result<_, _>>().map_err(refused)?;
     let overview = RecordOverview::of(mounting + 1, &survey.extremes().collect::<Vec<_>>());
     Ok((located.into_mounting(averaged), overview))
+}
+
+/// A plateau under way, or what was wrong with it.
+impl<'a> Windows for &'a Located {
+    type Window = Result<Plateau<'a>, ReductionError>;
+    type Mean = Result<PlateauFit, ReductionError>;
+
+    fn parts(&self) -> Vec<Vec<[f64; 2]>> {
+        (0..self.windows().len()).map(|plateau| Located::parts(self, plateau)).collect()
+    }
+
+    fn begin(&self, window: usize) -> Self::Window {
+        Ok(self.plateau(window))
+    }
+
+    fn add(&self, window: &mut Self::Window, part: [f64; 2], samples: RecordSlice, repeated: usize) {
+        let added = window.as_mut().map(|plateau| plateau.add(part, samples, repeated));
+        if let Ok(Err(error)) = added {
+            *window = Err(error);
+        }
+    }
+
+    fn end(&self, window: Self::Window) -> Self::Mean {
+        window.and_then(Plateau::finish)
+    }
 }
 
 impl From<PlateauMean> for ReducedPlateau {

@@ -55,13 +55,15 @@ mod survey;
 mod triangle;
 mod window;
 
+use std::ops::AddAssign;
+
 use nalgebra::{Matrix3, Vector3};
 
 pub use clock::{ClockOffset, SpeedTrace};
 pub use error::{ReductionError, Stretch};
 pub use mistake::Mistake;
 pub use noise::NoiseModel;
-pub use plateau_fit::PlateauFit;
+pub use plateau_fit::{Plateau, PlateauFit};
 pub use record::{Record, RecordSlice};
 pub use survey::{Condensed, Extremes, Located, Survey};
 
@@ -127,6 +129,15 @@ pub struct LeftOut {
     pub missing: usize,
     /// Samples with the stamp of the one before.
     pub repeated: usize,
+}
+
+impl AddAssign for LeftOut {
+    fn add_assign(&mut self, other: Self) {
+        self.spikes += other.spikes;
+        self.stuck += other.stuck;
+        self.missing += other.missing;
+        self.repeated += other.repeated;
+    }
 }
 
 /// Finds and averages the scheduled plateaus of one mounting.

@@ -32,6 +32,8 @@ pub(crate) struct Kept<'a> {
     /// Where they stand, if they are not kept and the file can be read from anywhere.
     pub(super) index: Option<Index>,
     pub(super) is_whole: bool,
+    /// Whether a record before was longer than all room: the next one is not begun in vain.
+    is_too_long: bool,
 }
 
 impl Default for Room {
@@ -66,6 +68,7 @@ impl<'a> Kept<'a> {
             repeated: Vec::new(),
             index: None,
             is_whole: false,
+            is_too_long: false,
         }
     }
 
@@ -74,13 +77,13 @@ impl<'a> Kept<'a> {
         self.times.clear();
         self.repeated.clear();
         self.last = f64::NEG_INFINITY;
-        for f in &mut self.f_z {
+        for f in self.f_z.iter_mut().filter(|_| !self.is_too_long) {
             f.clear();
             // All at once: readings that move to larger places leave the old ones behind, and what is not used costs nothing.
             f.reserve(self.room.all / BYTES);
         }
         self.room.give_back(std::mem::take(&mut self.bytes));
-        (self.index, self.is_whole) = (None, true);
+        (self.index, self.is_whole) = (None, !self.is_too_long);
     }
 
     /// How many records like this one there is room for, the room being taken by it alone.
@@ -90,6 +93,9 @@ impl<'a> Kept<'a> {
 
     /// Keeps the next stretch.
     pub(super) fn extend(&mut self, stretch: RecordSlice) {
+        if !self.is_whole {
+            return;
+        }
         let repeated = stretch.repeated(self.last);
         self.last = stretch.t.last().copied().unwrap_or(self.last);
         if repeated.is_empty() {
@@ -101,7 +107,7 @@ impl<'a> Kept<'a> {
     }
 
     fn keep(&mut self, stretch: RecordSlice) {
-        if !self.is_whole || stretch.t.is_empty() {
+        if stretch.t.is_empty() {
             return;
         }
         let from = self.f_z[0].len();
@@ -116,12 +122,13 @@ impl<'a> Kept<'a> {
 
     /// Takes more room, or gives back all if there is not so much.
     fn take(&mut self, bytes: usize) -> bool {
-        self.is_whole = self.is_whole && self.room.take(bytes);
+        self.is_whole = self.room.take(bytes);
         if self.is_whole {
             self.bytes += bytes;
         } else {
             (self.times, self.repeated) = (Vec::new(), Vec::new());
             self.f_z = [const { Vec::new() }; 3];
+            self.is_too_long |= self.bytes + bytes > self.room.all;
             self.room.give_back(std::mem::take(&mut self.bytes));
         }
         self.is_whole

@@ -15,6 +15,25 @@ use crate::table::{Block, Extent, Index};
 /// a copy, of 32 bytes a sample.
 const AT_A_TIME: usize = 1_500_000;
 
+/// What is done with the samples of windows.
+pub(crate) trait Windows: Sync {
+    /// A window that is under way, and what comes of it.
+    type Window: Send;
+    type Mean: Send;
+
+    /// Windows, in ascending order, each in parts that are easily held: from and to [s].
+    fn parts(&self) -> Vec<Vec<[f64; 2]>>;
+
+    /// Begins a window.
+    fn begin(&self, window: usize) -> Self::Window;
+
+    /// Takes the samples of the next part; so many with the stamp of the one before are not among them.
+    fn add(&self, window: &mut Self::Window, part: [f64; 2], samples: RecordSlice, repeated: usize);
+
+    /// Ends a window.
+    fn end(&self, window: Self::Window) -> Self::Mean;
+}
+
 /// The record in a file.
 pub(crate) struct RecordFile<'a> {
     file: &'a Path,
@@ -57,52 +76,35 @@ impl<'a> RecordFile<'a> {
         Ok(survey)
     }
 
-    /// Second pass: calls `average` with the number of each window, from and to [s], in ascending order, its samples, and
-    /// how many with the stamp of the one before are not among them. Of a record that is not kept, one window at a time is held.
-    pub fn windows<T: Send>(
-        &self,
-        kept: &Kept,
-        windows: &[[f64; 2]],
-        average: &(dyn Fn(usize, RecordSlice, usize) -> T + Sync),
-    ) -> Result<Vec<T>, Error> {
+    /// Second pass: what comes of the windows. Of a record that is not kept, a part of a window at a time is held.
+    pub fn windows<W: Windows>(&self, kept: &Kept, windows: &W) -> Result<Vec<W::Mean>, Error> {
+        let parts = windows.parts();
         if kept.is_whole {
-            let of = |(k, window): (usize, &[f64; 2])| {
-                kept.between(*window, |samples, repeated| average(k, samples, repeated))
-            };
-            let numbered: Vec<(usize, &[f64; 2])> = windows.iter().enumerate().collect();
-            let mut averaged = Vec::with_capacity(windows.len());
-            let mut rest = numbered.as_slice();
-            while !rest.is_empty() {
-                let mut samples = 0;
-                let is_beyond = |(_, window): &(usize, &[f64; 2])| {
-                    samples += kept.samples_in(**window);
-                    samples > AT_A_TIME
-                };
-                let (together, later) = rest.split_at(rest.iter().position(is_beyond).unwrap_or(rest.len()).max(1));
-                averaged.par_extend(together.par_iter().copied().map(of));
-                rest = later;
-            }
             (self.progress)(std::fs::metadata(self.file).map_or(0, |file| file.len()));
-            return Ok(averaged);
+            return Ok(kept_windows(kept, windows, &parts));
         }
         match &kept.index {
             Some(index) => {
-                let one = |(k, window): (usize, &[f64; 2])| {
-                    self.samples(index, *window).map(|samples| average(k, samples.as_slice(), 0))
+                let one = |(k, parts): (usize, &Vec<[f64; 2]>)| {
+                    let mut window = windows.begin(k);
+                    for part in parts {
+                        windows.add(&mut window, *part, self.samples(index, *part)?.as_slice(), 0);
+                    }
+                    Ok(windows.end(window))
                 };
-                windows.iter().enumerate().map(one).collect()
+                parts.iter().enumerate().map(one).collect()
             }
-            None => self.windows_in_order(windows, average),
+            None => self.windows_in_order(windows, &parts),
         }
     }
 
-    /// The samples of one window.
-    fn samples(&self, index: &Index, window: [f64; 2]) -> Result<Record, Error> {
-        let raw = self.raw_range(window);
+    /// The samples of a part of a window.
+    fn samples(&self, index: &Index, part: [f64; 2]) -> Result<Record, Error> {
+        let raw = self.raw_range(part);
         let mut samples = Record::default();
         index.read(self.file, &self.wanted.fields(), raw, &mut |first_row, block| {
             self.wanted.to_si(first_row, block);
-            samples.extend(stretch(block).between(window));
+            samples.extend(stretch(block).between(part));
             self.wanted.give_back(block);
         })?;
         (self.progress)(index.bytes(raw));
@@ -116,23 +118,20 @@ impl<'a> RecordFile<'a> {
         [from - slack, to + slack]
     }
 
-    fn windows_in_order<T>(
-        &self,
-        windows: &[[f64; 2]],
-        average: &(dyn Fn(usize, RecordSlice, usize) -> T + Sync),
-    ) -> Result<Vec<T>, Error> {
-        let mut averaged = Vec::with_capacity(windows.len());
-        let mut samples = vec![Record::default(); windows.len()];
+    fn windows_in_order<W: Windows>(&self, windows: &W, parts: &[Vec<[f64; 2]>]) -> Result<Vec<W::Mean>, Error> {
+        let begin =
+            |k: usize| UnderWay { window: Some(windows.begin(k)), added: 0, samples: Record::default(), mean: None };
+        let mut under_way: Vec<UnderWay<W>> = (0..parts.len()).map(begin).collect();
         let mut visit = |stretch: RecordSlice| {
-            for (window, samples) in windows.iter().zip(&mut samples).skip(averaged.len()) {
-                samples.extend(stretch.between(*window));
-            }
-            // A window is full once a later sample has come.
-            while let Some([_, to]) = windows.get(averaged.len())
-                && stretch.t.last().is_some_and(|last| last > to)
-            {
-                let k = averaged.len();
-                averaged.push(average(k, std::mem::take(&mut samples[k]).as_slice(), 0));
+            for (of, parts) in under_way.iter_mut().zip(parts) {
+                while let Some(part) = parts.get(of.added) {
+                    of.samples.extend(stretch.between(*part));
+                    // A part is full once a later sample has come.
+                    if stretch.t.last().is_none_or(|last| *last <= part[1]) {
+                        break;
+                    }
+                    of.add(windows, parts);
+                }
             }
         };
         self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks| {
@@ -140,11 +139,64 @@ impl<'a> RecordFile<'a> {
                 visit(stretch(block));
             }
         })?;
-        for k in averaged.len()..windows.len() {
-            averaged.push(average(k, samples[k].as_slice(), 0));
-        }
-        Ok(averaged)
+        let end = |(mut of, parts): (UnderWay<W>, &Vec<[f64; 2]>)| {
+            while of.added < parts.len() {
+                of.add(windows, parts);
+            }
+            of.mean
+        };
+        Ok(under_way.into_iter().zip(parts).filter_map(end).collect())
     }
+}
+
+/// A window whose samples come in the order of the record.
+struct UnderWay<W: Windows> {
+    window: Option<W::Window>,
+    /// Parts that are added, and the samples of the next.
+    added: usize,
+    samples: Record,
+    /// What came of it, after the last part.
+    mean: Option<W::Mean>,
+}
+
+impl<W: Windows> UnderWay<W> {
+    /// Adds the next of its parts.
+    fn add(&mut self, windows: &W, parts: &[[f64; 2]]) {
+        if let Some(window) = &mut self.window {
+            windows.add(window, parts[self.added], self.samples.as_slice(), 0);
+        }
+        self.samples.clear();
+        self.added += 1;
+        if self.added == parts.len() {
+            self.samples = Record::default();
+            self.mean = self.window.take().map(|window| windows.end(window));
+        }
+    }
+}
+
+/// What comes of windows of a record that is kept.
+fn kept_windows<W: Windows>(kept: &Kept, windows: &W, parts: &[Vec<[f64; 2]>]) -> Vec<W::Mean> {
+    let of = |(k, parts): (usize, &Vec<[f64; 2]>)| {
+        let mut window = windows.begin(k);
+        for part in parts {
+            kept.between(*part, |samples, repeated| windows.add(&mut window, *part, samples, repeated));
+        }
+        windows.end(window)
+    };
+    let numbered: Vec<(usize, &Vec<[f64; 2]>)> = parts.iter().enumerate().collect();
+    let mut averaged = Vec::with_capacity(parts.len());
+    let mut rest = numbered.as_slice();
+    while !rest.is_empty() {
+        let mut samples = 0;
+        let is_beyond = |(_, parts): &(usize, &Vec<[f64; 2]>)| {
+            samples += parts.iter().map(|part| kept.samples_in(*part)).max().unwrap_or(0);
+            samples > AT_A_TIME
+        };
+        let (together, later) = rest.split_at(rest.iter().position(is_beyond).unwrap_or(rest.len()).max(1));
+        averaged.par_extend(together.par_iter().copied().map(of));
+        rest = later;
+    }
+    averaged
 }
 
 fn begin(beginning: &Record) -> Survey {
@@ -163,6 +215,45 @@ mod tests {
     use super::super::kept::Room;
     use super::*;
 
+    /// The number of a window, its samples without those with the stamp of the one before, and how many these are.
+    type Gathering = (usize, Record, usize);
+
+    /// Windows whose samples are gathered.
+    struct Gathered;
+
+    impl Windows for Gathered {
+        type Window = Gathering;
+        type Mean = Gathering;
+
+        fn parts(&self) -> Vec<Vec<[f64; 2]>> {
+            // The second in two parts, the last in three; the third begins before the second ends.
+            let second = vec![[3.5, 10.0], [10.0_f64.next_up(), 17.25]];
+            let last = vec![[20.0, 20.0], [20.0_f64.next_up(), 20.5], [20.5_f64.next_up(), 39.5]];
+            vec![vec![[0.0, 3.0]], second, vec![[17.2, 17.3]], last]
+        }
+
+        fn begin(&self, window: usize) -> Gathering {
+            (window, Record::default(), 0)
+        }
+
+        fn add(
+            &self,
+            (_, record, all_repeated): &mut Gathering,
+            part: [f64; 2],
+            samples: RecordSlice,
+            left_out: usize,
+        ) {
+            let samples = samples.between(part);
+            let repeated = samples.repeated(f64::NEG_INFINITY);
+            record.extend(samples.without(&repeated).as_slice());
+            *all_repeated += left_out + repeated.len();
+        }
+
+        fn end(&self, window: Gathering) -> Gathering {
+            window
+        }
+    }
+
     /// The samples of windows, of records read once, again by its index, and again from start to end.
     #[test]
     fn a_window_is_the_same_kept_or_read_again() {
@@ -176,24 +267,19 @@ mod tests {
         let mut encoder = GzEncoder::new(File::create(&packed).unwrap(), Compression::fast());
         encoder.write_all(text.as_bytes()).unwrap();
         encoder.finish().unwrap();
-        let windows = [[0.0, 3.0], [3.5, 17.25], [17.3, 17.3], [20.0, 39.5]];
-        let samples = |file: &Path, most: usize| -> Vec<(usize, Record, usize)> {
+        let samples = |file: &Path, most: usize| -> Vec<Gathering> {
             let (columns, room) = (Columns::default(), Room::of(most));
             let mut kept = Kept::new(&room);
             let record = RecordFile::new(file, &columns, &|_| {});
             record.survey(&mut kept).unwrap();
             assert_eq!(kept.is_whole, most > 0);
-            let once = |k: usize, samples: RecordSlice, left_out: usize| {
-                let repeated = samples.repeated(f64::NEG_INFINITY);
-                (k, samples.without(&repeated), left_out + repeated.len())
-            };
-            record.windows(&kept, &windows, &once).unwrap()
+            record.windows(&kept, &Gathered).unwrap()
         };
         let all = 40_000 * 32;
         let expected = samples(&plain, all);
         let counts: Vec<(usize, usize)> =
             expected.iter().map(|(_, record, repeated)| (record.t.len(), *repeated)).collect();
-        assert_eq!(counts, [(2998, 3), (13_737, 14), (1, 0), (19_482, 19)]);
+        assert_eq!(counts, [(2998, 3), (13_737, 14), (101, 0), (19_482, 19)]);
         assert!(samples(&plain, 0) == expected && samples(&packed, 0) == expected && samples(&packed, all) == expected);
     }
 }

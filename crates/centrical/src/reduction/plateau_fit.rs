@@ -12,7 +12,7 @@ use super::samples::Samples;
 use super::saturation::{may_be_piled_up, piled_up};
 use super::settling::TimeStep;
 use super::shape::Shape;
-use super::strips::Strips;
+use super::strips::{Fitted, Strips};
 use super::triangle::{TERMS, Triangle};
 use super::window::Window;
 use super::{LeftOut, PlateauMean, RecordSlice, ReductionError};
@@ -37,54 +37,101 @@ pub struct PlateauFit {
     pub(super) cells: Cells,
 }
 
-impl PlateauFit {
-    /// Fits the plateau `index` in its window; so many samples with repeated stamps were left out before.
-    pub(super) fn new(
-        record: RecordSlice,
-        repeated: usize,
-        index: usize,
-        window: &Window,
-        blocks: &Blocks,
-    ) -> Result<Self, ReductionError> {
-        let samples = Samples::cut_out(record, repeated, window, blocks);
-        let mut strips = Strips::of(&samples);
-        strips.judge(&samples.fit_of_medians(), false);
+/// A plateau whose samples come part by part, in the order of time: what is left of a part that is judged is little.
+#[derive(Debug, Clone)]
+pub struct Plateau<'a> {
+    index: usize,
+    window: &'a Window,
+    blocks: &'a Blocks,
+    fitted: Fitted,
+    /// Their triangle and coefficients.
+    fit: Option<(Triangle, Vec<Vector3<f64>>)>,
+    /// Samples that came, and those that are not used.
+    came: usize,
+    left_out: LeftOut,
+    /// Stamp of the last one [s].
+    last: Option<f64>,
+}
+
+impl<'a> Plateau<'a> {
+    pub(super) fn new(index: usize, window: &'a Window, blocks: &'a Blocks) -> Self {
+        let (fitted, left_out) = (Fitted::default(), LeftOut::default());
+        Self { index, window, blocks, fitted, fit: None, came: 0, left_out, last: None }
+    }
+
+    /// Adds the samples of the next part, from and to [s]; so many with the stamp of the one before had been left out of them. They are
+    /// judged by the fit of all samples so far.
+    ///
+    /// # Errors
+    /// [`ReductionError`] if the samples are not steady, or do not tell the mean from the once-per-revolution term.
+    pub fn add(&mut self, part: [f64; 2], record: RecordSlice, repeated: usize) -> Result<(), ReductionError> {
+        let index = self.index;
+        let record = record.between(part);
+        if record.t.is_empty() {
+            return Ok(());
+        }
+        let samples = Samples::cut_out(record, repeated, self.window, self.blocks);
+        let mut strips = Strips::of(&samples, std::mem::take(&mut self.fitted));
+        let so_far = self.fit.take().map(|(_, coefficients)| coefficients);
+        strips.judge(&so_far.unwrap_or_else(|| samples.fit_of_medians()), false);
         let mut once_out = false;
-        loop {
+        self.fit = loop {
             let good = strips.good();
             if 2 * good <= samples.len() {
                 return Err(samples.unsteady(index, good));
             }
-            let (omega, interval) = (window.shape.omega, blocks.interval);
-            let aliased = ReductionError::RevolutionAliased { index, omega, interval };
-            let (triangle, coefficients) = strips.solve().ok_or(aliased)?;
+            let (triangle, coefficients) = strips.solve().ok_or_else(|| self.aliased())?;
             if !strips.judge(&coefficients, once_out) {
-                check_range(&samples, &strips, index)?;
-                return Ok(Self::from_fit(&samples, &strips, &coefficients, &triangle));
+                break Some((triangle, coefficients));
             }
             // From the second fit on, once out is out: the set shrinks, and the loop ends.
             once_out = true;
-        }
+        };
+        check_range(&samples, &strips, index)?;
+        self.came += samples.len();
+        self.left_out += samples.left_out(self.last, samples.len() - strips.good(), strips.stuck_and_unreadable());
+        self.last = samples.t.last().copied();
+        self.fitted = strips.into_fitted();
+        Ok(())
     }
 
-    fn from_fit(samples: &Samples, strips: &Strips, coefficients: &[Vector3<f64>], triangle: &Triangle) -> Self {
-        let (kept, came) = (strips.good(), samples.len());
-        let squares: Vector3<f64> = strips.sums(coefficients).map(|(_, sums)| sums.squares).sum();
-        let Window { span, shape } = samples.window;
+    /// Ends the plateau.
+    ///
+    /// # Errors
+    /// [`ReductionError::Unsteady`] if no samples came.
+    pub fn finish(self) -> Result<PlateauFit, ReductionError> {
+        let (index, window) = (self.index, self.window.span);
+        let none = ReductionError::Unsteady { index, window, samples: 0, good: 0 };
+        let (triangle, coefficients) = self.fit.as_ref().ok_or(none)?;
+        Ok(PlateauFit::of(&self, coefficients, triangle))
+    }
+
+    fn aliased(&self) -> ReductionError {
+        let (omega, interval) = (self.window.shape.omega, self.blocks.interval);
+        ReductionError::RevolutionAliased { index: self.index, omega, interval }
+    }
+}
+
+impl PlateauFit {
+    /// The fit of all parts.
+    fn of(plateau: &Plateau, coefficients: &[Vector3<f64>], triangle: &Triangle) -> Self {
+        let Plateau { window: Window { span, shape }, blocks, fitted, came, left_out, .. } = plateau;
+        let kept = fitted.good();
+        let squares: Vector3<f64> = fitted.sums(coefficients).map(|(_, sums)| sums.squares).sum();
         let columns = coefficients.len();
         let zero = Vector3::zeros();
         Self {
             window: *span,
             samples: kept,
             rejected: came - kept,
-            left_out: samples.left_out(came - kept, strips.stuck_and_unreadable()),
+            left_out: *left_out,
             mean: coefficients[columns - 1],
             once_per_revolution: if shape.omega == 0.0 { [zero; 2] } else { [coefficients[0], coefficients[1]] },
             settling: shape.settling.map_or(zero, |_| coefficients[columns - 2]),
             shape: *shape,
-            digit: *samples.digit,
+            digit: blocks.digit,
             variance: squares / kept as f64,
-            cells: cells(samples, strips, triangle, coefficients),
+            cells: cells(plateau, triangle, coefficients),
         }
     }
 
@@ -145,12 +192,12 @@ fn check_range(samples: &Samples, strips: &Strips, index: usize) -> Result<(), R
 }
 
 /// The strips' sums, gathered by cell.
-fn cells(samples: &Samples, strips: &Strips, triangle: &Triangle, coefficients: &[Vector3<f64>]) -> Cells {
+fn cells(plateau: &Plateau, triangle: &Triangle, coefficients: &[Vector3<f64>]) -> Cells {
     let terms = coefficients.len();
-    let [from, to] = samples.window.span;
-    let mut cells = Cells::empty(triangle, terms, (to - from) / CELLS as f64, samples.interval);
+    let [from, to] = plateau.window.span;
+    let mut cells = Cells::empty(triangle, terms, (to - from) / CELLS as f64, plateau.blocks.interval);
     let mut sums = vec![(0, Vector3::zeros(), [0.0; TERMS]); CELLS];
-    for (cell, of_strip) in strips.sums(coefficients) {
+    for (cell, of_strip) in plateau.fitted.sums(coefficients) {
         let (count, residuals, columns) = &mut sums[cell];
         *count += of_strip.count;
         *residuals += of_strip.residuals;

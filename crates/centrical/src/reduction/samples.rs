@@ -50,9 +50,8 @@ struct Shown {
 }
 
 impl<'a> Samples<'a> {
-    /// The samples of a record in a window, without repeated stamps; so many of these had been left out of it before.
+    /// The samples of a record, all in a window, without repeated stamps; so many of these had been left out of it before.
     pub fn cut_out(record: RecordSlice<'a>, repeated: usize, window: &'a Window, blocks: &'a Blocks) -> Self {
-        let record = record.between(window.span);
         let RecordSlice { t, f_z } = record;
         let came = t.len();
         let steps = widest(Steps { t });
@@ -124,17 +123,25 @@ impl<'a> Samples<'a> {
     }
 
     /// What is not used, by kind, `rejected` being the samples that came and are not, with those among them that are stuck
-    /// and those that are no numbers. Samples that never came are counted by the intervals between those that did.
-    pub fn left_out(&self, rejected: usize, (stuck, unreadable): (usize, usize)) -> LeftOut {
+    /// and those that are no numbers. Samples that never came are counted by the intervals between those that did, the stamp
+    /// before all of them among these.
+    pub fn left_out(&self, before: Option<f64>, rejected: usize, (stuck, unreadable): (usize, usize)) -> LeftOut {
         let gap = 1.5 * self.interval;
-        let missing = if self.longest_step < gap { 0 } else { self.samples_in_gaps(gap) };
+        let to_first = before.zip(self.t.first()).map_or(0.0, |(before, first)| first - before);
+        let inside = if self.longest_step < gap { 0 } else { self.samples_in_gaps(gap) };
+        let missing = inside + if to_first < gap { 0 } else { self.samples_in(to_first) };
         LeftOut { spikes: rejected - stuck - unreadable, stuck, missing: unreadable + missing, repeated: self.repeated }
     }
 
     /// Samples that never came: in steps of at least so long.
     fn samples_in_gaps(&self, least: f64) -> usize {
         let gaps = self.t.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step >= least);
-        gaps.map(|step| whole((step / self.interval).round()) - 1).sum()
+        gaps.map(|step| self.samples_in(step)).sum()
+    }
+
+    /// Samples that should have come within a step.
+    fn samples_in(&self, step: f64) -> usize {
+        whole((step / self.interval).round()) - 1
     }
 
     /// Why most samples cannot be used.

@@ -13,11 +13,20 @@ use super::triangle::{TERMS, Triangle};
 /// Samples of a strip at most.
 const STRIP: usize = 512;
 
-/// A window's samples, judged by a fit.
+/// A part of a window's samples, judged by a fit.
 pub(super) struct Strips<'a> {
     samples: &'a Samples<'a>,
     /// The stuck ones, if there are any.
     stuck: Option<Vec<bool>>,
+    /// With those of the parts before, which are fitted together with these.
+    fitted: Fitted,
+    /// The first of this part.
+    first: usize,
+}
+
+/// Strips whose samples are not needed any more.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Fitted {
     /// Terms that are fitted.
     terms: usize,
     /// Near the readings: less of them is left to rounding.
@@ -26,6 +35,7 @@ pub(super) struct Strips<'a> {
 }
 
 /// Neighbours, all of one cell.
+#[derive(Debug, Clone)]
 pub(super) struct Strip {
     pub cell: usize,
     range: Range<usize>,
@@ -76,16 +86,19 @@ impl Room {
 }
 
 impl<'a> Strips<'a> {
-    /// All samples, as if all were good.
-    pub fn of(samples: &'a Samples<'a>) -> Self {
-        let near = |axis: usize| samples.f_z[axis].iter().copied().find(|f| f.is_finite()).unwrap_or(0.0);
+    /// All samples, as if all were good, after those of the parts before.
+    pub fn of(samples: &'a Samples<'a>, mut fitted: Fitted) -> Self {
+        if fitted.each.is_empty() {
+            let near = |axis: usize| samples.f_z[axis].iter().copied().find(|f| f.is_finite()).unwrap_or(0.0);
+            (fitted.terms, fitted.reference) = (samples.window.shape.terms(), [0, 1, 2].map(near));
+        }
         let of_cell = |(cell, all): (usize, Range<usize>)| {
             let end = all.end;
             all.step_by(STRIP).map(move |from| Strip::new(cell, from..(from + STRIP).min(end)))
         };
-        let each = samples.cells().enumerate().flat_map(of_cell).collect();
-        let (terms, reference) = (samples.window.shape.terms(), [0, 1, 2].map(near));
-        let mut strips = Self { samples, stuck: None, terms, reference, each };
+        let first = fitted.each.len();
+        fitted.each.extend(samples.cells().enumerate().flat_map(of_cell));
+        let mut strips = Self { samples, stuck: None, fitted, first };
         let longest = samples.repeat_rate.map(|rate| longest_run(samples.len(), rate));
         let mut may_be_stuck = false;
         strips.each(|strip, strips, room| {
@@ -100,11 +113,21 @@ impl<'a> Strips<'a> {
         strips
     }
 
+    /// What is left of this part once it is judged.
+    pub fn into_fitted(self) -> Fitted {
+        self.fitted
+    }
+
+    /// The fit of this part and those before.
+    pub fn solve(&self) -> Option<(Triangle, Vec<Vector3<f64>>)> {
+        self.fitted.solve()
+    }
+
     /// Judges the samples by a fit whose last terms have these coefficients: whether other ones are good than before. With
     /// `once_out`, those that were not good stay out.
     pub fn judge(&mut self, coefficients: &[Vector3<f64>], once_out: bool) -> bool {
         let limits = self.samples.limits(coefficients).into();
-        let fit = Fit { coefficients: self.less_reference(coefficients), limits, once_out };
+        let fit = Fit { coefficients: self.fitted.less_reference(coefficients), limits, once_out };
         let mut changed = false;
         self.each(|strip, strips, room| changed |= widest(Judgement { strip, strips, fit: &fit, room }));
         changed
@@ -112,34 +135,52 @@ impl<'a> Strips<'a> {
 
     /// Works on one strip after another.
     fn each(&mut self, mut work: impl FnMut(&mut Strip, &Self, &mut Room)) {
-        let mut each = std::mem::take(&mut self.each);
+        let mut each = std::mem::take(&mut self.fitted.each);
         let mut room = Room::EMPTY;
-        for strip in &mut each {
+        for strip in &mut each[self.first..] {
             work(strip, self, &mut room);
         }
-        self.each = each;
+        self.fitted.each = each;
     }
 
-    /// The coefficients of all terms, the constant's less the reference; of terms that are not given, zero.
-    fn less_reference(&self, coefficients: &[Vector3<f64>]) -> [[f64; 3]; TERMS] {
-        let mut all = [[0.0; 3]; TERMS];
-        let given = &mut all[self.terms - coefficients.len()..self.terms];
-        given.iter_mut().zip(coefficients).for_each(|(b, of)| *b = (*of).into());
-        all[self.terms - 1].iter_mut().zip(self.reference).for_each(|(b, reference)| *b -= reference);
-        all
+    fn part(&self) -> &[Strip] {
+        &self.fitted.each[self.first..]
     }
 
     /// How many are good.
     pub fn good(&self) -> usize {
-        self.each.iter().map(Strip::good).sum()
+        self.part().iter().map(Strip::good).sum()
     }
 
     /// How many are stuck, and how many of the others are no numbers on some axis.
     pub fn stuck_and_unreadable(&self) -> (usize, usize) {
         let is_stuck = |i: &usize| self.stuck.as_ref().is_some_and(|stuck| stuck[*i]);
         let is_readable = |i: &usize| self.samples.f_z.iter().all(|f| f[*i].is_finite());
-        let bad = || self.each.iter().flat_map(|strip| strip.bad.iter().map(|i| strip.range.start + i));
+        let bad = || self.part().iter().flat_map(|strip| strip.bad.iter().map(|i| strip.range.start + i));
         (bad().filter(is_stuck).count(), bad().filter(|i| !is_stuck(i) && !is_readable(i)).count())
+    }
+
+    /// How many good samples have the lowest reading on an axis, or the highest, whichever are more.
+    pub fn most_at_an_end(&self, axis: usize) -> usize {
+        let low = self.part().iter().map(|strip| strip.low[axis]).fold(f64::INFINITY, f64::min);
+        let high = self.part().iter().map(|strip| strip.high[axis]).fold(f64::NEG_INFINITY, f64::max);
+        let count = |end: f64| -> usize {
+            let there = self.part().iter().filter(|strip| strip.low[axis] == end || strip.high[axis] == end);
+            there.map(|strip| strip.good_of(&self.samples.f_z[axis]).filter(|f| *f == end).count()).sum()
+        };
+        count(low).max(count(high))
+    }
+
+    /// The good readings on an axis.
+    pub fn good_readings(&self, axis: usize) -> Vec<f64> {
+        self.part().iter().flat_map(|strip| strip.good_of(&self.samples.f_z[axis])).collect()
+    }
+}
+
+impl Fitted {
+    /// How many are good.
+    pub fn good(&self) -> usize {
+        self.each.iter().map(Strip::good).sum()
     }
 
     /// The triangle of all strips, and the coefficients.
@@ -157,20 +198,13 @@ impl<'a> Strips<'a> {
         self.each.iter().map(move |strip| (strip.cell, strip.sums(&coefficients, self.terms)))
     }
 
-    /// How many good samples have the lowest reading on an axis, or the highest, whichever are more.
-    pub fn most_at_an_end(&self, axis: usize) -> usize {
-        let low = self.each.iter().map(|strip| strip.low[axis]).fold(f64::INFINITY, f64::min);
-        let high = self.each.iter().map(|strip| strip.high[axis]).fold(f64::NEG_INFINITY, f64::max);
-        let count = |end: f64| -> usize {
-            let there = self.each.iter().filter(|strip| strip.low[axis] == end || strip.high[axis] == end);
-            there.map(|strip| strip.good_of(&self.samples.f_z[axis]).filter(|f| *f == end).count()).sum()
-        };
-        count(low).max(count(high))
-    }
-
-    /// The good readings on an axis.
-    pub fn good_readings(&self, axis: usize) -> Vec<f64> {
-        self.each.iter().flat_map(|strip| strip.good_of(&self.samples.f_z[axis])).collect()
+    /// The coefficients of all terms, the constant's less the reference; of terms that are not given, zero.
+    fn less_reference(&self, coefficients: &[Vector3<f64>]) -> [[f64; 3]; TERMS] {
+        let mut all = [[0.0; 3]; TERMS];
+        let given = &mut all[self.terms - coefficients.len()..self.terms];
+        given.iter_mut().zip(coefficients).for_each(|(b, of)| *b = (*of).into());
+        all[self.terms - 1].iter_mut().zip(self.reference).for_each(|(b, reference)| *b -= reference);
+        all
     }
 }
 
@@ -231,11 +265,11 @@ impl Strip {
     fn orthogonalise<S: Simd>(&mut self, simd: S, strips: &Strips, room: &mut Room) {
         let n = self.range.len();
         let mut columns = room.columns.each_mut().map(|column| &mut column[..n]);
-        let columns = &mut columns[..strips.terms];
+        let columns = &mut columns[..strips.fitted.terms];
         let mut readings = room.readings.each_mut().map(|reading| &mut reading[..n]);
         strips.samples.window.shape.design(&strips.samples.t[self.range.clone()], columns);
         for (axis, reading) in readings.iter_mut().enumerate() {
-            let (f, reference) = (&strips.samples.f_z[axis][self.range.clone()], strips.reference[axis]);
+            let (f, reference) = (&strips.samples.f_z[axis][self.range.clone()], strips.fitted.reference[axis]);
             for (reading, f) in reading.iter_mut().zip(f) {
                 *reading = f - reference;
             }
@@ -290,13 +324,13 @@ impl Strip {
     fn bad_by(&self, strips: &Strips, fit: &Fit, room: &mut Room) -> Vec<usize> {
         let (n, samples) = (self.range.len(), strips.samples);
         let mut columns = room.columns.each_mut().map(|column| &mut column[..n]);
-        let columns = &mut columns[..strips.terms];
+        let columns = &mut columns[..strips.fitted.terms];
         samples.window.shape.design(&samples.t[self.range.clone()], columns);
         let mut residuals = room.readings.each_mut().map(|reading| &mut reading[..n]);
         for (axis, residuals) in residuals.iter_mut().enumerate() {
             let f = &samples.f_z[axis][self.range.clone()];
             for (residual, f) in residuals.iter_mut().zip(f) {
-                *residual = f - strips.reference[axis];
+                *residual = f - strips.fitted.reference[axis];
             }
             for (column, b) in columns.iter().zip(&fit.coefficients) {
                 subtract(residuals, b[axis], column);

@@ -3,12 +3,15 @@
 use nalgebra::Vector3;
 
 use super::block::Block;
-use super::blocks::{Blocks, Grid};
+use super::blocks::{Blocks, Grid, whole};
 use super::clock::{self, ClockOffset, SpeedTrace};
-use super::plateau_fit::PlateauFit;
+use super::plateau_fit::{Plateau, PlateauFit};
 use super::record::{Record, RecordSlice};
 use super::window::{self, Windows};
 use super::{ReducedMounting, ReductionError, ScheduledPlateau, alignment};
+
+/// Samples of a part of a window.
+const MOST: f64 = 1e6;
 
 /// First pass: a record, stretch by stretch, becomes blocks.
 #[derive(Debug, Clone)]
@@ -143,13 +146,30 @@ impl Located {
         self.windows.plateaus.iter().map(|window| window.span).collect()
     }
 
-    /// Averages a plateau from the samples of its window; others are left aside. Samples with the stamp of the one before
-    /// are counted and not used; `repeated` such ones of the window do not come, and are counted as well.
+    /// The window of a plateau in parts, from and to [s], of so many samples that they are easily held.
+    pub fn parts(&self, plateau: usize) -> Vec<[f64; 2]> {
+        let [from, to] = self.windows.plateaus[plateau].span;
+        let count = whole(((to - from) / (MOST * self.blocks.interval)).ceil()).max(1);
+        let end = |k: usize| if k == count { to } else { from + (to - from) * (k as f64 / count as f64) };
+        (0..count).map(|k| [if k == 0 { from } else { end(k).next_up() }, end(k + 1)]).collect()
+    }
+
+    /// A plateau that is to be averaged, part by part.
+    pub fn plateau(&self, plateau: usize) -> Plateau<'_> {
+        Plateau::new(plateau, &self.windows.plateaus[plateau], &self.blocks)
+    }
+
+    /// Averages a plateau from the samples of its window, so many with the stamp of the one before having been left out of them;
+    /// other samples are left aside.
     ///
     /// # Errors
     /// [`ReductionError`] if the samples are not steady, or do not tell the mean from the once-per-revolution term.
     pub fn average(&self, plateau: usize, samples: RecordSlice, repeated: usize) -> Result<PlateauFit, ReductionError> {
-        PlateauFit::new(samples, repeated, plateau, &self.windows.plateaus[plateau], &self.blocks)
+        let mut of_parts = self.plateau(plateau);
+        for (k, part) in self.parts(plateau).into_iter().enumerate() {
+            of_parts.add(part, samples, if k == 0 { repeated } else { 0 })?;
+        }
+        of_parts.finish()
     }
 
     /// The mounting, its plateaus being averaged, in the order of the schedule.

@@ -244,6 +244,45 @@ fn in_stretches_as_whole() {
     }
 }
 
+/// A plateau whose samples come in parts is the same up to a few samples at the limit, each of which moves the mean by a tenth of its
+/// standard error; and as many samples are told to be missing and repeated.
+#[test]
+fn in_parts_as_whole() {
+    let mut squares = Vec::new();
+    for (name, stream) in kinds().into_iter().filter(|(name, _)| !name.starts_with("below")) {
+        let stream = Stream { repeats: 0.01, ..stream };
+        let (record, schedule) = (stream.record(), stream.schedule());
+        let whole = reduce(&record, None, &schedule).expect("plateaus are there");
+        let noise = NoiseModel::pool([&whole]);
+        let mut survey = Survey::new(&record.t);
+        survey.append(survey.condense(record.as_slice()));
+        survey.finish();
+        let located = survey.locate(None, &schedule).expect("plateaus are there");
+        let of_parts = |(k, [from, to]): (usize, [f64; 2])| {
+            let mut plateau = located.plateau(k);
+            let cuts = [from, from + 0.4 * (to - from), from + 0.75 * (to - from), to];
+            for (i, cut) in cuts.windows(2).enumerate() {
+                let part = [if i == 0 { cut[0] } else { cut[0].next_up() }, cut[1]];
+                plateau.add(part, record.as_slice(), 0).expect("a steady part");
+            }
+            plateau.finish().expect("a steady plateau")
+        };
+        let averaged = located.windows().into_iter().enumerate().map(of_parts).collect();
+        let in_parts = located.into_mounting(averaged).means(&noise);
+        for (k, (part, whole)) in in_parts.iter().zip(whole.means(&noise)).enumerate() {
+            let off = (part.mean - whole.mean).component_div(&whole.covariance.diagonal().map(f64::sqrt));
+            assert!(off.amax() < 0.5, "{name}, {k}: {off}");
+            squares.push(off.norm_squared() / 3.0);
+            assert!(part.rejected.abs_diff(whole.rejected) <= 2 + whole.rejected / 20, "{name}, {k}: {part:?}");
+            assert_eq!(part.samples + part.rejected, whole.samples + whole.rejected, "{name}, {k}");
+            assert_eq!(part.left_out.repeated, whole.left_out.repeated, "{name}, {k}");
+            assert!(part.left_out.missing.abs_diff(whole.left_out.missing) <= 2, "{name}, {k}: {part:?}");
+        }
+    }
+    let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    assert!(rms < 0.1, "{rms}");
+}
+
 /// Two plateaus at rest with a short turn between them, which nobody scheduled.
 #[test]
 fn two_rests_with_a_turn_between_are_two() {
