@@ -1,6 +1,7 @@
 //! Records that are kept in memory between the two passes over them, in room that all of them share.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use centrical::reduction::RecordSlice;
 
@@ -34,6 +35,8 @@ pub(crate) struct Kept<'a> {
     pub(super) is_whole: bool,
     /// Whether a record before was longer than all room: the next one is not begun in vain.
     is_too_long: bool,
+    /// Where times of windows were written: memory that is asked for anew is faulted in anew, page by page.
+    spare: Mutex<Vec<Vec<f64>>>,
 }
 
 impl Default for Room {
@@ -69,6 +72,7 @@ impl<'a> Kept<'a> {
             index: None,
             is_whole: false,
             is_too_long: false,
+            spare: Mutex::default(),
         }
     }
 
@@ -147,7 +151,10 @@ impl<'a> Kept<'a> {
     /// them.
     pub(super) fn between<T>(&self, window: [f64; 2], visit: impl FnOnce(RecordSlice, usize) -> T) -> T {
         let touched: Vec<&Times> = self.touched(window).collect();
-        let mut t = Vec::with_capacity(touched.iter().map(|times| times.range.len()).sum());
+        let spare = || self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut t = spare().pop().unwrap_or_default();
+        t.clear();
+        t.reserve(touched.iter().map(|times| times.range.len()).sum());
         for times in &touched {
             times.write(&mut t);
         }
@@ -155,7 +162,9 @@ impl<'a> Kept<'a> {
         let f_z = self.f_z.each_ref().map(|f| &f[start..start + t.len()]);
         let [from, to] = window;
         let repeated = self.repeated.iter().filter(|t| (from..=to).contains(*t)).count();
-        visit(RecordSlice { t: &t, f_z }.between(window), repeated)
+        let visited = visit(RecordSlice { t: &t, f_z }.between(window), repeated);
+        spare().push(t);
+        visited
     }
 }
 
