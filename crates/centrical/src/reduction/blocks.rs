@@ -17,7 +17,7 @@ pub(super) const SAMPLES: usize = 8;
 pub(super) struct Grid {
     /// The record's first instant [s].
     start: f64,
-    /// Sampling interval [s].
+    /// Sampling interval [s]; zero if all stamps of the beginning are one.
     pub interval: f64,
     /// Width of a block [s].
     pub width: f64,
@@ -28,7 +28,7 @@ pub(super) struct Grid {
 pub(super) struct Blocks {
     /// Width of a block [s].
     pub width: f64,
-    /// Sampling interval [s]: the median one of the record's beginning.
+    /// Sampling interval [s]: the median one of the record's beginning, unless the blocks tell that it is much longer.
     pub interval: f64,
     /// Middle of each block [s].
     pub t: Vec<f64>,
@@ -112,9 +112,12 @@ impl Blocks {
             if step[axis].is_finite() { step[axis] } else { (largest(axis) * 1e-12).max(f64::MIN_POSITIVE) }
         };
         let filled = || gathered.iter().filter_map(|block| Some((block.number, block.level?)));
+        // As many samples as blocks have: a clock that stands still at first, or stutters, tells less there, or nothing.
+        let mut counts: Vec<f64> = gathered.iter().map(|block| block.readable as f64).collect();
+        let by_blocks = grid.width / median(&mut counts).max(1.0);
         let mut blocks = Self {
             width: grid.width,
-            interval: grid.interval,
+            interval: if 2.0 * grid.interval > by_blocks { grid.interval } else { by_blocks },
             t: filled().map(|(number, _)| grid.middle(number)).collect(),
             f_z: filled().map(|(_, (level, _))| level).collect(),
             digit: Vector3::from_fn(|axis, _| digit(axis)),

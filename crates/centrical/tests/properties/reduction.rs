@@ -283,6 +283,39 @@ fn in_parts_as_whole() {
     assert!(rms < 0.1, "{rms}");
 }
 
+/// A clock that stands still at first, or stutters, tells no sampling interval there; the means and their uncertainties are those
+/// of the rest, up to where a sample at the edge of a block is counted.
+#[test]
+fn a_clock_that_starts_late_costs_nothing() {
+    let stream = Stream::default();
+    let (record, schedule) = (stream.record(), stream.schedule());
+    let means = |record: &Record| {
+        let reduced = reduce(record, None, &schedule).expect("plateaus are there");
+        reduced.means(&NoiseModel::pool([&reduced]))
+    };
+    let expected = means(&record);
+    for stutter in [0.0, 1e-12] {
+        let mut late = Record::default();
+        for i in 0..=Survey::BEGINNING {
+            late.extend(record.as_slice().part(0..1));
+            late.t[i] -= stutter * (Survey::BEGINNING + 1 - i) as f64;
+        }
+        late.extend(record.as_slice());
+        for (late, mean) in means(&late).iter().zip(&expected) {
+            let u = mean.covariance.diagonal().map(f64::sqrt);
+            assert!((late.mean - mean.mean).component_div(&u).amax() < 1.5, "{late:?}, {mean:?}");
+            let ratio = late.covariance.diagonal().map(f64::sqrt).component_div(&u);
+            assert!(ratio.min() > 0.7 && ratio.max() < 1.4, "{ratio}");
+            assert!(late.left_out.missing.abs_diff(mean.left_out.missing) <= 2, "{late:?}");
+            let quadrature = late.once_per_revolution_covariance.amax() / mean.once_per_revolution_covariance.amax();
+            assert!(
+                mean.once_per_revolution_covariance.amax() == 0.0 || (quadrature - 1.0).abs() < 0.2,
+                "{quadrature}"
+            );
+        }
+    }
+}
+
 /// Two plateaus at rest with a short turn between them, which nobody scheduled.
 #[test]
 fn two_rests_with_a_turn_between_are_two() {
