@@ -38,8 +38,8 @@ impl<const N: usize> WithSimd for Fill<'_, N> {
         let Self { text, decimals, columns } = self;
         let mut digits = decimals.map(Digits::new);
         let mut start = text.len();
-        for end in (1..=columns[0].len()).rev().step_by(decimal::ROWS) {
-            let rows = end.saturating_sub(decimal::ROWS)..end;
+        for end in (1..=columns[0].len()).rev().step_by(digits::ROWS) {
+            let rows = end.saturating_sub(digits::ROWS)..end;
             for (digits, column) in digits.iter_mut().zip(&columns) {
                 digits.take(&column[rows.clone()]);
             }

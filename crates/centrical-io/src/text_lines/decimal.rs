@@ -9,10 +9,7 @@
     reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
 )]
 
-use super::digits::split;
-
-/// Numbers that are worked on together.
-pub(super) const ROWS: usize = 64;
+use super::digits::{ROWS, split};
 
 /// Room for the longest number and what ends it.
 pub(super) const ROOM: usize = 32;

@@ -5,7 +5,8 @@
     reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
 )]
 
-use super::decimal::ROWS;
+/// Numbers that are worked on together.
+pub(super) const ROWS: usize = 64;
 
 /// Makes of numbers below 10^8 their eight digits, the first in the lowest byte: halves, quarters and eighths are split off in all
 /// parts of the words at once, by products with rounded reciprocals of 10^4, 100 and 10.
