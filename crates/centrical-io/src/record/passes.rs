@@ -11,8 +11,8 @@ use super::{Columns, Wanted, stretch};
 use crate::error::Error;
 use crate::table::{Block, Extent, Index};
 
-/// Samples of the windows that are averaged at a time, however many threads there are: a window without its repeated stamps is
-/// a copy, of 32 bytes a sample.
+/// Samples of the windows that are averaged at a time, however many threads there are: their times are written out, 8 bytes each, and
+/// what is judged one by one is copied.
 const AT_A_TIME: usize = 1_500_000;
 
 /// What is done with the samples of windows.
