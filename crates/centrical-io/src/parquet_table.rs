@@ -26,13 +26,33 @@ impl Layout {
 }
 
 /// Rows in a row group: a MB a column, which the processor's caches hold from the first number to the last page.
-pub(crate) const GROUP: usize = 1 << 17;
+const GROUP: usize = 1 << 17;
 
 /// A table that is written row group by row group.
 pub(crate) struct ParquetTable<W: Write + Send> {
     file: SerializedFileWriter<W>,
-    /// The next row group.
-    columns: Vec<Vec<f64>>,
+    /// The next one.
+    next: RowGroup,
+}
+
+/// Columns of a row group in the making.
+#[derive(Debug, Default)]
+pub(crate) struct RowGroup(Vec<Vec<f64>>);
+
+impl RowGroup {
+    /// Adds rows, given as columns of equal length: whether there are enough.
+    pub fn add<C: AsRef<[f64]>>(&mut self, columns: &[C]) -> bool {
+        self.0.resize_with(columns.len(), Vec::new);
+        for (column, piece) in self.0.iter_mut().zip(columns) {
+            column.extend_from_slice(piece.as_ref());
+        }
+        self.0.first().is_some_and(|column| column.len() >= GROUP)
+    }
+
+    /// Takes the rows out.
+    pub fn clear(&mut self) {
+        self.0.iter_mut().for_each(Vec::clear);
+    }
 }
 
 impl<W: Write + Send> ParquetTable<W> {
@@ -52,20 +72,18 @@ impl<W: Write + Send> ParquetTable<W> {
             .set_column_statistics_enabled(time.into(), EnabledStatistics::Chunk)
             .build();
         let file = SerializedFileWriter::new(output, Arc::new(schema), Arc::new(properties)).map_err(failed)?;
-        Ok(Self { file, columns: vec![Vec::new(); names.len()] })
+        Ok(Self { file, next: RowGroup::default() })
     }
 
     /// Adds rows, given as columns of equal length.
     pub fn write<C: AsRef<[f64]>>(&mut self, columns: &[C]) -> io::Result<()> {
-        for (column, piece) in self.columns.iter_mut().zip(columns) {
-            column.extend_from_slice(piece.as_ref());
-        }
-        if self.columns[0].len() >= GROUP { self.flush() } else { Ok(()) }
+        if self.next.add(columns) { self.flush() } else { Ok(()) }
     }
 
-    /// Adds a row group, unless it has no rows.
-    pub fn write_group(&mut self, columns: &[Vec<f64>]) -> io::Result<()> {
-        if columns[0].is_empty() { Ok(()) } else { self.try_group(columns).map_err(failed) }
+    /// Writes a row group, unless it has no rows.
+    pub fn write_group(&mut self, group: &RowGroup) -> io::Result<()> {
+        let has_rows = group.0.first().is_some_and(|column| !column.is_empty());
+        if has_rows { self.try_group(&group.0).map_err(failed) } else { Ok(()) }
     }
 
     /// Ends the table and gives its output back.
@@ -75,10 +93,10 @@ impl<W: Write + Send> ParquetTable<W> {
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        let mut columns = mem::take(&mut self.columns);
-        self.write_group(&columns)?;
-        columns.iter_mut().for_each(Vec::clear);
-        self.columns = columns;
+        let mut group = mem::take(&mut self.next);
+        self.write_group(&group)?;
+        group.clear();
+        self.next = group;
         Ok(())
     }
 

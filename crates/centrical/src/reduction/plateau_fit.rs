@@ -46,8 +46,7 @@ pub struct Plateau<'a> {
     fitted: Fitted,
     /// Their triangle and coefficients.
     fit: Option<(Triangle, Vec<Vector3<f64>>)>,
-    /// Samples that came, and those that are not used.
-    came: usize,
+    /// Samples that are not used.
     left_out: LeftOut,
     /// Stamp of the last one [s].
     last: Option<f64>,
@@ -56,7 +55,7 @@ pub struct Plateau<'a> {
 impl<'a> Plateau<'a> {
     pub(super) fn new(index: usize, window: &'a Window, blocks: &'a Blocks) -> Self {
         let (fitted, left_out) = (Fitted::default(), LeftOut::default());
-        Self { index, window, blocks, fitted, fit: None, came: 0, left_out, last: None }
+        Self { index, window, blocks, fitted, fit: None, left_out, last: None }
     }
 
     /// Adds the samples of the next part, from and to [s]; so many with the stamp of the one before had been left out of them. They are
@@ -88,7 +87,6 @@ impl<'a> Plateau<'a> {
             once_out = true;
         };
         check_range(&samples, &strips, index)?;
-        self.came += samples.len();
         self.left_out += samples.left_out(self.last, samples.len() - strips.good(), strips.stuck_and_unreadable());
         self.last = samples.t.last().copied();
         self.fitted = strips.into_fitted();
@@ -115,7 +113,7 @@ impl<'a> Plateau<'a> {
 impl PlateauFit {
     /// The fit of all parts.
     fn of(plateau: &Plateau, coefficients: &[Vector3<f64>], triangle: &Triangle) -> Self {
-        let Plateau { window: Window { span, shape }, blocks, fitted, came, left_out, .. } = plateau;
+        let Plateau { window: Window { span, shape }, blocks, fitted, left_out, .. } = plateau;
         let kept = fitted.good();
         let squares: Vector3<f64> = fitted.sums(coefficients).map(|(_, sums)| sums.squares).sum();
         let columns = coefficients.len();
@@ -123,7 +121,7 @@ impl PlateauFit {
         Self {
             window: *span,
             samples: kept,
-            rejected: came - kept,
+            rejected: fitted.bad(),
             left_out: *left_out,
             mean: coefficients[columns - 1],
             once_per_revolution: if shape.omega == 0.0 { [zero; 2] } else { [coefficients[0], coefficients[1]] },

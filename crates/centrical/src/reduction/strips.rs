@@ -183,6 +183,11 @@ impl Fitted {
         self.each.iter().map(Strip::good).sum()
     }
 
+    /// How many are not.
+    pub fn bad(&self) -> usize {
+        self.each.iter().map(|strip| strip.bad.len()).sum()
+    }
+
     /// The triangle of all strips, and the coefficients.
     pub fn solve(&self) -> Option<(Triangle, Vec<Vector3<f64>>)> {
         let triangles: Vec<&Triangle> = self.each.iter().map(|strip| &strip.triangle).collect();
