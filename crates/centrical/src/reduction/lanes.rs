@@ -36,9 +36,9 @@ fn fold<T: Copy>(values: &[f64], start: T, step: impl Fn(T, f64) -> T, join: imp
 /// Lowest and highest of the values that are numbers.
 #[inline(always)]
 pub(super) fn range(values: &[f64]) -> [f64; 2] {
-    let low = fold(values, f64::INFINITY, |low, value| if value < low { value } else { low }, f64::min);
-    let high = fold(values, f64::NEG_INFINITY, |high, value| if value > high { value } else { high }, f64::max);
-    [low, high]
+    let wider =
+        |[low, high]: [f64; 2], value| [if value < low { value } else { low }, if value > high { value } else { high }];
+    fold(values, [f64::INFINITY, f64::NEG_INFINITY], wider, |a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }
 
 /// Sum of a function of values.

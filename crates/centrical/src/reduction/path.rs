@@ -19,8 +19,7 @@ pub(super) fn best_path(on: &[Vec<f64>], between: &[f64]) -> Vec<Range<usize>> {
     // State 2k is the transition before plateau k, state 2k + 1 the plateau k.
     let states = 2 * plateaus + 1;
     let mut score: Vec<f64> = (0..states).map(|state| (state / 2) as f64 * odds).collect();
-    let itself: Vec<u32> = (0..).take(states).collect();
-    let mut came_from: Vec<u32> = itself.repeat(between.len());
+    let mut came_from: Vec<u32> = vec![0; states * between.len()];
     for (i, from) in came_from.chunks_exact_mut(states).enumerate() {
         if i > 0 {
             advance(&mut score, from, odds);
@@ -37,28 +36,25 @@ pub(super) fn best_path(on: &[Vec<f64>], between: &[f64]) -> Vec<Range<usize>> {
     trace(came_from.chunks_exact(states), last, plateaus)
 }
 
-/// One block on: the best predecessor of every state.
+/// One block on: the best predecessor of every state. Which one it is depends on noise: there are no branches to guess.
 fn advance(score: &mut [f64], from: &mut [u32], odds: f64) {
     // The best transition so far, plateaus between it and here passed over; and the plateau just before, as it was.
     let (mut transition, mut transition_score) = (0, f64::NEG_INFINITY);
     let mut plateau_before = f64::NEG_INFINITY;
-    for state in 0..score.len() {
-        let own = score[state];
-        if state % 2 == 0 {
-            transition_score += odds;
-            if own >= transition_score {
-                (transition, transition_score) = (from[state], own);
-            }
-            if plateau_before > own {
-                score[state] = plateau_before;
-                from[state] -= 1;
-            }
-        } else {
-            if transition_score > own {
-                score[state] = transition_score;
-                from[state] = transition;
-            }
-            plateau_before = own;
+    let arrive = |from: &mut u32, score: &mut f64, itself: u32, (other, other_score): (u32, f64)| {
+        let is_better = other_score > *score;
+        *from = if is_better { other } else { itself };
+        *score = if is_better { other_score } else { *score };
+    };
+    for ((state, score), from) in (0..).step_by(2).zip(score.chunks_mut(2)).zip(from.chunks_mut(2)) {
+        let own = score[0];
+        transition_score += odds;
+        transition = if own >= transition_score { state } else { transition };
+        transition_score = if own >= transition_score { own } else { transition_score };
+        arrive(&mut from[0], &mut score[0], state, (state.wrapping_sub(1), plateau_before));
+        if let ([_, score], [_, from]) = (score, from) {
+            plateau_before = *score;
+            arrive(from, score, state + 1, (transition, transition_score));
         }
     }
 }

@@ -9,7 +9,7 @@ use pulp::{Simd, WithSimd};
 
 use super::blocks::{Blocks, MAD, cut, median, whole};
 use super::cells::CELLS;
-use super::lanes::widest;
+use super::lanes::{subtract, widest};
 use super::regression::Regression;
 use super::saturation::standing;
 use super::shape::Shape;
@@ -200,12 +200,28 @@ impl Shown {
     /// Median size of the residuals on an axis, the last terms having these coefficients.
     fn median_residual(&self, coefficients: &[Vector3<f64>], axis: usize) -> f64 {
         let columns = &self.columns[self.columns.len() - coefficients.len()..];
-        let residual = |i: usize| {
-            let fitted: f64 = columns.iter().zip(coefficients).map(|(column, b)| b[axis] * column[i]).sum();
-            self.f_z[axis][i] - fitted
-        };
-        let sizes = (0..self.f_z[axis].len()).map(|i| residual(i).abs()).filter(|size| size.is_finite());
-        median(&mut sizes.collect::<Vec<f64>>())
+        let mut residuals = self.f_z[axis].clone();
+        widest(Residuals { columns, coefficients, axis, readings: &mut residuals });
+        median(&mut residuals.into_iter().map(f64::abs).filter(|size| size.is_finite()).collect::<Vec<f64>>())
+    }
+}
+
+/// Readings on an axis, to be made what coefficients leave of them.
+struct Residuals<'a> {
+    columns: &'a [Vec<f64>],
+    coefficients: &'a [Vector3<f64>],
+    axis: usize,
+    readings: &'a mut [f64],
+}
+
+impl WithSimd for Residuals<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for (column, b) in self.columns.iter().zip(self.coefficients) {
+            subtract(self.readings, b[self.axis], column);
+        }
     }
 }
 

@@ -31,6 +31,12 @@ pub(super) struct Texts {
     length: [u64; ROWS],
 }
 
+impl Default for Texts {
+    fn default() -> Self {
+        Self::ZEROS
+    }
+}
+
 impl Texts {
     /// Zeros: what rows that are not there leave.
     pub const ZEROS: Self = Self { low: [(b'0' as u64) << 56; ROWS], high: [0; ROWS], length: [1; ROWS] };

@@ -144,7 +144,15 @@ impl Layout {
 
     /// Reads rows of bare numbers, [`ROWS`] at most, that begin at `from`, have these separators and end at these; nothing where
     /// one of them is anything else, right or wrong.
-    pub fn batch(&self, text: &[u8], from: usize, separators: &[u32], ends: &[u32], block: &mut Block) -> Option<()> {
+    pub fn batch(
+        &self,
+        text: &[u8],
+        from: usize,
+        separators: &[u32],
+        ends: &[u32],
+        texts: &mut Texts,
+        block: &mut Block,
+    ) -> Option<()> {
         let fields = self.wanted.len();
         let lines = separators.chunks_exact(fields);
         // If each line's last separator ends it, no other one does.
@@ -162,7 +170,9 @@ impl Layout {
             return None;
         }
         let before = block[0].len();
-        let mut texts = Texts::ZEROS;
+        if lines.len() < ROWS {
+            *texts = Texts::ZEROS;
+        }
         for (column, field) in self.wanted.iter().enumerate() {
             let Some(field) = field else { continue };
             let mut is_plain = true;

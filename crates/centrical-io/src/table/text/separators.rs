@@ -9,10 +9,10 @@ const STEP: usize = 64;
 /// The delimiters and the ends of lines of a text.
 #[derive(Default)]
 pub(super) struct Separators {
-    /// All of them; of 64 bytes at most a dozen as a rule.
-    all: Places<12>,
+    /// All of them; of 64 bytes at most ten as a rule.
+    all: Places<10>,
     /// The ends of lines.
-    ends: Places<4>,
+    ends: Places<3>,
     is_ascii: bool,
 }
 
