@@ -2,6 +2,8 @@
 
 mod calibrate;
 mod compensate;
+#[cfg(unix)]
+mod killed;
 mod noise;
 mod observe;
 mod plan;
