@@ -3,7 +3,9 @@
 //! What a [`widest`] work calls is compiled for the processor's vectors only where it is inlined: hence the attributes, and
 //! loops where an iterator's own would be a call.
 
-use pulp::{Arch, Simd, WithSimd};
+#[cfg(not(test))]
+use pulp::Arch;
+use pulp::{Simd, WithSimd};
 
 /// Lanes: as many as the widest processor has for one instruction.
 pub(super) const LANES: usize = 8;
@@ -14,7 +16,11 @@ const LONG: usize = 4 * LANES;
 /// Does a work with the widest vectors of the machine. They add and multiply as single numbers do, and what is fused is
 /// written so: the outcome is the same on any.
 pub(super) fn widest<W: WithSimd>(work: W) -> W::Output {
-    Arch::new().dispatch(work)
+    #[cfg(test)]
+    let processor = tests::PROCESSOR.get();
+    #[cfg(not(test))]
+    let processor = Arch::new();
+    processor.dispatch(work)
 }
 
 /// Folds values into lanes, and the lanes into one.
@@ -126,4 +132,106 @@ pub(super) fn joined<T: Copy>(lanes: [T; LANES], join: impl Fn(T, T) -> T) -> T 
     let [a, b, c, d, e, f, g, h] = lanes;
     let [a, b, c, d] = [join(a, e), join(b, f), join(c, g), join(d, h)];
     join(join(a, c), join(b, d))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use nalgebra::Vector3;
+    use pulp::Arch;
+
+    use super::*;
+    use crate::random::Random;
+    use crate::reduction::{NoiseModel, Record, ScheduledPlateau, reduce};
+
+    thread_local! {
+        /// Whose vectors this thread works with: the machine's own, unless a test chooses others.
+        pub(super) static PROCESSOR: Cell<Arch> = Cell::new(Arch::new());
+    }
+
+    /// Processors of all kinds that this one can stand for.
+    fn processors() -> Vec<Arch> {
+        let mut processors = vec![Arch::Scalar];
+        #[cfg(target_arch = "x86_64")]
+        {
+            processors.extend(pulp::x86::V3::try_new().map(Arch::V3));
+            processors.extend(pulp::x86::V4::try_new().map(Arch::V4));
+        }
+        processors.push(Arch::new());
+        processors
+    }
+
+    /// Everything on all processors is that of single numbers, bit by bit.
+    fn on_all<T: PartialEq + std::fmt::Debug + Send>(of: impl Fn() -> T + Sync) {
+        // Of one thread, so that all of the work is done on the one that the choice is made for.
+        let on = |processor: Arch| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+            pool.install(|| {
+                PROCESSOR.set(processor);
+                of()
+            })
+        };
+        let single = on(Arch::Scalar);
+        for processor in processors() {
+            assert_eq!(on(processor), single, "{processor:?}");
+        }
+    }
+
+    const RATE: f64 = 250.0;
+    const PLATEAU: f64 = 12.0;
+    const RAMP: f64 = 4.0;
+    /// Samples of a plateau and the ramp after it.
+    const STRETCH: usize = 4000;
+    const OMEGA: [f64; 4] = [0.0, 20.0, 45.0, 30.0];
+    const ARM: f64 = 0.5;
+
+    /// Half a metre from the axis: settling, revolutions, coloured noise, spikes, a gap, a repeated stamp, a reading that is none.
+    fn record(seed: u64) -> Record {
+        let mut random = Random::stream(seed, 0);
+        let mut colour = Vector3::zeros();
+        let mut record = Record::default();
+        for i in (0..OMEGA.len() * STRETCH).filter(|i| !(700..720).contains(i)) {
+            let t = i as f64 / RATE;
+            let (plateau, since) = (i / STRETCH, (i % STRETCH) as f64 / RATE);
+            let (omega, next) = (OMEGA[plateau], OMEGA[(plateau + 1) % OMEGA.len()]);
+            let ramp = ((since - PLATEAU) / RAMP).max(0.0);
+            let settling = if plateau == 0 { 0.0 } else { 2e-3 * (-since / 0.5).exp() };
+            let omega = omega * (1.0 + settling) + ramp * (next - omega);
+            colour = colour * 0.99 + Vector3::from_fn(|_, _| 1e-4 * random.normal());
+            let turn = Vector3::new((omega * t).cos(), (omega * t).sin(), 0.0) * 3e-3;
+            let noise = Vector3::from_fn(|_, _| 1e-3 * random.normal());
+            let mut f = Vector3::new(omega * omega * ARM, 0.0, 9.81) + turn + colour + noise;
+            if random.uniform() < 1e-3 {
+                f.y += 20.0;
+            }
+            record.t.push(if i == 4000 { (i - 1) as f64 / RATE } else { t });
+            for (axis, column) in record.f_z.iter_mut().enumerate() {
+                column.push(if i == 5000 { f64::NAN } else { (f[axis] * 1e5).round() / 1e5 });
+            }
+        }
+        record
+    }
+
+    #[test]
+    fn a_reduction_is_the_same_on_any_processor() {
+        let nominal = |omega: f64| Vector3::new(omega * omega * ARM, 0.0, 9.81);
+        let schedule = OMEGA.map(|omega| ScheduledPlateau { omega, nominal_z: nominal(omega) });
+        on_all(|| {
+            let mountings = [1, 2].map(|seed| reduce(&record(seed), None, &schedule).unwrap());
+            let noise = NoiseModel::pool(&mountings);
+            let means = mountings.each_ref().map(|mounting| (mounting.settling_time(), mounting.means(&noise)));
+            assert!(means.iter().flat_map(|(_, means)| means).any(|mean| mean.left_out.spikes > 0));
+            // Every number in the shortest form that tells it from all others.
+            format!("{noise:?} {means:?}")
+        });
+    }
+
+    #[test]
+    fn sums_are_the_same_on_any_processor() {
+        let mut random = Random::stream(1, 0);
+        let pairs = (0..200).chain([511, 512, 4097]).map(|n| [0, 1].map(|_| (0..n).map(|_| random.normal()).collect()));
+        let pairs: Vec<[Vec<f64>; 2]> = pairs.collect();
+        on_all(|| pairs.iter().map(|[a, b]| product(a, b).to_bits()).collect::<Vec<u64>>());
+    }
 }
