@@ -68,7 +68,7 @@ fn dies_in_its_writes(arguments: &[&str]) {
         let killed = run(&place, "", blocks, arguments);
         assert_eq!(killed.status.signal(), Some(SIGXFSZ), "{arguments:?}, {blocks}: {killed:?}");
         let left = files(&place.join("out"));
-        let is_begun = |name: &str| name.ends_with(".tmp");
+        let is_begun = |name: &str| Path::new(name).extension().is_some_and(|end| end == "tmp");
         let begun: Vec<_> = left.iter().filter(|(name, _)| is_begun(name)).collect();
         assert!(begun.iter().any(|(_, bytes)| bytes.len() == blocks * BLOCK), "{arguments:?}: killed inside a write");
         for (name, bytes) in left.iter().filter(|(name, _)| !is_begun(name)) {
