@@ -1,5 +1,6 @@
 //! HDF5 files, and MATLAB files of version 7.3, which are HDF5 too.
 
+use std::fs;
 use std::path::Path;
 
 use hdf5_pure::{Dataset, Error as HdfError, File};
@@ -7,6 +8,9 @@ use hdf5_pure::{Dataset, Error as HdfError, File};
 use super::columnar::{self, Column};
 use super::{BLOCK, ColumnName, Field, Rows, caught};
 use crate::error::{Error, Place, quoted};
+
+/// Numbers of a matrix that are read together.
+const AT_ONCE: u64 = 16 * BLOCK as u64;
 
 /// Reads an HDF5 file. MATLAB keeps its matrices there by columns.
 pub(super) fn read(file: &Path, by_columns: bool, rows: &mut Rows) -> Result<(), Error> {
@@ -44,8 +48,12 @@ fn column<'a>(file: &'a Path, hdf: &File, field: &'a Field, by_columns: bool, mo
         _ => return wrong(format!("an array of shape {shape:?}"), "a vector or a matrix"),
     };
     let by_name = matches!(field.name, ColumnName::Name(_));
-    if (by_name && columns != 1) || !(1..=columns.min(1 << 16)).contains(&(number as u64)) || rows > most {
+    let is_asked = if by_name { columns == 1 } else { (1..=columns).contains(&(number as u64)) };
+    if !is_asked || columns > AT_ONCE || rows > most {
         return wrong(format!("an array of shape {shape:?}"), "a vector by name, or a column of a matrix by number");
+    }
+    if let Some(found) = too_large_chunk(file, &dataset, most).map_err(damaged)? {
+        return wrong(found, "chunks that the file can hold");
     }
     if by_columns || shape.first() == Some(&1) {
         // A row of the file holds the whole column.
@@ -55,13 +63,30 @@ fn column<'a>(file: &'a Path, hdf: &File, field: &'a Field, by_columns: bool, mo
             Ok(())
         }));
     }
-    let mut start = 0;
+    let (mut start, step) = (0, AT_ONCE / columns);
     Ok(Box::new(move |values| {
-        let block = caught(|| dataset.read_f64_rows(start, BLOCK as u64)).map_err(damaged)?;
-        start += BLOCK as u64;
-        values.extend(block.iter().skip(number - 1).step_by(usize::try_from(columns).unwrap_or(usize::MAX)));
+        let end = (start + BLOCK as u64).min(rows);
+        while start < end {
+            let count = step.min(end - start);
+            let block = caught(|| dataset.read_f64_rows(start, count)).map_err(damaged)?;
+            start += count;
+            values.extend(block.iter().skip(number - 1).step_by(usize::try_from(columns).unwrap_or(usize::MAX)));
+        }
         Ok(())
     }))
+}
+
+/// A chunk that claims more than there can be: it is unpacked as a whole, and room is made for what it claims to take in the file
+/// before that is read. An index that cannot be listed is left to the reading.
+fn too_large_chunk(file: &Path, dataset: &Dataset, most: u64) -> Result<Option<String>, Option<HdfError>> {
+    let shape = caught(|| dataset.chunk_shape())?.unwrap_or_default();
+    if shape.iter().fold(1, |numbers: u64, length| numbers.saturating_mul(*length)) > most {
+        return Ok(Some(format!("chunks of shape {shape:?}")));
+    }
+    let bytes = fs::metadata(file).map_or(0, |metadata| metadata.len());
+    let stored = caught(|| dataset.chunks()).unwrap_or_default();
+    let size = stored.iter().map(|chunk| chunk.storage_size).find(|size| *size > bytes);
+    Ok(size.map(|size| format!("a chunk of {size} bytes")))
 }
 
 /// A row of a matrix, or a whole vector.

@@ -3,7 +3,8 @@
 //!
 //! A file whose outcome is new (a message of another form, or success for the first time) joins those that are mutated
 //! further, so that a run goes deeper than one mutation. A file that fails is kept in `tests/corpus` and is tried first
-//! from then on. `CENTRICAL_FUZZ_SECONDS` says how long (60), `CENTRICAL_FUZZ_SEED` from where (the clock, printed).
+//! from then on. `CENTRICAL_FUZZ_SECONDS` says how long (60), `CENTRICAL_FUZZ_SEED` from where (the clock, printed),
+//! `CENTRICAL_FUZZ_PARSER` which of them (all).
 
 mod mutate;
 mod parsers;
@@ -37,7 +38,10 @@ fn mutated_files_are_read_or_refused() {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_secs();
     let seed = setting("CENTRICAL_FUZZ_SEED").unwrap_or(now);
     println!("CENTRICAL_FUZZ_SEED={seed}");
-    let parsers = parsers();
+    let mut parsers = parsers();
+    if let Ok(only) = std::env::var("CENTRICAL_FUZZ_PARSER") {
+        parsers.retain(|parser| parser.name == only);
+    }
     let until = Instant::now() + Duration::from_secs(seconds);
     let share = until.saturating_duration_since(Instant::now()) / u32::try_from(parsers.len()).unwrap();
     for (k, parser) in parsers.into_iter().enumerate() {
