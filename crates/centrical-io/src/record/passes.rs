@@ -85,10 +85,13 @@ impl<'a> RecordFile<'a> {
         }
         match &kept.index {
             Some(index) => {
+                // One after another in one place: memory that is asked for anew is faulted in anew, page by page.
+                let mut samples = Record::default();
                 let one = |(k, parts): (usize, &Vec<[f64; 2]>)| {
                     let mut window = windows.begin(k);
                     for part in parts {
-                        windows.add(&mut window, *part, self.samples(index, *part)?.as_slice(), 0);
+                        self.read_again(index, *part, &mut samples)?;
+                        windows.add(&mut window, *part, samples.as_slice(), 0);
                     }
                     Ok(windows.end(window))
                 };
@@ -98,17 +101,17 @@ impl<'a> RecordFile<'a> {
         }
     }
 
-    /// The samples of a part of a window.
-    fn samples(&self, index: &Index, part: [f64; 2]) -> Result<Record, Error> {
+    /// Reads the samples of a part of a window.
+    fn read_again(&self, index: &Index, part: [f64; 2], samples: &mut Record) -> Result<(), Error> {
         let raw = self.raw_range(part);
-        let mut samples = Record::default();
+        samples.clear();
         index.read(self.file, &self.wanted.fields(), raw, &mut |first_row, block| {
             self.wanted.to_si(first_row, block);
             samples.extend(stretch(block).between(part));
             self.wanted.give_back(block);
         })?;
         (self.progress)(index.bytes(raw));
-        Ok(samples)
+        Ok(())
     }
 
     /// What the first column has in a window. The rounding of its scale is made up for by a part in 10^12.

@@ -133,42 +133,49 @@ pub(super) fn read(file: &Path, lines: &mut dyn Lines, rows: &mut Rows) -> Resul
 }
 
 impl Index {
-    /// Reads again the pieces in which the time, or the number of the row where no field is the time, is between two
-    /// values.
+    /// Reads again, on all threads, the pieces in which the time, or the number of the row where no field is the time, is between
+    /// two values.
     ///
     /// `visit` is given the number of the first row of a piece with its columns.
     pub fn read(
         &self,
         file: &Path,
         fields: &[Field],
-        [from, to]: [f64; 2],
+        between: [f64; 2],
         visit: &mut dyn FnMut(u64, &mut Block),
     ) -> Result<(), Error> {
         let plain = Plain::open(file).map_err(|e| Error::reading(file, e, piece::TABLE))?;
-        let mut piece = Piece::default();
-        let mut block = vec![Vec::new(); fields.len()];
-        let wanted = self.pieces.iter().filter(|piece| piece.range[0] <= to && from <= piece.range[1]);
-        for (k, wanted) in wanted.enumerate() {
-            plain.read(wanted.number, &mut piece.text)?;
-            let mut skipped = 0;
-            if wanted.first_row == 0 && k == 0 {
-                let start = Prologue::default().read(&piece.text, fields);
-                skipped = start.map_or(0, |(_, skipped)| skipped);
-            }
-            piece.read(&self.layout, skipped, fields, &mut block);
-            if piece.fault.is_some() {
+        let mut pieces: Vec<Piece> = (0..PIECES).map(|_| Piece::default()).collect();
+        let mut blocks: Vec<Block> = vec![vec![Vec::new(); fields.len()]; PIECES];
+        for wanted in self.wanted(between).collect::<Vec<_>>().chunks(PIECES) {
+            let read = |((piece, block), wanted): ((&mut Piece, &mut Block), &&IndexedPiece)| {
+                plain.read(wanted.number, &mut piece.text)?;
+                let start = (wanted.first_row == 0).then(|| Prologue::default().read(&piece.text, fields));
+                let skipped = start.and_then(Result::ok).map_or(0, |(_, skipped)| skipped);
+                piece.read(&self.layout, skipped, fields, block);
+                Ok(piece.fault.is_none())
+            };
+            let read =
+                pieces.par_iter_mut().zip(&mut blocks).zip(wanted).map(read).collect::<Vec<Result<bool, Error>>>();
+            if !read.into_iter().collect::<Result<Vec<bool>, Error>>()?.into_iter().all(|is_read| is_read) {
                 let found = "another text than a moment ago";
                 return Err(Error::content(file, Place::Whole, found, "a file that nobody writes to"));
             }
-            visit(wanted.first_row, &mut block);
+            for (wanted, block) in wanted.iter().zip(&mut blocks) {
+                visit(wanted.first_row, block);
+            }
         }
         Ok(())
     }
 
+    /// The pieces that have rows between two values.
+    fn wanted(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = &IndexedPiece> {
+        self.pieces.iter().filter(move |piece| piece.range[0] <= to && from <= piece.range[1])
+    }
+
     /// Bytes that [`Index::read`] reads for two values.
-    pub fn bytes(&self, [from, to]: [f64; 2]) -> u64 {
-        let wanted = self.pieces.iter().filter(|piece| piece.range[0] <= to && from <= piece.range[1]);
-        wanted.count() as u64 * piece::SIZE
+    pub fn bytes(&self, between: [f64; 2]) -> u64 {
+        self.wanted(between).count() as u64 * piece::SIZE
     }
 }
 
