@@ -4,7 +4,7 @@
 //! of a dictionary, and would set aside gigabytes for a damaged file of a few kilobytes: both are checked here.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Read};
 use std::sync::Arc;
 
 use bytes::Bytes;
@@ -23,6 +23,19 @@ const LARGEST_RATIO: i64 = 256;
 /// A file of which only pages are read, every read starting at the header of a page.
 pub(super) struct Source(pub File);
 
+/// A file to be read on from a place, not beyond its end: what the library does not know it passes over as often as the file
+/// claims, billions of times where nothing is left to be passed over.
+pub(super) struct Strict(BufReader<File>);
+
+impl Read for Strict {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        match self.0.read(bytes)? {
+            0 if !bytes.is_empty() => Err(io::ErrorKind::UnexpectedEof.into()),
+            read => Ok(read),
+        }
+    }
+}
+
 impl Length for Source {
     fn len(&self) -> u64 {
         self.0.len()
@@ -30,12 +43,14 @@ impl Length for Source {
 }
 
 impl ChunkReader for Source {
-    type T = BufReader<File>;
+    type T = Strict;
 
     fn get_read(&self, start: u64) -> Result<Self::T> {
         let mut read = self.0.get_read(start)?;
         match page_sizes(read.fill_buf()?) {
-            Some((plain, packed)) if plain <= LARGEST_PAGE.saturating_add(LARGEST_RATIO * packed.max(0)) => Ok(read),
+            Some((plain, packed)) if plain <= LARGEST_PAGE.saturating_add(LARGEST_RATIO * packed.max(0)) => {
+                Ok(Strict(read))
+            }
             Some((plain, packed)) => Err(general(format!("a page of {packed} bytes that claims to hold {plain}"))),
             None => Err(general("no header of a page where one should be".to_owned())),
         }

@@ -171,6 +171,7 @@ impl Layout {
         }
         let before = block[0].len();
         if lines.len() < ROWS {
+            // Or else what was there before would be read with them.
             *texts = Texts::ZEROS;
         }
         for (column, field) in self.wanted.iter().enumerate() {
