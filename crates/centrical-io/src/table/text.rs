@@ -153,14 +153,12 @@ impl Index {
                 let start = (wanted.first_row == 0).then(|| Prologue::default().read(&piece.text, fields));
                 let skipped = start.and_then(Result::ok).map_or(0, |(_, skipped)| skipped);
                 piece.read(&self.layout, skipped, fields, block);
-                Ok(piece.fault.is_none())
-            };
-            let read =
-                pieces.par_iter_mut().zip(&mut blocks).zip(wanted).map(read).collect::<Vec<Result<bool, Error>>>();
-            if !read.into_iter().collect::<Result<Vec<bool>, Error>>()?.into_iter().all(|is_read| is_read) {
                 let found = "another text than a moment ago";
-                return Err(Error::content(file, Place::Whole, found, "a file that nobody writes to"));
-            }
+                let changed = |_| Error::content(file, Place::Whole, found, "a file that nobody writes to");
+                piece.fault.take().map(changed).map_or(Ok(()), Err)
+            };
+            let read = pieces.par_iter_mut().zip(&mut blocks).zip(wanted).map(read);
+            read.collect::<Vec<_>>().into_iter().collect::<Result<(), Error>>()?;
             for (wanted, block) in wanted.iter().zip(&mut blocks) {
                 visit(wanted.first_row, block);
             }

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
 use super::blocks::{Blocks, MAD, median};
-use super::lanes::{subtract, widest};
+use super::lanes::{subtract, subtract_all, widest};
 use super::shape::Shape;
 use super::triangle::{Rows, TERMS, Triangle};
 
@@ -101,7 +101,8 @@ impl BlockFit<'_> {
     pub fn residuals(&self) -> [Vec<f64>; 3] {
         [0, 1, 2].map(|axis| {
             let mut residuals = self.of.f_z[axis][self.range.clone()].to_vec();
-            widest(Residuals { fit: self, axis, levels: &mut residuals });
+            let terms = self.of.columns.iter().zip(&self.coefficients);
+            subtract_all(&mut residuals, terms.map(|(column, b)| (b[axis], &column[self.range.clone()])));
             residuals
         })
     }
@@ -139,24 +140,6 @@ impl BlockFit<'_> {
             widest(Off { fit: self, from, verdicts, scale, cut });
         }
         off
-    }
-}
-
-/// Levels on an axis, to be made residuals.
-struct Residuals<'a> {
-    fit: &'a BlockFit<'a>,
-    axis: usize,
-    levels: &'a mut [f64],
-}
-
-impl WithSimd for Residuals<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        for (column, b) in self.fit.of.columns.iter().zip(&self.fit.coefficients) {
-            subtract(self.levels, b[self.axis], &column[self.fit.range.clone()]);
-        }
     }
 }
 

@@ -107,6 +107,27 @@ pub(super) fn subtract(y: &mut [f64], factor: f64, x: &[f64]) {
     }
 }
 
+/// `y - sum of factor x`, with the widest vectors.
+pub(super) fn subtract_all<'a>(y: &mut [f64], terms: impl Iterator<Item = (f64, &'a [f64])>) {
+    widest(Subtraction { y, terms });
+}
+
+struct Subtraction<'a, T> {
+    y: &'a mut [f64],
+    terms: T,
+}
+
+impl<'a, T: Iterator<Item = (f64, &'a [f64])>> WithSimd for Subtraction<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for (factor, x) in self.terms {
+            subtract(self.y, factor, x);
+        }
+    }
+}
+
 /// Scalar product, with the widest vectors.
 pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
     widest(Product { a, b })

@@ -9,7 +9,7 @@ use pulp::{Simd, WithSimd};
 
 use super::blocks::{Blocks, MAD, cut, median, whole};
 use super::cells::CELLS;
-use super::lanes::{subtract, widest};
+use super::lanes::{subtract_all, widest};
 use super::regression::Regression;
 use super::saturation::standing;
 use super::shape::Shape;
@@ -201,27 +201,9 @@ impl Shown {
     fn median_residual(&self, coefficients: &[Vector3<f64>], axis: usize) -> f64 {
         let columns = &self.columns[self.columns.len() - coefficients.len()..];
         let mut residuals = self.f_z[axis].clone();
-        widest(Residuals { columns, coefficients, axis, readings: &mut residuals });
+        let terms = columns.iter().zip(coefficients).map(|(column, b)| (b[axis], column.as_slice()));
+        subtract_all(&mut residuals, terms);
         median(&mut residuals.into_iter().map(f64::abs).filter(|size| size.is_finite()).collect::<Vec<f64>>())
-    }
-}
-
-/// Readings on an axis, to be made what coefficients leave of them.
-struct Residuals<'a> {
-    columns: &'a [Vec<f64>],
-    coefficients: &'a [Vector3<f64>],
-    axis: usize,
-    readings: &'a mut [f64],
-}
-
-impl WithSimd for Residuals<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        for (column, b) in self.columns.iter().zip(self.coefficients) {
-            subtract(self.readings, b[self.axis], column);
-        }
     }
 }
 
