@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use memchr::{memchr, memchr2, memchr3};
 
-use super::batch::{ROWS, Texts};
+use super::batch::{Batch, ROWS};
 use super::number::plain;
 use crate::error::quoted;
 use crate::table::{Block, ColumnName, Field, LARGEST, Rule, stamp};
@@ -150,7 +150,7 @@ impl Layout {
         from: usize,
         separators: &[u32],
         ends: &[u32],
-        texts: &mut Texts,
+        batch: &mut Batch,
         block: &mut Block,
     ) -> Option<()> {
         let fields = self.wanted.len();
@@ -170,25 +170,15 @@ impl Layout {
             return None;
         }
         let before = block[0].len();
-        if lines.len() < ROWS {
-            // Or else what was there before would be read with them.
-            *texts = Texts::ZEROS;
-        }
+        batch.begin(u32::try_from(from).ok()?, ends);
         for (column, field) in self.wanted.iter().enumerate() {
+            batch.next_column(separators[column..].iter().step_by(fields));
             let Some(field) = field else { continue };
-            let mut is_plain = true;
-            let with_return = usize::from(with_return && column + 1 == fields);
-            let mut start = from;
-            for (row, line) in lines.clone().enumerate() {
-                if column > 0 {
-                    start = line[column - 1] as usize + 1;
-                }
-                is_plain &= texts.take(row, text, start, line[column] as usize - with_return);
-                start = line[fields - 1] as usize + 1;
-            }
+            let left_out = u32::from(with_return && column + 1 == fields);
             let values = &mut block[*field];
             values.resize(before + ROWS, 0.0);
-            is_plain = is_plain && values[before..].first_chunk_mut().is_some_and(|numbers| texts.read(numbers));
+            let is_plain =
+                values[before..].first_chunk_mut().is_some_and(|numbers| batch.read(text, left_out, numbers));
             values.truncate(before + lines.len());
             if !is_plain {
                 for values in block.iter_mut() {
