@@ -42,21 +42,26 @@ impl Batch {
     #[inline]
     pub fn begin(&mut self, from: u32, ends: &[u32]) {
         self.rows = ends.len();
-        self.next_column(std::iter::once(&from.wrapping_sub(1)).chain(ends));
+        self.next_column(std::iter::once(from.wrapping_sub(1)).chain(ends.iter().copied()));
     }
 
     /// Goes on to the column that ends at these separators.
     #[inline]
-    pub fn next_column<'a>(&mut self, separators: impl Iterator<Item = &'a u32>) {
+    pub fn next_column(&mut self, separators: impl Iterator<Item = u32>) {
         let Places { starts, ends } = &mut self.column;
         *starts = ends.map(|end| end.wrapping_add(1));
         for (end, separator) in ends[..self.rows].iter_mut().zip(separators) {
-            *end = *separator;
+            *end = separator;
         }
         for places in [starts, ends] {
             let last = places[self.rows.saturating_sub(1)];
             places[self.rows..].fill(last);
         }
+    }
+
+    /// Whether the column ends where the rows do.
+    pub fn ends_at(&self, ends: &[u32]) -> bool {
+        self.column.ends[..self.rows] == *ends
     }
 
     /// The numbers of the column, its texts being without their last `left_out` bytes. Whether there are any: none of the texts is
@@ -86,7 +91,7 @@ mod tests {
             let ends: Vec<u32> = separators.iter().map(|at| u32::try_from(REACH + at).unwrap()).collect();
             let (mut batch, mut numbers) = (Batch::default(), [0.0; ROWS]);
             batch.begin(u32::try_from(REACH).unwrap(), &ends);
-            batch.next_column(ends.iter());
+            batch.next_column(ends.iter().copied());
             let is_read = batch.read(text.as_bytes(), 0, &mut numbers);
             assert!(!is_read || numbers[texts.len()..].iter().all(|number| *number == numbers[texts.len() - 1]));
             is_read.then(|| numbers[..texts.len()].to_vec())

@@ -153,14 +153,9 @@ impl Layout {
         batch: &mut Batch,
         block: &mut Block,
     ) -> Option<()> {
-        let fields = self.wanted.len();
-        let lines = separators.chunks_exact(fields);
-        // If each line's last separator ends it, no other one does.
-        let wrong: u32 =
-            lines.clone().zip(ends).map(|(line, end)| line[fields - 1] ^ end).fold(0, |all, one| all | one);
         let all = &text[from..*separators.last()? as usize];
         // A delimiter within quotes divides nothing.
-        if wrong != 0 || text[from] == b'#' || self.wanted.contains(&None) && memchr2(b'"', b'#', all).is_some() {
+        if text[from] == b'#' || self.wanted.contains(&None) && memchr2(b'"', b'#', all).is_some() {
             return None;
         }
         // All of the lines end alike, or this is not for numbers that are taken together.
@@ -172,14 +167,18 @@ impl Layout {
         let before = block[0].len();
         batch.begin(u32::try_from(from).ok()?, ends);
         for (column, field) in self.wanted.iter().enumerate() {
-            batch.next_column(separators[column..].iter().step_by(fields));
-            let Some(field) = field else { continue };
-            let left_out = u32::from(with_return && column + 1 == fields);
-            let values = &mut block[*field];
-            values.resize(before + ROWS, 0.0);
-            let is_plain =
-                values[before..].first_chunk_mut().is_some_and(|numbers| batch.read(text, left_out, numbers));
-            values.truncate(before + lines.len());
+            batch.next_column(separators.chunks_exact(self.wanted.len()).map(|line| line[column]));
+            let is_last = column + 1 == self.wanted.len();
+            // If each line's last separator ends it, no other one does.
+            let mut is_plain = !is_last || batch.ends_at(ends);
+            if let Some(field) = field {
+                let values = &mut block[*field];
+                values.resize(before + ROWS, 0.0);
+                let left_out = u32::from(is_last && with_return);
+                let numbers = values[before..].first_chunk_mut();
+                is_plain = is_plain && numbers.is_some_and(|numbers| batch.read(text, left_out, numbers));
+                values.truncate(before + ends.len());
+            }
             if !is_plain {
                 for values in block.iter_mut() {
                     values.truncate(before);
