@@ -41,7 +41,8 @@ struct Axis {
 impl Block {
     /// Condenses the samples of a block.
     pub fn of(number: usize, samples: RecordSlice) -> Self {
-        let axes = samples.f_z.map(|f| widest(OneAxis(f)));
+        let cut = cut(samples.t.len());
+        let axes = samples.f_z.map(|f| widest(OneAxis { f, cut }));
         let finite = |i: &usize| samples.f_z.iter().all(|f| f[*i].is_finite());
         let whole = axes.iter().all(|axis| axis.is_whole);
         let readable = if whole { samples.t.len() } else { (0..samples.t.len()).filter(finite).count() };
@@ -61,21 +62,24 @@ impl Block {
     }
 }
 
-/// The samples of one axis.
-struct OneAxis<'a>(&'a [f64]);
+/// The samples of one axis, and how many standard deviations are too many.
+struct OneAxis<'a> {
+    f: &'a [f64],
+    cut: f64,
+}
 
 impl WithSimd for OneAxis<'_> {
     type Output = Axis;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Axis {
-        let Self(f) = self;
+        let Self { f, cut } = self;
         let [low, high] = range(f);
         // A converted unit leaves steps of f64's own rounding.
         let rounding = (low.abs().max(high.abs()) * 1e-12).max(f64::MIN_POSITIVE);
         let Walk { sum, step, fresh, repeated, squares } = Walk::along(f, low, rounding);
         // Half-filled blocks stand beside a gap: too few samples for a median that a spike cannot move.
-        let level = if f.len() > SAMPLES / 2 { level(f, sum, [low, high]) } else { None };
+        let level = if f.len() > SAMPLES / 2 { level(f, sum, [low, high], cut) } else { None };
         // White noise by its second differences, whose variance is six-fold.
         let noise = (squares / (6 * f.len().saturating_sub(2)) as f64).sqrt();
         Axis {
@@ -150,13 +154,13 @@ impl Walk {
 /// Mean of the values that are no spikes. A mean, since the median of part of a revolution is no linear function of
 /// its phase. The sum of the values above the lowest is given. `None` of too few values.
 #[inline(always)]
-fn level(f: &[f64], above_low: f64, [low, high]: [f64; 2]) -> Option<f64> {
+fn level(f: &[f64], above_low: f64, [low, high]: [f64; 2], cut: f64) -> Option<f64> {
     let count = f.len() as f64;
     let mean = low + above_low / count;
     if mean.is_finite() && (high - low).is_finite() {
         // What the robust spread must be at least for the value farthest from the mean to be no spike. If it is that,
         // half the values being at least so far from the mean, there are no spikes to look for.
-        let least = (high - mean).max(mean - low) / (cut(f.len()) * MAD);
+        let least = (high - mean).max(mean - low) / (cut * MAD);
         if 2.0 * sum(f, |value| f64::from(u8::from((value - mean).abs() < least))) <= count {
             return Some(mean);
         }
@@ -185,7 +189,7 @@ mod tests {
     #[test]
     fn the_short_way_to_a_level_is_the_long_way() {
         let mut f = noisy(100);
-        let level = |f: &[f64]| level(f, sum(f, |value| value - range(f)[0]), range(f)).unwrap();
+        let level = |f: &[f64]| level(f, sum(f, |value| value - range(f)[0]), range(f), cut(f.len())).unwrap();
         assert!((level(&f) - level_without_spikes(&mut f.clone())).abs() < 1e-14);
         f[3] += 1.0;
         assert_eq!(level(&f), level_without_spikes(&mut f.clone()));
