@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical::reduction::{
     ClockOffset, Located, NoiseModel, Plateau, PlateauFit, PlateauMean, RecordSlice, ReducedMounting, ReductionError,
-    ScheduledPlateau,
+    ScheduledPlateau, Survey,
 };
 use centrical::{Observation, SetPoint, linear};
 use nalgebra::{Matrix3, Vector3};
@@ -161,7 +161,7 @@ fn at_a_time() -> usize {
     if rayon::current_num_threads() > 2 { 1 } else { 2 }
 }
 
-/// The first mounting on all threads: it tells how many records there is room for. Then the others.
+/// The first record is read on all threads: it tells how many there is room for. Then so many mountings side by side.
 fn all_mountings(
     session: &Session,
     progress: &(dyn Fn(u64) + Sync),
@@ -172,52 +172,72 @@ fn all_mountings(
     }
     let room = Room::default();
     let mut kept = Kept::new(&room);
-    let first = one_mounting(session, 0, &mut kept, progress)?;
+    let first = Mounting::of(session, 0, progress)?;
+    let survey = first.survey(&mut kept)?;
     let lanes = kept.fit_in().min(at_a_time());
     let next = AtomicUsize::new(1);
-    let lane = |mut kept: Kept| {
-        let mut done = Vec::new();
+    let lane = |(mut kept, begun): (Kept, Option<(Mounting, Survey)>)| {
+        let mut done: Vec<_> = begun.map(|(first, survey)| (0, first.reduced(&survey, &kept))).into_iter().collect();
         loop {
-            let mounting = next.fetch_add(1, Ordering::Relaxed);
-            if mounting >= count {
-                return done;
-            }
-            let reduced = one_mounting(session, mounting, &mut kept, progress);
-            if reduced.is_err() {
+            if done.iter().any(|(_, reduced)| reduced.is_err()) {
                 // Those before it are under way: which error is the first does not depend on the threads.
                 next.store(count, Ordering::Relaxed);
             }
-            done.push((mounting, reduced));
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= count {
+                return done;
+            }
+            let reduced = Mounting::of(session, number, progress)
+                .and_then(|mounting| mounting.reduced(&mounting.survey(&mut kept)?, &kept));
+            done.push((number, reduced));
         }
     };
-    let kept: Vec<Kept> = std::iter::once(kept).chain((1..lanes).map(|_| Kept::new(&room))).collect();
-    let mut others: Vec<_> = kept.into_par_iter().map(lane).collect::<Vec<_>>().into_iter().flatten().collect();
-    others.sort_by_key(|(mounting, _)| *mounting);
-    std::iter::once(Ok(first)).chain(others.into_iter().map(|(_, reduced)| reduced)).collect()
+    let others = (1..lanes).map(|_| (Kept::new(&room), None));
+    let lanes: Vec<_> = std::iter::once((kept, Some((first, survey)))).chain(others).collect();
+    let mut reduced: Vec<_> = lanes.into_par_iter().map(lane).collect::<Vec<_>>().into_iter().flatten().collect();
+    reduced.sort_by_key(|(number, _)| *number);
+    reduced.into_iter().map(|(_, reduced)| reduced).collect()
 }
 
-/// Twice through the record: where the plateaus are, and what they read.
-fn one_mounting(
-    session: &Session,
-    mounting: usize,
-    kept: &mut Kept,
-    progress: &(dyn Fn(u64) + Sync),
-) -> Result<(ReducedMounting, RecordOverview), Error> {
-    let experiment = &session.experiment;
-    let schedule: Vec<ScheduledPlateau> = (experiment.set_points.iter())
-        .filter(|set_point| set_point.mounting == mounting)
-        .map(|set_point| ScheduledPlateau { omega: set_point.omega, nominal_z: linear::nominal(experiment, set_point) })
-        .collect();
-    let file = session.record_file(mounting)?;
-    let refused = |source| Error::Reduction { file: file.to_owned(), mounting: mounting + 1, source: Box::new(source) };
-    let record = RecordFile::new(file, &session.columns, progress);
-    let survey = record.survey(kept)?;
-    let telemetry = session.telemetry(mounting)?;
-    let located = survey.locate(telemetry.as_ref(), &schedule).map_err(refused)?;
-    let averaged = record.windows(kept, &&located)?;
-    let averaged = averaged.into_iter().collect::<Result<_, _>>().map_err(refused)?;
-    let overview = RecordOverview::of(mounting + 1, &survey.extremes().collect::<Vec<_>>());
-    Ok((located.into_mounting(averaged), overview))
+/// A mounting and its record.
+struct Mounting<'a> {
+    session: &'a Session,
+    number: usize,
+    record: RecordFile<'a>,
+}
+
+impl<'a> Mounting<'a> {
+    fn of(session: &'a Session, number: usize, progress: &'a (dyn Fn(u64) + Sync)) -> Result<Self, Error> {
+        let record = RecordFile::new(session.record_file(number)?, &session.columns, progress);
+        Ok(Self { session, number, record })
+    }
+
+    /// Once through the record.
+    fn survey(&self, kept: &mut Kept) -> Result<Survey, Error> {
+        self.record.survey(kept)
+    }
+
+    /// Where the plateaus are and, by the samples that are kept or the record once more, what they read.
+    fn reduced(&self, survey: &Survey, kept: &Kept) -> Result<(ReducedMounting, RecordOverview), Error> {
+        let Self { session, number, record } = self;
+        let experiment = &session.experiment;
+        let schedule: Vec<ScheduledPlateau> = (experiment.set_points.iter())
+            .filter(|set_point| set_point.mounting == *number)
+            .map(|set_point| ScheduledPlateau {
+                omega: set_point.omega,
+                nominal_z: linear::nominal(experiment, set_point),
+            })
+            .collect();
+        let file = record.file();
+        let refused =
+            |source| Error::Reduction { file: file.to_owned(), mounting: number + 1, source: Box::new(source) };
+        let telemetry = session.telemetry(*number)?;
+        let located = survey.locate(telemetry.as_ref(), &schedule).map_err(refused)?;
+        let averaged = record.windows(kept, &&located)?;
+        let averaged = averaged.into_iter().collect::<Result<_, _>>().map_err(refused)?;
+        let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
+        Ok((located.into_mounting(averaged), overview))
+    }
 }
 
 /// A plateau under way, or what was wrong with it.

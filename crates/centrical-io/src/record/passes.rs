@@ -47,6 +47,10 @@ impl<'a> RecordFile<'a> {
         Self { file, wanted: columns.of_record(), progress }
     }
 
+    pub fn file(&self) -> &'a Path {
+        self.file
+    }
+
     /// First pass: all of the record, its stretches condensed on all threads, and its samples kept if they are not too
     /// many.
     pub fn survey(&self, kept: &mut Kept) -> Result<Survey, Error> {

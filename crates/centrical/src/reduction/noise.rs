@@ -10,12 +10,14 @@ use std::collections::BTreeMap;
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 use nalgebra::Matrix3;
+use pulp::{Simd, WithSimd};
+use rayon::prelude::*;
 
 use super::ReducedMounting;
 use super::blocks::whole;
 use super::cells::{CELLS, Cells, Weights};
+use super::lanes::{dot, widest};
 use super::plateau_fit::PlateauFit;
-use super::regression::dot;
 
 /// Cosines of nearly the same frequency are pooled: groups per octave.
 const PER_OCTAVE: f64 = 4.0;
@@ -104,7 +106,7 @@ fn correlation_times(plateaus: &[&PlateauFit]) -> Vec<f64> {
 /// White: `sum w^2 / interval`. Markov: `sum_ab w_a w_b exp(-|t_a - t_b| / tau) / (2 tau)` over cells, by a recursion.
 fn gain(correlation_time: Option<f64>, weights: &Weights, cells: &Cells) -> f64 {
     let Some(tau) = correlation_time else { return weights.squares / cells.interval };
-    Markov::new(&[tau], cells.width).gains(weights)[0]
+    widest(Gains { markov: &Markov::new(&[tau], cells.width), weights })[0]
 }
 
 /// Markov processes of several correlation times, over cells of one width.
@@ -126,21 +128,45 @@ impl Markov {
             between: of(|x| ((0.5 * x).sinh() / (0.5 * x)).powi(2)),
         }
     }
+}
 
-    fn gains(&self, weights: &Weights) -> Vec<f64> {
-        let mut past = vec![0.0; self.decay.len()];
+/// Variances of a functional under Markov processes of unit density.
+struct Gains<'a> {
+    markov: &'a Markov,
+    weights: &'a Weights,
+}
+
+impl WithSimd for Gains<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
+        let Markov { decay, within, between } = self.markov;
+        let by_cell = &self.weights.by_cell;
+        let mut past = vec![0.0; decay.len()];
         let mut products = past.clone();
-        for w in &weights.by_cell {
-            for ((past, product), decay) in past.iter_mut().zip(&mut products).zip(&self.decay) {
+        for w in by_cell {
+            for ((past, product), decay) in past.iter_mut().zip(&mut products).zip(decay) {
                 *past *= decay;
                 *product += w * *past;
                 *past += w;
             }
         }
-        let squares = dot(&weights.by_cell, &weights.by_cell);
-        let inside = self.within.iter().map(|within| within * squares);
-        inside.zip(products.iter().zip(&self.between)).map(|(inside, (product, b))| inside + b * product).collect()
+        let squares = dot(simd, by_cell, by_cell);
+        for ((product, within), between) in products.iter_mut().zip(within).zip(between) {
+            *product = within * squares + between * *product;
+        }
+        products
     }
+}
+
+/// A contrast of one plateau.
+struct Contrast {
+    /// `y y^T`, scaled to unit variance under white noise of unit density.
+    power: Matrix3<f64>,
+    /// Variance under each Markov process of unit density, and under white noise.
+    gains: Vec<f64>,
+    white: f64,
 }
 
 /// Contrasts of nearly one frequency, each scaled to unit variance under white noise of unit density.
@@ -156,19 +182,23 @@ struct Group {
 fn grouped_contrasts(plateaus: &[&PlateauFit], times: &[f64]) -> Vec<Group> {
     let longest = plateaus.iter().map(|plateau| plateau.cells.width).fold(0.0, f64::max);
     let cosines: Vec<(usize, Vec<f64>)> = half_periods().into_iter().map(|number| (number, cosine(number))).collect();
-    let mut groups = BTreeMap::new();
-    for plateau in plateaus {
+    let of = |plateau: &&PlateauFit| -> Vec<(usize, Contrast)> {
         let cells = &plateau.cells;
         let markov = Markov::new(times, cells.width);
         // The time constant of the settling has not had its last step yet: what it is off by is no noise.
         let rate = plateau.settling_rate();
-        for (number, cosine) in &cosines {
+        let contrast = |(number, cosine): &(usize, Vec<f64>)| {
             let frequency = *number as f64 * longest / cells.width;
-            let key = whole((frequency.log2() * PER_OCTAVE).round());
-            let empty = || Group { count: 0.0, power: Matrix3::zeros(), gains: vec![0.0; 1 + times.len()] };
+            let group = whole((frequency.log2() * PER_OCTAVE).round());
             let function = rate.as_ref().map(|rate| cells.free_of(cosine, rate));
-            groups.entry(key).or_insert_with(empty).add(cells, function.as_ref().unwrap_or(cosine), &markov);
-        }
+            Some((group, Contrast::of(cells, function.as_ref().unwrap_or(cosine), &markov)?))
+        };
+        cosines.iter().filter_map(contrast).collect()
+    };
+    let mut groups = BTreeMap::new();
+    for (group, contrast) in plateaus.par_iter().map(of).collect::<Vec<_>>().into_iter().flatten() {
+        let empty = || Group { count: 0.0, power: Matrix3::zeros(), gains: vec![0.0; 1 + times.len()] };
+        groups.entry(group).or_insert_with(empty).add(&contrast);
     }
     groups.into_values().map(Group::averaged).collect()
 }
@@ -183,18 +213,23 @@ fn cosine(half_periods: usize) -> Vec<f64> {
     (0..CELLS).map(|cell| (PI * half_periods as f64 * (cell as f64 + 0.5) / CELLS as f64).cos()).collect()
 }
 
-impl Group {
-    fn add(&mut self, cells: &Cells, function: &[f64], markov: &Markov) {
+impl Contrast {
+    /// The part of a function that the fit leaves; none if it leaves nothing.
+    fn of(cells: &Cells, function: &[f64], markov: &Markov) -> Option<Self> {
         let (weights, y) = cells.contrast(function);
         let white = gain(None, &weights, cells);
-        if white <= 0.0 {
-            return;
-        }
+        let gains = || widest(Gains { markov, weights: &weights });
+        (white > 0.0).then(|| Self { power: y * y.transpose() / white, gains: gains(), white })
+    }
+}
+
+impl Group {
+    fn add(&mut self, contrast: &Contrast) {
         self.count += 1.0;
-        self.power += y * y.transpose() / white;
+        self.power += contrast.power;
         self.gains[0] += 1.0;
-        for (sum, gain) in self.gains[1..].iter_mut().zip(markov.gains(&weights)) {
-            *sum += gain / white;
+        for (sum, gain) in self.gains[1..].iter_mut().zip(&contrast.gains) {
+            *sum += gain / contrast.white;
         }
     }
 
@@ -231,8 +266,9 @@ impl Fit {
     /// With one component more, of the likeliest correlation time out of 1 to `times`: of every octave first, then
     /// closer.
     fn with_best_time(&self, times: usize, groups: &[Group]) -> Self {
-        let octaves = (1..=times).step_by(4).map(|time| self.with(time, groups));
-        let best = octaves.max_by(|a, b| a.likelihood.total_cmp(&b.likelihood));
+        let octaves: Vec<usize> = (1..=times).step_by(4).collect();
+        let octaves: Vec<Self> = octaves.into_par_iter().map(|time| self.with(time, groups)).collect();
+        let best = octaves.into_iter().max_by(|a, b| a.likelihood.total_cmp(&b.likelihood));
         let mut best = best.unwrap_or_else(|| self.clone());
         for step in [2, 1] {
             let time = best.parts[best.parts.len() - 1].0;
