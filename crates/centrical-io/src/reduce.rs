@@ -19,6 +19,7 @@ use crate::plateaus::PlateauMean as TabledPlateau;
 use crate::record::{Kept, RecordFile, Room, Windows};
 use crate::session::Session;
 use crate::steadiness::Steadiness;
+use crate::table;
 
 /// A session's plateau means, and the files they come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,7 +162,8 @@ fn at_a_time() -> usize {
     if rayon::current_num_threads() > 2 { 1 } else { 2 }
 }
 
-/// The first record is read on all threads: it tells how many there is room for. Then so many mountings side by side.
+/// As many mountings side by side as there is room for. Where the files do not tell at a glance, the first record is read
+/// on all threads, and tells.
 fn all_mountings(
     session: &Session,
     progress: &(dyn Fn(u64) + Sync),
@@ -171,11 +173,18 @@ fn all_mountings(
         return Ok(Vec::new());
     }
     let room = Room::default();
+    let glance = |number| session.record_file(number).ok().and_then(table::rows_at_a_glance);
+    let most = (0..count).map(glance).collect::<Option<Vec<_>>>().and_then(|rows| rows.into_iter().max());
     let mut kept = Kept::new(&room);
-    let first = Mounting::of(session, 0, progress)?;
-    let survey = first.survey(&mut kept)?;
-    let lanes = kept.fit_in().min(at_a_time());
-    let next = AtomicUsize::new(1);
+    let (begun, fit) = if let Some(rows) = most {
+        (None, room.holds(rows))
+    } else {
+        let first = Mounting::of(session, 0, progress)?;
+        let survey = first.survey(&mut kept)?;
+        (Some((first, survey)), kept.fit_in())
+    };
+    let lanes = fit.min(at_a_time());
+    let next = AtomicUsize::new(usize::from(begun.is_some()));
     let lane = |(mut kept, begun): (Kept, Option<(Mounting, Survey)>)| {
         let mut done: Vec<_> = begun.map(|(first, survey)| (0, first.reduced(&survey, &kept))).into_iter().collect();
         loop {
@@ -193,7 +202,7 @@ fn all_mountings(
         }
     };
     let others = (1..lanes).map(|_| (Kept::new(&room), None));
-    let lanes: Vec<_> = std::iter::once((kept, Some((first, survey)))).chain(others).collect();
+    let lanes: Vec<_> = std::iter::once((kept, begun)).chain(others).collect();
     let mut reduced: Vec<_> = lanes.into_par_iter().map(lane).collect::<Vec<_>>().into_iter().flatten().collect();
     reduced.sort_by_key(|(number, _)| *number);
     reduced.into_iter().map(|(_, reduced)| reduced).collect()

@@ -50,6 +50,12 @@ impl Room {
         Self { left: AtomicUsize::new(all), all }
     }
 
+    /// How many records of so many samples it holds; one in any case.
+    pub fn holds(&self, samples: u64) -> usize {
+        let bytes = usize::try_from(samples).unwrap_or(usize::MAX).saturating_mul(BYTES);
+        (self.all / bytes.max(1)).max(1)
+    }
+
     fn take(&self, bytes: usize) -> bool {
         self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(bytes)).is_ok()
     }
