@@ -12,6 +12,9 @@ use crate::error::{Error, Place, quoted};
 /// Numbers of a matrix that are read together.
 const AT_ONCE: u64 = 16 * BLOCK as u64;
 
+/// No number takes more [bytes]: room is made for as many as there are of what a file claims.
+const LARGEST_NUMBER: u64 = 16;
+
 /// Reads an HDF5 file. MATLAB keeps its matrices there by columns.
 pub(super) fn read(file: &Path, by_columns: bool, rows: &mut Rows) -> Result<(), Error> {
     let hdf = caught(|| File::open_streaming(file)).map_err(|e| damaged(file, Place::Whole, e.as_ref()))?;
@@ -54,6 +57,10 @@ fn column<'a>(file: &'a Path, hdf: &File, field: &'a Field, by_columns: bool, mo
     }
     if let Some((found, expected)) = unreadable(&dataset).map_err(damaged)? {
         return wrong(found, expected);
+    }
+    let size = caught(|| dataset.element_size()).map_err(damaged)?;
+    if size > LARGEST_NUMBER {
+        return wrong(format!("elements of {size} bytes"), "numbers");
     }
     if let Some(found) = too_large_chunk(file, &dataset, most).map_err(damaged)? {
         return wrong(found, "chunks that the file can hold");
