@@ -17,7 +17,7 @@ use std::path::Path;
 use memchr::{memchr, memchr_iter};
 use rayon::prelude::*;
 
-use self::batch::{ROWS, Texts};
+use self::batch::{Batch, ROWS};
 use self::layout::{Fault, Layout, Prologue};
 use self::piece::Text;
 pub(super) use self::piece::{Lines, Packed, Plain};
@@ -56,7 +56,7 @@ pub(super) struct Piece {
     /// What stands wrong, and in which line of the piece.
     fault: Option<(u64, Fault)>,
     separators: Separators,
-    texts: Texts,
+    batch: Batch,
 }
 
 /// Reads the table of `file` from its `lines`.
@@ -224,7 +224,7 @@ impl Piece {
             if of_batch.last().is_none_or(|last| *last as usize >= text.len()) {
                 break self.read_rows(&text[from..], layout, fields, block);
             }
-            if layout.batch(text, from, of_batch, ends_of_batch, &mut self.texts, block).is_some() {
+            if layout.batch(text, from, of_batch, ends_of_batch, &mut self.batch, block).is_some() {
                 self.lines += rows as u64;
                 from = of_batch[of_batch.len() - 1] as usize + 1;
                 (separators, ends) = (&separators[of_batch.len()..], &ends[rows..]);

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::blocks::{Blocks, median};
 use super::evidence::{Candidate, Evidence};
-use super::path::best_path;
+use super::path::Trellis;
 use super::{ReductionError, ScheduledPlateau, Stretch, mistake, rotation};
 
 /// More rounds than it takes.
@@ -40,8 +40,9 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
     let evidence = Evidence::new(blocks);
     let candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
     let between = evidence.in_transition();
-    let on: Vec<Vec<f64>> = candidates.par_iter().map(|candidate| candidate.density(evidence.noise())).collect();
-    let mut cores = best_path(&on, &between);
+    let mut trellis = Trellis::new(schedule.len(), blocks.len());
+    let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(evidence.noise(), from, density);
+    let mut cores = trellis.best_path(&between, on);
     if let Some(index) = missing(&cores) {
         let ScheduledPlateau { omega, nominal_z } = schedule[index];
         let stretches = evidence.steady_stretches().into_iter();
@@ -51,10 +52,10 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
     // Now that it is known where the plateaus are, the changes on each tell their own noise, far below that of a
     // sample; and so again, until nothing of the ramps is left in it.
     for _ in 0..ROUNDS {
-        let own = candidates.par_iter().zip(&cores);
-        let on: Vec<Vec<f64>> =
-            own.map(|(candidate, core)| candidate.density(&candidate.noise_of_change(core))).collect();
-        let next = best_path(&on, &between);
+        let own = candidates.par_iter().zip(&cores).map(|(candidate, core)| candidate.noise_of_change(core));
+        let own: Vec<Vector3<f64>> = own.collect();
+        let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(&own[k], from, density);
+        let next = trellis.best_path(&between, on);
         if next == cores || missing(&next).is_some() {
             break;
         }

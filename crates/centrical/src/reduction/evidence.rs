@@ -14,6 +14,7 @@ use super::ScheduledPlateau;
 use super::blocks::{Blocks, MAD, median, whole};
 use super::elementary::{exp, ln};
 use super::lanes::widest;
+use super::path::PIECE;
 
 /// Share of blocks on a plateau that show something else: a knock, a burst of spikes.
 const DISTURBED: f64 = 0.01;
@@ -38,12 +39,12 @@ pub(super) struct Evidence<'a> {
 }
 
 /// The evidence for one scheduled plateau.
-pub(super) struct Candidate {
-    span: f64,
+pub(super) struct Candidate<'a> {
+    evidence: &'a Evidence<'a>,
+    /// Blocks to both sides of one, over whose means the change of level about it is seen.
+    reach: f64,
     /// Noise of a block's level if it were white [m/s^2].
     white: Vector3<f64>,
-    /// Change of level about each block, per axis [m/s^2].
-    changes: [Vec<f64>; 3],
     /// Logarithm of the density of each block's level.
     levels: Vec<f64>,
 }
@@ -66,19 +67,21 @@ impl<'a> Evidence<'a> {
     }
 
     /// Evidence for a scheduled plateau.
-    pub fn of(&self, plateau: &ScheduledPlateau) -> Candidate {
+    pub fn of(&self, plateau: &ScheduledPlateau) -> Candidate<'_> {
         let width = LEVEL.0 * plateau.nominal_z.norm() + LEVEL.1;
         Candidate {
-            span: self.span,
+            evidence: self,
+            reach: self.reach(plateau.omega),
             white: self.noise * (self.blocks.interval / self.blocks.width).sqrt(),
-            changes: self.changes(plateau.omega),
             levels: widest(LevelDensity { levels: &self.levels, nominal_z: plateau.nominal_z, width, span: self.span }),
         }
     }
 
     /// In a transition: moving or, as likely, steady at a level of no scheduled plateau.
     pub fn in_transition(&self) -> Vec<f64> {
-        widest(Mixture { share: 0.5, x: self.steadiness() })
+        let mut steadiness = self.steadiness();
+        widest(Mixture { share: 0.5, x: &mut steadiness });
+        steadiness
     }
 
     /// The noise to begin with: that of one sample. White noise makes the change of block levels far smaller,
@@ -99,35 +102,44 @@ impl<'a> Evidence<'a> {
     }
 
     fn steadiness(&self) -> Vec<f64> {
-        let changes = self.changes(0.0);
-        widest(ChangeDensity { changes: &changes, noise: &self.noise, span: self.span })
+        let mut steadiness = vec![0.0; self.blocks.len()];
+        for (k, steadiness) in steadiness.chunks_mut(PIECE).enumerate() {
+            self.density_of_change(self.reach(0.0), &self.noise, k * PIECE, steadiness);
+        }
+        steadiness
     }
 
-    /// Change of level about each block: the mean of whole revolutions from it on, less that of as many up to it.
-    fn changes(&self, omega: f64) -> [Vec<f64>; 3] {
-        let reach = self.reach(omega);
-        let (n, axes) = (self.blocks.len(), [0, 1, 2]);
-        let at = |axis: usize, i: usize| {
-            let here = i as f64;
-            self.mean_level(axis, here, here + reach) - self.mean_level(axis, here + 1.0 - reach, here + 1.0)
-        };
+    /// Density of the change about each block of a piece if it is noise, over that of any change; logarithm.
+    fn density_of_change(&self, reach: f64, noise: &Vector3<f64>, from: usize, density: &mut [f64]) {
+        let mut changes = [[0.0; PIECE]; 3];
+        let mut changes = changes.each_mut().map(|changes| &mut changes[..density.len()]);
+        for (axis, changes) in changes.iter_mut().enumerate() {
+            self.changes(axis, reach, from, changes);
+        }
+        widest(ChangeDensity { changes: changes.each_ref().map(|c| &**c), noise, span: self.span, density });
+    }
+
+    /// Change of level about the blocks from one on: the mean over the reach from a block on, less that over the reach up to
+    /// it.
+    fn changes(&self, axis: usize, reach: f64, from: usize, changes: &mut [f64]) {
+        let (n, all) = (self.blocks.len(), from..from + changes.len());
         // Away from the ends of the record every block has its neighbours at the same distance.
         let whole_reach = whole(reach.ceil());
-        let inside = whole_reach..n.saturating_sub(whole_reach + 1).max(whole_reach);
-        if inside.is_empty() {
-            return axes.map(|axis| (0..n).map(|i| at(axis, i)).collect());
+        let start = whole_reach.clamp(all.start, all.end);
+        let end = n.saturating_sub(whole_reach + 1).clamp(start, all.end);
+        for i in (all.start..start).chain(end..all.end) {
+            let here = i as f64;
+            changes[i - from] =
+                self.mean_level(axis, here, here + reach) - self.mean_level(axis, here + 1.0 - reach, here + 1.0);
         }
-        axes.map(|axis| {
-            let mut changes = vec![0.0; n];
-            for i in (0..inside.start).chain(inside.end..n) {
-                changes[i] = at(axis, i);
-            }
-            let (levels, sums) = (&self.levels[axis], &self.sums[axis]);
-            widest(InnerChanges { levels, sums, reach, from: inside.start, changes: &mut changes[inside.clone()] });
-            changes
-        })
+        if start < end {
+            let (levels, sums, changes) =
+                (&self.levels[axis], &self.sums[axis], &mut changes[start - from..end - from]);
+            widest(InnerChanges { levels, sums, reach, from: start, changes });
+        }
     }
 
+    /// Whole revolutions, in blocks.
     fn reach(&self, omega: f64) -> f64 {
         let revolution = if omega == 0.0 { REACH } else { TAU / omega.abs() / self.blocks.width };
         (revolution * (REACH / revolution).ceil()).min(self.blocks.len() as f64)
@@ -202,56 +214,55 @@ impl WithSimd for LevelDensity<'_> {
 
 /// Density of changes if they are noise, over that of any change; logarithm.
 struct ChangeDensity<'a> {
-    changes: &'a [Vec<f64>; 3],
+    changes: [&'a [f64]; 3],
     noise: &'a Vector3<f64>,
     span: f64,
+    density: &'a mut [f64],
 }
 
 impl WithSimd for ChangeDensity<'_> {
-    type Output = Vec<f64>;
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
-        let [c1, c2, c3] = self.changes.each_ref().map(Vec::as_slice);
+    fn with_simd<S: Simd>(self, _: S) {
+        let [c1, c2, c3] = self.changes;
         let any = 3.0 * (self.span / (self.noise.product().cbrt() * TAU.sqrt())).ln();
         let noise = self.noise.map(|noise| 1.0 / noise);
-        let mut density = vec![0.0; c1.len()];
-        for (((density, c1), c2), c3) in density.iter_mut().zip(c1).zip(c2).zip(c3) {
+        for (((density, c1), c2), c3) in self.density.iter_mut().zip(c1).zip(c2).zip(c3) {
             let (x1, x2, x3) = (c1 * noise[0], c2 * noise[1], c3 * noise[2]);
             *density = any - 0.5 * (x1 * x1 + x2 * x2 + x3 * x3);
         }
-        density
     }
 }
 
 /// `ln(share e^x + 1 - share)` of many `x`.
-struct Mixture {
+struct Mixture<'a> {
     share: f64,
-    x: Vec<f64>,
+    x: &'a mut [f64],
 }
 
-impl WithSimd for Mixture {
-    type Output = Vec<f64>;
+impl WithSimd for Mixture<'_> {
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, _: S) -> Vec<f64> {
+    fn with_simd<S: Simd>(self, _: S) {
         // Beyond this one of the two is less than the rounding of the other.
         const ONE_ONLY: f64 = 45.0;
         let (share, of_share) = (self.share, self.share.ln());
-        for x in &mut self.x {
+        for x in self.x {
             let both = ln(share * exp(x.min(ONE_ONLY)) + 1.0 - share);
             *x = if *x > ONE_ONLY { of_share + *x } else { both };
         }
-        self.x
     }
 }
 
-impl Candidate {
-    /// On the plateau: a change as noise and the level near the nominal, or a disturbance that shows anything.
-    pub fn density(&self, noise: &Vector3<f64>) -> Vec<f64> {
-        let mut x = widest(ChangeDensity { changes: &self.changes, noise, span: self.span });
-        x.iter_mut().zip(&self.levels).for_each(|(x, level)| *x += level);
-        widest(Mixture { share: 1.0 - DISTURBED, x })
+impl Candidate<'_> {
+    /// On the plateau: a change as noise and the level near the nominal, or a disturbance that shows anything; of a piece of
+    /// blocks from one on.
+    pub fn density(&self, noise: &Vector3<f64>, from: usize, density: &mut [f64]) {
+        self.evidence.density_of_change(self.reach, noise, from, density);
+        density.iter_mut().zip(&self.levels[from..]).for_each(|(x, level)| *x += level);
+        widest(Mixture { share: 1.0 - DISTURBED, x: density });
     }
 
     /// Whether the level of a block is rather the plateau's than any.
@@ -261,8 +272,13 @@ impl Candidate {
 
     /// Robust standard deviation of the change over some blocks, not below what white noise makes.
     pub fn noise_of_change(&self, range: &Range<usize>) -> Vector3<f64> {
-        let size =
-            |axis: usize| self.changes[axis][range.clone()].iter().map(|change| change.abs()).collect::<Vec<f64>>();
-        Vector3::from_fn(|axis, _| (MAD * median(&mut size(axis))).max(self.white[axis]))
+        let mut sizes = vec![0.0; range.len()];
+        Vector3::from_fn(|axis, _| {
+            self.evidence.changes(axis, self.reach, range.start, &mut sizes);
+            for change in &mut sizes {
+                *change = change.abs();
+            }
+            (MAD * median(&mut sizes)).max(self.white[axis])
+        })
     }
 }

@@ -9,31 +9,58 @@ use std::ops::Range;
 /// Odds of a plateau that is in the schedule and not in the record.
 const MISSING: f64 = 1e-6;
 
-/// Blocks of each plateau on the best path; none for a plateau passed over.
-///
-/// `on[k][i]` and `between[i]` are logarithms of the probability densities of block `i` on plateau `k`, and in any
-/// transition.
-pub(super) fn best_path(on: &[Vec<f64>], between: &[f64]) -> Vec<Range<usize>> {
-    let plateaus = on.len();
-    let odds = MISSING.ln();
-    // State 2k is the transition before plateau k, state 2k + 1 the plateau k.
-    let states = 2 * plateaus + 1;
-    let mut score: Vec<f64> = (0..states).map(|state| (state / 2) as f64 * odds).collect();
-    let mut came_from: Vec<u32> = vec![0; states * between.len()];
-    for (i, from) in came_from.chunks_exact_mut(states).enumerate() {
-        if i > 0 {
-            advance(&mut score, from, odds);
-        }
-        for (k, on) in on.iter().enumerate() {
-            score[2 * k] += between[i];
-            score[2 * k + 1] += on[i];
-        }
-        score[states - 1] += between[i];
+/// Blocks whose densities are asked for together: what is made for them stays in the fastest memory.
+pub(super) const PIECE: usize = 512;
+
+/// All paths of a record through a schedule.
+pub(super) struct Trellis {
+    plateaus: usize,
+    blocks: usize,
+    /// For each block and each state, the state before.
+    came_from: Vec<u32>,
+}
+
+impl Trellis {
+    /// The trellis of so many plateaus and blocks.
+    pub fn new(plateaus: usize, blocks: usize) -> Self {
+        Self { plateaus, blocks, came_from: vec![0; states(plateaus) * blocks] }
     }
-    // The record may end anywhere: plateaus still to come are passed over.
-    let total = |state: &usize| score[*state] + ((states - 1 - state) / 2) as f64 * odds;
-    let last = (0..states).max_by(|a, b| total(a).total_cmp(&total(b))).unwrap_or(0);
-    trace(came_from.chunks_exact(states), last, plateaus)
+
+    /// Blocks of each plateau on the best path; none for a plateau passed over.
+    ///
+    /// `between[i]` is the logarithm of the probability density of block `i` in any transition; `on` is asked for those on a
+    /// plateau, of a piece of blocks from one on.
+    pub fn best_path(&mut self, between: &[f64], on: impl Fn(usize, usize, &mut [f64])) -> Vec<Range<usize>> {
+        let (odds, states) = (MISSING.ln(), states(self.plateaus));
+        // State 2k is the transition before plateau k, state 2k + 1 the plateau k.
+        let mut score: Vec<f64> = (0..states).map(|state| (state / 2) as f64 * odds).collect();
+        let mut room = vec![[0.0; PIECE]; self.plateaus];
+        let pieces = between[..self.blocks].chunks(PIECE).zip(self.came_from.chunks_mut(PIECE * states));
+        for (number, (between, came_from)) in pieces.enumerate() {
+            for (k, room) in room.iter_mut().enumerate() {
+                on(k, number * PIECE, &mut room[..between.len()]);
+            }
+            for (i, (between, from)) in between.iter().zip(came_from.chunks_exact_mut(states)).enumerate() {
+                if number + i > 0 {
+                    advance(&mut score, from, odds);
+                }
+                let (of_plateaus, last) = score.as_chunks_mut::<2>();
+                for ([transition, plateau], on) in of_plateaus.iter_mut().zip(&room) {
+                    *transition += between;
+                    *plateau += on[i];
+                }
+                last[0] += between;
+            }
+        }
+        // The record may end anywhere: plateaus still to come are passed over.
+        let total = |state: &usize| score[*state] + ((states - 1 - state) / 2) as f64 * odds;
+        let last = (0..states).max_by(|a, b| total(a).total_cmp(&total(b))).unwrap_or(0);
+        trace(self.came_from.chunks_exact(states), last, self.plateaus)
+    }
+}
+
+fn states(plateaus: usize) -> usize {
+    2 * plateaus + 1
 }
 
 /// One block on: the best predecessor of every state. Which one it is depends on noise: there are no branches to guess.
@@ -79,20 +106,30 @@ fn trace<'a>(
 
 #[cfg(test)]
 mod tests {
-    use super::best_path;
+    use super::{PIECE, Trellis};
 
     /// Densities of a record that shows plateau `seen[i]` at block `i`, or a transition.
     fn path(seen: &[Option<usize>], plateaus: usize) -> Vec<std::ops::Range<usize>> {
-        let on: Vec<Vec<f64>> = (0..plateaus)
-            .map(|k| seen.iter().map(|seen| if *seen == Some(k) { 20.0 } else { -5.0 }).collect())
-            .collect();
-        best_path(&on, &vec![0.0; seen.len()])
+        let on = |k: usize, from: usize, density: &mut [f64]| {
+            for (density, seen) in density.iter_mut().zip(&seen[from..]) {
+                *density = if *seen == Some(k) { 20.0 } else { -5.0 };
+            }
+        };
+        Trellis::new(plateaus, seen.len()).best_path(&vec![0.0; seen.len()], on)
     }
 
     #[test]
     fn plateaus_in_order_are_found() {
         let seen = [Some(0), Some(0), None, Some(1), Some(1), Some(1), None, Some(2)];
         assert_eq!(path(&seen, 3), [0..2, 3..6, 7..8]);
+    }
+
+    #[test]
+    fn a_path_is_found_piece_by_piece() {
+        let long = |seen: Option<usize>| std::iter::repeat_n(seen, PIECE - 1);
+        let seen: Vec<_> = [None, Some(0), None, Some(1), None, Some(2)].into_iter().flat_map(long).collect();
+        let at = |k: usize| k * (PIECE - 1)..(k + 1) * (PIECE - 1);
+        assert_eq!(path(&seen, 3), [at(1), at(3), at(5)]);
     }
 
     #[test]

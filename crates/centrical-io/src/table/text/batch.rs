@@ -1,17 +1,15 @@
-//! A column of bare numbers, many rows at a time, side by side as the vectors of the processor have room for them.
+//! A column of bare numbers, many rows at a time.
 //!
-//! A number of at most 16 bytes stands at the end of two words of eight. Its sign and its point are taken out, and what is
-//! before the point moves up; then the digits are joined as in [`super::number`]. As there, such a number is
-//! a whole one divided by a power of ten, and its last bit that of any correctly rounding parser.
+//! A number of at most 16 bytes stands at the end of two words of eight. What is before it is masked out, its sign and its
+//! point are taken out, and what is before the point moves up; then neighbouring digits are joined to pairs, pairs to fours,
+//! fours to eights, as in [`super::number`]. As there, such a number is a whole one divided by a power of ten, and its last
+//! bit that of any correctly rounding parser: so it is the same one however it is read.
 
-#![allow(
-    clippy::inline_always,
-    reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
-)]
+#[cfg(target_arch = "x86_64")]
+mod wide;
+mod words;
 
-use pulp::{Arch, Simd, WithSimd};
-
-use super::number::{ONES, joined};
+use self::words::Texts;
 
 /// Rows that are read together.
 pub(super) const ROWS: usize = 64;
@@ -19,176 +17,103 @@ pub(super) const ROWS: usize = 64;
 /// Bytes up to the end of a number that are looked at.
 pub(super) const REACH: usize = 16;
 
-/// The top bits of eight bytes.
-const TOPS: u64 = 0x80 * ONES;
-
-/// The texts of a column of numbers.
-pub(super) struct Texts {
-    /// The last eight bytes before the end of each, and the eight before.
-    low: [u64; ROWS],
-    high: [u64; ROWS],
-    /// Lengths, with the sign.
-    length: [u64; ROWS],
+/// Rows that are read together, a column after the other.
+#[derive(Default)]
+pub(super) struct Batch {
+    rows: usize,
+    column: Places,
+    texts: Texts,
 }
 
-impl Default for Texts {
+/// From where to where the numbers of a column stand in a text. Those of rows that are not there stand where the last one does.
+struct Places {
+    starts: [u32; ROWS],
+    ends: [u32; ROWS],
+}
+
+impl Default for Places {
     fn default() -> Self {
-        Self::ZEROS
+        Self { starts: [0; ROWS], ends: [0; ROWS] }
     }
 }
 
-impl Texts {
-    /// Zeros: what rows that are not there leave.
-    pub const ZEROS: Self = Self { low: [(b'0' as u64) << 56; ROWS], high: [0; ROWS], length: [1; ROWS] };
-
-    /// Takes the text from `start` to `end` for the number of a row, unless it is too near to the begin of all.
+impl Batch {
+    /// Begins with rows, of which the first stands from `from` on; `ends` are their ends, [`ROWS`] at most.
     #[inline]
-    pub fn take(&mut self, row: usize, text: &[u8], start: usize, end: usize) -> bool {
-        let words = text.get(end.wrapping_sub(REACH)..end).and_then(|words| words.first_chunk::<REACH>());
-        let Some(words) = words else { return false };
-        let (high, low) = words.split_at(8);
-        self.low[row] = u64::from_le_bytes(low.try_into().unwrap_or_default());
-        self.high[row] = u64::from_le_bytes(high.try_into().unwrap_or_default());
-        self.length[row] = (end as u64).wrapping_sub(start as u64);
-        true
+    pub fn begin(&mut self, from: u32, ends: &[u32]) {
+        self.rows = ends.len();
+        self.next_column(std::iter::once(from.wrapping_sub(1)).chain(ends.iter().copied()));
     }
 
-    /// The numbers. Whether there are any: none of the texts is another one than a bare number, of more than 15 digits or of more
-    /// than 7 decimals.
-    pub fn read(&self, numbers: &mut [f64; ROWS]) -> bool {
-        Arch::new().dispatch(Numbers { texts: self, numbers })
-    }
-}
-
-struct Numbers<'a> {
-    texts: &'a Texts,
-    numbers: &'a mut [f64; ROWS],
-}
-
-impl WithSimd for Numbers<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> bool {
-        let Self { texts, numbers } = self;
-        let [mut shortest, mut longest] = [u64::MAX, 0];
-        for length in texts.length {
-            (shortest, longest) = (shortest.min(length), longest.max(length));
+    /// Goes on to the column that ends at these separators.
+    #[inline]
+    pub fn next_column(&mut self, separators: impl Iterator<Item = u32>) {
+        let Places { starts, ends } = &mut self.column;
+        *starts = ends.map(|end| end.wrapping_add(1));
+        for (end, separator) in ends[..self.rows].iter_mut().zip(separators) {
+            *end = separator;
         }
-        // What is known of all of them need not be asked of each.
-        if shortest == 0 || longest > 16 {
-            false
-        } else if longest <= 8 {
-            texts.read_all::<true, false>(numbers)
-        } else if shortest > 8 {
-            texts.read_all::<false, true>(numbers)
-        } else {
-            texts.read_all::<true, true>(numbers)
+        for places in [starts, ends] {
+            let last = places[self.rows.saturating_sub(1)];
+            places[self.rows..].fill(last);
         }
     }
-}
 
-impl Texts {
-    /// The numbers, where some of their texts may be of up to 8 bytes, and some of 9 to 16.
-    #[inline(always)]
-    fn read_all<const SHORT: bool, const LONG: bool>(&self, numbers: &mut [f64; ROWS]) -> bool {
-        let mut wrong = 0;
-        for row in 0..ROWS {
-            let length = self.length[row];
-            let is_long = LONG && (!SHORT || length > 8);
-            // Bytes less the character 0, those before the number pushed out.
-            let low = self.low[row] ^ (0x30 * ONES);
-            let high = self.high[row] ^ (0x30 * ONES);
-            let before_low = if SHORT { 64 - 8 * length.min(8) } else { 0 };
-            let before_high = if LONG { 64 - 4 * length.max(8) } else { 32 };
-            let low = low >> before_low;
-            let high = if LONG { high >> before_high >> before_high } else { 0 };
-            let minus = u64::from((if is_long { high } else { low }) & 0xff == 0x30 ^ 0x2d);
-            let without_sign = !(0xff * minus);
-            let low = if is_long { low } else { low & without_sign } << before_low;
-            let high = if LONG { (high & without_sign) << before_high << before_high } else { 0 };
-            // The point: the top bit of its byte, if it is among the last eight bytes.
-            let others = low ^ ((0x30 ^ 0x2e) * ONES);
-            let point = !(((others & !TOPS) + !TOPS) | others) & TOPS;
-            let before = (point >> 7).wrapping_sub(1);
-            let after = !(point << 1).wrapping_sub(1);
-            let has_point = point != 0;
-            let digits_low = (low & after) | ((low & before) << 8) | (high >> 56);
-            let (digits_low, digits_high) = if has_point { (digits_low, high << 8) } else { (low, high) };
-            let decimals = if has_point { u64::from(point.leading_zeros()) / 8 } else { 0 };
-            wrong |= (digits_low.wrapping_add(0x76 * ONES) | digits_low) & TOPS;
-            if LONG {
-                wrong |= (digits_high.wrapping_add(0x76 * ONES) | digits_high) & TOPS;
-            }
-            // Nothing but a sign, a point with nothing before or after it, a number of 16 digits.
-            let whole_digits = length.wrapping_sub(minus + if has_point { decimals + 1 } else { 0 });
-            wrong |= u64::from(whole_digits == 0) | u64::from(has_point && decimals == 0);
-            if LONG {
-                wrong |= u64::from(!has_point && whole_digits == 16);
-            }
-            let whole = if LONG { joined(digits_high) * 100_000_000 } else { 0 } + joined(digits_low);
-            #[expect(clippy::cast_possible_wrap, reason = "at most 15 digits, below 2^53")]
-            let number = divided(whole as i64 as f64, decimals);
-            numbers[row] = f64::from_bits(number.to_bits() | minus << 63);
-        }
-        wrong == 0
+    /// Whether the column ends where the rows do.
+    pub fn ends_at(&self, ends: &[u32]) -> bool {
+        self.column.ends[..self.rows] == *ends
     }
-}
 
-/// `n / 10^d` for a whole `n` below `10^15` and `d` to 7, rounded once, sooner than a division would be made.
-///
-/// The quotient by way of the reciprocal is off by some units of the last place, `rest` is what that leaves of `n`,
-/// exactly, and its own quotient is off by some `2^-100`. But nothing of the kind `n / 10^d` is nearer than `2^-54 / 10^7`,
-/// a part of itself, to the middle between two doubles: so the sum is rounded as the true quotient is (Markstein 1990).
-#[inline(always)]
-fn divided(n: f64, d: u64) -> f64 {
-    let factor = |bit: u64, factor: f64| if d & bit == 0 { 1.0 } else { factor };
-    let power = factor(1, 1e1) * factor(2, 1e2) * factor(4, 1e4);
-    let reciprocal = factor(1, 1e-1) * factor(2, 1e-2) * factor(4, 1e-4);
-    let quotient = n * reciprocal;
-    let rest = (-quotient).mul_add(power, n);
-    rest.mul_add(reciprocal, quotient)
+    /// The numbers of the column, its texts being without their last `left_out` bytes. Whether there are any: none of the texts is
+    /// another one than a bare number, of more than 15 digits or of more than 7 decimals.
+    pub fn read(&mut self, text: &[u8], left_out: u32, numbers: &mut [f64; ROWS]) -> bool {
+        for end in &mut self.column.ends {
+            *end = end.wrapping_sub(left_out);
+        }
+        #[cfg(target_arch = "x86_64")]
+        if let Some(is_read) = wide::read(text, &self.column, numbers) {
+            return is_read;
+        }
+        self.texts.take(text, &self.column) && self.texts.read(numbers)
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{ROWS, Texts, divided};
+    use super::*;
 
-    #[test]
-    fn quotients_are_those_of_a_division() {
-        let mut seed = 1_u64;
-        for _ in 0..200_000 {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            for (d, power) in (0..=7).zip([1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7]) {
-                let any = ((seed >> 11) % 1_000_000_000_000_000) as f64;
-                for n in [any, any % 1e9, any % 1e4] {
-                    assert_eq!(divided(n, d).to_bits(), (n / power).to_bits(), "{n} / 10^{d}");
-                }
-            }
-        }
+    /// A column of numbers, read in a text without anything around it, and in one that vectors may reach over.
+    fn read(texts: &[&str]) -> Option<Vec<f64>> {
+        let column = format!("{},", texts.join(","));
+        let separators: Vec<usize> = column.match_indices(',').map(|(at, _)| at).collect();
+        let [short, long] = [0, 100_000].map(|after| {
+            let text = format!("{}{column}{}", "0".repeat(REACH), "0".repeat(after));
+            let ends: Vec<u32> = separators.iter().map(|at| u32::try_from(REACH + at).unwrap()).collect();
+            let (mut batch, mut numbers) = (Batch::default(), [0.0; ROWS]);
+            batch.begin(u32::try_from(REACH).unwrap(), &ends);
+            batch.next_column(ends.iter().copied());
+            let is_read = batch.read(text.as_bytes(), 0, &mut numbers);
+            assert!(!is_read || numbers[texts.len()..].iter().all(|number| *number == numbers[texts.len() - 1]));
+            is_read.then(|| numbers[..texts.len()].to_vec())
+        });
+        let bits =
+            |numbers: &Option<Vec<f64>>| numbers.as_ref().map(|n| n.iter().map(|n| n.to_bits()).collect::<Vec<_>>());
+        assert_eq!(bits(&short), bits(&long), "{texts:?}");
+        long
     }
 
-    /// A column of one number.
-    fn read(text: &str) -> Option<f64> {
-        let line = format!("0123456789abcdef,{text},");
-        let mut texts = Texts::ZEROS;
-        let taken = (0..ROWS).all(|row| texts.take(row, line.as_bytes(), 17, line.len() - 1));
-        let mut numbers = [0.0; ROWS];
-        if !(taken && texts.read(&mut numbers)) {
-            return None;
-        }
-        assert!(numbers.iter().all(|number| number.to_bits() == numbers[0].to_bits()));
-        Some(numbers[0])
-    }
-
-    #[test]
-    fn bare_numbers_are_read_to_the_last_bit() {
+    /// A small generator, of whole numbers below a limit.
+    fn generator() -> impl FnMut(u64) -> u64 {
         let mut seed = 1_u64;
-        let mut below = |end: u64| {
+        move |end| {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (seed >> 33) % end
-        };
-        for _ in 0..100_000 {
+        }
+    }
+
+    /// A random number of a length at most.
+    fn random(longest: usize, below: &mut impl FnMut(u64) -> u64) -> String {
+        loop {
             let decimals = below(8);
             let whole = 1 + below(15 - decimals);
             let mut digits = |count: u64| -> String {
@@ -197,12 +122,64 @@ mod tests {
             let part = if decimals == 0 { String::new() } else { format!(".{}", digits(decimals)) };
             let sign = if digits(1).as_str() < "5" { "-" } else { "" };
             let text = format!("{sign}{}{part}", digits(whole));
-            let expected: f64 = text.parse().unwrap();
-            match read(&text) {
-                Some(number) => assert_eq!(number.to_bits(), expected.to_bits(), "{text}"),
-                None => assert!(text.len() > 16, "{text}"),
+            if text.len() <= longest {
+                return text;
             }
         }
+    }
+
+    #[test]
+    fn bare_numbers_are_read_to_the_last_bit() {
+        let mut below = generator();
+        for round in 0..3000 {
+            let longest = [16, 8, 4][round % 3];
+            let texts: Vec<String> = (0..=below(ROWS as u64 - 1)).map(|_| random(longest, &mut below)).collect();
+            let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+            let numbers = read(&texts).unwrap_or_else(|| panic!("{texts:?}"));
+            for (text, number) in texts.iter().zip(numbers) {
+                assert_eq!(number.to_bits(), text.parse::<f64>().unwrap().to_bits(), "{text}");
+            }
+        }
+    }
+
+    /// Texts that differ from numbers in some bytes: what is read is what a parser of any number reads.
+    #[test]
+    fn what_is_read_of_other_texts_is_right() {
+        let mut below = generator();
+        let mut read_ones = 0;
+        for round in 0..20_000 {
+            let longest = [16, 8, 4][round % 3];
+            let mut other = random(longest, &mut below).into_bytes();
+            for _ in 0..=below(2) {
+                let at = usize::try_from(below(other.len() as u64)).unwrap();
+                let any = b' ' + u8::try_from(below(95)).unwrap();
+                other[at] = [any, b'.', b'-', b'0'][usize::try_from(below(4)).unwrap()];
+            }
+            let other = String::from_utf8(other).unwrap().replace(',', ";");
+            let mut texts = vec!["1"; ROWS];
+            let row = round % ROWS;
+            texts[row] = &other;
+            if let Some(numbers) = read(&texts) {
+                assert_eq!(numbers[row].to_bits(), other.parse::<f64>().unwrap().to_bits(), "{other}");
+                read_ones += 1;
+            }
+        }
+        assert!(read_ones > 1000, "{read_ones}");
+    }
+
+    /// The number, in every row of a batch of others of its own length and of other ones.
+    fn read_among_others(text: &str) -> Option<f64> {
+        let read = |other: &str, row: usize| {
+            let texts: Vec<&str> = (0..ROWS).map(|k| if k == row { text } else { other }).collect();
+            let numbers = read(&texts)?;
+            let expected: f64 = other.parse().unwrap();
+            assert!(numbers.iter().enumerate().all(|(k, number)| k == row || *number == expected), "{text}");
+            Some(numbers[row])
+        };
+        let others = ["1", "-0.5", "1234567.25", "-123456.7890123"];
+        let all: Vec<Option<f64>> = others.iter().flat_map(|other| (0..ROWS).map(|row| read(other, row))).collect();
+        assert!(all.iter().all(|number| number.map(f64::to_bits) == all[0].map(f64::to_bits)), "{text}");
+        all[0]
     }
 
     #[test]
@@ -210,7 +187,7 @@ mod tests {
         for text in
             ["", "-", "+1", ".5", "-.5", ".", "-.", "1.", "1.12345678", "1e5", "1.5e-3", "nan", "--1", "a", "1.2.3"]
         {
-            assert_eq!(read(text), None, "{text}");
+            assert_eq!(read_among_others(text), None, "{text}");
         }
         for text in [
             " 1",
@@ -224,12 +201,12 @@ mod tests {
             "1/2",
             "1:2",
         ] {
-            assert_eq!(read(text), None, "{text}");
+            assert_eq!(read_among_others(text), None, "{text}");
         }
-        assert_eq!(read("123456789012345"), Some(123_456_789_012_345.0));
-        assert_eq!(read("-123456789012345"), Some(-123_456_789_012_345.0));
-        assert_eq!(read("12345678.1234567"), Some(12_345_678.123_456_7));
-        assert_eq!(read("-12345678.1234567"), None);
-        assert_eq!(read("-1234567.1234567"), Some(-1_234_567.123_456_7));
+        assert_eq!(read_among_others("123456789012345"), Some(123_456_789_012_345.0));
+        assert_eq!(read_among_others("-123456789012345"), Some(-123_456_789_012_345.0));
+        assert_eq!(read_among_others("12345678.1234567"), Some(12_345_678.123_456_7));
+        assert_eq!(read_among_others("-12345678.1234567"), None);
+        assert_eq!(read_among_others("-1234567.1234567"), Some(-1_234_567.123_456_7));
     }
 }

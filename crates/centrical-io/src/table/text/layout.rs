@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use memchr::{memchr, memchr2, memchr3};
 
-use super::batch::{ROWS, Texts};
+use super::batch::{Batch, ROWS};
 use super::number::plain;
 use crate::error::quoted;
 use crate::table::{Block, ColumnName, Field, LARGEST, Rule, stamp};
@@ -150,17 +150,12 @@ impl Layout {
         from: usize,
         separators: &[u32],
         ends: &[u32],
-        texts: &mut Texts,
+        batch: &mut Batch,
         block: &mut Block,
     ) -> Option<()> {
-        let fields = self.wanted.len();
-        let lines = separators.chunks_exact(fields);
-        // If each line's last separator ends it, no other one does.
-        let wrong: u32 =
-            lines.clone().zip(ends).map(|(line, end)| line[fields - 1] ^ end).fold(0, |all, one| all | one);
         let all = &text[from..*separators.last()? as usize];
         // A delimiter within quotes divides nothing.
-        if wrong != 0 || text[from] == b'#' || self.wanted.contains(&None) && memchr2(b'"', b'#', all).is_some() {
+        if text[from] == b'#' || self.wanted.contains(&None) && memchr2(b'"', b'#', all).is_some() {
             return None;
         }
         // All of the lines end alike, or this is not for numbers that are taken together.
@@ -170,26 +165,20 @@ impl Layout {
             return None;
         }
         let before = block[0].len();
-        if lines.len() < ROWS {
-            // Or else what was there before would be read with them.
-            *texts = Texts::ZEROS;
-        }
+        batch.begin(u32::try_from(from).ok()?, ends);
         for (column, field) in self.wanted.iter().enumerate() {
-            let Some(field) = field else { continue };
-            let mut is_plain = true;
-            let with_return = usize::from(with_return && column + 1 == fields);
-            let mut start = from;
-            for (row, line) in lines.clone().enumerate() {
-                if column > 0 {
-                    start = line[column - 1] as usize + 1;
-                }
-                is_plain &= texts.take(row, text, start, line[column] as usize - with_return);
-                start = line[fields - 1] as usize + 1;
+            batch.next_column(separators.chunks_exact(self.wanted.len()).map(|line| line[column]));
+            let is_last = column + 1 == self.wanted.len();
+            // If each line's last separator ends it, no other one does.
+            let mut is_plain = !is_last || batch.ends_at(ends);
+            if let Some(field) = field {
+                let values = &mut block[*field];
+                values.resize(before + ROWS, 0.0);
+                let left_out = u32::from(is_last && with_return);
+                let numbers = values[before..].first_chunk_mut();
+                is_plain = is_plain && numbers.is_some_and(|numbers| batch.read(text, left_out, numbers));
+                values.truncate(before + ends.len());
             }
-            let values = &mut block[*field];
-            values.resize(before + ROWS, 0.0);
-            is_plain = is_plain && values[before..].first_chunk_mut().is_some_and(|numbers| texts.read(numbers));
-            values.truncate(before + lines.len());
             if !is_plain {
                 for values in block.iter_mut() {
                     values.truncate(before);

@@ -66,7 +66,11 @@ impl<const OFTEN: usize> Places<OFTEN> {
     }
 
     /// Adds the marked ones of a step.
-    #[inline]
+    #[expect(
+        clippy::inline_always,
+        reason = "what is not inlined is compiled without the instructions that count bits"
+    )]
+    #[inline(always)]
     fn take(&mut self, mut marks: u64, step: usize) {
         if self.places.len() < self.count + STEP {
             self.places.resize(2 * self.count + STEP, 0);
