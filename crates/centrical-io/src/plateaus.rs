@@ -18,7 +18,7 @@ use crate::error::{Error, Place};
 use crate::parquet_table::{Layout, ParquetTable};
 use crate::session::FASTEST;
 use crate::table::{self, ColumnName, Field, Rule};
-use crate::write::{write_stream, write_whole};
+use crate::write::write_whole;
 
 /// The mean readings of one plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -141,11 +141,12 @@ pub(crate) fn write_plateaus_parquet(file: &Path, plateaus: &[PlateauMean]) -> R
     };
     let rows: Vec<[f64; COLUMNS.len()]> = plateaus.iter().map(row).collect();
     let columns: Vec<Vec<f64>> = (0..COLUMNS.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
-    write_stream(file, |output| {
-        let mut table = ParquetTable::new(output, Layout::PACKED, &COLUMNS.map(|(name, _)| name))?;
+    let table = ParquetTable::new(Vec::new(), Layout::PACKED, &COLUMNS.map(|(name, _)| name));
+    let bytes = table.and_then(|mut table| {
         table.write(&columns)?;
-        table.finish().map(|_| ())
-    })
+        table.finish()
+    });
+    write_whole(file, &bytes.map_err(|error| Error::writing(file, error))?)
 }
 
 #[cfg(test)]

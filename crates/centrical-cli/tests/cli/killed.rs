@@ -11,7 +11,7 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-use crate::session::example;
+use crate::session::{Copy, example};
 
 /// The signal of the limit.
 const SIGXFSZ: i32 = 25;
@@ -20,6 +20,20 @@ const SIGXFSZ: i32 = 25;
 const BLOCK: usize = 512;
 
 const TRUTH: &str = "typical = { size = 1.0 }\n[sensor]\nwhite = \"0.2 mg\"\n[recorder]\nrate = \"10 Hz\"\n";
+
+/// What `plan` chooses from: little, so that it is soon done.
+const PLAN: &str = r#"
+session = { title = "" }
+plan = { noise = "20 ug/sqrt(Hz)", floor = "1 ug" }
+candidates = { radii = ["0.5 m"], loads = { from = "5 g", to = "200 g", count = 2 }, rest_angles = ["0 deg", "180 deg"], durations = ["60 s"], repeats = 1 }
+cost = { position = "20 min", seat = "10 min", run_up = "2 min", ramp = "20 s", turn = "10 s" }
+target = { criterion = "I", range = "200 g", time = "8 h" }
+site = { gravity = "9.8 m/s^2", latitude = "55.7 deg" }
+unit = { output_unit = "m/s^2", proof_masses = [[0, 0, 0], [0.02, 0.01, 0.01], [0.01, -0.01, -0.01]] }
+centrifuge = { speed_uncertainty = "10 ppm", rotation = "+3" }
+model = { error_model = "kozlov-2017", pair_relation = "common" }
+position = [{ id = "1", axes = "+1 +2 +3", pair = "A" }, { id = "2", axes = "-1 -2 +3", pair = "A" }]
+"#;
 
 /// Files of a folder and those below it, by name.
 type Files = BTreeMap<String, Vec<u8>>;
@@ -57,6 +71,7 @@ fn dies_in_its_writes(arguments: &[&str]) {
         let path = folder.path().join(name);
         fs::create_dir_all(path.join("out")).unwrap();
         fs::write(path.join("truth.toml"), TRUTH).unwrap();
+        fs::write(path.join("plan.toml"), PLAN).unwrap();
         path
     };
     let expected = made("whole");
@@ -105,8 +120,9 @@ fn dies_in_its_writes(arguments: &[&str]) {
 #[test]
 fn every_file_of_every_command() {
     let session = example();
-    let [session, record] =
-        [session.clone(), session.join("records/m01.csv")].map(|path| path.to_str().unwrap().to_owned());
+    let [session, record, laboratory] =
+        [session.clone(), session.join("records/m01.csv"), session.join("laboratory.toml")]
+            .map(|path| path.to_str().unwrap().to_owned());
     let result = TempDir::new().unwrap();
     whole(result.path(), &["calibrate", &session, "--out", "."]);
     let result = result.path().join("result.json").to_str().unwrap().to_owned();
@@ -119,9 +135,67 @@ fn every_file_of_every_command() {
         &["simulate", &session, "--truth", "truth.toml", "--seed", "1", "--out", "out"],
         &["simulate", &session, "--truth", "truth.toml", "--seed", "1", "--out", "out", "--format", "parquet"],
         &["noise", &record, "--out", "out"],
+        &["plan", "plan.toml", "--out", "out/schedule.toml"],
+        &["plan", "plan.toml", "--frontier", "--levels", "1", "--svg", "out/frontier.svg"],
         &["report", &result, "--html", "out/report.html"],
+        &["report", &result, "--pdf", "out/certificate.pdf", "--laboratory", &laboratory],
+        &["report", &result, "--dcc", "out/certificate.xml", "--laboratory", &laboratory],
         &["report", &result, "--c", "out"],
     ] {
         dies_in_its_writes(arguments);
+    }
+}
+
+/// A watch adds to its files with every plateau. Whichever it dies in, what is there is whole, but for the last line of the
+/// history after a kill, which nobody reads; and the same command goes on from there to the bytes of a watch that never died.
+#[test]
+fn a_watch_goes_on_from_every_write() {
+    let begun = Copy::new();
+    for mounting in 2..=12 {
+        fs::remove_file(begun.session().join(format!("records/m{mounting:02}.csv"))).unwrap();
+    }
+    let [begun, complete] = [begun.session(), example()].map(|path| path.to_str().unwrap().to_owned());
+    let history = "watch-history.jsonl";
+    dies_in_a_watch(&[&begun], history, |_| 1);
+    dies_in_a_watch(&[&begun], history, |length| (length - 1) / BLOCK);
+    // While all that has come is held out there is no history, and the state is the largest file.
+    dies_in_a_watch(&[&begun, "--hold-out", "1:1"], "watch.json", |_| 1);
+    dies_in_a_watch(&[&complete], "result.json", |length| (length - 1) / BLOCK);
+}
+
+/// Kills a watch, and makes it fail, in its write of a file, no file to become larger than so many blocks by its length.
+fn dies_in_a_watch(arguments: &[&str], file: &str, blocks: impl Fn(usize) -> usize) {
+    let folder = TempDir::new().unwrap();
+    let arguments = [&["watch"], arguments, &["--once", "--quiet", "0", "--out", "out"]].concat();
+    whole(folder.path(), &arguments);
+    let out = folder.path().join("out");
+    let expected = files(&out);
+    let blocks = blocks(expected[file].len());
+    let history = out.join("watch-history.jsonl");
+    for before in ["", "trap '' XFSZ;"] {
+        fs::remove_dir_all(&out).unwrap();
+        let died = run(folder.path(), before, blocks, &arguments);
+        let message = String::from_utf8_lossy(&died.stderr);
+        let left = files(&out);
+        if before.is_empty() {
+            assert_eq!(died.status.signal(), Some(SIGXFSZ), "{arguments:?}, {blocks}: {message}");
+            let cut = left.get(&format!("{file}.tmp")).unwrap_or_else(|| &left[file]);
+            assert_eq!(cut.len(), blocks * BLOCK, "{arguments:?}: killed inside the write of {file}");
+        } else {
+            assert_eq!(died.status.code(), Some(2), "{arguments:?}, {blocks}: {message}");
+            assert!(message.contains(&format!("out/{file}: cannot be written")), "{message}");
+            assert!(left.keys().all(|name| expected.contains_key(name)), "{arguments:?}, {blocks}: {:?}", left.keys());
+            let there = left.get("watch-history.jsonl").map_or(&[][..], Vec::as_slice);
+            assert!(there.last().is_none_or(|end| *end == b'\n'), "{arguments:?}, {blocks}: a line in part");
+        }
+        if history.exists() {
+            let lines = fs::read_to_string(&history).unwrap().matches('\n').count();
+            assert_eq!(centrical_io::read_history(&history).unwrap().len(), lines, "{arguments:?}, {blocks}");
+        }
+        whole(folder.path(), &arguments);
+        let ended = files(&out);
+        for (name, bytes) in &expected {
+            assert!(ended.get(name) == Some(bytes), "{arguments:?}, {blocks}: {name}");
+        }
     }
 }

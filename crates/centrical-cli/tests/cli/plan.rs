@@ -65,6 +65,19 @@ fn a_plan_for_a_time() {
     }
 }
 
+/// Time that hardly suffices leaves the visits next to nothing to choose from: a plan all the same, above its bound.
+#[test]
+fn a_plan_for_little_time() {
+    let copy = Copy::new();
+    let plan = small(&copy, "time = \"8 h\"", "time = \"2 h\"");
+    let text = fs::read_to_string(&plan).unwrap().replace("count = 4", "count = 2");
+    fs::write(&plan, text).unwrap();
+    let report = json(&copy, &["plan", &plan, "--json"]);
+    let number = |key: &str| report[key].as_f64().unwrap();
+    assert!(number("time") <= 2.0 * 3600.0, "{report}");
+    assert!(0.0 < number("bound") && number("bound") <= number("value"), "{} {}", number("bound"), number("value"));
+}
+
 /// Goals that time reaches are met in the shortest time; goals that no time reaches are an error that says by how much; goals
 /// that type B alone misses are told.
 #[test]

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use hdf5_pure::{Dataset, Error as HdfError, File};
+use hdf5_pure::{ChunkIndex, Dataset, Error as HdfError, File, FormatError};
 
 use super::columnar::{self, Column};
 use super::{BLOCK, ColumnName, Field, Rows, caught};
@@ -11,6 +11,9 @@ use crate::error::{Error, Place, quoted};
 
 /// Numbers of a matrix that are read together.
 const AT_ONCE: u64 = 16 * BLOCK as u64;
+
+/// No number takes more [bytes]: room is made for as many as there are of what a file claims.
+const LARGEST_NUMBER: u64 = 16;
 
 /// Reads an HDF5 file. MATLAB keeps its matrices there by columns.
 pub(super) fn read(file: &Path, by_columns: bool, rows: &mut Rows) -> Result<(), Error> {
@@ -52,6 +55,13 @@ fn column<'a>(file: &'a Path, hdf: &File, field: &'a Field, by_columns: bool, mo
     if !is_asked || columns > AT_ONCE || rows > most {
         return wrong(format!("an array of shape {shape:?}"), "a vector by name, or a column of a matrix by number");
     }
+    if let Some((found, expected)) = unreadable(&dataset).map_err(damaged)? {
+        return wrong(found, expected);
+    }
+    let size = caught(|| dataset.element_size()).map_err(damaged)?;
+    if size > LARGEST_NUMBER {
+        return wrong(format!("elements of {size} bytes"), "numbers");
+    }
     if let Some(found) = too_large_chunk(file, &dataset, most).map_err(damaged)? {
         return wrong(found, "chunks that the file can hold");
     }
@@ -76,15 +86,33 @@ fn column<'a>(file: &'a Path, hdf: &File, field: &'a Field, by_columns: bool, mo
     }))
 }
 
+/// A layout that the library does not know, and what it does.
+fn unreadable(dataset: &Dataset) -> Result<Option<(String, &'static str)>, Option<HdfError>> {
+    match caught(|| dataset.chunk_index()) {
+        Ok(Some(ChunkIndex::BTreeV2)) => Ok(Some((
+            "chunks indexed by a B-tree of version 2".to_owned(),
+            "another index: at most one unlimited dimension, or a file for earlier versions (in h5py libver=\"earliest\")",
+        ))),
+        Err(Some(HdfError::Format(FormatError::InvalidLayoutVersion(version)))) => Ok(Some((
+            format!("a data layout of version {version}"),
+            "4 or before: a file for HDF5 1.14 or earlier versions (in h5py libver=\"earliest\")",
+        ))),
+        known => known.map(|_| None),
+    }
+}
+
 /// A chunk that claims more than there can be: it is unpacked as a whole, and room is made for what it claims to take in the file
-/// before that is read. An index that cannot be listed is left to the reading.
+/// before that is read.
 fn too_large_chunk(file: &Path, dataset: &Dataset, most: u64) -> Result<Option<String>, Option<HdfError>> {
+    if !dataset.is_chunked() {
+        return Ok(None);
+    }
     let shape = caught(|| dataset.chunk_shape())?.unwrap_or_default();
     if shape.iter().fold(1, |numbers: u64, length| numbers.saturating_mul(*length)) > most {
         return Ok(Some(format!("chunks of shape {shape:?}")));
     }
     let bytes = fs::metadata(file).map_or(0, |metadata| metadata.len());
-    let stored = caught(|| dataset.chunks()).unwrap_or_default();
+    let stored = caught(|| dataset.chunks())?;
     let size = stored.iter().map(|chunk| chunk.storage_size).find(|size| *size > bytes);
     Ok(size.map(|size| format!("a chunk of {size} bytes")))
 }

@@ -1,8 +1,8 @@
 //! `watch-history.jsonl`: one line for each plateau that has come, with all that was known after it; what plots of
 //! convergence are made from.
 
-use std::fs::{self, OpenOptions};
-use std::io::Write;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
 use std::path::Path;
 
 use centrical::MeasurementModel;
@@ -78,17 +78,30 @@ impl HistoryEstimate {
 /// Adds a line to the history.
 ///
 /// # Errors
-/// [`Error::Io`] when the file does not take it.
+/// [`Error::Io`] when the file does not take it; it is as it was then.
 pub fn append_history(file: &Path, entry: &HistoryEntry) -> Result<(), Error> {
     // Plain structs: serialisation has nothing to fail on.
     let mut line = serde_json::to_string(entry).unwrap_or_default();
     line.push('\n');
     let mut open = OpenOptions::new();
-    let written = open.create(true).append(true).open(file).and_then(|mut file| file.write_all(line.as_bytes()));
+    let written = open.create(true).append(true).open(file).and_then(|file| append(file, line.as_bytes()));
     written.map_err(|error| Error::writing(file, error))
 }
 
-/// Reads a history.
+fn append(mut file: File, line: &[u8]) -> io::Result<()> {
+    let before = file.metadata()?.len();
+    file.write_all(line).inspect_err(|_| {
+        // Best effort: the first error is the one to tell.
+        let _ = file.set_len(before);
+    })
+}
+
+/// The lines that have their end: where a watch was killed or is just writing, the last one may have none yet.
+fn ended(text: &str) -> &str {
+    text.rfind('\n').map_or("", |end| &text[..=end])
+}
+
+/// Reads a history, without a line at its end that is there in part.
 ///
 /// # Errors
 /// [`Error`] when the file cannot be read or a line of it is no state.
@@ -102,7 +115,7 @@ pub fn read_history(file: &Path) -> Result<Vec<HistoryEntry>, Error> {
             message: format!("found {error}, expected {expected}"),
         })
     };
-    text.lines().enumerate().map(entry).collect()
+    ended(&text).lines().enumerate().map(entry).collect()
 }
 
 /// Keeps the lines of the first `plateaus` and drops what a broken run may have written after them.
@@ -116,6 +129,6 @@ pub fn keep_history(file: &Path, plateaus: usize) -> Result<(), Error> {
     let text = fs::read_to_string(file).map_err(|error| Error::reading(file, error, "the history of a watch"))?;
     // One plateau may have no line: while nothing is taken up there is nothing to tell.
     let is_of = |line: &&str| serde_json::from_str::<HistoryEntry>(line).is_ok_and(|entry| entry.plateau <= plateaus);
-    let kept: String = text.split_inclusive('\n').take_while(is_of).collect();
+    let kept: String = ended(&text).split_inclusive('\n').take_while(is_of).collect();
     if kept == text { Ok(()) } else { write_whole(file, kept.as_bytes()) }
 }

@@ -11,7 +11,7 @@ use super::history::InnovationSummary;
 use crate::error::{Error, Place};
 use crate::input::Input;
 use crate::session::Session;
-use crate::write::write_whole;
+use crate::write::write_stream;
 
 /// Name of the form's present version.
 const SCHEMA: &str = "centrical-watch/1";
@@ -83,7 +83,7 @@ impl WatchState {
         Ok(state)
     }
 
-    /// Writes the state, whole or not at all.
+    /// Writes the state, whole or not at all; after a power cut it may be lost, and is made anew from the session's records.
     ///
     /// # Errors
     /// [`Error::Io`] when the folder does not take it.
@@ -91,7 +91,7 @@ impl WatchState {
         // Plain structs: serialisation has nothing to fail on.
         let mut text = serde_json::to_string(self).unwrap_or_default();
         text.push('\n');
-        write_whole(file, text.as_bytes())
+        write_stream(file, |output| output.write_all(text.as_bytes()))
     }
 
     /// The plateaus that are not held out, as data of a fit.

@@ -111,6 +111,21 @@ def write_hdf5(t, f):
         file["t"] = t.astype(np.float32)
         for i in range(3):
             file[f"f{i + 1}"] = np.round(f[:, i] * 8192).astype(np.int32)
+    # Since 1.10 there is an index for every way in which chunks come: along one direction or two, a number of them, one, all at once.
+    with h5py.File(HERE / "v110.h5", "w", libver=("v110", "v110")) as file:
+        file.create_dataset("t", data=t, maxshape=(None,), chunks=(16,), compression="gzip", shuffle=True)
+        file.create_dataset("f1", data=f[:, 0], maxshape=(None,), chunks=(16,))
+        file.create_dataset("f2", data=f[:, 1], chunks=(64,), compression="gzip")
+        file.create_dataset("f3", data=f[:, 2], chunks=(300,), compression="gzip")
+    with h5py.File(HERE / "v110_rows.h5", "w", libver=("v110", "v110")) as file:
+        file.create_dataset("data", data=matrix, maxshape=(None, 4), chunks=(64, 3), compression="gzip")
+    with h5py.File(HERE / "v110_early.h5", "w", libver=("v110", "v110")) as file:
+        early = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+        early.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
+        file.create_dataset("data", data=matrix, chunks=(64, 3), dcpl=early)
+    for name, libver in [("", "earliest"), ("_v110", ("v110", "v110")), ("_v200", ("v200", "v200"))]:
+        with h5py.File(HERE / f"unlimited{name}.h5", "w", libver=libver) as file:
+            file.create_dataset("data", data=matrix, maxshape=(None, None), chunks=(64, 3), compression="gzip")
     # MATLAB 7.3 is not at hand: its form (a user block of 512 bytes, vectors as 1 x N) is documented.
     with h5py.File(HERE / "matlab73.mat", "w", userblock_size=512) as file:
         for name, values in {"t": t, "f1": f[:, 0], "f2": f[:, 1], "f3": f[:, 2]}.items():

@@ -74,3 +74,17 @@ fn a_page_larger_than_its_column() {
     let message = message("m.parquet", &bytes, &Columns::default());
     assert!(message.contains("that claims to hold 2147483647"), "{message}");
 }
+
+#[test]
+#[cfg(feature = "hdf5")]
+fn a_number_of_megabytes() {
+    // The type of an HDF5 number of 8 bytes: class and bit field, then its size.
+    let double = [0x11, 0x20, 0x3f, 0x00, 8, 0, 0, 0];
+    let mut bytes = fs::read(data("v110_rows.h5")).unwrap();
+    let at = bytes.windows(double.len()).position(|window| window == double).unwrap();
+    bytes[at + 6] = 0x80;
+    // The checksum at the end of the object's header, over its 264 bytes from 179, as it is then.
+    bytes[443..447].copy_from_slice(&[0x9d, 0x2e, 0x91, 0x95]);
+    let message = message("m.h5", &bytes, &numbered());
+    assert_eq!(message, "m.h5, column 1: found elements of 8388616 bytes, expected numbers");
+}

@@ -120,11 +120,36 @@ fn arrays_of_integer_counts() {
 #[test]
 #[cfg(feature = "hdf5")]
 fn hdf5() {
-    for name in ["named.h5", "matlab73.mat"] {
+    for name in ["named.h5", "v110.h5", "matlab73.mat"] {
         assert_eq!(read_record(&data(name), &Columns::default()).unwrap(), reference(), "{name}");
     }
-    assert_eq!(read_record(&data("matrix.h5"), &numbered()).unwrap(), reference());
+    for name in ["matrix.h5", "v110_rows.h5", "v110_early.h5", "unlimited.h5"] {
+        assert_eq!(read_record(&data(name), &numbered()).unwrap(), reference(), "{name}");
+    }
     assert_eq!(read_record(&data("counts.h5"), &counts()).unwrap(), reference());
+}
+
+/// Of what h5py writes the library has no reader for one index of chunks, nor for the form of HDF5 2.0.
+#[test]
+#[cfg(feature = "hdf5")]
+fn hdf5_that_cannot_be_read() {
+    let cases = [
+        (
+            "unlimited_v110.h5",
+            "chunks indexed by a B-tree of version 2, expected another index: at most one unlimited dimension, or a file for \
+             earlier versions (in h5py libver=\"earliest\")",
+        ),
+        (
+            "unlimited_v200.h5",
+            "a data layout of version 5, expected 4 or before: a file for HDF5 1.14 or earlier versions (in h5py \
+             libver=\"earliest\")",
+        ),
+    ];
+    for (name, expected) in cases {
+        let file = data(name);
+        let error = read_record(&file, &numbered()).unwrap_err();
+        assert_eq!(error.to_string(), format!("{}, column 1: found {expected}", file.display()));
+    }
 }
 
 #[test]

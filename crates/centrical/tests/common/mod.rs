@@ -11,7 +11,7 @@ pub fn spread() -> Matrix3<f64> {
     Matrix3::new(0.0, 0.05, 0.04, 0.0, 0.03, -0.02, 0.0, 0.02, -0.03)
 }
 
-/// A small generator of its own, so that a test means the same on every machine (SplitMix64).
+/// A small generator of its own, so that a test means the same on every machine (SplitMix64, G. L. Steele et al., OOPSLA 2014).
 pub struct Random(u64);
 
 impl Random {
@@ -19,7 +19,8 @@ impl Random {
         Self(seed)
     }
 
-    fn next(&mut self) -> u64 {
+    /// All 64 bits.
+    pub fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

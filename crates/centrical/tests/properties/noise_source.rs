@@ -4,37 +4,26 @@ use std::f64::consts::TAU;
 
 use realfft::RealFftPlanner;
 
-/// Gaussian numbers by Box and Muller on SplitMix64 (G. L. Steele et al., OOPSLA 2014).
+use crate::common::Random;
+
+/// Gaussian numbers by Box and Muller, both of a pair.
 pub struct Gaussian {
-    state: u64,
+    random: Random,
     spare: Option<f64>,
 }
 
 impl Gaussian {
     pub fn new(seed: u64) -> Self {
         // The state steps by one constant, so seeds must lie apart: the generator's own numbers do.
-        let mut seeder = Self { state: seed, spare: None };
-        Self { state: seeder.bits(), spare: None }
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn uniform(&mut self) -> f64 {
-        ((self.bits() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+        Self { random: Random::new(Random::new(seed).next()), spare: None }
     }
 
     pub fn next(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;
         }
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
-        let (sine, cosine) = (TAU * self.uniform()).sin_cos();
+        let radius = (-2.0 * self.random.uniform().ln()).sqrt();
+        let (sine, cosine) = (TAU * self.random.uniform()).sin_cos();
         self.spare = Some(radius * sine);
         radius * cosine
     }

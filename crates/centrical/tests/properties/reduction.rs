@@ -4,7 +4,8 @@
 use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, Survey, reduce};
 use nalgebra::Vector3;
 
-use crate::stream::{Random, Stream};
+use crate::common::Random;
+use crate::stream::Stream;
 
 /// Streams of every kind: sampling rates, ramps, lengths, settling, colours, dirt.
 fn kinds() -> Vec<(&'static str, Stream)> {
@@ -126,7 +127,7 @@ fn spikes_do_not_move_means() {
     let mut squares = Vec::new();
     for (stream, k, mean) in means(&clean).into_iter().filter(|(_, k, _)| *k == 0) {
         let mut record = stream.record();
-        let mut random = Random(stream.seed);
+        let mut random = Random::new(stream.seed);
         for i in 0..record.t.len() {
             if random.uniform() < 2e-3 {
                 record.f_z[(3.0 * random.uniform()) as usize][i] += 30.0 + 100.0 * random.uniform();

@@ -5,6 +5,8 @@ use std::f64::consts::{PI, TAU};
 use centrical::reduction::{Record, ScheduledPlateau, SpeedTrace};
 use nalgebra::Vector3;
 
+use crate::common::Random;
+
 /// What a stream is like.
 #[derive(Debug, Clone)]
 pub struct Stream {
@@ -126,7 +128,7 @@ impl Stream {
 
     /// The record.
     pub fn record(&self) -> Record {
-        let mut random = Random(self.seed);
+        let mut random = Random::new(self.seed);
         let mut record = Record::default();
         let end = self.windows().last().map_or(0.0, |window| window[1]);
         let mut slow = Markov::new(self, &mut random);
@@ -186,23 +188,4 @@ fn force(omega: f64, rate: f64) -> Vector3<f64> {
 
 fn turning(omega: f64, angle: f64) -> Vector3<f64> {
     if omega == 0.0 { Vector3::zeros() } else { Vector3::new(angle.cos(), -angle.sin(), 0.3 * angle.sin()) }
-}
-
-/// Splitmix64 of Steele, Lea and Flood (2014).
-pub struct Random(pub u64);
-
-impl Random {
-    /// Uniform on [0, 1).
-    pub fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) as f64 / 2_f64.powi(64)
-    }
-
-    /// Standard normal, by Box and Muller.
-    pub fn normal(&mut self) -> f64 {
-        (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (TAU * self.uniform()).cos()
-    }
 }

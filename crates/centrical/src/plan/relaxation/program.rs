@@ -57,7 +57,7 @@ struct State {
 }
 
 impl Program {
-    /// The optimum, its objective to `tolerance`.
+    /// The optimum, its objective to `tolerance`; none where there is no way on inside the bounds and rows.
     pub fn solve(&self, tolerance: f64) -> Option<Optimum> {
         let mut state = self.inside();
         let count = (2 * state.x.len() + self.rows.len()) as f64;
@@ -122,6 +122,10 @@ impl Program {
             missed.push(miss);
         }
         let dx = system.cholesky()?.solve(&right);
+        if dx.iter().any(|d| !d.is_finite()) {
+            // Rows that hardly leave an inside have brought an unknown to its bound to the last digit.
+            return None;
+        }
         let mut part: f64 = 1.0;
         let mut limit = |value: f64, change: f64| {
             if change < 0.0 {
