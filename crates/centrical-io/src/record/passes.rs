@@ -88,34 +88,51 @@ impl<'a> RecordFile<'a> {
             return Ok(kept_windows(kept, windows, &parts));
         }
         match &kept.index {
-            Some(index) => {
-                // One after another in one place: memory that is asked for anew is faulted in anew, page by page.
-                let mut samples = Record::default();
-                let one = |(k, parts): (usize, &Vec<[f64; 2]>)| {
-                    let mut window = windows.begin(k);
-                    for part in parts {
-                        self.read_again(index, *part, &mut samples)?;
-                        windows.add(&mut window, *part, samples.as_slice(), 0);
-                    }
-                    Ok(windows.end(window))
-                };
-                parts.iter().enumerate().map(one).collect()
-            }
+            Some(index) => self.windows_reread(index, windows, &parts),
             None => self.windows_in_order(windows, &parts),
         }
     }
 
-    /// Reads the samples of a part of a window.
-    fn read_again(&self, index: &Index, part: [f64; 2], samples: &mut Record) -> Result<(), Error> {
-        let raw = self.raw_range(part);
-        samples.clear();
-        index.read(self.file, &self.wanted.fields(), raw, &mut |first_row, block| {
-            self.wanted.to_si(first_row, block);
-            samples.extend(stretch(block).between(part));
-            self.wanted.give_back(block);
-        })?;
-        (self.progress)(index.bytes(raw));
-        Ok(())
+    /// Part after part: while one is worked on, the next is read.
+    fn windows_reread<W: Windows>(
+        &self,
+        index: &Index,
+        windows: &W,
+        parts: &[Vec<[f64; 2]>],
+    ) -> Result<Vec<W::Mean>, Error> {
+        let fields = self.wanted.fields();
+        let mut record = index.reread(self.file, &fields)?;
+        let mut read = |part: [f64; 2], samples: &mut Record| {
+            let raw = self.raw_range(part);
+            samples.clear();
+            record.read(raw, &mut |first_row, block| {
+                self.wanted.to_si(first_row, block);
+                samples.extend(stretch(block).between(part));
+                self.wanted.give_back(block);
+            })?;
+            (self.progress)(index.bytes(raw));
+            Ok(())
+        };
+        let steps: Vec<(usize, [f64; 2])> =
+            (parts.iter().enumerate()).flat_map(|(k, parts)| parts.iter().map(move |part| (k, *part))).collect();
+        let [mut samples, mut next] = [Record::default(), Record::default()];
+        steps.first().map_or(Ok(()), |(_, part)| read(*part, &mut samples))?;
+        let mut means = Vec::with_capacity(parts.len());
+        let mut window = None;
+        for (i, (k, part)) in steps.iter().enumerate() {
+            let following = steps.get(i + 1);
+            let window_of_part = window.get_or_insert_with(|| windows.begin(*k));
+            let ((), was_read) = rayon::join(
+                || windows.add(window_of_part, *part, samples.as_slice(), 0),
+                || following.map_or(Ok(()), |(_, part)| read(*part, &mut next)),
+            );
+            was_read?;
+            std::mem::swap(&mut samples, &mut next);
+            if following.is_none_or(|(next, _)| next != k) {
+                means.extend(window.take().map(|window| windows.end(window)));
+            }
+        }
+        Ok(means)
     }
 
     /// What the first column has in a window. The rounding of its scale is made up for by a part in 10^12.

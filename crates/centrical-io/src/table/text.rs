@@ -64,8 +64,7 @@ pub(super) fn read(file: &Path, lines: &mut dyn Lines, rows: &mut Rows) -> Resul
     let fields = rows.fields;
     let mut prologue = Prologue::default();
     let mut index: Option<Index> = None;
-    let mut pieces: Vec<Piece> = (0..PIECES).map(|_| Piece::default()).collect();
-    let mut blocks: Vec<Block> = vec![vec![Vec::new(); fields.len()]; PIECES];
+    let Workplace { mut pieces, mut blocks } = Workplace::new(fields);
     let (mut number, mut line) = (0, 1);
     loop {
         // The first piece alone: it tells how the others are to be read.
@@ -132,38 +131,61 @@ pub(super) fn read(file: &Path, lines: &mut dyn Lines, rows: &mut Rows) -> Resul
     }
 }
 
-impl Index {
+/// Pieces that are worked on together, and their rows. Used again and again: memory that is asked for anew is faulted in anew,
+/// page by page.
+struct Workplace {
+    pieces: Vec<Piece>,
+    blocks: Vec<Block>,
+}
+
+impl Workplace {
+    fn new(fields: &[Field]) -> Self {
+        let pieces = (0..PIECES).map(|_| Piece::default()).collect();
+        Self { pieces, blocks: vec![vec![Vec::new(); fields.len()]; PIECES] }
+    }
+}
+
+/// A text that is read a second time, in parts.
+pub(crate) struct Reread<'a> {
+    index: &'a Index,
+    file: &'a Path,
+    fields: &'a [Field],
+    plain: Plain,
+    place: Workplace,
+}
+
+impl Reread<'_> {
     /// Reads again, on all threads, the pieces in which the time, or the number of the row where no field is the time, is between
     /// two values.
     ///
     /// `visit` is given the number of the first row of a piece with its columns.
-    pub fn read(
-        &self,
-        file: &Path,
-        fields: &[Field],
-        between: [f64; 2],
-        visit: &mut dyn FnMut(u64, &mut Block),
-    ) -> Result<(), Error> {
-        let plain = Plain::open(file).map_err(|e| Error::reading(file, e, piece::TABLE))?;
-        let mut pieces: Vec<Piece> = (0..PIECES).map(|_| Piece::default()).collect();
-        let mut blocks: Vec<Block> = vec![vec![Vec::new(); fields.len()]; PIECES];
-        for wanted in self.wanted(between).collect::<Vec<_>>().chunks(PIECES) {
+    pub fn read(&mut self, between: [f64; 2], visit: &mut dyn FnMut(u64, &mut Block)) -> Result<(), Error> {
+        let Self { index, file, fields, plain, place: Workplace { pieces, blocks } } = self;
+        for wanted in index.wanted(between).collect::<Vec<_>>().chunks(PIECES) {
             let read = |((piece, block), wanted): ((&mut Piece, &mut Block), &&IndexedPiece)| {
                 plain.read(wanted.number, &mut piece.text)?;
                 let start = (wanted.first_row == 0).then(|| Prologue::default().read(&piece.text, fields));
                 let skipped = start.and_then(Result::ok).map_or(0, |(_, skipped)| skipped);
-                piece.read(&self.layout, skipped, fields, block);
+                piece.read(&index.layout, skipped, fields, block);
                 let found = "another text than a moment ago";
                 let changed = |_| Error::content(file, Place::Whole, found, "a file that nobody writes to");
                 piece.fault.take().map(changed).map_or(Ok(()), Err)
             };
-            let read = pieces.par_iter_mut().zip(&mut blocks).zip(wanted).map(read);
+            let read = pieces.par_iter_mut().zip(&mut *blocks).zip(wanted).map(read);
             read.collect::<Vec<_>>().into_iter().collect::<Result<(), Error>>()?;
-            for (wanted, block) in wanted.iter().zip(&mut blocks) {
+            for (wanted, block) in wanted.iter().zip(&mut *blocks) {
                 visit(wanted.first_row, block);
             }
         }
         Ok(())
+    }
+}
+
+impl Index {
+    /// The table of a file, to be read again.
+    pub fn reread<'a>(&'a self, file: &'a Path, fields: &'a [Field]) -> Result<Reread<'a>, Error> {
+        let plain = Plain::open(file).map_err(|e| Error::reading(file, e, piece::TABLE))?;
+        Ok(Reread { index: self, file, fields, plain, place: Workplace::new(fields) })
     }
 
     /// The pieces that have rows between two values.
@@ -171,7 +193,7 @@ impl Index {
         self.pieces.iter().filter(move |piece| piece.range[0] <= to && from <= piece.range[1])
     }
 
-    /// Bytes that [`Index::read`] reads for two values.
+    /// Bytes that [`Reread::read`] reads for two values.
     pub fn bytes(&self, between: [f64; 2]) -> u64 {
         self.wanted(between).count() as u64 * piece::SIZE
     }

@@ -33,6 +33,10 @@ impl Triangle {
             let column = &mut *rest[0];
             let mut taken = 0.0;
             for (i, q) in done.iter().enumerate() {
+                // A settling that has faded: zeros.
+                if triangle.r[i][i] == 0.0 {
+                    continue;
+                }
                 let projection = dot(simd, q, column);
                 subtract(column, projection, q);
                 triangle.r[j][i] = projection;
