@@ -5,71 +5,27 @@
 //! fours to eights, as in [`super::number`]. As there, such a number is a whole one divided by a power of ten, and its last
 //! bit that of any correctly rounding parser: so it is the same one however it is read.
 
+mod places;
 #[cfg(target_arch = "x86_64")]
 mod wide;
 mod words;
 
+use self::places::Places;
+pub(super) use self::places::{REACH, ROWS};
 use self::words::Texts;
-
-/// Rows that are read together.
-pub(super) const ROWS: usize = 64;
-
-/// Bytes up to the end of a number that are looked at.
-pub(super) const REACH: usize = 16;
 
 /// Rows that are read together, a column after the other.
 #[derive(Default)]
 pub(super) struct Batch {
-    rows: usize,
-    column: Places,
+    pub column: Places,
     texts: Texts,
 }
 
-/// From where to where the numbers of a column stand in a text. Those of rows that are not there stand where the last one does.
-struct Places {
-    starts: [u32; ROWS],
-    ends: [u32; ROWS],
-}
-
-impl Default for Places {
-    fn default() -> Self {
-        Self { starts: [0; ROWS], ends: [0; ROWS] }
-    }
-}
-
 impl Batch {
-    /// Begins with rows, of which the first stands from `from` on; `ends` are their ends, [`ROWS`] at most.
-    #[inline]
-    pub fn begin(&mut self, from: u32, ends: &[u32]) {
-        self.rows = ends.len();
-        self.next_column(std::iter::once(from.wrapping_sub(1)).chain(ends.iter().copied()));
-    }
-
-    /// Goes on to the column that ends at these separators.
-    #[inline]
-    pub fn next_column(&mut self, separators: impl Iterator<Item = u32>) {
-        let Places { starts, ends } = &mut self.column;
-        *starts = ends.map(|end| end.wrapping_add(1));
-        for (end, separator) in ends[..self.rows].iter_mut().zip(separators) {
-            *end = separator;
-        }
-        for places in [starts, ends] {
-            let last = places[self.rows.saturating_sub(1)];
-            places[self.rows..].fill(last);
-        }
-    }
-
-    /// Whether the column ends where the rows do.
-    pub fn ends_at(&self, ends: &[u32]) -> bool {
-        self.column.ends[..self.rows] == *ends
-    }
-
     /// The numbers of the column, its texts being without their last `left_out` bytes. Whether there are any: none of the texts is
     /// another one than a bare number, of more than 15 digits or of more than 7 decimals.
     pub fn read(&mut self, text: &[u8], left_out: u32, numbers: &mut [f64; ROWS]) -> bool {
-        for end in &mut self.column.ends {
-            *end = end.wrapping_sub(left_out);
-        }
+        self.column.leave_out(left_out);
         #[cfg(target_arch = "x86_64")]
         if let Some(is_read) = wide::read(text, &self.column, numbers) {
             return is_read;
@@ -90,8 +46,8 @@ mod tests {
             let text = format!("{}{column}{}", "0".repeat(REACH), "0".repeat(after));
             let ends: Vec<u32> = separators.iter().map(|at| u32::try_from(REACH + at).unwrap()).collect();
             let (mut batch, mut numbers) = (Batch::default(), [0.0; ROWS]);
-            batch.begin(u32::try_from(REACH).unwrap(), &ends);
-            batch.next_column(ends.iter().copied());
+            batch.column.begin(u32::try_from(REACH).unwrap(), &ends);
+            batch.column.go_on(ends.iter().copied());
             let is_read = batch.read(text.as_bytes(), 0, &mut numbers);
             assert!(!is_read || numbers[texts.len()..].iter().all(|number| *number == numbers[texts.len() - 1]));
             is_read.then(|| numbers[..texts.len()].to_vec())

@@ -165,12 +165,12 @@ impl Layout {
             return None;
         }
         let before = block[0].len();
-        batch.begin(u32::try_from(from).ok()?, ends);
+        batch.column.begin(u32::try_from(from).ok()?, ends);
         for (column, field) in self.wanted.iter().enumerate() {
-            batch.next_column(separators.chunks_exact(self.wanted.len()).map(|line| line[column]));
+            batch.column.go_on(separators.chunks_exact(self.wanted.len()).map(|line| line[column]));
             let is_last = column + 1 == self.wanted.len();
             // If each line's last separator ends it, no other one does.
-            let mut is_plain = !is_last || batch.ends_at(ends);
+            let mut is_plain = !is_last || batch.column.ends_at(ends);
             if let Some(field) = field {
                 let values = &mut block[*field];
                 values.resize(before + ROWS, 0.0);

@@ -9,7 +9,7 @@ use pulp::x86::V4;
 use pulp::{NullaryFnOnce, cast};
 
 use super::super::number::ONES;
-use super::{Places, REACH, ROWS};
+use super::places::{Places, REACH, ROWS};
 
 /// Bytes of a text that a batch may be spread over.
 const WINDOW: usize = 1 << 14;

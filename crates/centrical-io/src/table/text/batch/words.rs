@@ -8,7 +8,7 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use super::super::number::{ONES, joined};
-use super::{Places, REACH, ROWS};
+use super::places::{Places, REACH, ROWS};
 
 /// The top bits of eight bytes.
 const TOPS: u64 = 0x80 * ONES;
