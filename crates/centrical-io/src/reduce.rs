@@ -173,17 +173,16 @@ fn all_mountings(
         return Ok(Vec::new());
     }
     let room = Room::default();
-    let glance = |number| session.record_file(number).ok().and_then(table::rows_at_a_glance);
-    let most = (0..count).map(glance).collect::<Option<Vec<_>>>().and_then(|rows| rows.into_iter().max());
     let mut kept = Kept::new(&room);
-    let (begun, fit) = if let Some(rows) = most {
-        (None, room.holds(rows))
+    let (begun, lanes) = if at_a_time() == 1 {
+        (None, 1)
+    } else if let Some(rows) = most_rows_at_a_glance(session) {
+        (None, room.holds(rows).min(at_a_time()))
     } else {
         let first = Mounting::of(session, 0, progress)?;
-        let survey = first.survey(&mut kept)?;
-        (Some((first, survey)), kept.fit_in())
+        let survey = first.record.survey(&mut kept)?;
+        (Some((first, survey)), kept.fit_in().min(at_a_time()))
     };
-    let lanes = fit.min(at_a_time());
     let next = AtomicUsize::new(usize::from(begun.is_some()));
     let lane = |(mut kept, begun): (Kept, Option<(Mounting, Survey)>)| {
         let mut done: Vec<_> = begun.map(|(first, survey)| (0, first.reduced(&survey, &kept))).into_iter().collect();
@@ -197,7 +196,7 @@ fn all_mountings(
                 return done;
             }
             let reduced = Mounting::of(session, number, progress)
-                .and_then(|mounting| mounting.reduced(&mounting.survey(&mut kept)?, &kept));
+                .and_then(|mounting| mounting.reduced(&mounting.record.survey(&mut kept)?, &kept));
             done.push((number, reduced));
         }
     };
@@ -206,6 +205,13 @@ fn all_mountings(
     let mut reduced: Vec<_> = lanes.into_par_iter().map(lane).collect::<Vec<_>>().into_iter().flatten().collect();
     reduced.sort_by_key(|(number, _)| *number);
     reduced.into_iter().map(|(_, reduced)| reduced).collect()
+}
+
+/// Samples of the longest record, if all files tell at a glance.
+fn most_rows_at_a_glance(session: &Session) -> Option<u64> {
+    let count = session.experiment.mountings.len();
+    let rows = (0..count).map(|number| table::rows_at_a_glance(session.record_file(number).ok()?));
+    rows.collect::<Option<Vec<_>>>()?.into_iter().max()
 }
 
 /// A mounting and its record.
@@ -221,12 +227,7 @@ impl<'a> Mounting<'a> {
         Ok(Self { session, number, record })
     }
 
-    /// Once through the record.
-    fn survey(&self, kept: &mut Kept) -> Result<Survey, Error> {
-        self.record.survey(kept)
-    }
-
-    /// Where the plateaus are and, by the samples that are kept or the record once more, what they read.
+    /// The record being surveyed: where the plateaus are and, by the samples that are kept or the record once more, what they read.
     fn reduced(&self, survey: &Survey, kept: &Kept) -> Result<(ReducedMounting, RecordOverview), Error> {
         let Self { session, number, record } = self;
         let experiment = &session.experiment;

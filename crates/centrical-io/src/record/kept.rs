@@ -52,7 +52,10 @@ impl Room {
 
     /// How many records of so many samples it holds; one in any case.
     pub fn holds(&self, samples: u64) -> usize {
-        let bytes = usize::try_from(samples).unwrap_or(usize::MAX).saturating_mul(BYTES);
+        self.fit(usize::try_from(samples).unwrap_or(usize::MAX).saturating_mul(BYTES))
+    }
+
+    fn fit(&self, bytes: usize) -> usize {
         (self.all / bytes.max(1)).max(1)
     }
 
@@ -98,7 +101,7 @@ impl<'a> Kept<'a> {
 
     /// How many records like this one there is room for, the room being taken by it alone.
     pub fn fit_in(&self) -> usize {
-        if self.is_whole { self.room.all / self.bytes.max(1) } else { 1 }
+        if self.is_whole { self.room.fit(self.bytes) } else { 1 }
     }
 
     /// Keeps the next stretch.

@@ -160,13 +160,12 @@ impl WithSimd for Gains<'_> {
     }
 }
 
-/// A contrast of one plateau.
+/// A contrast of one plateau, scaled to unit variance under white noise of unit density.
 struct Contrast {
-    /// `y y^T`, scaled to unit variance under white noise of unit density.
+    /// `y y^T`.
     power: Matrix3<f64>,
-    /// Variance under each Markov process of unit density, and under white noise.
+    /// Variance under each Markov process of unit density.
     gains: Vec<f64>,
-    white: f64,
 }
 
 /// Contrasts of nearly one frequency, each scaled to unit variance under white noise of unit density.
@@ -218,8 +217,8 @@ impl Contrast {
     fn of(cells: &Cells, function: &[f64], markov: &Markov) -> Option<Self> {
         let (weights, y) = cells.contrast(function);
         let white = gain(None, &weights, cells);
-        let gains = || widest(Gains { markov, weights: &weights });
-        (white > 0.0).then(|| Self { power: y * y.transpose() / white, gains: gains(), white })
+        let gains = || widest(Gains { markov, weights: &weights }).into_iter().map(|gain| gain / white).collect();
+        (white > 0.0).then(|| Self { power: y * y.transpose() / white, gains: gains() })
     }
 }
 
@@ -229,7 +228,7 @@ impl Group {
         self.power += contrast.power;
         self.gains[0] += 1.0;
         for (sum, gain) in self.gains[1..].iter_mut().zip(&contrast.gains) {
-            *sum += gain / contrast.white;
+            *sum += gain;
         }
     }
 

@@ -15,7 +15,6 @@ pub(super) const PIECE: usize = 512;
 /// All paths of a record through a schedule.
 pub(super) struct Trellis {
     plateaus: usize,
-    blocks: usize,
     /// For each block and each state, the state before.
     came_from: Vec<u32>,
 }
@@ -23,7 +22,7 @@ pub(super) struct Trellis {
 impl Trellis {
     /// The trellis of so many plateaus and blocks.
     pub fn new(plateaus: usize, blocks: usize) -> Self {
-        Self { plateaus, blocks, came_from: vec![0; states(plateaus) * blocks] }
+        Self { plateaus, came_from: vec![0; states(plateaus) * blocks] }
     }
 
     /// Blocks of each plateau on the best path; none for a plateau passed over.
@@ -35,7 +34,7 @@ impl Trellis {
         // State 2k is the transition before plateau k, state 2k + 1 the plateau k.
         let mut score: Vec<f64> = (0..states).map(|state| (state / 2) as f64 * odds).collect();
         let mut room = vec![[0.0; PIECE]; self.plateaus];
-        let pieces = between[..self.blocks].chunks(PIECE).zip(self.came_from.chunks_mut(PIECE * states));
+        let pieces = between.chunks(PIECE).zip(self.came_from.chunks_mut(PIECE * states));
         for (number, (between, came_from)) in pieces.enumerate() {
             for (k, room) in room.iter_mut().enumerate() {
                 on(k, number * PIECE, &mut room[..between.len()]);

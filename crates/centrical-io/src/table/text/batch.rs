@@ -30,7 +30,7 @@ impl Batch {
         if let Some(is_read) = wide::read(text, &self.column, numbers) {
             return is_read;
         }
-        self.texts.take(text, &self.column) && self.texts.read(numbers)
+        self.texts.read(text, &self.column, numbers)
     }
 }
 

@@ -46,6 +46,18 @@ impl Places {
         self.ends[..self.rows] == *ends
     }
 
+    /// The least and the largest length of the numbers.
+    #[expect(clippy::inline_always, reason = "what is not inlined is compiled for narrower vectors")]
+    #[inline(always)]
+    pub(super) fn lengths(&self) -> [u32; 2] {
+        let [mut shortest, mut longest] = [u32::MAX, 0];
+        for row in 0..ROWS {
+            let length = self.ends[row].wrapping_sub(self.starts[row]);
+            (shortest, longest) = (shortest.min(length), longest.max(length));
+        }
+        [shortest, longest]
+    }
+
     /// Leaves out the last bytes of each number.
     pub(super) fn leave_out(&mut self, bytes: u32) {
         for end in &mut self.ends {

@@ -8,7 +8,7 @@ use std::arch::x86_64::{__m128i, __m512i};
 use pulp::x86::V4;
 use pulp::{NullaryFnOnce, cast};
 
-use super::super::number::ONES;
+use super::super::number::{ONES, POWERS};
 use super::places::{Places, REACH, ROWS};
 
 /// Bytes of a text that a batch may be spread over.
@@ -22,7 +22,6 @@ const NOT_NOT: i32 = 0x10;
 /// Numbers in a vector.
 const LANES: usize = 8;
 
-const POWERS: [f64; LANES] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 const RECIPROCALS: [f64; LANES] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 
 /// The first that is too long to be exact.
@@ -56,11 +55,7 @@ impl NullaryFnOnce for Wide<'_> {
 
     #[inline(always)]
     fn call(self) -> bool {
-        let [mut shortest, mut longest] = [u32::MAX, 0];
-        for row in 0..ROWS {
-            let length = self.places.ends[row].wrapping_sub(self.places.starts[row]);
-            (shortest, longest) = (shortest.min(length), longest.max(length));
-        }
+        let [shortest, longest] = self.places.lengths();
         if shortest == 0 || longest > 16 {
             false
         } else if longest <= 8 {

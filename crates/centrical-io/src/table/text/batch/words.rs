@@ -29,8 +29,13 @@ impl Default for Texts {
 }
 
 impl Texts {
-    /// Takes what is at these places in a text; whether none of them is too near to its begin.
-    pub fn take(&mut self, text: &[u8], places: &Places) -> bool {
+    /// The numbers at these places in a text, as [`super::Batch::read`] gives them.
+    pub fn read(&mut self, text: &[u8], places: &Places, numbers: &mut [f64; ROWS]) -> bool {
+        self.take(text, places) && Arch::new().dispatch(Words { texts: self, places, numbers })
+    }
+
+    /// Takes what is at these places; whether none of them is too near to the begin of the text.
+    fn take(&mut self, text: &[u8], places: &Places) -> bool {
         let mut taken = true;
         for (row, (start, end)) in places.starts.iter().zip(&places.ends).enumerate() {
             taken &= self.take_one(row, text, *start as usize, *end as usize);
@@ -49,28 +54,21 @@ impl Texts {
         self.length[row] = (end as u64).wrapping_sub(start as u64);
         true
     }
-
-    /// The numbers, as [`super::Batch::read`] gives them.
-    pub fn read(&self, numbers: &mut [f64; ROWS]) -> bool {
-        Arch::new().dispatch(Numbers { texts: self, numbers })
-    }
 }
 
-struct Numbers<'a> {
+struct Words<'a> {
     texts: &'a Texts,
+    places: &'a Places,
     numbers: &'a mut [f64; ROWS],
 }
 
-impl WithSimd for Numbers<'_> {
+impl WithSimd for Words<'_> {
     type Output = bool;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> bool {
-        let Self { texts, numbers } = self;
-        let [mut shortest, mut longest] = [u64::MAX, 0];
-        for length in texts.length {
-            (shortest, longest) = (shortest.min(length), longest.max(length));
-        }
+        let Self { texts, places, numbers } = self;
+        let [shortest, longest] = places.lengths();
         // What is known of all of them need not be asked of each.
         if shortest == 0 || longest > 16 {
             false
