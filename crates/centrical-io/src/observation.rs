@@ -36,8 +36,6 @@ pub struct Design {
     pub nominal: Vec<f64>,
     /// How well each mean is known, or will be.
     pub weights: Vec<Weight>,
-    /// Relative standard uncertainty of the speed of a plateau.
-    pub speed_uncertainty: f64,
     /// Standard uncertainties that the data cannot show.
     pub type_b: TypeB,
 }
@@ -65,7 +63,6 @@ impl Design {
             nominal: vec![0.0; model.parameters().len()],
             model,
             weights: reduced.observations().iter().map(Weight::from).collect(),
-            speed_uncertainty: session.speed_uncertainty,
             type_b: session.type_b,
         })
     }
@@ -73,7 +70,7 @@ impl Design {
     /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
     /// the experiment.
     fn prediction(&self) -> Result<PredictionReport, Error> {
-        let prediction = predict(&self.model, &self.weights, self.speed_uncertainty, &self.type_b, &self.nominal)
+        let prediction = predict(&self.model, &self.weights, &self.type_b, &self.nominal)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })?;
         let experiment = self.model.experiment();
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
@@ -86,7 +83,7 @@ impl Design {
     /// # Errors
     /// [`Error::Fit`] when a weight or the design is beyond all measure.
     pub fn study(&self) -> Result<Study, Error> {
-        Study::at_zero(self.model.clone(), self.weights.clone(), self.speed_uncertainty)
+        Study::at_zero(self.model.clone(), self.weights.clone())
             .map_err(|source| Error::Fit { file: self.file.clone(), source })
     }
 }
@@ -101,7 +98,6 @@ impl From<Plan> for Design {
             model: plan.model,
             nominal: plan.nominal,
             weights: plan.weights,
-            speed_uncertainty: plan.speed_uncertainty,
             type_b: plan.type_b,
         }
     }

@@ -136,7 +136,7 @@ impl CalibrationResult {
         observations: &[Observation],
         fit: &Fit,
     ) -> Result<Self, FitError> {
-        let budget = Budget::new(fit, model, observations, session.speed_uncertainty, &session.type_b)?;
+        let budget = Budget::new(fit, model, observations, &session.type_b)?;
         let count = self.parameters.len();
         if budget.contributions().iter().any(|c| !c.source.is_weighed()) {
             for (j, parameter) in self.parameters.iter_mut().enumerate() {
@@ -146,8 +146,8 @@ impl CalibrationResult {
         }
         self.budget = Some(BudgetSummary::new(&budget, count));
         if fit.termination != centrical::Termination::Linear {
-            let validity = Validity::of(fit, model, observations, session.speed_uncertainty)?;
-            let patterns = patterns(fit, model, observations, session.speed_uncertainty)?;
+            let validity = Validity::of(fit, model, observations)?;
+            let patterns = patterns(fit, model, observations)?;
             self.validity = Some(ValiditySummary::new(model.experiment(), &validity, &patterns));
         }
         Ok(self)

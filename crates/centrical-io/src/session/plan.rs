@@ -11,7 +11,7 @@ use serde::Deserialize;
 
 use super::at::At;
 use super::form::{self, Form, PresetForm, PresetTable};
-use super::{Session, extensions, pair_relation, prior, read_text, rotation, schedule, terms};
+use super::{Session, extensions, pair_relation, prior, read_text, schedule, speed_uncertainty, terms};
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
 use crate::result::CalibrationResult;
@@ -38,8 +38,6 @@ pub struct Plan {
     pub nominal: Vec<f64>,
     /// How well the mean of each set point will be known.
     pub weights: Vec<Weight>,
-    /// Relative standard uncertainty of the speed of a plateau.
-    pub speed_uncertainty: f64,
     /// The noise that is reckoned with.
     pub noise: Noise,
     /// Standard uncertainties that the data will not show, as stated in `[uncertainty]`.
@@ -107,8 +105,8 @@ impl Plan {
 
     fn of_form(file: &Path, form: &Form) -> Result<Self, Error> {
         let mut session = Session::without_plateaus(file, form)?;
-        let sign = rotation(file, &form.centrifuge.rotation)?;
-        session.experiment.set_points = schedule::set_points(file, &form.mounting, sign)?;
+        session.experiment.set_points =
+            schedule::set_points(file, &form.mounting, session.experiment.centrifuge.rotation)?;
         let table = form.plan.as_ref();
         let of_table = |key: fn(&form::PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
         let noise = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;
@@ -120,7 +118,6 @@ impl Plan {
             nominal: nominal_of(&model, earlier(file, form)?.as_ref()),
             model,
             weights: weights(&noise, durations),
-            speed_uncertainty: session.speed_uncertainty,
             noise,
             type_b: session.type_b,
         })
@@ -137,12 +134,10 @@ impl Plan {
             table,
             Normalised { pair_relation: pair_relation(file, &form.model.pair_relation)?, ..Normalised::default() },
         )?;
-        let experiment = plan.experiment();
+        let mut experiment = plan.experiment();
         let noise = noise(file, table.noise.as_ref(), table.floor.as_ref(), table.duration.as_ref())?;
-        let at = At::table(file, "centrifuge");
-        let meaning = "a relative standard uncertainty, zero or more and below 1";
-        let bounded = |q| at.bounded("speed_uncertainty", q, Dimension::Ratio, (0.0, 1.0), meaning);
-        let speed_uncertainty = form.centrifuge.speed_uncertainty.as_ref().map(bounded).transpose()?.unwrap_or(0.0);
+        let stated = form.centrifuge.speed_uncertainty.as_ref().map(|q| speed_uncertainty(file, q)).transpose()?;
+        experiment.centrifuge.speed_uncertainty = stated.unwrap_or(0.0);
         let weights = weights(&noise, vec![noise.duration; experiment.set_points.len()]);
         let error_model = terms::error_model(file, &form.model.error_model)?;
         let model = MeasurementModel::new(experiment, error_model, &extensions(file, &form.model)?);
@@ -152,7 +147,6 @@ impl Plan {
             nominal: vec![0.0; model.parameters().len()],
             model: prior::with_priors(file, model, &prior::entries(&form.prior))?,
             weights,
-            speed_uncertainty,
             noise,
             type_b: TypeB::default(),
         })

@@ -9,7 +9,7 @@ use centrical::{Experiment, MeasurementModel, STANDARD_GRAVITY, SetPoint};
 use super::at::At;
 use super::form::{self, CandidatesTable, Form, MountingTable, Steps};
 use super::plan::{duration, earlier, noise, nominal_of};
-use super::{FASTEST, Session, named_extensions, prior, read_text, rotation};
+use super::{FASTEST, Session, named_extensions, prior, read_text};
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
 
@@ -57,8 +57,7 @@ impl Planning {
         }
         form.mounting = mountings(&at, &table, &form)?;
         let mut session = Session::without_plateaus(path, &form)?;
-        let sign = rotation(path, &form.centrifuge.rotation)?;
-        session.experiment.set_points = set_points(&at, &table, &session.experiment, sign)?;
+        session.experiment.set_points = set_points(&at, &table, &session.experiment)?;
         let scenarios = scenarios(path, &form, &session)?;
         let candidates = Candidates {
             scenarios,
@@ -103,7 +102,7 @@ fn mountings(at: &At, table: &CandidatesTable, form: &Form) -> Result<Vec<Mounti
 }
 
 /// Every speed that the machine and the unit bear, and every angle at rest, in every mounting.
-fn set_points(at: &At, table: &CandidatesTable, experiment: &Experiment, sign: f64) -> Result<Vec<SetPoint>, Error> {
+fn set_points(at: &At, table: &CandidatesTable, experiment: &Experiment) -> Result<Vec<SetPoint>, Error> {
     let largest = experiment.mountings.iter().map(|m| m.arm_y.x).fold(0.0, f64::max);
     let mut speeds = Vec::new();
     if let Some(steps) = &table.speeds {
@@ -128,7 +127,11 @@ fn set_points(at: &At, table: &CandidatesTable, experiment: &Experiment, sign: f
     for (mounting, place) in experiment.mountings.iter().enumerate() {
         set_points.extend(angles.iter().map(|&angle| SetPoint { mounting, omega: 0.0, angle }));
         let borne = speeds.iter().filter(|omega| **omega <= fastest && **omega * **omega * place.arm_y.x <= most);
-        set_points.extend(borne.map(|omega| SetPoint { mounting, omega: sign * omega, angle: 0.0 }));
+        set_points.extend(borne.map(|omega| SetPoint {
+            mounting,
+            omega: experiment.centrifuge.rotation.sign() * omega,
+            angle: 0.0,
+        }));
     }
     if set_points.is_empty() || set_points.len() > MOST_PLATEAUS {
         let expected =
@@ -210,7 +213,6 @@ fn scenarios(file: &Path, form: &Form, session: &Session) -> Result<Vec<Scenario
         nominal: nominal_of(&model, earlier.as_ref()),
         model,
         noise,
-        speed_uncertainty: session.speed_uncertainty,
         weight: 1.0,
     };
     let model = session.model()?;

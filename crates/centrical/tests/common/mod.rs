@@ -6,7 +6,7 @@ use centrical::position::ThirdPosition;
 use centrical::{ErrorModel, Experiment, Extension, Law, MeasurementModel, Observation, PairRelation};
 use nalgebra::Matrix3;
 
-/// `rho0` of the rank table (model notes, section 7), in units of `R*`.
+/// `rho0` of the rank table (`docs/source-and-findings.md`), in units of `R*`.
 pub fn spread() -> Matrix3<f64> {
     Matrix3::new(0.0, 0.05, 0.04, 0.0, 0.03, -0.02, 0.0, 0.02, -0.03)
 }
@@ -51,7 +51,7 @@ impl Random {
     }
 }
 
-/// The [K5.5] experiment with proof masses apart, Earth rotation and eight levels up to 200 g.
+/// The [K5.5] experiment with proof masses apart, Earth rotation and eight levels up to 200 g, speeds to 10 ppm.
 pub fn experiment(third: ThirdPosition, pair_relation: PairRelation, radii: &[f64]) -> Experiment {
     let plan = Normalised {
         third,
@@ -63,6 +63,7 @@ pub fn experiment(third: ThirdPosition, pair_relation: PairRelation, radii: &[f6
     };
     let mut experiment = plan.experiment();
     experiment.site.latitude = Some(0.97);
+    experiment.centrifuge.speed_uncertainty = 1e-5;
     experiment
 }
 
@@ -92,7 +93,7 @@ pub fn everything(experiment: Experiment) -> MeasurementModel {
     MeasurementModel::new(experiment, error_model, &extensions)
 }
 
-/// Unknowns of realistic size (model notes, section 8), times `size`.
+/// Unknowns of realistic size (`docs/source-and-findings.md`), times `size`.
 pub fn truth(model: &MeasurementModel, size: f64, random: &mut Random) -> Vec<f64> {
     model.parameters().iter().map(|p| size * p.typical * random.normal()).collect()
 }
