@@ -7,7 +7,7 @@ use centrical::plan::unit_of;
 use centrical::uncertainty::{Method, MonteCarlo, Settings, TypeB, monte_carlo};
 use centrical::{FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight, fit};
 use centrical_report::monte_carlo_table;
-use centrical_session::{Error, Plan, Problem, Session};
+use centrical_session::{Error, Plan, Problem, Session, read_plan};
 use nalgebra::Vector3;
 
 use super::assess::probability;
@@ -44,7 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let inside = arguments.session.join("experiment.toml");
     let file = if arguments.session.is_dir() { &inside } else { &arguments.session };
     let failed = |source| Error::Fit { file: file.clone(), source };
-    let mut case = match Plan::read(file)? {
+    let mut case = match read_plan(file)? {
         Some(plan) => Case::planned(plan, arguments.noise).map_err(failed)?,
         None => Case::measured(&Session::read(file)?)?,
     };

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use centrical::noise::Estimator;
 use centrical_report::{noise_plots, noise_table, noise_warnings};
 use centrical_session::{
-    Column, ColumnName, Columns, Dimension, Error, NoiseAnalysis, NotThatQuantity, PlateauName, Quantity, Scale,
-    Series, Session, create_folder, write_whole,
+    Column, ColumnName, Columns, Dimension, Error, NotThatQuantity, PlateauName, Quantity, Scale, Series, Session,
+    analyse_noise, create_folder, write_whole,
 };
 
 use crate::Outcome;
@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             estimators.push(*estimator);
         }
     }
-    let analysis = NoiseAnalysis::of(&series, &estimators)?;
+    let analysis = analyse_noise(&series, &estimators)?;
     if let Some(folder) = &arguments.out {
         create_folder(folder)?;
         analysis.write(&folder.join("noise.json"))?;

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical_report::observation_text;
-use centrical_session::{Design, Error, ObservationReport};
+use centrical_session::{Error, ObservabilityReport, subject};
 
 use crate::Outcome;
 
@@ -23,8 +23,8 @@ pub struct Arguments {
 
 /// Runs the command. Not acceptable: an instrument's parameter is lost, or the rank is a matter of rounding.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let design = Design::read(&arguments.design, &|_| ())?;
-    let report = ObservationReport::of(&design, &arguments.combination)?;
+    let subject = subject(&arguments.design, &|_| ())?;
+    let report = ObservabilityReport::of(&subject, &arguments.combination)?;
     let text = if arguments.json { report.to_json() } else { observation_text(&report) };
     // A reader that has seen enough (`| head`) is no failure.
     let _ = io::stdout().write_all(text.as_bytes());

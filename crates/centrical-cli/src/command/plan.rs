@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use centrical::STANDARD_GRAVITY;
 use centrical_report::{frontier_plot, plan_text};
-use centrical_session::{Error, PlanReport, PlanRequest, Planning, USUAL_LEVELS, write_whole};
+use centrical_session::{Error, PlanReport, PlanRequest, USUAL_LEVELS, read_planning, write_whole};
 
 use super::assess::probability;
 use crate::Outcome;
@@ -43,7 +43,7 @@ const FACTORS: [f64; 8] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0];
 
 /// Runs the command. Not acceptable: a parameter of the instrument is not determined, or a goal is missed.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let mut planning = Planning::read(&arguments.plan)?;
+    let mut planning = read_planning(&arguments.plan)?;
     let plan = planning.plan(arguments.certify)?;
     let request = PlanRequest {
         frontier: if arguments.frontier { FACTORS.to_vec() } else { Vec::new() },
