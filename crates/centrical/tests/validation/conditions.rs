@@ -1,5 +1,5 @@
 //! The source's sufficient conditions (its section 6, point 3), met by its own experiment, and the finding of
-//! docs/source-and-findings.md that they are not necessary: "a single rest angle instead of two does not lower the rank".
+//! docs/source-and-findings.md that they are not necessary: one rest angle instead of two does not lower the rank.
 
 use std::f64::consts::PI;
 
