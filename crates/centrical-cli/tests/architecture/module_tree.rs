@@ -159,16 +159,11 @@ impl Reader<'_> {
                     (file.to_owned(), items.clone())
                 } else {
                     let nested = format!("{below}mod.rs");
-                    let file =
-                        if self.sources.contains_key(&nested) { nested } else { format!("{folder}{child}.rs") };
+                    let file = if self.sources.contains_key(&nested) { nested } else { format!("{folder}{child}.rs") };
                     let items = self.items(&file);
                     (file, items)
                 };
-                        let items = self.items(&file);
-                        (file, items)
-                    }
-                };
-                self.add(tree, Some(index), &format!("{name}::{child}"), &file, &below, items);
+                let items = self.items(&file);
             }
         }
         tree.modules[index].items = items;
