@@ -163,7 +163,7 @@ impl Reader<'_> {
                     let items = self.items(&file);
                     (file, items)
                 };
-                let items = self.items(&file);
+                self.add(tree, Some(index), &format!("{name}::{child}"), &file, &below, items);
             }
         }
         tree.modules[index].items = items;
