@@ -1,4 +1,4 @@
-//! `centrical observe SESSION|PLAN.toml`: what an experiment can see, why not more, and what would help.
+//! `centrical observe SESSION|PLAN.toml`: rank, undetermined combinations, causes, remedies.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use centrical_session::{Error, ObservabilityReport, subject};
 
 use crate::Outcome;
 
-/// Tell what an experiment can see, before or after it is made: rank, lost combinations, reasons, remedies.
+/// Analyse observability: rank, undetermined combinations, causes, remedies; before or after the experiment.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// The session folder, its experiment.toml, or a plan: the same form without records, or a preset
@@ -16,7 +16,7 @@ pub struct Arguments {
     /// Print the report as JSON instead of text
     #[arg(long)]
     json: bool,
-    /// A linear combination of parameters to look for, such as "dR_2[A] + drho_22"; may be given several times
+    /// A linear combination of parameters to examine, such as "dR_2[A] + drho_22"; may be repeated
     #[arg(long, value_name = "SUM", allow_hyphen_values = true)]
     combination: Vec<String>,
 }

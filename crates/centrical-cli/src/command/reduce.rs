@@ -12,10 +12,10 @@ use crate::{Outcome, progress};
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
-    /// Folder for experiment.toml and the table of plateaus, made if it is not there
+    /// Folder for experiment.toml and the table of plateaus, created if absent
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// How the table of plateaus is written: plateaus.csv or plateaus.parquet
+    /// Format of the table of plateaus: plateaus.csv or plateaus.parquet
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
