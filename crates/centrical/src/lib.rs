@@ -33,8 +33,10 @@ mod prior;
 mod random;
 /// Reduction of continuous records to plateau means.
 pub mod reduction;
+mod simd;
 /// Simulation of records.
 pub mod simulate;
+mod statistics;
 /// How far a calibration can be trusted.
 pub mod uncertainty;
 

@@ -4,7 +4,7 @@ use realfft::RealFftPlanner;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::NoiseError;
-use crate::reduction::median;
+use crate::statistics::median;
 
 /// One-sided power spectral density of a record.
 #[derive(Debug, Clone, PartialEq)]

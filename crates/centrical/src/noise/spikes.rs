@@ -1,6 +1,6 @@
 //! Spikes: readings that are off their neighbours by more than noise.
 
-use crate::reduction::{MAD, cut, median};
+use crate::statistics::{MAD, cut, median};
 
 /// Marks the spikes among evenly spaced readings as missing (NaN) and says how many there were.
 ///

@@ -68,7 +68,7 @@ const LN_2_TAIL: f64 = 1.908_214_929_270_587_7e-10;
 
 /// `cos(omega (t - start))` and `sin(omega (t - start))`.
 #[inline(always)]
-pub(super) fn cos_sin(omega: f64, start: f64, t: &[f64], cos: &mut [f64], sin: &mut [f64]) {
+pub(crate) fn cos_sin(omega: f64, start: f64, t: &[f64], cos: &mut [f64], sin: &mut [f64]) {
     let quarters_per_second = omega * 4.0 / TAU;
     for ((t, cos), sin) in t.iter().zip(cos).zip(sin) {
         let quarters = quarters_per_second * (t - start);
@@ -86,7 +86,7 @@ pub(super) fn cos_sin(omega: f64, start: f64, t: &[f64], cos: &mut [f64], sin: &
 
 /// `exp(x)`; zero or infinite beyond 700.
 #[inline(always)]
-pub(super) fn exp(x: f64) -> f64 {
+pub(crate) fn exp(x: f64) -> f64 {
     let shifted = x * LOG2_E + ROUNDING;
     let powers = shifted - ROUNDING;
     let y = (-powers).mul_add(LN_2_TAIL, x - powers * LN_2_HEAD);
@@ -105,7 +105,7 @@ pub(super) fn exp(x: f64) -> f64 {
 /// `ln(x)` of a positive, normal `x`: `2 artanh(s) = ln m`, `s = (m - 1) / (m + 1)`, for the fraction `m` of `x` that is
 /// nearest to 1.
 #[inline(always)]
-pub(super) fn ln(x: f64) -> f64 {
+pub(crate) fn ln(x: f64) -> f64 {
     // Half the bits of the fraction's root: a fraction above it is taken as half of it, with one power of two more.
     let shifted = x.to_bits().wrapping_sub(std::f64::consts::FRAC_1_SQRT_2.to_bits());
     #[expect(clippy::cast_possible_wrap, reason = "the powers of two, negative ones too")]

@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::alignment::level;
-use super::blocks::Blocks;
-use super::mistake::{Line, ODDS};
-use super::{ReductionError, ScheduledPlateau};
+use super::hypothesis::{Line, ODDS};
+use crate::reduction::error::ReductionError;
+use crate::reduction::plateau::ScheduledPlateau;
+use crate::reduction::survey::Blocks;
 
 /// Refuses a record whose ramps fit the other sense of rotation decisively better.
 ///
@@ -59,7 +59,7 @@ impl Ramp {
         tangential_z: &Vector3<f64>,
     ) -> Option<Self> {
         let (before, after) = (schedule[k - 1].omega, schedule[k].omega);
-        let (from, to) = (level(blocks, &cores[k - 1]), level(blocks, &cores[k]));
+        let (from, to) = (blocks.level(&cores[k - 1]), blocks.level(&cores[k]));
         let way = to - from;
         if before * after < 0.0 || before == after || way == Vector3::zeros() {
             return None;

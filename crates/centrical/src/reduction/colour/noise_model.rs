@@ -13,11 +13,9 @@ use nalgebra::Matrix3;
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::ReducedMounting;
-use super::blocks::whole;
-use super::cells::{CELLS, Cells, Weights};
-use super::lanes::{dot, widest};
-use super::plateau_fit::PlateauFit;
+use crate::reduction::average::{CELLS, Cells, PlateauFit, ReducedMounting, Weights};
+use crate::simd::lanes::{dot, widest};
+use crate::statistics::whole;
 
 /// Cosines of nearly the same frequency are pooled: groups per octave.
 const PER_OCTAVE: f64 = 4.0;

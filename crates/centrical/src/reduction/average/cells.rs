@@ -2,15 +2,15 @@
 
 use nalgebra::Vector3;
 
-use super::lanes::product as dot;
-use super::triangle::Triangle;
+use crate::reduction::triangle::Triangle;
+use crate::simd::lanes::product as dot;
 
 /// Cells in a window.
-pub(super) const CELLS: usize = 128;
+pub(in crate::reduction) const CELLS: usize = 128;
 
 /// Sums over the good samples of each cell.
 #[derive(Debug, Clone)]
-pub(super) struct Cells {
+pub(in crate::reduction) struct Cells {
     /// Width of a cell [s].
     pub width: f64,
     /// Sampling interval [s].
@@ -25,7 +25,7 @@ pub(super) struct Cells {
 
 /// A linear functional of a window's samples: its weights summed by cell, and the sum of their squares by sample.
 #[derive(Debug, Clone)]
-pub(super) struct Weights {
+pub(in crate::reduction) struct Weights {
     pub by_cell: Vec<f64>,
     pub squares: f64,
 }

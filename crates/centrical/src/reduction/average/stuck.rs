@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::blocks::whole;
+use crate::statistics::whole;
 
 /// Which samples are in a run of equal readings longer than the longest that chance makes, on any axis; none if not one
 /// is.

@@ -8,14 +8,14 @@ use pulp::Arch;
 use pulp::{Simd, WithSimd};
 
 /// Lanes: as many as the widest processor has for one instruction.
-pub(super) const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 
 /// Lanes of a long product: a processor has as many instructions under way.
 const LONG: usize = 4 * LANES;
 
 /// Does a work with the widest vectors of the machine. They add and multiply as single numbers do, and what is fused is
 /// written so: the outcome is the same on any.
-pub(super) fn widest<W: WithSimd>(work: W) -> W::Output {
+pub(crate) fn widest<W: WithSimd>(work: W) -> W::Output {
     #[cfg(test)]
     let processor = tests::PROCESSOR.get();
     #[cfg(not(test))]
@@ -41,7 +41,7 @@ fn fold<T: Copy>(values: &[f64], start: T, step: impl Fn(T, f64) -> T, join: imp
 
 /// Lowest and highest of the values that are numbers.
 #[inline(always)]
-pub(super) fn range(values: &[f64]) -> [f64; 2] {
+pub(crate) fn range(values: &[f64]) -> [f64; 2] {
     let wider =
         |[low, high]: [f64; 2], value| [if value < low { value } else { low }, if value > high { value } else { high }];
     fold(values, [f64::INFINITY, f64::NEG_INFINITY], wider, |a, b| [a[0].min(b[0]), a[1].max(b[1])])
@@ -49,13 +49,13 @@ pub(super) fn range(values: &[f64]) -> [f64; 2] {
 
 /// Sum of a function of values.
 #[inline(always)]
-pub(super) fn sum(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn sum(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     fold(values, 0.0, |sum, value| sum + of(value), |a, b| a + b)
 }
 
 /// Scalar product.
 #[inline(always)]
-pub(super) fn dot<S: Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot<S: Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
     let mut vectors = const { LONG / S::F64_LANES };
     let mut sums = [simd.splat_f64s(0.0); LONG];
     let ((whole_a, rest_a), (whole_b, rest_b)) = (a.as_chunks::<LONG>(), b.as_chunks::<LONG>());
@@ -81,7 +81,7 @@ pub(super) fn dot<S: Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
 
 /// The largest size, of numbers.
 #[inline(always)]
-pub(super) fn largest<S: Simd>(simd: S, values: &[f64]) -> f64 {
+pub(crate) fn largest<S: Simd>(simd: S, values: &[f64]) -> f64 {
     const CHAINS: usize = 4;
     let mut most = [simd.splat_f64s(0.0); CHAINS];
     let (vectors, rest) = S::as_simd_f64s(values);
@@ -101,14 +101,14 @@ pub(super) fn largest<S: Simd>(simd: S, values: &[f64]) -> f64 {
 
 /// `y - factor x`.
 #[inline(always)]
-pub(super) fn subtract(y: &mut [f64], factor: f64, x: &[f64]) {
+pub(crate) fn subtract(y: &mut [f64], factor: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y = (-factor).mul_add(*x, *y);
     }
 }
 
 /// `y - sum of factor x`, with the widest vectors.
-pub(super) fn subtract_all<'a>(y: &mut [f64], terms: impl Iterator<Item = (f64, &'a [f64])>) {
+pub(crate) fn subtract_all<'a>(y: &mut [f64], terms: impl Iterator<Item = (f64, &'a [f64])>) {
     widest(Subtraction { y, terms });
 }
 
@@ -129,7 +129,7 @@ impl<'a, T: Iterator<Item = (f64, &'a [f64])>> WithSimd for Subtraction<'_, T> {
 }
 
 /// Scalar product, with the widest vectors.
-pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn product(a: &[f64], b: &[f64]) -> f64 {
     widest(Product { a, b })
 }
 
@@ -149,26 +149,24 @@ impl WithSimd for Product<'_> {
 
 /// Lanes joined by halves, each of which is a vector of its own.
 #[inline(always)]
-pub(super) fn joined<T: Copy>(lanes: [T; LANES], join: impl Fn(T, T) -> T) -> T {
+pub(crate) fn joined<T: Copy>(lanes: [T; LANES], join: impl Fn(T, T) -> T) -> T {
     let [a, b, c, d, e, f, g, h] = lanes;
     let [a, b, c, d] = [join(a, e), join(b, f), join(c, g), join(d, h)];
     join(join(a, c), join(b, d))
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use std::cell::Cell;
 
-    use nalgebra::Vector3;
     use pulp::Arch;
 
     use super::*;
     use crate::random::Random;
-    use crate::reduction::{NoiseModel, Record, ScheduledPlateau, reduce};
 
     thread_local! {
         /// Whose vectors this thread works with: the machine's own, unless a test chooses others.
-        pub(super) static PROCESSOR: Cell<Arch> = Cell::new(Arch::new());
+        pub(crate) static PROCESSOR: Cell<Arch> = Cell::new(Arch::new());
     }
 
     /// Processors of all kinds that this one can stand for.
@@ -184,7 +182,7 @@ mod tests {
     }
 
     /// Everything on all processors is that of single numbers, bit by bit.
-    fn on_all<T: PartialEq + std::fmt::Debug + Send>(of: impl Fn() -> T + Sync) {
+    pub(crate) fn on_all<T: PartialEq + std::fmt::Debug + Send>(of: impl Fn() -> T + Sync) {
         // Of one thread, so that all of the work is done on the one that the choice is made for.
         let on = |processor: Arch| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
@@ -197,55 +195,6 @@ mod tests {
         for processor in processors() {
             assert_eq!(on(processor), single, "{processor:?}");
         }
-    }
-
-    const RATE: f64 = 250.0;
-    const PLATEAU: f64 = 12.0;
-    const RAMP: f64 = 4.0;
-    /// Samples of a plateau and the ramp after it.
-    const STRETCH: usize = 4000;
-    const OMEGA: [f64; 4] = [0.0, 20.0, 45.0, 30.0];
-    const ARM: f64 = 0.5;
-
-    /// Half a metre from the axis: settling, revolutions, coloured noise, spikes, a gap, a repeated stamp, a reading that is none.
-    fn record(seed: u64) -> Record {
-        let mut random = Random::stream(seed, 0);
-        let mut colour = Vector3::zeros();
-        let mut record = Record::default();
-        for i in (0..OMEGA.len() * STRETCH).filter(|i| !(700..720).contains(i)) {
-            let t = i as f64 / RATE;
-            let (plateau, since) = (i / STRETCH, (i % STRETCH) as f64 / RATE);
-            let (omega, next) = (OMEGA[plateau], OMEGA[(plateau + 1) % OMEGA.len()]);
-            let ramp = ((since - PLATEAU) / RAMP).max(0.0);
-            let settling = if plateau == 0 { 0.0 } else { 2e-3 * (-since / 0.5).exp() };
-            let omega = omega * (1.0 + settling) + ramp * (next - omega);
-            colour = colour * 0.99 + Vector3::from_fn(|_, _| 1e-4 * random.normal());
-            let turn = Vector3::new((omega * t).cos(), (omega * t).sin(), 0.0) * 3e-3;
-            let noise = Vector3::from_fn(|_, _| 1e-3 * random.normal());
-            let mut f = Vector3::new(omega * omega * ARM, 0.0, 9.81) + turn + colour + noise;
-            if random.uniform() < 1e-3 {
-                f.y += 20.0;
-            }
-            record.t.push(if i == 4000 { (i - 1) as f64 / RATE } else { t });
-            for (axis, column) in record.f_z.iter_mut().enumerate() {
-                column.push(if i == 5000 { f64::NAN } else { (f[axis] * 1e5).round() / 1e5 });
-            }
-        }
-        record
-    }
-
-    #[test]
-    fn a_reduction_is_the_same_on_any_processor() {
-        let nominal = |omega: f64| Vector3::new(omega * omega * ARM, 0.0, 9.81);
-        let schedule = OMEGA.map(|omega| ScheduledPlateau { omega, nominal_z: nominal(omega) });
-        on_all(|| {
-            let mountings = [1, 2].map(|seed| reduce(&record(seed), None, &schedule).unwrap());
-            let noise = NoiseModel::pool(&mountings);
-            let means = mountings.each_ref().map(|mounting| (mounting.settling_time(), mounting.means(&noise)));
-            assert!(means.iter().flat_map(|(_, means)| means).any(|mean| mean.left_out.spikes > 0));
-            // Every number in the shortest form that tells it from all others.
-            format!("{noise:?} {means:?}")
-        });
     }
 
     #[test]

@@ -5,13 +5,14 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::blocks::{Blocks, MAD, median};
-use super::lanes::{subtract, subtract_all, widest};
 use super::shape::Shape;
-use super::triangle::{Rows, TERMS, Triangle};
+use crate::reduction::survey::Blocks;
+use crate::reduction::triangle::{Rows, TERMS, Triangle};
+use crate::simd::lanes::{subtract, subtract_all, widest};
+use crate::statistics::{MAD, median};
 
 /// Blocks that are orthogonalised once for all ranges.
-const PIECE: usize = 64;
+const STRIP: usize = 64;
 
 /// The levels of the blocks about a plateau, with the design of its reading.
 pub(super) struct Levels {
@@ -21,8 +22,8 @@ pub(super) struct Levels {
     columns: Vec<Vec<f64>>,
     /// The levels, less a reference near them [m/s^2].
     f_z: [Vec<f64>; 3],
-    /// What every `PIECE` of them say of the coefficients.
-    pieces: Vec<Triangle>,
+    /// What every `STRIP` of them say of the coefficients.
+    strips: Vec<Triangle>,
     /// Smallest spread that the sampling allows [m/s^2].
     floor: Vector3<f64>,
 }
@@ -46,30 +47,30 @@ impl Levels {
         // Rounded readings may leave no spread at all.
         let floor = blocks.sample_noise * (blocks.interval / blocks.width).sqrt() + blocks.digit / MAD;
         let columns = shape.columns(&blocks.t[range.clone()]);
-        let mut all = Self { first: range.start, columns, f_z: levels, pieces: Vec::new(), floor };
-        all.pieces = (0..range.len() / PIECE).map(|k| all.triangle(k * PIECE..(k + 1) * PIECE)).collect();
+        let mut all = Self { first: range.start, columns, f_z: levels, strips: Vec::new(), floor };
+        all.strips = (0..range.len() / STRIP).map(|k| all.triangle(k * STRIP..(k + 1) * STRIP)).collect();
         all
     }
 
     /// The fit over a range of blocks; none if their design is short of rank.
     pub fn fit(&self, range: Range<usize>) -> Option<BlockFit<'_>> {
         let range = range.start - self.first..range.end - self.first;
-        let whole = range.start.div_ceil(PIECE)..range.end / PIECE;
+        let whole = range.start.div_ceil(STRIP)..range.end / STRIP;
         let parts = if whole.is_empty() {
             vec![self.triangle(range.clone())]
         } else {
-            vec![self.triangle(range.start..whole.start * PIECE), self.triangle(whole.end * PIECE..range.end)]
+            vec![self.triangle(range.start..whole.start * STRIP), self.triangle(whole.end * STRIP..range.end)]
         };
-        let pieces = self.pieces.get(whole).unwrap_or_default();
-        let triangle = Triangle::joined(&parts.iter().chain(pieces).collect::<Vec<_>>(), self.columns.len());
+        let strips = self.strips.get(whole).unwrap_or_default();
+        let triangle = Triangle::joined(&parts.iter().chain(strips).collect::<Vec<_>>(), self.columns.len());
         let coefficients = triangle.solve(self.columns.len())?;
         Some(BlockFit { of: self, range, triangle, coefficients })
     }
 
-    /// The triangle of some blocks, less than two pieces of them.
+    /// The triangle of some blocks, less than two strips of them.
     fn triangle(&self, range: Range<usize>) -> Triangle {
         let n = range.len();
-        let (mut columns, mut levels) = ([[0.0; 2 * PIECE]; TERMS], [[0.0; 2 * PIECE]; 3]);
+        let (mut columns, mut levels) = ([[0.0; 2 * STRIP]; TERMS], [[0.0; 2 * STRIP]; 3]);
         let rooms = columns[..self.columns.len()].iter_mut().chain(&mut levels);
         for (room, column) in rooms.zip(self.columns.iter().chain(&self.f_z)) {
             room[..n].copy_from_slice(&column[range.clone()]);
@@ -128,7 +129,7 @@ impl BlockFit<'_> {
     /// Whether two neighbouring blocks are off. A ramp shows at an end: there they are looked for first.
     pub fn has_two_off(&self, scale: &Vector3<f64>, cut: f64) -> bool {
         let Range { start, end } = self.range;
-        let near = PIECE.min(self.range.len());
+        let near = STRIP.min(self.range.len());
         let parts = [end - near..end, start..start + near, self.range.clone()];
         let two_off = |part| self.off_among(part, scale, cut).windows(2).any(|pair| pair == [true, true]);
         parts.into_iter().any(two_off)
@@ -136,7 +137,7 @@ impl BlockFit<'_> {
 
     fn off_among(&self, range: Range<usize>, scale: &Vector3<f64>, cut: f64) -> Vec<bool> {
         let mut off = vec![false; range.len()];
-        for (from, verdicts) in range.clone().step_by(PIECE).zip(off.chunks_mut(PIECE)) {
+        for (from, verdicts) in range.clone().step_by(STRIP).zip(off.chunks_mut(STRIP)) {
             widest(Off { fit: self, from, verdicts, scale, cut });
         }
         off
@@ -162,8 +163,8 @@ impl WithSimd for Off<'_> {
         let piece = from..from + n;
         let (terms, r) = (fit.coefficients.len(), &fit.triangle.r);
         // The columns of Q, one after another, and what they leave of the noise.
-        let mut q = [[0.0; PIECE]; TERMS];
-        let mut left = [1.0; PIECE];
+        let mut q = [[0.0; STRIP]; TERMS];
+        let mut left = [1.0; STRIP];
         for j in 0..terms {
             let (done, rest) = q.split_at_mut(j);
             let column = &mut rest[0][..n];
@@ -178,9 +179,9 @@ impl WithSimd for Off<'_> {
             }
         }
         // The largest square of what the fit leaves of the levels, in units of what may be left.
-        let mut worst = [0.0_f64; PIECE];
+        let mut worst = [0.0_f64; STRIP];
         for axis in 0..3 {
-            let mut residuals = [0.0; PIECE];
+            let mut residuals = [0.0; STRIP];
             let residuals = &mut residuals[..n];
             residuals.copy_from_slice(&fit.of.f_z[axis][piece.clone()]);
             for (column, b) in fit.of.columns.iter().zip(&fit.coefficients) {

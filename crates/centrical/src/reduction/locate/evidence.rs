@@ -10,11 +10,12 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::ScheduledPlateau;
-use super::blocks::{Blocks, MAD, median, whole};
-use super::elementary::{exp, ln};
-use super::lanes::widest;
-use super::path::PIECE;
+use super::path::LAYER;
+use crate::reduction::plateau::ScheduledPlateau;
+use crate::reduction::survey::Blocks;
+use crate::simd::elementary::{exp, ln};
+use crate::simd::lanes::widest;
+use crate::statistics::{MAD, median, whole};
 
 /// Share of blocks on a plateau that show something else: a knock, a burst of spikes.
 const DISTURBED: f64 = 0.01;
@@ -103,15 +104,15 @@ impl<'a> Evidence<'a> {
 
     fn steadiness(&self) -> Vec<f64> {
         let mut steadiness = vec![0.0; self.blocks.len()];
-        for (k, steadiness) in steadiness.chunks_mut(PIECE).enumerate() {
-            self.density_of_change(self.reach(0.0), &self.noise, k * PIECE, steadiness);
+        for (k, steadiness) in steadiness.chunks_mut(LAYER).enumerate() {
+            self.density_of_change(self.reach(0.0), &self.noise, k * LAYER, steadiness);
         }
         steadiness
     }
 
     /// Density of the change about each block of a piece if it is noise, over that of any change; logarithm.
     fn density_of_change(&self, reach: f64, noise: &Vector3<f64>, from: usize, density: &mut [f64]) {
-        let mut changes = [[0.0; PIECE]; 3];
+        let mut changes = [[0.0; LAYER]; 3];
         let mut changes = changes.each_mut().map(|changes| &mut changes[..density.len()]);
         for (axis, changes) in changes.iter_mut().enumerate() {
             self.changes(axis, reach, from, changes);

@@ -5,9 +5,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::cells::Cells;
-use super::noise::NoiseModel;
-use super::plateau_fit::PlateauFit;
+use super::noise_model::NoiseModel;
+use crate::reduction::average::{Cells, PlateauFit};
 
 /// `d ln tau`: how far the time constant is to be moved.
 pub(super) struct TimeStep {

@@ -5,10 +5,10 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::lanes::{dot, largest, range, subtract, widest};
 use super::samples::Samples;
 use super::stuck::{longest_run, may_be_longer, stuck_on_any_axis};
-use super::triangle::{TERMS, Triangle};
+use crate::reduction::triangle::{TERMS, Triangle};
+use crate::simd::lanes::{dot, largest, range, subtract, widest};
 
 /// Samples of a strip at most.
 const STRIP: usize = 512;

@@ -2,15 +2,15 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::elementary::{cos_sin, exp};
-use super::lanes::widest;
+use crate::simd::elementary::{cos_sin, exp};
+use crate::simd::lanes::widest;
 
 /// Time constants after which less is left of the settling than rounding leaves of a reading.
 pub(super) const FADED: f64 = 40.0;
 
 /// Which terms a plateau has: `[cos, sin,] [settling,] 1`. The constant stands last.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shape {
+pub(in crate::reduction) struct Shape {
     /// Where phase and settling count from [s].
     pub start: f64,
     /// Speed [rad/s]; 0 for no once-per-revolution term.
@@ -23,7 +23,7 @@ pub(super) struct Shape {
 /// speed, settles by
 /// `2 epsilon (exp(-x) + epsilon/2 exp(-2x))`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Settling {
+pub(in crate::reduction) struct Settling {
     /// Time constant [s].
     pub time: f64,
     /// `epsilon / 2`: a quarter of the relative error of the force at the start.

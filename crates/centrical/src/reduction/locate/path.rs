@@ -10,7 +10,7 @@ use std::ops::Range;
 const MISSING: f64 = 1e-6;
 
 /// Blocks whose densities are asked for together: what is made for them stays in the fastest memory.
-pub(super) const PIECE: usize = 512;
+pub(super) const LAYER: usize = 512;
 
 /// All paths of a record through a schedule.
 pub(super) struct Trellis {
@@ -33,11 +33,11 @@ impl Trellis {
         let (odds, states) = (MISSING.ln(), states(self.plateaus));
         // State 2k is the transition before plateau k, state 2k + 1 the plateau k.
         let mut score: Vec<f64> = (0..states).map(|state| (state / 2) as f64 * odds).collect();
-        let mut room = vec![[0.0; PIECE]; self.plateaus];
-        let pieces = between.chunks(PIECE).zip(self.came_from.chunks_mut(PIECE * states));
+        let mut room = vec![[0.0; LAYER]; self.plateaus];
+        let pieces = between.chunks(LAYER).zip(self.came_from.chunks_mut(LAYER * states));
         for (number, (between, came_from)) in pieces.enumerate() {
             for (k, room) in room.iter_mut().enumerate() {
-                on(k, number * PIECE, &mut room[..between.len()]);
+                on(k, number * LAYER, &mut room[..between.len()]);
             }
             for (i, (between, from)) in between.iter().zip(came_from.chunks_exact_mut(states)).enumerate() {
                 if number + i > 0 {
@@ -105,7 +105,7 @@ fn trace<'a>(
 
 #[cfg(test)]
 mod tests {
-    use super::{PIECE, Trellis};
+    use super::{LAYER, Trellis};
 
     /// Densities of a record that shows plateau `seen[i]` at block `i`, or a transition.
     fn path(seen: &[Option<usize>], plateaus: usize) -> Vec<std::ops::Range<usize>> {
@@ -125,9 +125,9 @@ mod tests {
 
     #[test]
     fn a_path_is_found_piece_by_piece() {
-        let long = |seen: Option<usize>| std::iter::repeat_n(seen, PIECE - 1);
+        let long = |seen: Option<usize>| std::iter::repeat_n(seen, LAYER - 1);
         let seen: Vec<_> = [None, Some(0), None, Some(1), None, Some(2)].into_iter().flat_map(long).collect();
-        let at = |k: usize| k * (PIECE - 1)..(k + 1) * (PIECE - 1);
+        let at = |k: usize| k * (LAYER - 1)..(k + 1) * (LAYER - 1);
         assert_eq!(path(&seen, 3), [at(1), at(3), at(5)]);
     }
 

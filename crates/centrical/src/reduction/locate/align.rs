@@ -5,10 +5,12 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::blocks::{Blocks, median};
 use super::evidence::{Candidate, Evidence};
 use super::path::Trellis;
-use super::{ReductionError, ScheduledPlateau, Stretch, mistake, rotation};
+use super::{hypothesis, rotation};
+use crate::reduction::error::{ReductionError, Stretch};
+use crate::reduction::plateau::ScheduledPlateau;
+use crate::reduction::survey::Blocks;
 
 /// More rounds than it takes.
 const ROUNDS: usize = 8;
@@ -18,21 +20,15 @@ pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Ve
     let other = |schedule: &[ScheduledPlateau]| by_schedule(blocks, schedule).ok();
     match by_schedule(blocks, schedule) {
         Ok(cores) => {
-            mistake::recognise(blocks, schedule, Some(&cores), other)?;
+            hypothesis::recognise(blocks, schedule, Some(&cores), other)?;
             rotation::check(blocks, schedule, &cores)?;
             Ok(cores)
         }
         Err(error) => {
-            mistake::recognise(blocks, schedule, None, other)?;
+            hypothesis::recognise(blocks, schedule, None, other)?;
             Err(error)
         }
     }
-}
-
-/// Median reading of some blocks [m/s^2].
-pub(super) fn level(blocks: &Blocks, range: &Range<usize>) -> Vector3<f64> {
-    let of = |axis: usize| median(&mut blocks.f_z[range.clone()].iter().map(|f| f[axis]).collect::<Vec<f64>>());
-    Vector3::from_fn(|axis, _| of(axis))
 }
 
 /// The core of each scheduled plateau, in blocks.
@@ -75,7 +71,7 @@ fn stretch(blocks: &Blocks, range: Range<usize>, cores: &[Range<usize>], candida
     let middle = usize::midpoint(range.start, range.end);
     Stretch {
         window: [blocks.t[range.start] - half, blocks.t[range.end - 1] + half],
-        level_z: level(blocks, &range),
+        level_z: blocks.level(&range),
         plateau: cores.iter().position(|core| core.contains(&middle)),
         resembles: (0..cores.len()).filter(|k| candidates[*k].has_level(middle)).collect(),
     }

@@ -13,10 +13,12 @@ use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::block_fit::{BlockFit, Levels, spread};
-use super::blocks::{Blocks, cut, median, whole};
-use super::lanes::{dot, widest};
 use super::shape::{FADED, Settling, Shape};
-use super::{ReductionError, ScheduledPlateau};
+use crate::reduction::error::ReductionError;
+use crate::reduction::plateau::ScheduledPlateau;
+use crate::reduction::survey::Blocks;
+use crate::simd::lanes::{dot, widest};
+use crate::statistics::{cut, median, whole};
 
 /// The windows of one mounting.
 #[derive(Debug, Clone)]
@@ -29,7 +31,7 @@ pub(super) struct Windows {
 
 /// The part of the record that a mean is taken over.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Window {
+pub(in crate::reduction) struct Window {
     /// From, to [s].
     pub span: [f64; 2],
     /// What is fitted in it.

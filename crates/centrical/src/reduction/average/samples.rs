@@ -7,14 +7,16 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::blocks::{Blocks, MAD, cut, median, whole};
 use super::cells::CELLS;
-use super::lanes::{subtract_all, widest};
-use super::regression::Regression;
 use super::saturation::standing;
-use super::shape::Shape;
-use super::window::Window;
-use super::{LeftOut, RecordSlice, ReductionError};
+use crate::reduction::error::ReductionError;
+use crate::reduction::locate::{Shape, Window};
+use crate::reduction::plateau::LeftOut;
+use crate::reduction::record::RecordSlice;
+use crate::reduction::survey::Blocks;
+use crate::reduction::triangle::Triangle;
+use crate::simd::lanes::{subtract_all, widest};
+use crate::statistics::{MAD, cut, median, whole};
 
 /// Samples of a window that show their spread, and of these the neighbours that are taken together, for they come from the
 /// memory together.
@@ -102,16 +104,16 @@ impl<'a> Samples<'a> {
     pub fn fit_of_medians(&self) -> Vec<Vector3<f64>> {
         let [from, to] = self.window.span;
         let shape = Shape { omega: 0.0, ..self.window.shape };
-        let (mut middles, mut medians) = (Vec::new(), Vec::new());
+        let (mut middles, mut medians) = (Vec::new(), [const { Vec::new() }; 3]);
         for (cell, range) in self.cells_of(&self.shown.t).enumerate().filter(|(_, range)| !range.is_empty()) {
             let readings = |axis: usize| {
                 let shown = self.shown.f_z[axis][range.clone()].iter().copied();
                 median(&mut shown.filter(|f| f.is_finite()).collect::<Vec<f64>>())
             };
             middles.push(from + (cell as f64 + 0.5) * (to - from) / CELLS as f64);
-            medians.push(Vector3::from_fn(|axis, _| readings(axis)));
+            medians.iter_mut().enumerate().for_each(|(axis, medians)| medians.push(readings(axis)));
         }
-        Regression::new(shape.columns(&middles)).map_or(vec![], |regression| regression.solve(&medians))
+        Triangle::fit(shape.columns(&middles), medians).unwrap_or_default()
     }
 
     /// How large a residual of a good sample may be, the last terms having these coefficients. The spread is seen by some

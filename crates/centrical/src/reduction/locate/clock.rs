@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use super::ScheduledPlateau;
-use super::blocks::{Blocks, MAD, median};
+use crate::reduction::plateau::ScheduledPlateau;
+use crate::reduction::survey::Blocks;
+use crate::statistics::{MAD, median};
 
 /// Telemetry of the centrifuge, on its own clock.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -3,9 +3,10 @@
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::blocks::{MAD, SAMPLES, cut, median};
-use super::lanes::{LANES, joined, range, sum, widest};
-use super::record::RecordSlice;
+use super::grid::SAMPLES;
+use crate::reduction::record::RecordSlice;
+use crate::simd::lanes::{LANES, joined, range, sum, widest};
+use crate::statistics::{MAD, cut, median};
 
 /// What is kept of the samples of one block of time.
 #[derive(Debug, Clone, Copy)]
