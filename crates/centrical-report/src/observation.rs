@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_io::{ConditionReport, ObservationReport, ObservedParameter, RemedyReport};
+use centrical_session::{ConditionReport, ObservationReport, ObservedParameter, RemedyReport};
 
 use crate::customary::customary;
 use crate::plan::prediction_text;

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use centrical::uncertainty::{Budget, Compensated, Validity, patterns, without_outliers};
 use centrical::{Fit, FitError, MeasurementModel, Observation, STANDARD_GRAVITY, fit, linear};
-use centrical_io::{Error, Problem, Session};
 use centrical_report::{budget_table, correlation_table, outliers_text, prediction_table, validity_text};
+use centrical_session::{Error, Problem, Session};
 use nalgebra::{DMatrix, Vector3};
 
 use crate::{Outcome, progress};

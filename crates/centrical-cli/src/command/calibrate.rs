@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use centrical_io::{CalibrationResult, Error, Method, PlateauName, Session, calibrate_without, create_folder};
 use centrical_report::{Objection, objections, states_text, terminal_table, verdict_text};
+use centrical_session::{CalibrationResult, Error, Method, PlateauName, Session, calibrate_without, create_folder};
 
 use crate::command::report::Documents;
 use crate::{Outcome, progress};

@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical::uncertainty;
-use centrical_io::{CalibrationResult, Error};
 use centrical_report::{comparison_table, customary};
+use centrical_session::{CalibrationResult, Error};
 
 use crate::Outcome;
 

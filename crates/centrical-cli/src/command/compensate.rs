@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::STANDARD_GRAVITY;
 use centrical_compensate::{Certificate, Compensation};
-use centrical_io::{
+use centrical_session::{
     CalibrationResult, Columns, Compensated, Dimension, Error, NotThatQuantity, Quantity, Session, compensate_record,
 };
 

@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical::uncertainty::{rivals_of, select};
-use centrical_io::{Error, Problem, Session};
 use centrical_report::selection_table;
+use centrical_session::{Error, Problem, Session};
 
 use crate::{Outcome, progress};
 

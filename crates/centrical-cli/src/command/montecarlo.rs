@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use centrical::plan::unit_of;
 use centrical::uncertainty::{Method, MonteCarlo, Settings, TypeB, monte_carlo};
 use centrical::{FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight, fit};
-use centrical_io::{Error, Plan, Problem, Session};
 use centrical_report::monte_carlo_table;
+use centrical_session::{Error, Plan, Problem, Session};
 use nalgebra::Vector3;
 
 use super::assess::probability;

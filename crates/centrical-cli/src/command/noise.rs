@@ -4,11 +4,11 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use centrical::noise::Estimator;
-use centrical_io::{
+use centrical_report::{noise_plots, noise_table, noise_warnings};
+use centrical_session::{
     Column, ColumnName, Columns, Dimension, Error, NoiseAnalysis, NotThatQuantity, PlateauName, Quantity, Scale,
     Series, Session, create_folder, write_whole,
 };
-use centrical_report::{noise_plots, noise_table, noise_warnings};
 
 use crate::Outcome;
 

@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use centrical_io::{Design, Error, ObservationReport};
 use centrical_report::observation_text;
+use centrical_session::{Design, Error, ObservationReport};
 
 use crate::Outcome;
 

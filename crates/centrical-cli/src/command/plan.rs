@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::{Error, PlanReport, PlanRequest, Planning, USUAL_LEVELS, write_whole};
 use centrical_report::{frontier_plot, plan_text};
+use centrical_session::{Error, PlanReport, PlanRequest, Planning, USUAL_LEVELS, write_whole};
 
 use super::assess::probability;
 use crate::Outcome;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_io::{Error, Reduced, Session, write_reduced};
+use centrical_session::{Error, Reduced, Session, write_reduced};
 
 use crate::format::Format;
 use crate::{Outcome, progress};

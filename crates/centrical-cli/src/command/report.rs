@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_io::{CalibrationResult, Error, Laboratory, Place, create_folder, read_history, write_whole};
 use centrical_report::codegen::{NamedTerm, compensation_source, heading};
 use centrical_report::{
     Language, digital_certificate, figures, history_figure, html_report, html_report_with, objections, pdf_certificate,
     verdict_text,
 };
+use centrical_session::{CalibrationResult, Error, Laboratory, Place, create_folder, read_history, write_whole};
 use clap::ValueEnum;
 
 use crate::Outcome;

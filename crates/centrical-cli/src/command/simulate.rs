@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_io::{Error, Session, Truth, simulate_session};
+use centrical_session::{Error, Session, Truth, simulate_session};
 
 use crate::format::Format;
 use crate::{Outcome, progress};

@@ -10,13 +10,13 @@ use std::time::Duration;
 use centrical::fit::recursive::{Follower, Progress};
 use centrical::plan::{Criterion, Gain, ReadingRange, next_best};
 use centrical::{MeasurementModel, Observation, SetPoint, Weight, linear};
-use centrical_io::{
-    Error, HistoryEntry, HistoryEstimate, Method, Place, PlateauName, Session, Watch, WatchState, WatchedPlateau,
-    append_history, calibrate_without, create_folder, keep_history, read_history, write_whole,
-};
 use centrical_report::{
     Language, WatchView, WatchedTest, history_figure, objections, states_text, terminal_table, verdict_text,
     watch_table,
+};
+use centrical_session::{
+    Error, HistoryEntry, HistoryEstimate, Method, Place, PlateauName, Session, Watch, WatchState, WatchedPlateau,
+    append_history, calibrate_without, create_folder, keep_history, read_history, write_whole,
 };
 
 use crate::Outcome;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::fs;
 
-use centrical_io::{Reduced, Session, TableFormat, Truth, simulate_session};
+use centrical_session::{Reduced, Session, TableFormat, Truth, simulate_session};
 use nalgebra::{Cholesky, Vector3};
 use serde_json::Value;
 

@@ -1,7 +1,7 @@
 use std::fs;
 
 use centrical_compensate::{Compensation, Term};
-use centrical_io::{Columns, Compensated, Record, RecordWriter, compensate_record, read_record};
+use centrical_session::{Columns, Compensated, Record, RecordWriter, compensate_record, read_record};
 use proptest::prelude::*;
 
 /// A record of `rows` rows whose numbers need all their digits.

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use centrical::{ErrorModel, Experiment, Monomial, PairRelation, ReferencePoint};
-use centrical_io::{Column, ColumnName, PlateauMean, Scale, Session, write_plateaus};
+use centrical_session::{Column, ColumnName, PlateauMean, Scale, Session, write_plateaus};
 use nalgebra::{Matrix3, Vector3};
 
 const EXPERIMENT: &str = include_str!("../data/experiment.toml");

@@ -5,7 +5,7 @@ mod simulate;
 
 use std::path::PathBuf;
 
-use centrical_io::{Column, ColumnName, Columns, Scale, Session, read_record};
+use centrical_session::{Column, ColumnName, Columns, Scale, Session, read_record};
 
 fn data(session: &str) -> PathBuf {
     let shared = std::env::var_os("CENTRICAL_SHARED").expect("CENTRICAL_SHARED is not set");

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::{NoiseModel, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
 use centrical::{SetPoint, linear};
-use centrical_io::{RecordWriter, Reduced, Session, read_record};
+use centrical_session::{RecordWriter, Reduced, Session, read_record};
 use tempfile::TempDir;
 
 fn example() -> PathBuf {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use centrical::plan::predict;
 use centrical::uncertainty::{Method, Settings, TypeB, monte_carlo};
 use centrical::{MeasurementModel, Observation, Weight};
-use centrical_io::{Plan, Planning};
+use centrical_session::{Plan, Planning};
 use nalgebra::Vector3;
 
 /// The standard deviation of a ratio is 1 / sqrt(2 runs) = 0.5 %: 3 % is six of them, and a parameter that is off by 5 % is

@@ -1,6 +1,6 @@
 //! What is wrong with an experiment file.
 
-use centrical_io::Session;
+use centrical_session::Session;
 
 use crate::sample::{EXPERIMENT, Sample};
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use centrical_io::{Column, ColumnName, Columns, Record, Scale, read_record};
+use centrical_session::{Column, ColumnName, Columns, Record, Scale, read_record};
 
 /// A file as it is kept or, with `CENTRICAL_GENERATED`, as those programs wrote it just now into that folder.
 fn data(name: &str) -> PathBuf {

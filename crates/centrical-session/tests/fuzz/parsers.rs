@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use centrical_io::{
+use centrical_session::{
     CalibrationResult, ColumnName, Columns, Error, Laboratory, Plan, Session, Truth, WatchState, read_growing_record,
     read_plateaus, read_record, read_telemetry,
 };

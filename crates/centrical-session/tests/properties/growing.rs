@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use centrical_io::{Columns, read_growing_record, read_record};
+use centrical_session::{Columns, read_growing_record, read_record};
 use tempfile::TempDir;
 
 /// Cut anywhere, a text gives the rows whose lines are ended and no other, with both ends of lines.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical_io::{Design, Plan, Planning, Session};
+use centrical_session::{Design, Plan, Planning, Session};
 
 use crate::sample::{EXPERIMENT, Sample};
 

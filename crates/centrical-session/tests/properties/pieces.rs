@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use centrical_io::{Columns, Record, read_record};
+use centrical_session::{Columns, Record, read_record};
 use tempfile::TempDir;
 
 /// A text longer than many pieces, with comments, blank lines and quoted numbers here and there, and the line of each row.

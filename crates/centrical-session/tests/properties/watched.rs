@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use centrical::Observation;
-use centrical_io::{RecordWriter, Session, Watch, read_record};
+use centrical_session::{RecordWriter, Session, Watch, read_record};
 use tempfile::TempDir;
 
 /// Longer than any test: a record is finished when one of a later mounting is there, not by being left alone.

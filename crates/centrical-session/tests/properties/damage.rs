@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use centrical_io::{Columns, Session, read_plateaus, read_record};
+use centrical_session::{Columns, Session, read_plateaus, read_record};
 
 use crate::random::Random;
 

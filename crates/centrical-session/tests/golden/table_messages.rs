@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use centrical_io::{Columns, Session, read_plateaus, read_record, read_telemetry};
+use centrical_session::{Columns, Session, read_plateaus, read_record, read_telemetry};
 
 use crate::sample::{EXPERIMENT, Sample};
 

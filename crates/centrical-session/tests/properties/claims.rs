@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use centrical_io::{ColumnName, Columns, read_record};
+use centrical_session::{ColumnName, Columns, read_record};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
