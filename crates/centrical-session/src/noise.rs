@@ -5,18 +5,12 @@ mod series;
 
 use std::path::{Path, PathBuf};
 
-use centrical::noise::{
-    Deviation, Estimator, Gaps, NoiseError, NoiseTerms, Phase, Spectrum, deviations, fit_noise_terms, leave_out_spikes,
-    power_spectrum, regular_grid,
-};
+use centrical::stability::{Analysis, CONFIDENCE, Estimator, analyse};
 use rayon::prelude::*;
 
 pub use self::json::NOISE_SCHEMA;
 pub use self::series::Series;
 use crate::error::Error;
-
-/// Probability of every interval: one standard deviation of a normal law.
-const CONFIDENCE: f64 = 0.683;
 
 /// The noise of a record.
 #[derive(Debug, Clone)]
@@ -38,24 +32,8 @@ pub struct ReadingNoise {
     pub name: String,
     /// Its unit: m/s^2 for accelerations, as in the file otherwise.
     pub unit: String,
-    /// Mean of what was used [unit].
-    pub mean: f64,
-    /// Sampling interval [s].
-    pub interval: f64,
-    /// Readings used.
-    pub samples: usize,
-    /// Readings left out as spikes.
-    pub spikes: usize,
-    /// Samples left out as repeated.
-    pub repeated: usize,
-    /// What was missing and bridged, spikes among it.
-    pub gaps: Gaps,
-    /// Deviations by estimator, at averaging factors 1, 2, 4, ...
-    pub deviations: Vec<(Estimator, Vec<Deviation>)>,
-    /// The spectrum, or why there is none.
-    pub spectrum: Result<Spectrum, NoiseError>,
-    /// The noise terms, or why there are none.
-    pub terms: Result<NoiseTerms, NoiseError>,
+    /// Its noise.
+    pub noise: Analysis,
 }
 
 impl NoiseAnalysis {
@@ -67,7 +45,8 @@ impl NoiseAnalysis {
         let columns = series.columns.par_iter();
         let analysed = columns.map(|(name, unit, values)| {
             let failed = |source| Error::Noise { file: series.file.clone(), reading: name.clone(), source };
-            ReadingNoise::of(name, unit, &series.t, values, estimators).map_err(failed)
+            let noise = analyse(&series.t, values, estimators).map_err(failed)?;
+            Ok(ReadingNoise { name: name.clone(), unit: unit.clone(), noise })
         });
         Ok(Self {
             file: series.file.clone(),
@@ -89,51 +68,4 @@ impl NoiseAnalysis {
     pub fn write(&self, file: &Path) -> Result<(), Error> {
         crate::write::write_whole(file, self.to_json().as_bytes())
     }
-}
-
-impl ReadingNoise {
-    fn of(name: &str, unit: &str, t: &[f64], values: &[f64], estimators: &[Estimator]) -> Result<Self, NoiseError> {
-        let mut grid = regular_grid(t, values)?;
-        let spikes = leave_out_spikes(&mut grid.readings);
-        let phase = Phase::integrate(&grid.readings, grid.interval)?;
-        let seen = || grid.readings.iter().filter(|y| y.is_finite());
-        let samples = seen().count();
-        Ok(Self {
-            name: name.to_owned(),
-            unit: unit.to_owned(),
-            mean: seen().sum::<f64>() / samples as f64,
-            interval: grid.interval,
-            samples,
-            spikes,
-            repeated: grid.repeated,
-            gaps: phase.gaps(),
-            deviations: estimators.iter().map(|e| Ok((*e, family(&phase, *e)?))).collect::<Result<_, NoiseError>>()?,
-            spectrum: power_spectrum(&grid.readings, grid.interval, segment(grid.readings.len())),
-            terms: fit_noise_terms(&phase),
-        })
-    }
-
-    /// The noise terms, if they describe the deviations: what may be quoted.
-    pub fn quotable(&self) -> Option<&NoiseTerms> {
-        self.terms.as_ref().ok().filter(|terms| terms.is_consistent())
-    }
-}
-
-/// Deviations at 1, 2, 4, ... sampling intervals, to half the record.
-///
-/// Estimators that take the product of record and averaging time stop where that is more than some seconds of work.
-fn family(phase: &Phase, estimator: Estimator) -> Result<Vec<Deviation>, NoiseError> {
-    /// Operations that take some seconds.
-    const WORK: usize = 1 << 32;
-    let is_product = matches!(estimator, Estimator::ModifiedTotal | Estimator::TimeTotal | Estimator::HadamardTotal);
-    let longest = if is_product { WORK / phase.points().len() } else { usize::MAX };
-    let factors: Vec<usize> = phase.octaves(2).into_iter().filter(|m| *m <= longest).collect();
-    deviations(phase, estimator, &factors, CONFIDENCE)
-}
-
-/// Length of the spectrum's segments: a power of two, of which some 16 fit half overlapping; so a density has about 30
-/// degrees of freedom. Longer than 2^17 it would show nothing more.
-fn segment(readings: usize) -> usize {
-    let eighth = (readings / 8).max(8);
-    1 << eighth.ilog2().min(17)
 }

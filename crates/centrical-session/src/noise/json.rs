@@ -1,6 +1,6 @@
 //! A noise analysis as JSON, schema `centrical-noise/1`.
 
-use centrical::noise::{Coefficient, Deviation, Estimator, NoiseTerm, NoiseTerms, Spectrum};
+use centrical::stability::{Coefficient, Deviation, Estimator, NoiseTerm, NoiseTerms, Spectrum};
 use serde_json::{Value, json};
 
 use super::{NoiseAnalysis, ReadingNoise};
@@ -24,23 +24,24 @@ impl NoiseAnalysis {
 }
 
 fn of_reading(reading: &ReadingNoise, confidence: f64) -> Value {
+    let noise = &reading.noise;
     json!({
         "name": reading.name,
         "unit": reading.unit,
-        "mean": reading.mean,
-        "interval": reading.interval,
-        "samples": reading.samples,
-        "spikes": reading.spikes,
-        "repeated": reading.repeated,
-        "gaps": {"runs": reading.gaps.runs, "missing": reading.gaps.missing, "longest": reading.gaps.longest},
-        "deviations": reading.deviations.iter().map(|(estimator, family)| of_family(*estimator, family)).collect::<Vec<_>>(),
-        "spectrum": reading.spectrum.as_ref().map_or_else(refused, |spectrum| of_spectrum(spectrum, confidence)),
-        "terms": reading.terms.as_ref().map_or_else(refused, of_terms),
+        "mean": noise.mean,
+        "interval": noise.interval,
+        "samples": noise.samples,
+        "spikes": noise.spikes,
+        "repeated": noise.repeated,
+        "gaps": {"runs": noise.gaps.runs, "missing": noise.gaps.missing, "longest": noise.gaps.longest},
+        "deviations": noise.deviations.iter().map(|(estimator, family)| of_family(*estimator, family)).collect::<Vec<_>>(),
+        "spectrum": noise.spectrum.as_ref().map_or_else(refused, |spectrum| of_spectrum(spectrum, confidence)),
+        "terms": noise.terms.as_ref().map_or_else(refused, of_terms),
     })
 }
 
 /// What could not be computed says why.
-fn refused(error: &centrical::noise::NoiseError) -> Value {
+fn refused(error: &centrical::stability::NoiseError) -> Value {
     json!({"refused": error.to_string()})
 }
 

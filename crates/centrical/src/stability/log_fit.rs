@@ -2,8 +2,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::scatter::{LogMoments, Scatter};
-use super::terms::COMPONENTS;
+use super::components::COMPONENTS;
+use super::log_moments::{LogMoments, MomentModel};
 
 /// Variances to be described by `v = A theta`, theta >= 0.
 pub(super) struct LogFit {
@@ -13,7 +13,7 @@ pub(super) struct LogFit {
     pub(super) logarithms: DVector<f64>,
     /// A: the variance at each factor of each component of size 1.
     pub(super) shares: DMatrix<f64>,
-    pub(super) scatter: Scatter,
+    pub(super) moments: MomentModel,
 }
 
 /// A fitted model.
@@ -169,7 +169,7 @@ impl LogFit {
     }
 
     fn weights(&self, theta: &[f64; COMPONENTS]) -> Option<Weights> {
-        let LogMoments { mean, covariance } = self.scatter.moments(theta);
+        let LogMoments { mean, covariance } = self.moments.moments(theta);
         Some(Weights { mean, factor: covariance.cholesky()? })
     }
 

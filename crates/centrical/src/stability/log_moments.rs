@@ -1,13 +1,11 @@
-//! How Hadamard variances of one record scatter together, given the spectrum of its noise.
-
-use std::f64::consts::PI;
+//! Mean and covariance of the logarithms of a record's Hadamard variances, given the spectrum of its noise.
 
 use nalgebra::{DMatrix, DVector};
 use statrs::function::gamma::digamma;
 
-use super::terms::{COMPONENTS, density};
+use super::components::{COMPONENTS, density, hadamard_response};
 
-/// Mean and covariance of the logarithms of overlapping Hadamard variances.
+/// The moments of the logarithms of overlapping Hadamard variances, as a function of the spectrum.
 ///
 /// A variance is the mean over M terms of a squared Gaussian process of spectrum `S(f) |H_m(f)|^2`, so that
 /// `cov(s_i^2, s_j^2) = 2/M int S^2 |H_i|^2 |H_j|^2 df` and `edf = 2 s^4 / var` (D. B. Percival, "On estimation of the
@@ -15,7 +13,7 @@ use super::terms::{COMPONENTS, density};
 /// divided by `1 - 0.6 m / M`, 0.6 being a_1 / a_0 in table 2 of Greenhall and Riley (0.64, 0.62, 0.59 for white,
 /// flicker, random walk). A chi^2 of that edf has the logarithm's mean and variance
 /// `psi(edf/2) - ln(edf/2)` and `psi'(edf/2)`.
-pub(super) struct Scatter {
+pub(super) struct MomentModel {
     /// Frequencies in cycles per sample, evenly spaced in logarithm.
     frequency: Vec<f64>,
     /// `|H_m|^2` times the frequency (the measure of the logarithm), one row per averaging factor.
@@ -32,8 +30,8 @@ pub(super) struct LogMoments {
     pub(super) covariance: DMatrix<f64>,
 }
 
-impl Scatter {
-    /// Room for the averaging factors `factors`, ascending, whose variances are means over `terms` terms.
+impl MomentModel {
+    /// For the averaging factors `factors`, ascending, whose variances are means over `terms` terms.
     pub(super) fn new(factors: Vec<usize>, terms: Vec<usize>) -> Self {
         const PER_OCTAVE: f64 = 96.0;
         let lowest = 1e-3 / factors.last().copied().unwrap_or(1) as f64;
@@ -82,12 +80,6 @@ impl Scatter {
     }
 }
 
-/// `|H_m(f)|^2 = (2 sin pi f m)^6 / (6 (2 m sin pi f)^2)`: what the Hadamard variance passes of `f` cycles per sample.
-pub(super) fn hadamard_response(m: usize, f: f64) -> f64 {
-    let m = m as f64;
-    (2.0 * (PI * f * m).sin()).powi(6) / (6.0 * (2.0 * m * (PI * f).sin()).powi(2))
-}
-
 /// Derivative of digamma: upward recurrence, then the asymptotic series (Abramowitz and Stegun 6.4.6, 6.4.12).
 fn trigamma(x: f64) -> f64 {
     let (mut x, mut sum) = (x, 0.0);
@@ -101,25 +93,23 @@ fn trigamma(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::terms::hadamard_shares;
+    use std::f64::consts::PI;
+
+    use super::super::components::hadamard_shares;
     use super::*;
 
     /// The spectra and the shares of the variance are two statements of the same noises.
     #[test]
     fn the_integral_of_each_spectrum_is_its_hadamard_variance() {
-        let scatter = Scatter::new(vec![16, 64], vec![1, 1]);
-        let step = (scatter.frequency[1] / scatter.frequency[0]).ln();
+        let model = MomentModel::new(vec![16, 64], vec![1, 1]);
+        let step = (model.frequency[1] / model.frequency[0]).ln();
         for k in 0..COMPONENTS {
             let mut theta = [0.0; COMPONENTS];
             theta[k] = 1.0;
             for (i, m) in [16, 64].into_iter().enumerate() {
                 let two_sided = 2.0 * step;
-                let sum: f64 = scatter
-                    .frequency
-                    .iter()
-                    .enumerate()
-                    .map(|(n, &f)| scatter.response[(i, n)] * density(&theta, f))
-                    .sum();
+                let sum: f64 =
+                    model.frequency.iter().enumerate().map(|(n, &f)| model.response[(i, n)] * density(&theta, f)).sum();
                 let expected = hadamard_shares(m)[k];
                 // The band's upper end falls between two frequencies: half a step of 1 %.
                 assert!(

@@ -1,6 +1,7 @@
 //! From time stamps to a regular grid: repeated samples dropped, missing ones marked, both counted.
 
-use super::NoiseError;
+use super::error::NoiseError;
+use crate::statistics::{median, whole};
 
 /// Readings on a regular grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,8 +25,9 @@ pub struct Grid {
 /// or fewer than half of the spanned grid points have a sample.
 pub fn regular_grid(t: &[f64], y: &[f64]) -> Result<Grid, NoiseError> {
     check(t, y)?;
-    let median = median_step(t);
-    let (places, repeated) = places(t, median);
+    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();
+    let step = median(&mut steps);
+    let (places, repeated) = places(t, step);
     let span = places.last().map_or(0, |&(place, _)| place + 1);
     if span > 2 * places.len() {
         return Err(NoiseError::MostlyMissing { found: places.len(), span });
@@ -34,7 +36,7 @@ pub fn regular_grid(t: &[f64], y: &[f64]) -> Result<Grid, NoiseError> {
     for &(place, sample) in &places {
         readings[place] = y[sample];
     }
-    let interval = places.last().map_or(median, |&(place, sample)| (t[sample] - t[0]) / place as f64);
+    let interval = places.last().map_or(step, |&(place, sample)| (t[sample] - t[0]) / place as f64);
     Ok(Grid { interval, readings, repeated })
 }
 
@@ -55,13 +57,6 @@ fn check(t: &[f64], y: &[f64]) -> Result<(), NoiseError> {
     }
 }
 
-/// Median of the steps longer than nothing.
-fn median_step(t: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();
-    let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
 /// `(grid point, sample)` of every sample kept, and the number of repeated samples.
 fn places(t: &[f64], interval: f64) -> (Vec<(usize, usize)>, usize) {
     let mut places = vec![(0, 0)];
@@ -72,17 +67,12 @@ fn places(t: &[f64], interval: f64) -> (Vec<(usize, usize)>, usize) {
             repeated += 1;
             continue;
         }
-        place += whole(steps);
+        // A span beyond memory is refused by the caller.
+        place += whole(steps.min(1e15));
         last = time;
         places.push((place, sample));
     }
     (places, repeated)
-}
-
-/// A count held as a number. Steps are positive and a span beyond memory is refused by the caller's check.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-fn whole(count: f64) -> usize {
-    count.min(1e15) as usize
 }
 
 #[cfg(test)]

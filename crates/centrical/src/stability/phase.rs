@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::NoiseError;
+use super::error::NoiseError;
 
 /// Phase x_0 .. x_N: the running integral of the readings, less their mean.
 ///

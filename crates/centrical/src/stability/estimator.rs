@@ -1,6 +1,8 @@
 //! The estimators built on differences of phase points, each O(N) per tau.
 
-use super::{Phase, total};
+use super::phase::Phase;
+use super::total;
+use super::variance::{RawVariance, mean_square};
 
 /// A deviation of the Allan family.
 ///
@@ -25,7 +27,7 @@ pub enum Estimator {
     Allan,
     /// OADEV: the general-purpose one.
     OverlappingAllan,
-    /// MDEV: tells white from flicker phase noise.
+    /// MDEV: separates white from flicker phase noise.
     ModifiedAllan,
     /// TDEV: of the phase rather than the frequency.
     Time,
@@ -41,17 +43,6 @@ pub enum Estimator {
     TimeTotal,
     /// HTOTDEV: Hadamard with more confidence at long tau; at m = 1 it is the overlapping Hadamard.
     HadamardTotal,
-}
-
-/// A variance as computed, before any correction of its bias.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RawVariance {
-    /// Value, in the square of the readings' unit (for the time deviations: of the phase's).
-    pub value: f64,
-    /// Terms in the mean.
-    pub terms: usize,
-    /// Terms there would be without gaps.
-    pub possible: usize,
 }
 
 impl Estimator {
@@ -149,19 +140,4 @@ fn modified(phase: &Phase, m: usize) -> Option<RawVariance> {
     let (square, terms) = mean_square(sums)?;
     let scale = (m * m) as f64 * phase.tau0();
     Some(RawVariance { value: square / (2.0 * scale * scale), terms, possible })
-}
-
-/// Mean of the squares and their number; none of none. Summed by blocks, so rounding grows with the blocks only.
-pub(super) fn mean_square(values: impl Iterator<Item = f64>) -> Option<(f64, usize)> {
-    const BLOCK: usize = 4096;
-    let (mut total, mut block, mut terms) = (0.0, 0.0, 0);
-    for value in values {
-        block += value * value;
-        terms += 1;
-        if terms % BLOCK == 0 {
-            total += block;
-            block = 0.0;
-        }
-    }
-    (terms > 0).then(|| ((total + block) / terms as f64, terms))
 }

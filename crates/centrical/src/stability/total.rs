@@ -1,7 +1,7 @@
 //! The total estimators: the record, or each window of it, is reflected at its ends before differencing.
 
-use super::Phase;
-use super::estimator::{RawVariance, mean_square};
+use super::phase::Phase;
+use super::variance::{RawVariance, mean_square};
 
 /// `1 / (2 tau^2 (N - 2)) sum_(i=2)^(N-1) (x*_(i-m) - 2 x*_i + x*_(i+m))^2`, x* being x continued at both ends by
 /// odd reflection, `x*_(1-j) = 2 x_1 - x_(1+j)` [SP 1065, eq. 25].

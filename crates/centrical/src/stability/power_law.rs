@@ -1,6 +1,6 @@
 //! Power-law noises and which of them a record looks like at a given tau.
 
-use super::Phase;
+use super::phase::Phase;
 
 /// Noise whose spectral density of the readings is proportional to f^alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

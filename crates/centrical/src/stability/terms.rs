@@ -5,9 +5,12 @@ use std::f64::consts::{LN_2, PI};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
+use super::components::{COMPONENTS, hadamard_shares};
+use super::error::NoiseError;
+use super::estimator::Estimator;
 use super::log_fit::LogFit;
-use super::scatter::{Scatter, hadamard_response};
-use super::{Estimator, NoiseError, Phase};
+use super::log_moments::MomentModel;
+use super::phase::Phase;
 
 /// A noise term: its two-sided spectrum and its share of the Allan variance.
 ///
@@ -129,9 +132,6 @@ impl NoiseTerms {
     }
 }
 
-/// Stochastic terms: Q, N, B, K.
-pub(super) const COMPONENTS: usize = 4;
-
 /// Fits the noise terms to a record.
 ///
 /// Q, N, B, K come from the overlapping Hadamard variances at tau0, 2 tau0, 4 tau0, ... (the Allan variance would
@@ -205,39 +205,11 @@ fn prepare(phase: &Phase) -> Result<(LogFit, [f64; COMPONENTS]), NoiseError> {
     let fit = LogFit {
         logarithms: DVector::from_iterator(factors.len(), logarithms),
         shares: DMatrix::from_fn(factors.len(), COMPONENTS, |j, k| shares[j][k]),
-        scatter: Scatter::new(factors.clone(), terms),
+        moments: MomentModel::new(factors.clone(), terms),
         factors,
     };
     let tau0 = phase.tau0();
     Ok((fit, [scale * tau0 * tau0, scale * tau0, scale, scale / tau0]))
-}
-
-/// Hadamard variance at averaging factor `m` of the sampled noises Q, N, B, K = 1 with tau0 = 1:
-/// `10 / (3 m^2), 1 / m, ln(256/27) / (2 pi) as m grows, (1 + 1/m^2) m / 6`.
-pub(super) fn hadamard_shares(m: usize) -> [f64; COMPONENTS] {
-    let tau = m as f64;
-    [10.0 / (3.0 * tau * tau), 1.0 / tau, flicker_share(m), (tau + 1.0 / tau) / 6.0]
-}
-
-/// Integral over the band of `|H_m|^2 / (2 sin pi f)`: the trapezium rule where sampling tells, else the limit.
-fn flicker_share(m: usize) -> f64 {
-    const SAMPLED: usize = 64;
-    const NODES: usize = 64 * SAMPLED;
-    if m > SAMPLED {
-        return (256.0_f64 / 27.0).ln() / (2.0 * PI);
-    }
-    let half_band = (1..NODES).map(|k| {
-        let f = 0.5 * k as f64 / NODES as f64;
-        hadamard_response(m, f) / (2.0 * (PI * f).sin())
-    });
-    half_band.sum::<f64>() / NODES as f64
-}
-
-/// Two-sided spectral density at `f` cycles per sample of the sampled noises Q, N, B, K with squared coefficients
-/// `theta` and tau0 = 1: the table's `2 pi f` becomes `2 sin(pi f)`.
-pub(super) fn density(theta: &[f64; COMPONENTS], f: f64) -> f64 {
-    let omega = 2.0 * (PI * f).sin();
-    theta[0] * omega * omega + theta[1] + theta[2] / omega + theta[3] / (omega * omega)
 }
 
 /// The least-squares slope of the readings.

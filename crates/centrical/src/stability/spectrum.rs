@@ -3,7 +3,7 @@
 use realfft::RealFftPlanner;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::NoiseError;
+use super::error::NoiseError;
 use crate::statistics::median;
 
 /// One-sided power spectral density of a record.

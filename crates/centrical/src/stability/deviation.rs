@@ -2,7 +2,11 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::{Estimator, NoiseError, Phase, PowerLaw};
+use super::degrees_of_freedom::degrees_of_freedom;
+use super::error::NoiseError;
+use super::estimator::Estimator;
+use super::phase::Phase;
+use super::power_law::PowerLaw;
 
 /// One point of a stability plot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +63,7 @@ pub fn deviations(
         let points = phase.points().len();
         let bias = bias(estimator, law, m, points);
         let share = raw.terms as f64 / raw.possible as f64;
-        let freedom = share * estimator.degrees_of_freedom(law, m, points);
+        let freedom = share * degrees_of_freedom(estimator, law, m, points);
         let value = (raw.value / bias).sqrt();
         let (lower, upper) = interval(value, freedom, confidence);
         deviations.push(Deviation {
