@@ -1,4 +1,4 @@
-//! The format of tables, as it is asked for.
+//! The format of written tables, as an argument.
 
 use centrical_session::TableFormat;
 

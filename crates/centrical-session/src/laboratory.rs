@@ -7,8 +7,8 @@ use std::path::Path;
 use serde::de::{self, Deserializer};
 use serde::{Deserialize, Serialize};
 
+use crate::document::CalibrationResult;
 use crate::error::{Error, Place};
-use crate::result::CalibrationResult;
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -16,69 +16,54 @@
 //! The format is told by the first bytes. Time is a number in a unit, a count of samples at a rate, or (text and
 //! Parquet) a stamp. It never decreases; it may stand still.
 
-mod calibration;
-mod compensate;
+mod csv_table;
+mod document;
 mod error;
-mod input;
+mod experiment;
+mod job;
 mod laboratory;
-mod noise;
-mod observation;
-mod overview;
 mod parquet_table;
-mod planning;
-mod plateaus;
-mod prediction;
 mod quantity;
 mod record;
 mod record_writer;
-mod reduce;
-mod reduced_session;
-mod result;
-mod session;
-mod simulate;
-mod steadiness;
+mod reduced;
 mod table;
 mod text_lines;
-mod watch;
+mod truth;
 mod write;
 
-pub use calibration::{Method, PlateauName, Problem, calibrate, calibrate_without};
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
-pub use compensate::{Compensated, FirstOutside, compensate_record};
+pub use document::{
+    BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
+    DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry, HistoryEstimate,
+    InnovationSummary, LeftOutSummary, LostCombination, ModelSummary, MountingPrediction, MountingSummary,
+    NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary, ObservedParameter,
+    OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting, PlannedPlateau,
+    PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise,
+    ReasonReport, RemedyReport, RepeatedPlateau, SCHEMA, SessionSummary, SessionTrend, SightReport, StabilityCurve,
+    StepReport, Subject, TermSummary, TiltSummary, ValiditySummary, WatchState, WatchedPlateau, append_history,
+    keep_history, read_history,
+};
 pub use error::{Error, NoErrorModel, Place};
-pub use input::Input;
+pub use experiment::{
+    ExpectedValues, MountingFiles, Noise, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
+    earlier_result, read_plateaus, write_plateaus,
+};
+pub use job::{
+    Compensated, FirstOutside, Method, PlanRequest, Problem, Series, TableFormat, USUAL_LEVELS, Watch, analyse_noise,
+    calibrate, calibrate_without, compensate_record, read_plan, read_planning, reduce, reduce_without_inputs,
+    simulate_session, subject, write_reduced,
+};
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
     LaboratoryTable, Limit, MethodTable, Person, Standard,
 };
-pub use noise::{NOISE_SCHEMA, NoiseAnalysis, ReadingNoise, Series};
-pub use observation::{
-    CombinationReport, ConditionReport, Design, GroupReport, LostCombination, OBSERVATION_SCHEMA, ObservationReport,
-    ObservedParameter, PairReport, RemedyReport, SightReport, StepReport,
-};
-pub use overview::RecordOverview;
-pub use planning::{
-    FrontierRow, GoalReport, PlanReport, PlanRequest, PlannedMounting, PlannedPlateau, ReasonReport, USUAL_LEVELS,
-};
-pub use plateaus::{PlateauMean, read_plateaus, write_plateaus};
-pub use prediction::{PredictedParameter, PredictionReport};
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
-pub use record::{Column, Columns, Scale, read_growing_record, read_record, read_telemetry, scan_record};
+pub use record::{
+    Column, Columns, Input, RecordOverview, Scale, read_growing_record, read_record, read_telemetry, scan_record,
+};
 pub use record_writer::RecordWriter;
-pub use reduce::{MountingFindings, Reduced, ReducedPlateau};
-pub use reduced_session::write_reduced;
-pub use result::{
-    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, ModelSummary,
-    MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, ParameterEstimate, PatternSummary,
-    PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve, TermSummary,
-    ValiditySummary,
-};
-pub use session::{MountingFiles, Noise, Plan, Planning, PlateauTable, Session};
-pub use simulate::{TableFormat, Truth, simulate_session};
-pub use steadiness::{DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, Steadiness, TiltSummary};
+pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use table::ColumnName;
-pub use watch::{
-    HistoryEntry, HistoryEstimate, InnovationSummary, Watch, WatchState, WatchedPlateau, append_history, keep_history,
-    read_history,
-};
+pub use truth::Truth;
 pub use write::{create_folder, write_whole};

@@ -1,6 +1,8 @@
 //! Records of the unit and telemetry of the centrifuge, in SI.
 
+mod input;
 mod kept;
+mod overview;
 mod passes;
 mod times;
 
@@ -8,7 +10,9 @@ use std::path::Path;
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 
+pub use self::input::Input;
 pub(crate) use self::kept::{Kept, Room};
+pub use self::overview::RecordOverview;
 pub(crate) use self::passes::{RecordFile, Windows};
 use crate::error::Error;
 use crate::table::{self, Block, ColumnName, Extent, Field, Index, Rule, Visitor};

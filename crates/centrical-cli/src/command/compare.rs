@@ -21,7 +21,7 @@ pub struct Arguments {
     years: Option<f64>,
 }
 
-/// Differences as large as these come by chance once in a hundred comparisons.
+/// Chance produces differences as large as these once in a hundred comparisons.
 const CHANCE: f64 = 0.01;
 
 /// Runs the command. Exit code 1 when the two do not agree.

@@ -1,4 +1,4 @@
-//! `centrical models SESSION`: which error model the data speak for.
+//! `centrical models SESSION`: which error model the data support.
 
 use std::io::{self, Write};
 use std::path::PathBuf;

@@ -120,7 +120,7 @@ fn refusals() {
 #[test]
 fn source_code() {
     let copy = calibrated();
-    let output = copy.run(&["report", "result.json", "--c", "source"]);
+    let output = copy.run(&["report", "result.json", "--code", "source"]);
     assert!(output.status.success(), "{}", text(&output));
     let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
     let mut names: Vec<String> = fs::read_dir(copy.out().join("source")).unwrap().map(name).collect();

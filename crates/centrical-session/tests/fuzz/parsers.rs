@@ -5,8 +5,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    CalibrationResult, ColumnName, Columns, Error, Laboratory, Plan, Session, Truth, WatchState, read_growing_record,
-    read_plateaus, read_record, read_telemetry,
+    CalibrationResult, ColumnName, Columns, Error, Laboratory, Session, Truth, WatchState, read_growing_record,
+    read_plan, read_plateaus, read_record, read_telemetry,
 };
 use flate2::Compression;
 use flate2::write::GzEncoder;
@@ -108,11 +108,11 @@ fn packed(file: &Path) -> String {
 }
 
 fn session(file: &Path) -> String {
-    [outcome(Session::read(file)), outcome(Plan::read(file))].join("; ")
+    [outcome(Session::read(file)), outcome(read_plan(file))].join("; ")
 }
 
 fn plan(file: &Path) -> String {
-    outcome(Plan::read(file))
+    outcome(read_plan(file))
 }
 
 fn laboratory(file: &Path) -> String {

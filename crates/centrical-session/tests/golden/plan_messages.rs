@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical_session::{Design, Plan, Planning, Session};
+use centrical_session::{Session, read_plan, read_planning, subject};
 
 use crate::sample::{EXPERIMENT, Sample};
 
@@ -14,7 +14,7 @@ fn message(plan: &str, from: &str, to: &str) -> String {
     assert!(plan.contains(from), "{from}");
     let sample = Sample::new("");
     let file = sample.file("plan.toml", plan.replacen(from, to, 1));
-    sample.relative(&Plan::read(&file).expect_err("the plan is wrong").to_string())
+    sample.relative(&read_plan(&file).expect_err("the plan is wrong").to_string())
 }
 
 fn compare(plan: &str, cases: &[(&str, &str, &str)]) {
@@ -111,7 +111,7 @@ fn units_of_priors() {
     let sigma = |line: &str| {
         let sample = Sample::new("");
         let file = sample.file("plan.toml", OWN.replacen("\"proof mass\" = \"50 um\"", line, 1));
-        let plan = Plan::read(&file).unwrap().unwrap();
+        let plan = read_plan(&file).unwrap().unwrap();
         plan.model.priors().iter().map(|p| (p.parameter, p.standard_uncertainty)).collect::<Vec<_>>()
     };
     let g = 9.80665;
@@ -129,12 +129,12 @@ fn units_of_priors() {
 #[test]
 fn plans_and_sessions_are_told_apart() {
     let sample = Sample::new(EXPERIMENT);
-    assert_eq!(Plan::read(&sample.path()).unwrap(), None);
-    assert_eq!(Plan::read(&sample.path().join("experiment.toml")).unwrap(), None);
+    assert_eq!(read_plan(&sample.path()).unwrap(), None);
+    assert_eq!(read_plan(&sample.path().join("experiment.toml")).unwrap(), None);
     let unmeasured = EXPERIMENT.lines().filter(|line| !line.starts_with("record =")).collect::<Vec<_>>().join("\n");
     let file = sample.file("plan.toml", unmeasured);
-    assert_eq!(Plan::read(&file).unwrap().unwrap().weights.len(), 4);
-    let message = sample.relative(&Design::read(Path::new("no/such.toml"), &|_| ()).unwrap_err().to_string());
+    assert_eq!(read_plan(&file).unwrap().unwrap().weights.len(), 4);
+    let message = sample.relative(&subject(Path::new("no/such.toml"), &|_| ()).unwrap_err().to_string());
     assert_eq!(
         message,
         "no/such.toml: found no such file, expected an experiment file, or the folder with its experiment.toml"
@@ -158,7 +158,7 @@ fn sessions_have_them_too() {
 #[test]
 fn weights_follow_durations() {
     let sample = Sample::new("");
-    let plan = Plan::read(&sample.file("plan.toml", OWN)).unwrap().unwrap();
+    let plan = read_plan(&sample.file("plan.toml", OWN)).unwrap().unwrap();
     let ug: f64 = 1e-6 * 9.80665;
     for (weight, duration) in [(0, 300.0_f64), (1, 60.0), (3, 60.0), (5, 300.0)] {
         let expected = 400.0 * ug * ug / (2.0 * duration) + ug * ug;
@@ -220,7 +220,7 @@ fn candidates_costs_and_targets() {
         let sample = Sample::new("");
         assert!(CANDIDATES.contains(from), "{from}");
         let file = sample.file("plan.toml", CANDIDATES.replacen(from, to, 1));
-        let message = sample.relative(&Planning::read(&file).expect_err("the plan is wrong").to_string());
+        let message = sample.relative(&read_planning(&file).expect_err("the plan is wrong").to_string());
         assert_eq!(message, format!("plan.toml, {expected}"));
     }
 }

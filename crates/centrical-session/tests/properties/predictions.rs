@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use centrical::plan::predict;
 use centrical::uncertainty::{Method, Settings, TypeB, monte_carlo};
 use centrical::{MeasurementModel, Observation, Weight};
-use centrical_session::{Plan, Planning};
+use centrical_session::{Plan, read_plan, read_planning};
 use nalgebra::Vector3;
 
 /// The standard deviation of a ratio is 1 / sqrt(2 runs) = 0.5 %: 3 % is six of them, and a parameter that is off by 5 % is
@@ -46,13 +46,13 @@ impl Case {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("plan.toml");
         std::fs::write(&file, text.replace("\"opposite\"", &format!("{pair_relation:?}"))).unwrap();
-        let Plan { model, weights, speed_uncertainty, .. } = Plan::read(&file).unwrap().unwrap();
+        let Plan { model, weights, speed_uncertainty, .. } = read_plan(&file).unwrap().unwrap();
         Self { model, weights, speed_uncertainty }
     }
 
     /// The best plan from the candidates of the example.
     fn planned() -> (Self, TypeB) {
-        let mut planning = Planning::read(&example("best.toml")).unwrap();
+        let mut planning = read_planning(&example("best.toml")).unwrap();
         let plan = planning.plan(false).unwrap();
         let (experiment, weights) = planning.candidates.experiment_of(&plan.schedule);
         let scenario = &planning.candidates.scenarios[0];
@@ -135,7 +135,7 @@ fn every_parameter_of_the_best_plan_scatters_as_predicted() {
 #[ignore = "some minutes; run by .ci/run predictions"]
 fn every_parameter_of_the_source_scatters_as_predicted() {
     let normalised = Case::normalised();
-    let stated = Planning::read(&example("best.toml")).unwrap().type_b;
+    let stated = read_planning(&example("best.toml")).unwrap().type_b;
     let all = normalised.model.parameters().len();
     assert_eq!(normalised.compare("[K5.5], type A", &normalised.truth(0.0), TypeB::default()), all);
     normalised.compare("[K5.5] of a unit with errors, type A and B", &normalised.truth(0.3), stated);

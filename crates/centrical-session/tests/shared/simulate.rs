@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::fs;
 
-use centrical_session::{Reduced, Session, TableFormat, Truth, simulate_session};
+use centrical_session::{Session, TableFormat, Truth, reduce, simulate_session};
 use nalgebra::{Cholesky, Vector3};
 use serde_json::Value;
 
@@ -62,8 +62,8 @@ fn compare(name: &str, seed: u64) {
     let out = folder.path().join("session");
     simulate_session(&theirs, &truth, seed, TableFormat::Parquet, &out, &|_| ()).unwrap();
 
-    let ours = Reduced::of(&Session::read(&out).unwrap(), &|_| ()).unwrap().observations();
-    let theirs = Reduced::of(&theirs, &|_| ()).unwrap().observations();
+    let ours = reduce(&Session::read(&out).unwrap(), &|_| ()).unwrap().observations();
+    let theirs = reduce(&theirs, &|_| ()).unwrap().observations();
     assert_eq!(ours.len(), theirs.len());
     let mut squares = Vector3::zeros();
     for ((a, b), set_point) in ours.iter().zip(&theirs).zip(&truth.model.experiment().set_points) {
