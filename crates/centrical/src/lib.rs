@@ -20,8 +20,6 @@ pub mod fit;
 mod frame;
 mod least_squares;
 mod measurement;
-/// Noise of a record: stability deviations, spectrum, noise terms.
-pub mod noise;
 /// What an experiment can see, why not more, and what would help.
 pub mod observability;
 mod parameter;
@@ -33,8 +31,12 @@ mod prior;
 mod random;
 /// Reduction of continuous records to plateau means.
 pub mod reduction;
+mod simd;
 /// Simulation of records.
 pub mod simulate;
+/// Stability analysis of a record: deviations of the Allan family, spectrum, noise terms.
+pub mod stability;
+mod statistics;
 /// How far a calibration can be trusted.
 pub mod uncertainty;
 

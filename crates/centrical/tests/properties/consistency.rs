@@ -2,7 +2,7 @@
 
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
-use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, reduce};
+use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
 use centrical::simulate::{
     Coloured, Gaps, Machine, Recorder, Sensor, Settings, Simulation, Spikes, Tachometer, draw_truth,
 };
@@ -88,7 +88,7 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
         })
         .collect();
     let noise = NoiseModel::pool(&reduced);
-    reduced.iter().flat_map(|mounting| mounting.means(&noise)).collect()
+    reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise)).collect()
 }
 
 /// Calibration from plateau means, each with the covariance that `covariance` gives it.

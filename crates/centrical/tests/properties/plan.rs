@@ -3,7 +3,7 @@ use centrical::plan::{
     Schedule, Visit, best_for_time, next_best, predict, shortest_for_goals,
 };
 use centrical::position::{ThirdPosition, kozlov_2017};
-use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, reduce};
+use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, plateau_means, reduce};
 use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
 use centrical::uncertainty::{Compensated, Method, Settings, TypeB, monte_carlo};
 use centrical::{
@@ -429,7 +429,7 @@ fn calibration_means(
         })
         .collect();
     let pooled = NoiseModel::pool(&reduced);
-    let means = reduced.iter().flat_map(|mounting| mounting.means(&pooled));
+    let means = reduced.iter().flat_map(|mounting| plateau_means(mounting, &pooled));
     let observation = |(set_point, mean): (usize, centrical::reduction::PlateauMean)| Observation {
         set_point,
         mean: mean.mean,

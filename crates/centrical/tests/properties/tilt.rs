@@ -2,7 +2,7 @@
 
 use centrical::PairRelation;
 use centrical::position::ThirdPosition;
-use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, reduce};
+use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
 use centrical::simulate::{Machine, Sensor, Settings, Simulation, draw_truth};
 use centrical::uncertainty::{OncePerRevolution, TiltComparison, tilt_while_spinning};
 use centrical::{MeasurementModel, Observation, fit, linear};
@@ -33,7 +33,7 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
     };
     let reduced: Vec<ReducedMounting> = (0..experiment.mountings.len()).map(of_mounting).collect();
     let noise = NoiseModel::pool(&reduced);
-    reduced.iter().flat_map(|mounting| mounting.means(&noise)).collect()
+    reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise)).collect()
 }
 
 /// The comparison for a session whose true tilt has that size [rad]; `change` is done to every term.
