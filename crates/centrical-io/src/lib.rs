@@ -24,7 +24,6 @@ mod laboratory;
 mod noise;
 mod observation;
 mod overview;
-mod parquet_table;
 mod planning;
 mod plateaus;
 mod prediction;
@@ -37,13 +36,11 @@ mod result;
 mod session;
 mod simulate;
 mod steadiness;
-mod table;
-mod text_lines;
 mod watch;
-mod write;
 
 pub use calibration::{Method, PlateauName, Problem, calibrate, calibrate_without};
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+pub use centrical_table::{ColumnName, TableFormat, create_folder, write_whole};
 pub use compensate::{Compensated, FirstOutside, compensate_record};
 pub use error::{Error, NoErrorModel, Place};
 pub use input::Input;
@@ -74,11 +71,9 @@ pub use result::{
     ValiditySummary,
 };
 pub use session::{MountingFiles, Noise, Plan, Planning, PlateauTable, Session};
-pub use simulate::{TableFormat, Truth, simulate_session};
+pub use simulate::{Truth, simulate_session};
 pub use steadiness::{DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, Steadiness, TiltSummary};
-pub use table::ColumnName;
 pub use watch::{
     HistoryEntry, HistoryEstimate, InnovationSummary, Watch, WatchState, WatchedPlateau, append_history, keep_history,
     read_history,
 };
-pub use write::{create_folder, write_whole};

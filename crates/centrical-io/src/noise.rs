@@ -9,6 +9,7 @@ use centrical::noise::{
     Deviation, Estimator, Gaps, NoiseError, NoiseTerms, Phase, Spectrum, deviations, fit_noise_terms, leave_out_spikes,
     power_spectrum, regular_grid,
 };
+use centrical_table::write_whole;
 use rayon::prelude::*;
 
 pub use self::json::NOISE_SCHEMA;
@@ -85,9 +86,9 @@ impl NoiseAnalysis {
     /// Writes the analysis as JSON; the file appears whole or not at all.
     ///
     /// # Errors
-    /// [`Error::Io`] when the folder does not take it.
+    /// [`Error::Table`] when the folder does not take it.
     pub fn write(&self, file: &Path) -> Result<(), Error> {
-        crate::write::write_whole(file, self.to_json().as_bytes())
+        Ok(write_whole(file, self.to_json().as_bytes())?)
     }
 }
 

@@ -7,11 +7,11 @@ mod times;
 use std::path::Path;
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+use centrical_table::{self as table, Block, ColumnName, Extent, Field, Index, Rule, Visitor};
 
 pub(crate) use self::kept::{Kept, Room};
 pub(crate) use self::passes::{RecordFile, Windows};
 use crate::error::Error;
-use crate::table::{self, Block, ColumnName, Extent, Field, Index, Rule, Visitor};
 
 /// The columns of records and telemetry.
 #[derive(Debug, Clone, PartialEq)]
@@ -219,7 +219,7 @@ impl Wanted<'_> {
             }
         };
         let mut visitor = Visitor { visit: &mut to_si, progress };
-        table::read_batches(file, extent, &self.fields(), self.expected, &mut visitor)
+        Ok(table::read_batches(file, extent, &self.fields(), self.expected, &mut visitor)?)
     }
 
     /// Hands the stretches of a record over, one by one.

@@ -19,7 +19,6 @@ use crate::plateaus::PlateauMean as TabledPlateau;
 use crate::record::{Kept, RecordFile, Room, Windows};
 use crate::session::Session;
 use crate::steadiness::Steadiness;
-use crate::table;
 
 /// A session's plateau means, and the files they come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -210,7 +209,7 @@ fn all_mountings(
 /// Samples of the longest record, if all files tell at a glance.
 fn most_rows_at_a_glance(session: &Session) -> Option<u64> {
     let count = session.experiment.mountings.len();
-    let rows = (0..count).map(|number| table::rows_at_a_glance(session.record_file(number).ok()?));
+    let rows = (0..count).map(|number| centrical_table::rows_at_a_glance(session.record_file(number).ok()?));
     rows.collect::<Option<Vec<_>>>()?.into_iter().max()
 }
 

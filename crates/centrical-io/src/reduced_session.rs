@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
+use centrical_table::{TableFormat, create_folder, write_whole};
 use toml_edit::{DocumentMut, Item, TableLike, Value, value};
 
 use crate::error::{Error, Place};
 use crate::plateaus::{write_plateaus, write_plateaus_parquet};
 use crate::reduce::Reduced;
 use crate::session::{EXPERIMENT_FILE, Session, read_text};
-use crate::simulate::TableFormat;
-use crate::write::{create_folder, write_whole};
 
 /// Keys of a mounting that say what the table of plateaus says now.
 const REPLACED: [&str; 3] = ["record", "telemetry", "plateaus"];
@@ -32,7 +31,7 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
     };
     let text = experiment(&session.file, name)?;
     write(&folder.join(name), &reduced.table(session))?;
-    write_whole(&experiment_file, text.as_bytes())
+    Ok(write_whole(&experiment_file, text.as_bytes())?)
 }
 
 /// The experiment file with the table instead of records, and all else, comments too, as it was.

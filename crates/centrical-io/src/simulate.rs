@@ -1,7 +1,6 @@
 //! A whole session as a laboratory would deliver it: experiment.toml, records, telemetry; and truth.json, which no
 //! laboratory has.
 
-mod csv;
 mod plan;
 mod report;
 mod truth;
@@ -9,27 +8,14 @@ mod truth;
 use std::path::Path;
 
 use centrical::simulate::{SimulatedMounting, Simulation, TruePlateau};
+use centrical_table::{ColumnName, TableFormat, create_folder, write_table, write_whole};
 use rayon::prelude::*;
 
 pub use truth::Truth;
 
-use self::csv::CsvTable;
 use crate::error::{Error, Place};
-use crate::parquet_table::{Layout, ParquetTable};
 use crate::record::Column;
 use crate::session::{EXPERIMENT_FILE, Session};
-use crate::table::ColumnName;
-use crate::write::{create_folder, write_stream, write_whole};
-
-/// How records and telemetry are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum TableFormat {
-    /// Text, `records/m01.csv`.
-    #[default]
-    Csv,
-    /// Parquet, `records/m01.parquet`.
-    Parquet,
-}
 
 /// A mounting as it was written.
 #[derive(Debug)]
@@ -75,7 +61,7 @@ pub fn simulate_session(
     let mountings = mountings.collect::<Result<Vec<Written>, Error>>()?;
     write_whole(&folder.join("truth.json"), report::truth_json(plan, truth, seed, &mountings).as_bytes())?;
     // Last, so that a folder with an experiment file is a whole session.
-    write_whole(&experiment_file, text.as_bytes())
+    Ok(write_whole(&experiment_file, text.as_bytes())?)
 }
 
 /// The record and the telemetry of one mounting.
@@ -122,37 +108,17 @@ fn raw<const N: usize>(mut values: [Vec<f64>; N], columns: [&Column; N]) -> [Vec
     values
 }
 
-/// Writes stretches of columns as one table.
-fn write_table<const N: usize>(
-    file: &Path,
-    format: TableFormat,
-    names: &[String; N],
-    stretches: impl Iterator<Item = [Vec<f64>; N]>,
-) -> Result<(), Error> {
-    write_stream(file, |output| match format {
-        TableFormat::Csv => {
-            let mut table = CsvTable::new(output, names)?;
-            stretches.into_iter().try_for_each(|rows| table.write(&rows))
-        }
-        TableFormat::Parquet => {
-            let mut table = ParquetTable::new(output, Layout::PACKED, names)?;
-            stretches.into_iter().try_for_each(|rows| table.write(&rows))?;
-            table.finish().map(|_| ())
-        }
-    })
-}
-
 /// Names of the columns of records and telemetry.
 #[derive(Debug)]
-struct Headers {
-    record: [String; 4],
-    telemetry: [String; 2],
+struct Headers<'a> {
+    record: [&'a str; 4],
+    telemetry: [&'a str; 2],
 }
 
-impl Headers {
-    fn of(plan: &Session) -> Result<Self, Error> {
-        let name = |column: &Column| match &column.name {
-            ColumnName::Name(name) => Ok(name.clone()),
+impl<'a> Headers<'a> {
+    fn of(plan: &'a Session) -> Result<Self, Error> {
+        let name = |column: &'a Column| match &column.name {
+            ColumnName::Name(name) => Ok(name.as_str()),
             other => {
                 let place = Place::Key { table: "[columns]".to_owned(), key: other.to_string() };
                 let expected = "a column by name: simulated tables have a header";
@@ -161,10 +127,7 @@ impl Headers {
         };
         let time = name(&plan.columns.time)?;
         let [f1, f2, f3] = &plan.columns.f;
-        Ok(Self {
-            record: [time.clone(), name(f1)?, name(f2)?, name(f3)?],
-            telemetry: [time, name(&plan.columns.speed)?],
-        })
+        Ok(Self { record: [time, name(f1)?, name(f2)?, name(f3)?], telemetry: [time, name(&plan.columns.speed)?] })
     }
 }
 
@@ -176,13 +139,4 @@ fn record_path(mounting: usize, format: TableFormat) -> String {
 /// Path of the telemetry of a mounting within the session's folder.
 fn telemetry_path(mounting: usize, format: TableFormat) -> String {
     format!("telemetry/m{:02}.{}", mounting + 1, format.extension())
-}
-
-impl TableFormat {
-    fn extension(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Parquet => "parquet",
-        }
-    }
 }

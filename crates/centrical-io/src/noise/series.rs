@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use centrical_table::{self as table, ColumnName, Field, Rule};
+
 use crate::error::{Error, Place};
 use crate::quantity::Dimension;
 use crate::record::{Column, Scale};
 use crate::session::Session;
-use crate::table::{self, ColumnName, Field, Rule};
 use crate::{PlateauName, Reduced};
 
 /// Columns of readings, and their time.

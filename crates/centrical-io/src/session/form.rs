@@ -5,13 +5,13 @@ mod entries;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use centrical_table::ColumnName;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use self::entries::{date_as_text, name_or_number};
 use crate::error::{Error, Place};
 use crate::quantity::Quantity;
-use crate::table::ColumnName;
 
 /// The whole file.
 #[derive(Debug, Deserialize)]

@@ -2,11 +2,11 @@
 
 use std::fmt;
 
+use centrical_table::ColumnName;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 
 use super::{ColumnEntry, ColumnLabel, ColumnTable, TermEntry, TermList, TermTable};
-use crate::table::ColumnName;
 
 /// A date as TOML has it, or any text.
 pub(super) fn date_as_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
