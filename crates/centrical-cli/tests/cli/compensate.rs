@@ -41,7 +41,7 @@ fn readings_are_explained() {
     let copy = calibrated();
     let output = compensate(&copy, &["f.csv"]);
     assert!(output.status.success(), "{}", text(&output));
-    let result = centrical_io::CalibrationResult::read(&copy.out().join("result.json")).unwrap();
+    let result = centrical_session::CalibrationResult::read(&copy.out().join("result.json")).unwrap();
     let terms = result.error_terms().unwrap();
     assert_eq!(terms.len(), 21);
     // The region where the inverse is unique: the range asked for, and how far it could be.
@@ -120,7 +120,7 @@ fn refusals() {
 #[test]
 fn source_code() {
     let copy = calibrated();
-    let output = copy.run(&["report", "result.json", "--c", "source"]);
+    let output = copy.run(&["report", "result.json", "--code", "source"]);
     assert!(output.status.success(), "{}", text(&output));
     let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
     let mut names: Vec<String> = fs::read_dir(copy.out().join("source")).unwrap().map(name).collect();

@@ -1,5 +1,7 @@
 //! Records as most programs write them: a time that never decreases, and three readings.
 
+#![allow(dead_code, reason = "each kind of test uses some of it")]
+
 use std::path::Path;
 
 use centrical_table::{ColumnName, Error, Extent, Field, Rule, Visitor, read_batches};

@@ -1,0 +1,7 @@
+//! A session as a laboratory would deliver it, of a unit whose truth is known.
+
+mod files;
+mod session;
+mod session_text;
+
+pub use self::session::simulate_session;

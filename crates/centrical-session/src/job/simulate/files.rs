@@ -1,0 +1,13 @@
+//! Where the tables of a session are, and in which format.
+
+use centrical_table::TableFormat;
+
+/// Path of the record of a mounting within the session's folder.
+pub(crate) fn record_path(mounting: usize, format: TableFormat) -> String {
+    format!("records/m{:02}.{}", mounting + 1, format.extension())
+}
+
+/// Path of the telemetry of a mounting within the session's folder.
+pub(crate) fn telemetry_path(mounting: usize, format: TableFormat) -> String {
+    format!("telemetry/m{:02}.{}", mounting + 1, format.extension())
+}
