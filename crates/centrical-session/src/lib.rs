@@ -16,23 +16,19 @@
 //! The format is told by the first bytes. Time is a number in a unit, a count of samples at a rate, or (text and
 //! Parquet) a stamp. It never decreases; it may stand still.
 
-mod csv_table;
 mod document;
 mod error;
 mod experiment;
 mod job;
 mod laboratory;
-mod parquet_table;
 mod quantity;
 mod record;
 mod record_writer;
 mod reduced;
-mod table;
-mod text_lines;
 mod truth;
-mod write;
 
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+pub use centrical_table::{ColumnName, TableFormat, create_folder, write_whole};
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
     DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry, HistoryEstimate,
@@ -50,9 +46,9 @@ pub use experiment::{
     earlier_result, read_plateaus, write_plateaus,
 };
 pub use job::{
-    Compensated, FirstOutside, Method, PlanRequest, Problem, Series, TableFormat, USUAL_LEVELS, Watch, analyse_noise,
-    calibrate, calibrate_without, compensate_record, read_plan, read_planning, reduce, reduce_without_inputs,
-    simulate_session, subject, write_reduced,
+    Compensated, FirstOutside, Method, PlanRequest, Problem, Series, USUAL_LEVELS, Watch, analyse_noise, calibrate,
+    calibrate_without, compensate_record, read_plan, read_planning, reduce, reduce_without_inputs, simulate_session,
+    subject, write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
@@ -64,6 +60,4 @@ pub use record::{
 };
 pub use record_writer::RecordWriter;
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
-pub use table::ColumnName;
 pub use truth::Truth;
-pub use write::{create_folder, write_whole};

@@ -232,10 +232,10 @@ impl<'a> Following<'a> {
             let parameters = self.model.parameters();
             parameters.find(name).map(|j| parameters[j].group)
         };
-        match history_figure(&read_history(&history)?, &group_of, Language::English) {
-            Some(figure) => write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes()),
-            None => Ok(()),
+        if let Some(figure) = history_figure(&read_history(&history)?, &group_of, Language::English) {
+            write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes())?;
         }
+        Ok(())
     }
 
     fn stopped(&self) -> Result<Outcome, Error> {
@@ -276,12 +276,8 @@ fn check_targets(arguments: &Arguments, session: &Session, model: &MeasurementMo
     let Some((unknown, _)) = arguments.target.iter().find(|(group, _)| !groups.contains(&group.as_str())) else {
         return Ok(());
     };
-    Err(Error::Content {
-        file: session.file.clone(),
-        place: Place::Whole,
-        found: format!("a target for {unknown:?}"),
-        expected: format!("one of the groups {}", groups.join(", ")),
-    })
+    let expected = format!("one of the groups {}", groups.join(", "));
+    Err(Error::content(&session.file, Place::Whole, format!("a target for {unknown:?}"), expected))
 }
 
 fn target(text: &str) -> Result<(String, f64), String> {
