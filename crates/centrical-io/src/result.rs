@@ -322,10 +322,8 @@ impl CalibrationResult {
     /// The estimates that the data determine, of the coefficients of the error model alone: what belongs to the unit
     /// and not to how it was mounted.
     pub fn of_unit(&self) -> Estimates {
-        let is_determined = |j: &usize| self.parameters[*j].value.is_some();
-        let of_unit = |name: &str| self.model.error_model.iter().any(|term| term.name == name);
-        let own: Vec<usize> =
-            (0..self.parameters.len()).filter(|j| of_unit(&self.parameters[*j].name)).filter(is_determined).collect();
+        let place = |name: &str| self.parameters.iter().position(|p| p.name == name && p.value.is_some());
+        let own: Vec<usize> = self.model.error_model.iter().filter_map(|term| place(&term.name)).collect();
         let covariance = |a: usize, b: usize| self.covariance.get(own[a])?.get(own[b]).copied().flatten();
         Estimates {
             names: own.iter().map(|&j| self.parameters[j].name.clone()).collect(),

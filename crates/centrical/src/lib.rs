@@ -38,10 +38,11 @@ pub mod simulate;
 /// How far a calibration can be trusted.
 pub mod uncertainty;
 
+pub use centrical_compensate::Monomial;
 pub use convergence::{Checkpoint, convergence};
 pub use design::{Observation, Weight};
 pub use error::FitError;
-pub use error_model::{ErrorModel, Extra, Monomial, Term};
+pub use error_model::{ErrorModel, Extra, Term};
 pub use experiment::{
     EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, STANDARD_GRAVITY, SetPoint, Site, Unit,
 };

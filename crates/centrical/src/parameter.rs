@@ -2,7 +2,9 @@
 
 use std::ops::Index;
 
-use crate::error_model::{ErrorModel, Monomial};
+use centrical_compensate::Monomial;
+
+use crate::error_model::ErrorModel;
 use crate::experiment::{Experiment, PairRelation, ReferencePoint, STANDARD_GRAVITY};
 
 /// One unknown.
@@ -196,7 +198,7 @@ impl Parameters {
         });
         let terms = list.len();
         for (index, term) in error_model.terms.iter().enumerate() {
-            let unit = term.monomial.coefficient_unit();
+            let unit = term.unit();
             let typical = typical_coefficient(&term.monomial);
             let power_of_acceleration = 1 - i32::from(term.monomial.degree());
             let coefficient = parameter(term.name.clone(), &unit, term.group, Kind::Term(index), typical);
