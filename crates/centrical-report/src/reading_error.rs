@@ -2,7 +2,7 @@
 
 use centrical::STANDARD_GRAVITY;
 use centrical::uncertainty::Compensated;
-use centrical_io::{CalibrationResult, PlateauSummary};
+use centrical_session::{CalibrationResult, PlateauSummary};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::language::Language;

@@ -1,7 +1,7 @@
 //! What the user of the unit gets: the uncertainty of a compensated reading over the range.
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::CalibrationResult;
+use centrical_session::CalibrationResult;
 use nalgebra::Vector3;
 
 use super::{Figure, of_plot};
