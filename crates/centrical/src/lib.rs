@@ -18,7 +18,7 @@ mod experiment;
 /// Estimation from plateau means.
 pub mod fit;
 mod frame;
-mod least_squares;
+mod linalg;
 mod measurement;
 /// Noise of a record: stability deviations, spectrum, noise terms.
 pub mod noise;
@@ -48,7 +48,7 @@ pub use experiment::{
 };
 pub use fit::{Fit, Termination};
 pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
-pub use least_squares::LeastSquares;
+pub use linalg::least_squares::{LeastSquares, Solution};
 pub use measurement::{ArmMotion, Linearisation, MeasurementModel, linear};
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};
 pub use parameter::{Extension, Kind, Law, Parameter, Parameters};

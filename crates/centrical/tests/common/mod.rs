@@ -1,15 +1,14 @@
 //! Random numbers, random unknowns and noise-free sessions shared by the test kinds.
 #![allow(dead_code, reason = "each kind of test uses its part")]
 
+#[path = "../../examples/rank_table.rs"]
+pub mod rank_table;
+
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
-use centrical::{ErrorModel, Experiment, Extension, Law, MeasurementModel, Observation, PairRelation};
-use nalgebra::Matrix3;
-
-/// `rho0` of the rank table (docs/source-and-findings.md), in units of `R*`.
-pub fn spread() -> Matrix3<f64> {
-    Matrix3::new(0.0, 0.05, 0.04, 0.0, 0.03, -0.02, 0.0, 0.02, -0.03)
-}
+use centrical::{ErrorModel, Experiment, Extension, Law, LeastSquares, MeasurementModel, Observation, PairRelation};
+use nalgebra::{DMatrix, DVector, Matrix3};
+pub use rank_table::spread;
 
 /// A small generator of its own, so that a test means the same on every machine (SplitMix64, G. L. Steele et al., OOPSLA 2014).
 pub struct Random(u64);
@@ -107,4 +106,27 @@ pub fn observations(model: &MeasurementModel, x: &[f64]) -> Vec<Observation> {
             covariance: Matrix3::identity() * 1e-4_f64.powi(2),
         })
         .collect()
+}
+
+/// A linear regression `min |A x - b|` by the least squares of the fit, the columns in units of their lengths.
+pub struct Regression {
+    pub x: DVector<f64>,
+    /// Of `x`, by the scatter of the residuals.
+    pub covariance: DMatrix<f64>,
+    /// Sum of squared residuals, and the same per degree of freedom.
+    pub sum_of_squares: f64,
+    pub variance: f64,
+}
+
+impl Regression {
+    pub fn of(a: &DMatrix<f64>, b: &DVector<f64>) -> Self {
+        let (n, p) = a.shape();
+        let sizes = DVector::from_iterator(p, a.column_iter().map(|column| column.norm().recip()));
+        let equations = LeastSquares::new(a * DMatrix::from_diagonal(&sizes), sizes);
+        let rotated = equations.rotated(DMatrix::from_column_slice(n, 1, b.as_slice()));
+        let sum_of_squares = rotated.rows(p, n - p).norm_squared();
+        let variance = sum_of_squares / (n - p) as f64;
+        let covariance = equations.covariance() * variance;
+        Self { x: equations.solve(b.clone()).x, covariance, sum_of_squares, variance }
+    }
 }

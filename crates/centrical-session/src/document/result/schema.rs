@@ -12,6 +12,7 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
+use crate::document::json;
 use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
 use crate::error::{Error, Place};
 use crate::record::{Input, RecordOverview};
@@ -299,17 +300,17 @@ impl CalibrationResult {
     /// Writes the file, whole or not at all.
     ///
     /// # Errors
-    /// [`Error::Io`] when the folder does not take it.
+    /// [`Error::Json`] when a value has no place in JSON, [`Error::Io`] when the folder does not take it.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
-        write_whole(path, self.to_json().as_bytes())
+        write_whole(path, self.to_json()?.as_bytes())
     }
 
     /// The text of the file.
-    pub fn to_json(&self) -> String {
-        // Plain structs with text keys: serialisation has nothing to fail on.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(SCHEMA, self)
     }
 
     /// The estimates that the data determine, of the coefficients of the error model alone: what belongs to the unit
