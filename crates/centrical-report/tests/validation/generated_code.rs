@@ -13,6 +13,8 @@ use centrical_compensate::{Compensation, Monomial, Term, reading};
 use centrical_report::codegen::{NamedTerm, compensation_source};
 use tempfile::TempDir;
 
+use crate::random::Random;
+
 /// 1 g [m/s^2].
 const G: f64 = 9.806_65;
 const RANGE: f64 = 200.0 * G;
@@ -85,19 +87,12 @@ fn run(command: &mut Command, input: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Random readings over the range (SplitMix64), here and there one from beyond it.
+/// Random readings over the range, here and there one from beyond it.
 fn readings(terms: &[Term]) -> Vec<[f64; 3]> {
-    let mut state = 1_u64;
-    let mut uniform = || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    };
+    let mut random = Random::new(1);
     let mut one = |k: usize| {
         let scale = if k.is_multiple_of(100) { 1.2 * RANGE } else { RANGE };
-        reading(terms, [(); 3].map(|()| scale * uniform()))
+        reading(terms, [(); 3].map(|()| scale * (2.0 * random.uniform() - 1.0)))
     };
     (0..READINGS).map(&mut one).collect()
 }

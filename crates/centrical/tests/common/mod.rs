@@ -1,6 +1,7 @@
 //! Random numbers, random unknowns and noise-free sessions shared by the test kinds.
 #![allow(dead_code, reason = "each kind of test uses its part")]
 
+pub mod random;
 #[path = "../../examples/rank_table.rs"]
 pub mod rank_table;
 
@@ -8,47 +9,8 @@ use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
 use centrical::{ErrorModel, Experiment, Extension, Law, LeastSquares, MeasurementModel, Observation, PairRelation};
 use nalgebra::{DMatrix, DVector, Matrix3};
+pub use random::Random;
 pub use rank_table::spread;
-
-/// A small generator of its own, so that a test means the same on every machine (SplitMix64, G. L. Steele et al., OOPSLA 2014).
-pub struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// All 64 bits.
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform among 0, ..., `count - 1`.
-    pub fn below(&mut self, count: usize) -> usize {
-        usize::try_from(self.next() % count as u64).unwrap()
-    }
-
-    /// Uniform on (0, 1).
-    pub fn uniform(&mut self) -> f64 {
-        ((self.next() >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-    }
-
-    /// Puts items into random order, Fisher-Yates.
-    pub fn shuffle<T>(&mut self, items: &mut [T]) {
-        for last in (1..items.len()).rev() {
-            items.swap(last, self.below(last + 1));
-        }
-    }
-
-    /// Standard normal, Box-Muller.
-    pub fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform().ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-}
 
 /// The [K5.5] experiment with proof masses apart, Earth rotation and eight levels up to 200 g, speeds to 10 ppm.
 pub fn experiment(third: ThirdPosition, pair_relation: PairRelation, radii: &[f64]) -> Experiment {
