@@ -18,7 +18,7 @@ mod experiment;
 /// Estimation from plateau means.
 pub mod fit;
 mod frame;
-mod least_squares;
+mod linalg;
 mod measurement;
 /// What an experiment can see, why not more, and what would help.
 pub mod observability;
@@ -40,17 +40,18 @@ mod statistics;
 /// How far a calibration can be trusted.
 pub mod uncertainty;
 
+pub use centrical_compensate::Monomial;
 pub use convergence::{Checkpoint, convergence};
 pub use design::{Observation, Weight};
 pub use error::FitError;
-pub use error_model::{ErrorModel, Extra, Monomial, Term};
+pub use error_model::{ErrorModel, Extra, Term};
 pub use experiment::{
     Centrifuge, EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint,
     Site, Unit,
 };
 pub use fit::{Fit, Termination};
 pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
-pub use least_squares::LeastSquares;
+pub use linalg::least_squares::{LeastSquares, Solution};
 pub use measurement::{ArmMotion, Linearisation, MeasurementModel, linear};
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};
 pub use parameter::{Extension, Kind, Law, NULL_HOLD, Parameter, Parameters};

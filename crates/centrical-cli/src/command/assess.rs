@@ -94,7 +94,7 @@ fn prediction(model: &MeasurementModel, fit: &Fit, budget: &Budget, range: f64) 
     let values: Option<Vec<f64>> = terms.iter().map(|&j| fit.value(j)).collect();
     let covariance = |a: usize, b: usize| budget.covariance(terms[a], terms[b]).unwrap_or(f64::NAN);
     let covariance = DMatrix::from_fn(terms.len(), terms.len(), covariance);
-    let compensated = values.and_then(|v| Compensated::new(model.error_model().clone(), v, covariance));
+    let compensated = values.and_then(|v| Compensated::new(model.error_model().with_coefficients(&v), covariance));
     let Some(compensated) = compensated else {
         return "PREDICTION  none: not all parameters of the instrument are determined\n".to_owned();
     };

@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         write_whole(file, frontier_plot(&report).as_bytes())?;
     }
     let text =
-        if arguments.json { report.to_json() } else { plan_text(&report) + &scenarios(&report) + &floors(&report) };
+        if arguments.json { report.to_json()? } else { plan_text(&report) + &scenarios(&report) + &floors(&report) };
     // A reader that has seen enough (`| head`) is no failure.
     let _ = io::stdout().write_all(text.as_bytes());
     let is_missed = report.goals.iter().any(|goal| goal.combined.is_none_or(|u| u > goal.wanted * (1.0 + 1e-6)));
