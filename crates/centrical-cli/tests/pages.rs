@@ -1,5 +1,6 @@
 //! The pages of the repository name what there is, and the design page stays readable.
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -64,6 +65,21 @@ fn links_in_pages_lead_somewhere() {
             assert!(target.starts_with("http") || folder.join(target).exists(), "{page}: {target}");
         }
     }
+}
+
+/// What the column "in the code" names is in the code.
+#[test]
+fn names_in_the_glossary_exist() {
+    let files = below(&root().join("crates")).into_iter().filter(|name| name.ends_with(".rs"));
+    let sources: String = files.map(|name| fs::read_to_string(root().join(name)).unwrap()).collect();
+    let code = sources.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let words: HashSet<&str> = code.flat_map(|line| line.split(|c: char| !c.is_alphanumeric() && c != '_')).collect();
+    let glossary = fs::read_to_string(root().join("docs/glossary.md")).unwrap();
+    let columns = glossary.lines().filter_map(|line| line.split('|').nth(3));
+    let names =
+        columns.flat_map(spans).filter(|span| !span.contains(['/', '.', '-'])).flat_map(|span| span.split("::"));
+    let missing: Vec<&str> = names.filter(|name| !words.contains(name)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }
 
 #[test]
