@@ -79,7 +79,7 @@ pub enum Error {
         /// The column.
         reading: String,
         /// What was found and what was expected.
-        source: centrical::noise::NoiseError,
+        source: centrical::stability::NoiseError,
     },
     /// Nothing can be simulated of a truth.
     #[error("{}: {source}", file.display())]

@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical::linear;
 use centrical::reduction::{
-    Located, NoiseModel, Plateau, PlateauFit, RecordSlice, ReducedMounting, ReductionError, ScheduledPlateau, Survey,
+    Averaging, Located, NoiseModel, PlateauFit, RecordSlice, ReducedMounting, ReductionError, ScheduledPlateau, Survey,
+    locate, plateau_means,
 };
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
@@ -45,7 +46,7 @@ fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Re
     let mountings = by_few_threads(|| all_mountings(session, progress))?;
     let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) = mountings.into_iter().unzip();
     let noise = NoiseModel::pool(&reduced);
-    let means = reduced.iter().flat_map(|mounting| mounting.means(&noise));
+    let means = reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise));
     let findings =
         |m: &ReducedMounting| MountingFindings { settling_time: m.settling_time(), clock_offset: m.clock_offset() };
     Ok(Reduced {
@@ -155,17 +156,17 @@ impl<'a> Mounting<'a> {
         let refused =
             |source| Error::Reduction { file: file.to_owned(), mounting: number + 1, source: Box::new(source) };
         let telemetry = session.telemetry(*number)?;
-        let located = survey.locate(telemetry.as_ref(), &schedule).map_err(refused)?;
+        let located = locate(survey, telemetry.as_ref(), &schedule).map_err(refused)?;
         let averaged = record.windows(kept, &&located)?;
         let averaged = averaged.into_iter().collect::<Result<_, _>>().map_err(refused)?;
         let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
-        Ok((located.into_mounting(averaged), overview))
+        Ok((ReducedMounting::new(located, averaged), overview))
     }
 }
 
 /// A plateau under way, or what was wrong with it.
 impl<'a> Windows for &'a Located {
-    type Window = Result<Plateau<'a>, ReductionError>;
+    type Window = Result<Averaging<'a>, ReductionError>;
     type Mean = Result<PlateauFit, ReductionError>;
 
     fn parts(&self) -> Vec<Vec<[f64; 2]>> {
@@ -173,7 +174,7 @@ impl<'a> Windows for &'a Located {
     }
 
     fn begin(&self, window: usize) -> Self::Window {
-        Ok(self.plateau(window))
+        Ok(Averaging::new(self, window))
     }
 
     fn add(&self, window: &mut Self::Window, part: [f64; 2], samples: RecordSlice, repeated: usize) {
@@ -184,6 +185,6 @@ impl<'a> Windows for &'a Located {
     }
 
     fn end(&self, window: Self::Window) -> Self::Mean {
-        window.and_then(Plateau::finish)
+        window.and_then(Averaging::finish)
     }
 }
