@@ -15,7 +15,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let session = Session::read(Path::new("examples/ta-200"))?;
     let model = session.model()?;
     let column = model.parameters().find("G1_11").ok_or("the error model has no G1_11")?;
-    let mut follower = Follower::new(&model, session.speed_uncertainty);
+    let mut follower = Follower::new(&model);
     // A record that has not changed for this time is complete.
     let mut watch = Watch::new(&session, Duration::ZERO);
 
