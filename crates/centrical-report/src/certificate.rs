@@ -1,6 +1,6 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
-use centrical_io::{Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory};
+use centrical_session::{Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory};
 
 use crate::conformity::conformity;
 use crate::customary::customary;

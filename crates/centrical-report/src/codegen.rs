@@ -11,7 +11,7 @@ mod statement;
 mod vectors;
 
 use centrical_compensate::{Compensation, NotInvertible, Term};
-use centrical_io::{CalibrationResult, NoErrorModel};
+use centrical_session::{CalibrationResult, NoErrorModel};
 
 use self::statement::Language;
 

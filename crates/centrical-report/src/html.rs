@@ -4,7 +4,7 @@ mod table;
 
 use std::fmt::Write;
 
-use centrical_io::{CalibrationResult, ValiditySummary};
+use centrical_session::{CalibrationResult, ValiditySummary};
 
 use crate::figures::{Figure, figures, positions};
 use crate::groups::by_group;

@@ -1,6 +1,6 @@
 //! The languages of the documents: how each writes numbers, units and dates.
 
-use centrical_io::Date;
+use centrical_session::Date;
 
 use crate::customary::with_uncertainty;
 use crate::message::{ENGLISH, Messages, RUSSIAN};

@@ -1,7 +1,7 @@
 //! What a calibration leaves on paper and screen. Pure functions from data to text; no files, no network.
 //!
-//! Everything is made from a [`centrical_io::CalibrationResult`], and what a certificate says beside it from a
-//! [`centrical_io::Laboratory`]. The same data give the same bytes.
+//! Everything is made from a [`centrical_session::CalibrationResult`], and what a certificate says beside it from a
+//! [`centrical_session::Laboratory`]. The same data give the same bytes.
 
 mod assessment;
 mod certificate;

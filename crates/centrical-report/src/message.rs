@@ -8,7 +8,7 @@ mod russian;
 pub(crate) use english::ENGLISH;
 pub(crate) use russian::RUSSIAN;
 
-use centrical_io::{Follows, PatternSummary};
+use centrical_session::{Follows, PatternSummary};
 
 use crate::language::Language;
 use crate::reading_error::MICRO_G;

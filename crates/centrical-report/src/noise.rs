@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use centrical::STANDARD_GRAVITY;
 use centrical::noise::{Coefficient, Deviation, Estimator, NoiseTerm, NoiseTerms};
-use centrical_io::{NoiseAnalysis, ReadingNoise};
+use centrical_session::{NoiseAnalysis, ReadingNoise};
 
 use crate::customary::with_uncertainty;
 use crate::plot::{Axis, Plot, Point, Series};

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::{FrontierRow, PlanReport, PlannedMounting, PlannedPlateau, PredictionReport, ReasonReport};
+use centrical_session::{FrontierRow, PlanReport, PlannedMounting, PlannedPlateau, PredictionReport, ReasonReport};
 
 use crate::assessment::short;
 use crate::customary::customary;

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use centrical::STANDARD_GRAVITY;
 use centrical::uncertainty::chi_squared_tail;
-use centrical_io::{CalibrationResult, DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, TiltSummary};
+use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, TiltSummary};
 
 pub(crate) use self::facts::facts;
 use crate::customary::with_uncertainty;

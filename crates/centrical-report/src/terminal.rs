@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_io::{CalibrationResult, ParameterEstimate, TermSummary};
+use centrical_session::{CalibrationResult, ParameterEstimate, TermSummary};
 
 use crate::assessment::pattern_in_words;
 use crate::customary::{customary, with_uncertainty};

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use centrical::uncertainty::chi_squared_tail;
-use centrical_io::{CalibrationResult, PatternSummary, ValiditySummary};
+use centrical_session::{CalibrationResult, PatternSummary, ValiditySummary};
 
 use crate::language::Language;
 

@@ -2,7 +2,7 @@
 
 use centrical::STANDARD_GRAVITY;
 use centrical::uncertainty::Compensated;
-use centrical_io::CalibrationResult;
+use centrical_session::CalibrationResult;
 use nalgebra::{DMatrix, Vector3};
 
 use super::{Figure, of_plot};

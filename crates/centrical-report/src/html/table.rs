@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_io::{BudgetSource, CalibrationResult, ParameterEstimate};
+use centrical_session::{BudgetSource, CalibrationResult, ParameterEstimate};
 
 use crate::customary::customary;
 use crate::expanded::expanded;
