@@ -38,7 +38,7 @@ pub struct Simulation<'a> {
     truth: &'a [f64],
     settings: &'a Settings,
     seed: u64,
-    /// Duration of each plateau in place of the machine's [s]; empty for none.
+    /// Duration of each plateau in place of the machine's [s]; empty for the machine's.
     durations: &'a [f64],
 }
 

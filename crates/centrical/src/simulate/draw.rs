@@ -57,7 +57,7 @@ impl Arrivals {
         Self { random, probability, next }
     }
 
-    /// Whether sample `n`, asked for in ascending order, is one; then also the generator to draw its kind from.
+    /// The generator for the properties of the event if one occurs at sample `n`; `n` ascends from call to call.
     #[inline]
     pub fn at(&mut self, n: u64) -> Option<&mut Random> {
         if n < self.next {

@@ -42,7 +42,7 @@ impl Noise {
         }
     }
 
-    /// Noise of sample `n`, asked for in order [m/s^2].
+    /// Noise of sample `n` [m/s^2]; `n` ascends from call to call.
     #[inline]
     pub fn at(&mut self, n: u64) -> f64 {
         self.white.next() + self.coloured.next() + self.flicker.at(n) + self.walk.next() + self.slope * n as f64

@@ -140,7 +140,7 @@ impl Transmission {
         }
     }
 
-    /// Adds sample `n` to the record as none, one or two rows.
+    /// Adds sample `n` to the record, as zero, one or two rows.
     #[inline]
     fn pass(&mut self, n: u64, t: f64, mut f: Vector3<f64>, record: &mut Record) {
         if let Some(random) = self.spikes.at(n) {
@@ -175,7 +175,7 @@ impl Transmission {
 /// [`f64::round`], which is a call where the processor that is compiled for has no instruction for it.
 #[inline]
 fn rounded(x: f64) -> f64 {
-    /// From here on there are no fractions.
+    /// Numbers from here on have no fraction.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     if x.abs() < WHOLE {
         #[expect(clippy::cast_possible_truncation)]

@@ -42,13 +42,13 @@ pub struct Sensor {
     /// Bias instability `B` (IEEE Std 952) [m/s^2]: two-sided spectrum `B^2 / (2 pi f)`, Allan deviation
     /// `sqrt(2 ln 2 / pi) B = 0.664 B`; correlation times from 8 samples to the length of the record.
     pub bias_instability: f64,
-    /// Random walk `K` of the bias [m/s^2 per sqrt(s)]: variance `K^2 t`, none as a record begins.
+    /// Random walk `K` of the bias [m/s^2 per sqrt(s)]: variance `K^2 t`, zero as a record begins.
     pub random_walk: f64,
     /// Standard deviation of the slope of the bias, one slope a record [m/s^3].
     pub drift: f64,
-    /// Step of the output [m/s^2]; 0: none.
+    /// Step of the output [m/s^2]; 0 for all digits.
     pub quantum: f64,
-    /// Largest magnitude of the output [m/s^2]; none: unlimited.
+    /// Largest magnitude of the output [m/s^2]; `None` for unlimited.
     pub range: Option<f64>,
 }
 
@@ -103,7 +103,7 @@ pub struct Tachometer {
     pub clock_drift: f64,
     /// Standard deviation of a report [rad/s].
     pub noise: f64,
-    /// Step of the report [rad/s]; 0: none.
+    /// Step of the report [rad/s]; 0 for all digits.
     pub quantum: f64,
 }
 

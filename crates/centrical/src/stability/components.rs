@@ -12,7 +12,7 @@ pub(super) fn hadamard_shares(m: usize) -> [f64; COMPONENTS] {
     [10.0 / (3.0 * tau * tau), 1.0 / tau, flicker_share(m), (tau + 1.0 / tau) / 6.0]
 }
 
-/// Integral over the band of `|H_m|^2 / (2 sin pi f)`: the trapezium rule where sampling tells, else the limit.
+/// Integral over the band of `|H_m|^2 / (2 sin pi f)`: the trapezium rule where sampling matters, else the limit.
 fn flicker_share(m: usize) -> f64 {
     const SAMPLED: usize = 64;
     const NODES: usize = 64 * SAMPLED;
@@ -33,7 +33,7 @@ pub(super) fn density(theta: &[f64; COMPONENTS], f: f64) -> f64 {
     theta[0] * omega * omega + theta[1] + theta[2] / omega + theta[3] / (omega * omega)
 }
 
-/// `|H_m(f)|^2 = (2 sin pi f m)^6 / (6 (2 m sin pi f)^2)`: what the Hadamard variance passes of `f` cycles per sample.
+/// `|H_m(f)|^2 = (2 sin pi f m)^6 / (6 (2 m sin pi f)^2)`: the response of the Hadamard variance to `f` cycles per sample.
 pub(super) fn hadamard_response(m: usize, f: f64) -> f64 {
     let m = m as f64;
     (2.0 * (PI * f * m).sin()).powi(6) / (6.0 * (2.0 * m * (PI * f).sin()).powi(2))

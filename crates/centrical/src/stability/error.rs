@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-/// What keeps a record from being analysed for noise.
+/// The reasons why the noise of a record cannot be analysed.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NoiseError {
     /// No finite sample at all.
@@ -9,7 +9,7 @@ pub enum NoiseError {
         /// Samples found.
         found: usize,
     },
-    /// Too few samples for what was asked.
+    /// Too few samples.
     #[error("found {found} samples, expected at least {expected}")]
     TooShort {
         /// Samples found.
@@ -23,7 +23,7 @@ pub enum NoiseError {
         /// Interval found, s.
         found: f64,
     },
-    /// Times and readings come in different numbers.
+    /// The numbers of times and readings differ.
     #[error("found {times} times for {readings} readings, expected as many of each")]
     Unpaired {
         /// Number of times.

@@ -13,12 +13,12 @@ use super::error::NoiseError;
 pub struct Phase {
     x: Vec<f64>,
     tau0: f64,
-    /// Filled readings before each phase point; none if nothing was filled.
+    /// Filled readings before each phase point; `None` without filled readings.
     filled_before: Option<Vec<u32>>,
     gaps: Gaps,
 }
 
-/// What was missing inside a record and had to be filled.
+/// Missing readings inside a record, which were filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Gaps {
     /// Runs of missing readings.
@@ -50,8 +50,8 @@ impl Phase {
     /// A reading that is not finite is missing. Missing readings at the ends are cut off. A run of L missing ones
     /// inside is bridged by a straight line between the means of the readings within L on either side: for white
     /// noise such a bridge adds less variance than the readings it stands for (a line between the two neighbours
-    /// alone would add more). [`Phase::gaps`] says what was bridged, and the estimators built on differences leave
-    /// out every term of which more than a tenth was.
+    /// alone would add more). [`Phase::gaps`] counts the bridged readings; the estimators built on differences omit
+    /// every term with more than a tenth of them.
     ///
     /// # Errors
     /// [`NoiseError`] if `tau0` is not positive or fewer than 2 readings are finite.
@@ -95,7 +95,7 @@ impl Phase {
         self.tau0
     }
 
-    /// What was missing and bridged.
+    /// The missing readings that were bridged.
     pub fn gaps(&self) -> Gaps {
         self.gaps
     }
@@ -133,7 +133,7 @@ fn missing_runs(readings: &[f64]) -> Vec<Range<usize>> {
 }
 
 fn mean_of_seen(readings: &[f64]) -> f64 {
-    // Two passes: the second takes off what rounding left in the first.
+    // Two passes: the second removes the rounding of the first.
     let seen = || readings.iter().filter(|y| y.is_finite());
     let count = seen().count() as f64;
     let mean = seen().sum::<f64>() / count;

@@ -74,7 +74,7 @@ impl NoiseTerm {
     }
 }
 
-/// What the record says of a coefficient.
+/// A coefficient as far as the record determines it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coefficient {
     /// The record shows the term.
@@ -112,15 +112,15 @@ impl NoiseTerms {
         self.coefficients[term as usize]
     }
 
-    /// Whether chi-squared is such as the terms alone come to in 999 of 1000 records. If not, the record holds other
-    /// noise (a line, a colour of its own), and neither coefficients nor uncertainties should be quoted as they are.
+    /// Whether chi-squared is below the value that the terms alone stay below in 999 of 1000 records. If not, the record
+    /// holds other noise (a line, a colour of its own), and neither coefficients nor uncertainties should be quoted as they are.
     pub fn is_consistent(&self) -> bool {
         ChiSquared::new(self.degrees_of_freedom as f64)
             .is_ok_and(|distribution| self.chi_squared <= distribution.inverse_cdf(0.999))
     }
 
     /// Allan deviation at `tau` (s) of the best fit: a determined ramp, and the other terms at their most likely
-    /// values even where the record does not tell one from another.
+    /// values even where the record cannot separate them.
     pub fn allan_deviation(&self, tau: f64) -> f64 {
         let stochastic =
             NoiseTerm::ALL.iter().zip(&self.best).map(|(term, square)| term.allan_variance(square.sqrt(), tau));
@@ -138,7 +138,7 @@ impl NoiseTerms {
 /// take a ramp for random walk): their logarithms are fitted by least squares with the full covariance that the
 /// fitted spectrum implies, the squared coefficients held non-negative. All four are always free, so the uncertainty
 /// of each allows for any of the others. A term is determined if a record without it, the others free to take its
-/// place, costs 3^2 or more in chi-squared (for Gaussian residuals an absent term comes to that once in 700
+/// place, costs 3^2 or more in chi-squared (for Gaussian residuals an absent term reaches that once in 700
 /// records); else its upper bound is where chi-squared has risen by 1.645^2.
 ///
 /// The ramp is the least-squares slope of the readings, with the uncertainty that the fitted noise gives a slope; it

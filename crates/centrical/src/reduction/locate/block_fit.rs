@@ -22,7 +22,7 @@ pub(super) struct Levels {
     columns: Vec<Vec<f64>>,
     /// The levels, less a reference near them [m/s^2].
     f_z: [Vec<f64>; 3],
-    /// What every `STRIP` of them say of the coefficients.
+    /// The triangle of every `STRIP` of them.
     strips: Vec<Triangle>,
     /// Smallest spread that the sampling allows [m/s^2].
     floor: Vector3<f64>,
@@ -52,7 +52,7 @@ impl Levels {
         all
     }
 
-    /// The fit over a range of blocks; none if their design is short of rank.
+    /// The fit over a range of blocks; `None` if their design is rank-deficient.
     pub fn fit(&self, range: Range<usize>) -> Option<BlockFit<'_>> {
         let range = range.start - self.first..range.end - self.first;
         let whole = range.start.div_ceil(STRIP)..range.end / STRIP;
@@ -67,7 +67,7 @@ impl Levels {
         Some(BlockFit { of: self, range, triangle, coefficients })
     }
 
-    /// The triangle of some blocks, less than two strips of them.
+    /// The triangle of some blocks, fewer than two strips.
     fn triangle(&self, range: Range<usize>) -> Triangle {
         let n = range.len();
         let (mut columns, mut levels) = ([[0.0; 2 * STRIP]; TERMS], [[0.0; 2 * STRIP]; 3]);
@@ -98,7 +98,7 @@ impl BlockFit<'_> {
         spread(&self.residuals(), &self.of.floor)
     }
 
-    /// What the fit leaves of the levels, per axis [m/s^2].
+    /// Residuals of the levels, per axis [m/s^2].
     pub fn residuals(&self) -> [Vec<f64>; 3] {
         [0, 1, 2].map(|axis| {
             let mut residuals = self.of.f_z[axis][self.range.clone()].to_vec();
@@ -120,13 +120,13 @@ impl BlockFit<'_> {
         columns
     }
 
-    /// Which blocks are off the fit by more than noise of the given scale: `r^2 > c^2 s^2 (1 - h)`, the leverage `h` being
-    /// the part of the noise that the fit takes up.
+    /// The blocks that are off the fit by more than noise of the given scale: `r^2 > c^2 s^2 (1 - h)`, the leverage `h` being
+    /// the part of the noise that the fit absorbs.
     pub fn off(&self, scale: &Vector3<f64>, cut: f64) -> Vec<bool> {
         self.off_among(self.range.clone(), scale, cut)
     }
 
-    /// Whether two neighbouring blocks are off. A ramp shows at an end: there they are looked for first.
+    /// Whether two neighbouring blocks are off. A ramp shows at an end: the ends are searched first.
     pub fn has_two_off(&self, scale: &Vector3<f64>, cut: f64) -> bool {
         let Range { start, end } = self.range;
         let near = STRIP.min(self.range.len());
@@ -144,7 +144,7 @@ impl BlockFit<'_> {
     }
 }
 
-/// Blocks from `from` on, to be told from those that are off; a piece at most.
+/// Verdicts on the blocks from `from` on, a strip at most.
 struct Off<'a> {
     fit: &'a BlockFit<'a>,
     from: usize,
@@ -162,7 +162,7 @@ impl WithSimd for Off<'_> {
         let n = verdicts.len();
         let piece = from..from + n;
         let (terms, r) = (fit.coefficients.len(), &fit.triangle.r);
-        // The columns of Q, one after another, and what they leave of the noise.
+        // The columns of Q, one after another, and the share of the noise that they leave.
         let mut q = [[0.0; STRIP]; TERMS];
         let mut left = [1.0; STRIP];
         for j in 0..terms {
@@ -178,7 +178,7 @@ impl WithSimd for Off<'_> {
                 *left -= *q * *q;
             }
         }
-        // The largest square of what the fit leaves of the levels, in units of what may be left.
+        // The largest squared residual of the levels, in units of the limit.
         let mut worst = [0.0_f64; STRIP];
         for axis in 0..3 {
             let mut residuals = [0.0; STRIP];
