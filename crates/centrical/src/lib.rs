@@ -45,13 +45,14 @@ pub use design::{Observation, Weight};
 pub use error::FitError;
 pub use error_model::{ErrorModel, Extra, Monomial, Term};
 pub use experiment::{
-    EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, STANDARD_GRAVITY, SetPoint, Site, Unit,
+    Centrifuge, EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint,
+    Site, Unit,
 };
 pub use fit::{Fit, Termination};
 pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
 pub use least_squares::LeastSquares;
 pub use measurement::{ArmMotion, Linearisation, MeasurementModel, linear};
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};
-pub use parameter::{Extension, Kind, Law, Parameter, Parameters};
+pub use parameter::{Extension, Kind, Law, NULL_HOLD, Parameter, Parameters};
 pub use position::Position;
 pub use prior::{Prior, PriorError, PriorUse};

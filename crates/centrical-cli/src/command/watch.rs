@@ -116,7 +116,7 @@ impl<'a> Following<'a> {
         keep_history(&arguments.out.join("watch-history.jsonl"), state.plateaus.len())?;
         // One that has been taken up before is held out from now on.
         state.plateaus.iter_mut().for_each(|plateau| plateau.held_out |= held_out.contains(&plateau.set_point));
-        let follower = Follower::resume(model, session.speed_uncertainty, state.taken(), &state.point)
+        let follower = Follower::resume(model, state.taken(), &state.point)
             .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
         Ok(Self { arguments, session, model, follower, state, held_out })
     }
@@ -191,7 +191,7 @@ impl<'a> Following<'a> {
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
         let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
         let criterion = Criterion::Reading(ReadingRange { force });
-        let gains = next_best(self.model, self.session.speed_uncertainty, &criterion, &taken, &remaining)
+        let gains = next_best(self.model, &criterion, &taken, &remaining)
             .map_err(|source| Error::Planning { file: self.session.file.clone(), source })?;
         let on_the_arm = experiment.set_points[last.set_point].mounting;
         let is_here = |gain: &Gain| experiment.set_points[gain.set_point].mounting == on_the_arm;

@@ -45,7 +45,7 @@ fn comparison(tilt: [f64; 2], seed: u64, change: impl Fn(&mut [Vector3<f64>; 2])
     let observation =
         |(set_point, m): (usize, &PlateauMean)| Observation { set_point, mean: m.mean, covariance: m.covariance };
     let observations: Vec<Observation> = means.iter().enumerate().map(observation).collect();
-    let fit = fit::exact(&model, &observations, SPEED_ERROR).expect("the session determines everything");
+    let fit = fit::exact(&model, &observations).expect("the session determines everything");
     let spins = |set_point: &usize| !model.experiment().set_points[*set_point].is_rest();
     let terms: Vec<OncePerRevolution> = (0..means.len())
         .filter(spins)
