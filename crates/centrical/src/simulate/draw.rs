@@ -21,13 +21,13 @@ pub(super) enum Draw {
     Drift = 6,
     /// Spikes.
     Spikes = 7,
-    /// Gaps.
-    Gaps = 8,
+    /// Losses.
+    Losses = 8,
     /// Repeated samples.
     Repeats = 9,
     /// The telemetry's clock.
     Clock = 10,
-    /// Noise of the speed in the telemetry.
+    /// SensorNoise of the speed in the telemetry.
     Tachometer = 11,
 }
 

@@ -4,7 +4,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::settings::Machine;
+use super::equipment::Machine;
 use crate::experiment::SetPoint;
 use crate::measurement::ArmMotion;
 use crate::random::Random;

@@ -66,7 +66,7 @@ pub enum NoiseError {
     /// A variance of the record vanishes.
     #[error("the record is constant or repeats exactly: it holds no noise to analyse")]
     Constant,
-    /// Gaps leave too little of the record in one piece.
+    /// BridgedGaps leave too little of the record in one piece.
     #[error("found {missing} of {readings} readings missing, expected stretches of which a tenth is missing at most")]
     TooManyGaps {
         /// Readings missing.

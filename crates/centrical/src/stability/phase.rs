@@ -15,12 +15,12 @@ pub struct Phase {
     tau0: f64,
     /// Filled readings before each phase point; `None` without filled readings.
     filled_before: Option<Vec<u32>>,
-    gaps: Gaps,
+    gaps: BridgedGaps,
 }
 
 /// Missing readings inside a record, which were filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Gaps {
+pub struct BridgedGaps {
     /// Runs of missing readings.
     pub runs: usize,
     /// Missing readings in all.
@@ -41,7 +41,7 @@ impl Phase {
         }
         match x.iter().position(|value| !value.is_finite()) {
             Some(index) => Err(NoiseError::NotFinite { index, found: x[index] }),
-            None => Ok(Self { x, tau0, filled_before: None, gaps: Gaps::default() }),
+            None => Ok(Self { x, tau0, filled_before: None, gaps: BridgedGaps::default() }),
         }
     }
 
@@ -66,7 +66,7 @@ impl Phase {
             return Err(NoiseError::TooShort { found: readings.len(), expected: 2 });
         }
         let runs = missing_runs(readings);
-        let gaps = Gaps {
+        let gaps = BridgedGaps {
             runs: runs.len(),
             missing: runs.iter().map(ExactSizeIterator::len).sum(),
             longest: runs.iter().map(ExactSizeIterator::len).max().unwrap_or(0),
@@ -96,7 +96,7 @@ impl Phase {
     }
 
     /// The missing readings that were bridged.
-    pub fn gaps(&self) -> Gaps {
+    pub fn gaps(&self) -> BridgedGaps {
         self.gaps
     }
 
@@ -171,7 +171,7 @@ mod tests {
         let mut gapped = ramp.clone();
         gapped[7..11].fill(f64::NAN);
         let (whole, bridged) = (Phase::integrate(&ramp, 0.5).unwrap(), Phase::integrate(&gapped, 0.5).unwrap());
-        assert_eq!(bridged.gaps(), Gaps { runs: 1, missing: 4, longest: 4 });
+        assert_eq!(bridged.gaps(), BridgedGaps { runs: 1, missing: 4, longest: 4 });
         // The means differ, so the phases differ by a straight line that second differences do not see.
         let bend = |p: &Phase, k: usize| p.x[k] - 2.0 * p.x[k - 1] + p.x[k - 2];
         assert!((2..21).all(|k| (bend(&whole, k) - bend(&bridged, k)).abs() < 1e-12));

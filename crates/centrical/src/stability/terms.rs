@@ -5,12 +5,12 @@ use std::f64::consts::{LN_2, PI};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::components::{COMPONENTS, hadamard_shares};
 use super::error::NoiseError;
 use super::estimator::Estimator;
 use super::log_fit::LogFit;
 use super::log_moments::MomentModel;
 use super::phase::Phase;
+use super::stochastic_terms::{STOCHASTIC, hadamard_shares};
 
 /// A noise term: its two-sided spectrum and its share of the Allan variance.
 ///
@@ -103,7 +103,7 @@ pub struct NoiseTerms {
     /// Averaging times less terms present in the best fit. See [`NoiseTerms::is_consistent`].
     pub degrees_of_freedom: usize,
     /// Squared Q, N, B, K of the best fit, determined or not.
-    best: [f64; COMPONENTS],
+    best: [f64; STOCHASTIC],
 }
 
 impl NoiseTerms {
@@ -155,7 +155,7 @@ pub fn fit_noise_terms(phase: &Phase) -> Result<NoiseTerms, NoiseError> {
     let model = fit.best().ok_or(NoiseError::Indescribable)?;
     let deviations = fit.standard_deviations(&model).ok_or(NoiseError::Indescribable)?;
     let mut coefficients = [Coefficient::NotDetermined { upper_bound: f64::INFINITY }; 5];
-    for k in 0..COMPONENTS {
+    for k in 0..STOCHASTIC {
         let cost = fit.cost_of_absence(&model, k).ok_or(NoiseError::Indescribable)?;
         let unit = units[k].sqrt();
         coefficients[k] = if cost >= SHOWN {
@@ -166,7 +166,7 @@ pub fn fit_noise_terms(phase: &Phase) -> Result<NoiseTerms, NoiseError> {
         };
     }
     let best = std::array::from_fn(|k| model.theta[k] * units[k]);
-    coefficients[COMPONENTS] = ramp(phase, &coefficients, &best);
+    coefficients[STOCHASTIC] = ramp(phase, &coefficients, &best);
     let present = model.theta.iter().filter(|theta| **theta > 0.0).count();
     Ok(NoiseTerms {
         coefficients,
@@ -179,7 +179,7 @@ pub fn fit_noise_terms(phase: &Phase) -> Result<NoiseTerms, NoiseError> {
 
 /// The Hadamard variances of the record, in units of the first of them and of tau0, and those units of the squared
 /// Q, N, B, K: `s^2 (tau0^2, tau0, 1, 1 / tau0)`.
-fn prepare(phase: &Phase) -> Result<(LogFit, [f64; COMPONENTS]), NoiseError> {
+fn prepare(phase: &Phase) -> Result<(LogFit, [f64; STOCHASTIC]), NoiseError> {
     const SHORTEST: usize = 64;
     /// Intervals the longest tau leaves: fewer and the third differences have hardly two degrees of freedom.
     const INTERVALS: usize = 5;
@@ -192,7 +192,7 @@ fn prepare(phase: &Phase) -> Result<(LogFit, [f64; COMPONENTS]), NoiseError> {
         .into_iter()
         .filter_map(|m| Some((m, Estimator::OverlappingHadamard.variance(phase, m)?)))
         .collect();
-    if variances.len() < COMPONENTS {
+    if variances.len() < STOCHASTIC {
         return Err(NoiseError::TooManyGaps { missing: phase.gaps().missing, readings });
     }
     if variances.iter().any(|(_, variance)| variance.value <= 0.0) {
@@ -204,7 +204,7 @@ fn prepare(phase: &Phase) -> Result<(LogFit, [f64; COMPONENTS]), NoiseError> {
     let (factors, terms): (Vec<_>, Vec<_>) = variances.iter().map(|(m, variance)| (*m, variance.terms)).unzip();
     let fit = LogFit {
         logarithms: DVector::from_iterator(factors.len(), logarithms),
-        shares: DMatrix::from_fn(factors.len(), COMPONENTS, |j, k| shares[j][k]),
+        shares: DMatrix::from_fn(factors.len(), STOCHASTIC, |j, k| shares[j][k]),
         moments: MomentModel::new(factors.clone(), terms),
         factors,
     };
@@ -216,13 +216,13 @@ fn prepare(phase: &Phase) -> Result<(LogFit, [f64; COMPONENTS]), NoiseError> {
 ///
 /// Its variance over the record's length T is `72 Q^2/T^4 + 12 N^2/T^3 + 9 B^2/(pi T^2) + 6 K^2/(5 T)`: the double
 /// integral of the weights `12 t / T^3` with each noise's generalised autocovariance.
-fn ramp(phase: &Phase, stochastic: &[Coefficient; 5], best: &[f64; COMPONENTS]) -> Coefficient {
-    let variance = |squares: [f64; COMPONENTS]| {
+fn ramp(phase: &Phase, stochastic: &[Coefficient; 5], best: &[f64; STOCHASTIC]) -> Coefficient {
+    let variance = |squares: [f64; STOCHASTIC]| {
         let length = (phase.points().len() - 1) as f64 * phase.tau0();
         let shares = [72.0 / length.powi(4), 12.0 / length.powi(3), 9.0 / (PI * length * length), 1.2 / length];
         squares.iter().zip(shares).map(|(square, share)| square * share).sum::<f64>()
     };
-    let at_most: [f64; COMPONENTS] = std::array::from_fn(|k| match stochastic[k] {
+    let at_most: [f64; STOCHASTIC] = std::array::from_fn(|k| match stochastic[k] {
         Coefficient::Determined { value, .. } => value * value,
         Coefficient::NotDetermined { upper_bound } => upper_bound * upper_bound,
     });
