@@ -368,7 +368,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let model = candidates.scenarios[0].model.in_experiment(experiment);
     // Noise of 20 ug/sqrt(Hz) at this rate.
     let white = 20e-6 * 9.80665 * (0.5 * RATE).sqrt();
-    let settings = centrical::simulate::Settings {
+    let settings = centrical::simulate::Equipment {
         machine: Machine { plateau: 40.0, speed_error: 1e-5, ..Machine::default() },
         sensor: Sensor { white, ..Sensor::default() },
         recorder: Recorder { rate: RATE, ..Recorder::default() },
@@ -410,7 +410,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
 fn calibration_means(
     model: &MeasurementModel,
     truth: &[f64],
-    settings: &centrical::simulate::Settings,
+    settings: &centrical::simulate::Equipment,
     seed: u64,
 ) -> Vec<Observation> {
     let simulation = Simulation::new(model, truth, settings, seed).unwrap();

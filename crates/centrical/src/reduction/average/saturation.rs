@@ -1,14 +1,14 @@
 //! Saturation: readings that pile up at the end of their range.
 
-/// What chance is not believed to do.
+/// Probability below which a count is not chance.
 const CHANCE: f64 = 1e-6;
 
-/// The value at which readings pile up, and how many do; none if they do not.
+/// The value at which readings pile up, and their number; `None` if they do not.
 ///
 /// The numbers of readings at the outermost values of a noisy reading fall off: log-concavity, which the normal law keeps
 /// when it is rounded, makes the outermost number no more than `n_1^2 / n_2` of the next two on average. A number that
-/// Poisson's law has less than once in a million times about that is a pile. Where noise is less than a digit nothing can
-/// be told: the crest of a slow wave piles up as well.
+/// Poisson's law exceeds less than once in a million times about that average is a pile. Noise below a digit allows no
+/// decision: the crest of a slow wave piles up as well.
 pub(super) fn piled_up(mut readings: Vec<f64>) -> Option<(f64, usize)> {
     readings.sort_by(f64::total_cmp);
     let counts: Vec<(f64, usize)> = readings.chunk_by(f64::eq).map(|same| (same[0], same.len())).collect();
@@ -21,12 +21,12 @@ pub(super) fn piled_up(mut readings: Vec<f64>) -> Option<(f64, usize)> {
     top.into_iter().chain(bottom).max_by_key(|end| end.1)
 }
 
-/// Whether so many readings at the end of their range are worth a look at the others: nearly always there is one or two.
+/// Whether this number of readings at the end of their range calls for a closer look: nearly always it is one or two.
 pub(super) fn may_be_piled_up(most: usize) -> bool {
     poisson_tail(most, 1.0) < CHANCE
 }
 
-/// The value that readings have most often, and how often.
+/// The most frequent value of the readings, and its count.
 pub(super) fn standing(f: &[f64]) -> (f64, usize) {
     let mut values: Vec<f64> = f.iter().copied().filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
