@@ -32,6 +32,8 @@ mod text_lines;
 mod truth;
 mod write;
 
+pub use centrical::STANDARD_GRAVITY;
+pub use centrical::noise::Estimator;
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
@@ -50,9 +52,11 @@ pub use experiment::{
     earlier_result, read_plateaus, write_plateaus,
 };
 pub use job::{
-    Compensated, FirstOutside, Method, PlanRequest, Problem, Series, TableFormat, USUAL_LEVELS, Watch, analyse_noise,
-    calibrate, calibrate_without, compensate_record, read_plan, read_planning, reduce, reduce_without_inputs,
-    simulate_session, subject, write_reduced,
+    Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following, Method,
+    MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series, TableFormat, USUAL_LEVELS,
+    USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess, calibrate, calibrate_without,
+    compare_results, compensate, compensate_record, noise_of, read_plan, read_planning, reduce, reduce_without_inputs,
+    select_model, simulate_session, subject, write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
