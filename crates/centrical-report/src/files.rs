@@ -103,7 +103,10 @@ pub fn write_all_documents(
 pub fn write_noise(analysis: &NoiseAnalysis, folder: &Path) -> Result<(), Error> {
     create_folder(folder)?;
     analysis.write(&folder.join("noise.json"))?;
-    noise_plots(analysis).iter().try_for_each(|(name, plot)| write_whole(&folder.join(name), plot.to_svg().as_bytes()))
+    for (name, plot) in noise_plots(analysis) {
+        write_whole(&folder.join(name), plot.to_svg().as_bytes())?;
+    }
+    Ok(())
 }
 
 /// Draws the history in a folder beside it, if it holds one.
@@ -117,10 +120,10 @@ pub fn write_history_plot(model: &MeasurementModel, folder: &Path) -> Result<(),
     }
     let parameters = model.parameters();
     let group_of = |name: &str| parameters.find(name).map(|j| parameters[j].group);
-    match history_figure(&read_history(&history)?, &group_of, Language::English) {
-        Some(figure) => write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes()),
-        None => Ok(()),
+    if let Some(figure) = history_figure(&read_history(&history)?, &group_of, Language::English) {
+        write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes())?;
     }
+    Ok(())
 }
 
 /// What the laboratory says, its limits those of parameters of the result.
@@ -135,9 +138,7 @@ fn read_laboratory(file: Option<&Path>, result: &CalibrationResult) -> Result<Op
 fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Result<CalibrationResult, Error> {
     let before = CalibrationResult::read(file)?;
     let unit = |result: &CalibrationResult| format!("{} {}", result.session.unit_model, result.session.unit_serial);
-    let refuse = |found: String, expected: String| {
-        Err(Error::Content { file: file.to_owned(), place: Place::Whole, found, expected })
-    };
+    let refuse = |found: String, expected: String| Err(Error::content(file, Place::Whole, found, expected));
     if unit(&before) != unit(after) {
         return refuse(format!("a result of {}", unit(&before)), format!("one of {}", unit(after)));
     }
@@ -158,5 +159,8 @@ fn write_source(result: &CalibrationResult, file: &Path, folder: &Path) -> Resul
         .and_then(|range| compensation_source(&heading(result), &terms, range))
         .map_err(|source| Error::NotInvertible { file: file(), source })?;
     create_folder(folder)?;
-    sources.iter().try_for_each(|source| write_whole(&folder.join(source.name), source.text.as_bytes()))
+    for source in sources {
+        write_whole(&folder.join(source.name), source.text.as_bytes())?;
+    }
+    Ok(())
 }

@@ -25,5 +25,5 @@ pub use self::observe::subject;
 pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, read_plan, read_planning};
 pub use self::reduce::{reduce, reduce_without_inputs};
 pub use self::reduced_session::write_reduced;
-pub use self::simulate::{TableFormat, simulate_session};
+pub use self::simulate::simulate_session;
 pub use self::watch::{Following, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest};

@@ -16,25 +16,21 @@
 //! The format is told by the first bytes. Time is a number in a unit, a count of samples at a rate, or (text and
 //! Parquet) a stamp. It never decreases; it may stand still.
 
-mod csv_table;
 mod document;
 mod error;
 mod experiment;
 mod job;
 mod laboratory;
-mod parquet_table;
 mod quantity;
 mod record;
 mod record_writer;
 mod reduced;
-mod table;
-mod text_lines;
 mod truth;
-mod write;
 
 pub use centrical::STANDARD_GRAVITY;
-pub use centrical::noise::Estimator;
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+pub use centrical::stability::Estimator;
+pub use centrical_table::{ColumnName, TableFormat, create_folder, write_whole};
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
     DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry, HistoryEstimate,
@@ -53,10 +49,10 @@ pub use experiment::{
 };
 pub use job::{
     Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following, Method,
-    MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series, TableFormat, USUAL_LEVELS,
-    USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess, calibrate, calibrate_without,
-    compare_results, compensate, compensate_record, noise_of, read_plan, read_planning, reduce, reduce_without_inputs,
-    select_model, simulate_session, subject, write_reduced,
+    MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series, USUAL_LEVELS, USUAL_TIMES, Watch,
+    WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess, calibrate, calibrate_without, compare_results,
+    compensate, compensate_record, noise_of, read_plan, read_planning, reduce, reduce_without_inputs, select_model,
+    simulate_session, subject, write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
@@ -68,6 +64,4 @@ pub use record::{
 };
 pub use record_writer::RecordWriter;
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
-pub use table::ColumnName;
 pub use truth::Truth;
-pub use write::{create_folder, write_whole};

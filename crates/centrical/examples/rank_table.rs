@@ -63,7 +63,7 @@ fn cell(plan: &Normalised) -> String {
         let experiment = Normalised { third, ..plan.clone() }.experiment();
         let model = MeasurementModel::new(experiment, ErrorModel::kozlov_2017(), &[]);
         let weights = Weight::equal(model.experiment().set_points.len(), 1.0);
-        let study = Study::at_zero(model, weights, 0.0).expect("the experiment is complete");
+        let study = Study::at_zero(model, weights).expect("the experiment is complete");
         let seen = study.observability();
         match seen.smallest_relative() {
             Some(smallest) if smallest < 1e-3 => format!("{} ({smallest:.0e})", seen.rank()),

@@ -20,8 +20,6 @@ pub mod fit;
 mod frame;
 mod least_squares;
 mod measurement;
-/// Noise of a record: stability deviations, spectrum, noise terms.
-pub mod noise;
 /// What an experiment can see, why not more, and what would help.
 pub mod observability;
 mod parameter;
@@ -33,8 +31,12 @@ mod prior;
 mod random;
 /// Reduction of continuous records to plateau means.
 pub mod reduction;
+mod simd;
 /// Simulation of records.
 pub mod simulate;
+/// Stability analysis of a record: deviations of the Allan family, spectrum, noise terms.
+pub mod stability;
+mod statistics;
 /// How far a calibration can be trusted.
 pub mod uncertainty;
 
@@ -43,13 +45,14 @@ pub use design::{Observation, Weight};
 pub use error::FitError;
 pub use error_model::{ErrorModel, Extra, Monomial, Term};
 pub use experiment::{
-    EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, STANDARD_GRAVITY, SetPoint, Site, Unit,
+    Centrifuge, EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint,
+    Site, Unit,
 };
 pub use fit::{Fit, Termination};
 pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
 pub use least_squares::LeastSquares;
 pub use measurement::{ArmMotion, Linearisation, MeasurementModel, linear};
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};
-pub use parameter::{Extension, Kind, Law, Parameter, Parameters};
+pub use parameter::{Extension, Kind, Law, NULL_HOLD, Parameter, Parameters};
 pub use position::Position;
 pub use prior::{Prior, PriorError, PriorUse};

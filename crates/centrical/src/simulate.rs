@@ -3,12 +3,12 @@
 //! `reading(t) = quantised( saturated( f'(angle, Omega, dOmega/dt) + noise(t) + spike ) )` with `f'` of
 //! [`MeasurementModel::reading_at`], so that the mean over whole revolutions of a perfect sensor's record is the
 //! plateau model's reading (test `mean_of_a_record_is_the_reading`). Ramps, settling, speed errors and durations are
-//! the centrifuge's ([`Machine`]), noise is the unit's ([`Sensor`]), what is lost or spoilt on the way is the
+//! the centrifuge's ([`Machine`]), noise is the unit's ([`Sensor`]), lost and spoilt samples are the
 //! recorder's ([`Recorder`]), and the telemetry has a clock of its own ([`Tachometer`]).
 //!
 //! Everything follows from the seed: each imperfection of each mounting draws from a generator of its own, so
 //! nothing depends on the number of threads, and switching one imperfection on leaves the others as they were.
-//! `Default` is perfect equipment: an imperfection that is not named is not there.
+//! `Default` is perfect equipment: every imperfection has to be named.
 
 mod draw;
 mod motion;
@@ -18,6 +18,7 @@ mod response;
 mod settings;
 mod telemetry;
 
+pub use motion::TruePlateau;
 pub use record::Records;
 pub use settings::{Coloured, Gaps, Machine, Recorder, Sensor, Settings, SimulationError, Spikes, Tachometer};
 pub use telemetry::Telemetry;
@@ -27,6 +28,8 @@ use crate::measurement::MeasurementModel;
 use crate::parameter::Parameters;
 use draw::Draw;
 use motion::Motion;
+use noise::Sampling;
+use record::Physics;
 
 /// A session as it would be recorded: a pure function of model, truth, settings and seed.
 #[derive(Debug, Clone, Copy)]
@@ -47,20 +50,11 @@ pub struct SimulatedMounting<'a> {
     motion: Motion,
 }
 
-/// One plateau as it truly was.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TruePlateau {
-    /// Beginning and end, between ramps, the unit's clock [s].
-    pub window: [f64; 2],
-    /// Speed once settled [rad/s].
-    pub omega: f64,
-}
-
 impl<'a> Simulation<'a> {
     /// A session of `model`'s experiment with the unknowns at `truth` (in the order of the model's parameters).
     ///
     /// # Errors
-    /// [`SimulationError`] when `truth` is not one of this model, or a setting makes no sense.
+    /// [`SimulationError`] when `truth` does not fit this model, or a setting is out of its bounds.
     pub fn new(
         model: &'a MeasurementModel,
         truth: &'a [f64],
@@ -81,7 +75,7 @@ impl<'a> Simulation<'a> {
     /// The session with a duration for every set point [s] in place of [`Machine::plateau`].
     ///
     /// # Errors
-    /// [`SimulationError`] when there is not one for each, or one of them is none.
+    /// [`SimulationError`] when their number differs from that of the set points, or one of them is not positive.
     pub fn with_durations(self, durations: &'a [f64]) -> Result<Self, SimulationError> {
         let expected = self.model.experiment().set_points.len();
         if durations.len() != expected {
@@ -97,8 +91,8 @@ impl<'a> Simulation<'a> {
     pub fn mounting(&self, mounting: usize) -> SimulatedMounting<'a> {
         let set_points = &self.model.experiment().set_points;
         let duration = |n: usize| self.durations.get(n).copied().unwrap_or(self.settings.machine.plateau);
-        let there = set_points.iter().enumerate().filter(|(_, s)| s.mounting == mounting);
-        let schedule: Vec<(SetPoint, f64)> = there.map(|(n, s)| (*s, duration(n))).collect();
+        let visited = set_points.iter().enumerate().filter(|(_, s)| s.mounting == mounting);
+        let schedule: Vec<(SetPoint, f64)> = visited.map(|(n, s)| (*s, duration(n))).collect();
         let random = Draw::Motion.stream(self.seed, mounting);
         let motion = Motion::new(&schedule, &self.settings.machine, random);
         SimulatedMounting { simulation: *self, mounting, motion }
@@ -118,7 +112,10 @@ impl SimulatedMounting<'_> {
 
     /// The record, a stretch of it at a time.
     pub fn records(&self) -> Records<'_> {
-        Records::new(self)
+        let Simulation { model, truth, settings, seed, .. } = self.simulation;
+        let (interval, duration) = (1.0 / settings.recorder.rate, self.duration());
+        let sampling = Sampling { seed, mounting: self.mounting, interval, duration };
+        Records::new(Physics::new(model, truth, self.mounting), &self.motion, settings, &sampling)
     }
 
     /// The centrifuge's telemetry.

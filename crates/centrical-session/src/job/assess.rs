@@ -57,17 +57,17 @@ pub fn assess(
 
 fn of_problem(session: &Session, problem: Problem, request: &AssessmentRequest) -> Result<Assessment, FitError> {
     let Problem { model, reduced } = problem;
-    let (all, speed_uncertainty) = (reduced.observations(), session.speed_uncertainty);
-    let fit = fit::exact(&model, &all, speed_uncertainty)?;
-    let cleaned = request.without_outliers.map(|alpha| without_outliers(&model, &all, speed_uncertainty, alpha));
+    let all = reduced.observations();
+    let fit = fit::exact(&model, &all)?;
+    let cleaned = request.without_outliers.map(|alpha| without_outliers(&model, &all, alpha));
     let cleaned = cleaned.transpose()?;
     let (used, observations) = cleaned.as_ref().map_or((&fit, &all), |c| (&c.fit, &c.observations));
-    let mut budget = Budget::new(used, &model, observations, speed_uncertainty, &session.type_b)?;
+    let mut budget = Budget::new(used, &model, observations, &session.type_b)?;
     if request.scale_by_residuals {
         budget = budget.scaled_by_residuals(used);
     }
-    let validity = Validity::of(used, &model, observations, speed_uncertainty)?;
-    let patterns = patterns(used, &model, observations, speed_uncertainty)?;
+    let validity = Validity::of(used, &model, observations)?;
+    let patterns = patterns(used, &model, observations)?;
     let range = request.range.unwrap_or_else(|| highest(&model, observations));
     let prediction = prediction(&model, used, &budget, range);
     Ok(Assessment { model, fit, cleaned, budget, validity, patterns, prediction })

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::RecordSlice;
 use centrical_compensate::{Certificate, Compensation};
+use centrical_table::Block;
 use rayon::prelude::*;
 
 use crate::document::CalibrationResult;
@@ -11,7 +12,6 @@ use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::{Columns, scan_blocks, stretch};
 use crate::record_writer::RecordWriter;
-use crate::table::Block;
 
 /// What became of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

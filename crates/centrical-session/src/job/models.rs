@@ -13,6 +13,6 @@ use crate::experiment::Session;
 /// [`Error`] naming the file, the place, what was found and what was expected.
 pub fn select_model(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Selection, Error> {
     let Problem { model, reduced } = Problem::of(session, progress)?;
-    select(&rivals_of(&model), &reduced.observations(), session.speed_uncertainty)
+    select(&rivals_of(&model), &reduced.observations())
         .map_err(|source| Error::Fit { file: session.file.clone(), source })
 }

@@ -34,7 +34,6 @@ pub struct MonteCarloCase {
     file: PathBuf,
     /// Their means are not used.
     observations: Vec<Observation>,
-    speed_uncertainty: f64,
     stated: TypeB,
 }
 
@@ -46,12 +45,10 @@ impl MonteCarloCase {
     /// [`Error`] naming the file, the place, what was found and what was expected.
     pub fn measured(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
         let Problem { model, reduced } = Problem::of(session, progress)?;
-        let (observations, speed_uncertainty, file) =
-            (reduced.observations(), session.speed_uncertainty, session.file.clone());
-        let fit = fit::exact(&model, &observations, speed_uncertainty)
-            .map_err(|source| Error::Fit { file: file.clone(), source })?;
+        let (observations, file) = (reduced.observations(), session.file.clone());
+        let fit = fit::exact(&model, &observations).map_err(|source| Error::Fit { file: file.clone(), source })?;
         let truth = fit.state().to_vec();
-        Ok(Self { model, truth, file, observations, speed_uncertainty, stated: session.type_b })
+        Ok(Self { model, truth, file, observations, stated: session.type_b })
     }
 
     /// A plan: the unit that it is predicted for. `noise` is the white noise of every mean in micro-g, in place of the
@@ -60,15 +57,14 @@ impl MonteCarloCase {
     /// # Errors
     /// [`Error::Fit`] when a weight is invalid.
     pub fn planned(plan: Plan, noise: Option<f64>) -> Result<Self, Error> {
-        let Plan { file, model, nominal, weights, speed_uncertainty, type_b, .. } = plan;
-        let truth = unit_of(&model, &weights, speed_uncertainty, &nominal)
-            .map_err(|source| Error::Fit { file: file.clone(), source })?;
+        let Plan { file, model, nominal, weights, type_b, .. } = plan;
+        let truth = unit_of(&model, &weights, &nominal).map_err(|source| Error::Fit { file: file.clone(), source })?;
         let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
         let weights = noise.map_or_else(|| weights.clone(), equal);
         let observation =
             |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
         let observations = weights.into_iter().map(observation).collect();
-        Ok(Self { model, truth, file, observations, speed_uncertainty, stated: type_b })
+        Ok(Self { model, truth, file, observations, stated: type_b })
     }
 
     /// Takes a unit of typical errors with alternating signs for the true one.
@@ -90,7 +86,7 @@ impl MonteCarloCase {
             method: if request.linear { Method::Linear } else { Method::Exact },
             stated: self.stated,
         };
-        monte_carlo(&self.model, &self.truth, &self.observations, self.speed_uncertainty, &settings, done)
+        monte_carlo(&self.model, &self.truth, &self.observations, &settings, done)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })
     }
 }

@@ -65,7 +65,7 @@ impl Truth {
         let (model, sources) = model(plan, &form);
         let values = values(file, &form, &model, sources, seed)?;
         let tables = (&form.machine, &form.sensor, &form.recorder, &form.tachometer);
-        let settings = settings(file, tables, plan.speed_uncertainty)?;
+        let settings = settings(file, tables, plan.experiment.centrifuge.speed_uncertainty)?;
         Ok(Self { file: file.to_owned(), model, values, settings })
     }
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use nalgebra::Vector3;
 use thiserror::Error;
 
-use super::Mistake;
+use super::mistake::Mistake;
 
 /// Why a record could not be reduced.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -1,8 +1,5 @@
 //! A mounting's continuous record, whole or a stretch of it.
 
-use super::ReductionError;
-use super::blocks::SAMPLES;
-
 /// One mounting's continuous record, instrument axes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Record {
@@ -39,27 +36,6 @@ impl Record {
     pub fn clear(&mut self) {
         self.t.clear();
         self.f_z.iter_mut().for_each(Vec::clear);
-    }
-
-    /// Refuses what is no record: columns of different lengths, hardly a sample, time that runs backwards.
-    pub(super) fn check(&self) -> Result<(), ReductionError> {
-        let times = self.t.len();
-        let readings = self.f_z.each_ref().map(Vec::len);
-        if readings != [times; 3] {
-            return Err(ReductionError::UnequalColumns { times, readings });
-        }
-        let expected = 3 * SAMPLES;
-        if times < expected {
-            return Err(ReductionError::TooShort { found: times, expected });
-        }
-        let mut before = f64::NEG_INFINITY;
-        for (i, &found) in self.t.iter().enumerate() {
-            if !found.is_finite() || found < before {
-                return Err(ReductionError::Time { sample: i + 1, found, before });
-            }
-            before = found;
-        }
-        Ok(())
     }
 }
 

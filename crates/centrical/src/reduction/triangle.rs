@@ -5,7 +5,7 @@
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::lanes::{dot, product, subtract, widest};
+use crate::simd::lanes::{dot, product, subtract, widest};
 
 /// Columns of a design: two of the revolution, settling, constant.
 pub(super) const TERMS: usize = 4;
@@ -80,6 +80,13 @@ impl Triangle {
         let (first, rest) = readings.split_at_mut(rows);
         let (second, third) = rest.split_at_mut(rows);
         widest(Rows { terms: &mut columns, readings: &mut [first, second, third] })
+    }
+
+    /// Coefficients per axis of the readings by the columns of a design. `None` if these are dependent.
+    pub fn fit(mut columns: Vec<Vec<f64>>, mut readings: [Vec<f64>; 3]) -> Option<Vec<Vector3<f64>>> {
+        let mut terms: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
+        let readings = &mut readings.each_mut().map(Vec::as_mut_slice);
+        widest(Rows { terms: &mut terms, readings }).solve(columns.len())
     }
 
     /// What coefficients, per axis, leave of the readings in the directions of `Q`: `Z - R B`.

@@ -1,8 +1,8 @@
-//! What is drawn: each imperfection of each mounting from a stream of its own, so that they do not disturb each other.
+//! Random draws: each imperfection of each mounting has a stream of its own, so that they do not disturb each other.
 
 use crate::random::Random;
 
-/// What is drawn. The numbers are part of what a seed means: never reuse one.
+/// A kind of draw. The numbers are part of what a seed means: never reuse one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Draw {
     /// The unknowns.

@@ -6,7 +6,7 @@ use super::draw::Draw;
 use super::settings::Sensor;
 use crate::random::Random;
 
-/// What stays the same while a record is made.
+/// The sampling of one record.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sampling {
     pub seed: u64,

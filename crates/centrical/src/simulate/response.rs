@@ -1,4 +1,4 @@
-//! The error model prepared for many samples: what depends on one `f_j` alone is summed by Horner's scheme.
+//! The error model prepared for many samples: powers of one `f_j` alone are summed by Horner's scheme.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! What a simulated laboratory is like, and what it cannot be like.
+//! The equipment of a simulated laboratory and its imperfections, with their bounds.
 
 use thiserror::Error;
 
@@ -9,13 +9,13 @@ pub struct Settings {
     pub machine: Machine,
     /// The unit's noise.
     pub sensor: Sensor,
-    /// What takes the unit's samples.
+    /// The recorder of the unit's samples.
     pub recorder: Recorder,
-    /// What reports the speed.
+    /// The report of the speed.
     pub tachometer: Tachometer,
 }
 
-/// How the centrifuge is run and errs.
+/// The centrifuge's operation and its errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Machine {
     /// Least duration of a plateau [s].
@@ -61,7 +61,7 @@ pub struct Coloured {
     pub time: f64,
 }
 
-/// What takes the samples, and loses or spoils some.
+/// The recorder, which loses or spoils some samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recorder {
     /// Samples per second [Hz].
@@ -137,7 +137,7 @@ impl Default for Tachometer {
     }
 }
 
-/// Why nothing can be simulated.
+/// Why a session cannot be simulated.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SimulationError {
     /// The truth belongs to another model.
@@ -148,7 +148,7 @@ pub enum SimulationError {
         /// Parameters.
         expected: usize,
     },
-    /// A true value is none.
+    /// A true value is not finite.
     #[error("truth of {name}: found {found}, expected a finite number")]
     Truth {
         /// The parameter.
@@ -156,7 +156,7 @@ pub enum SimulationError {
         /// Its value.
         found: f64,
     },
-    /// There is not a duration for each plateau.
+    /// The number of durations differs from that of the plateaus.
     #[error("durations: found {found}, expected one for each of {expected} plateaus")]
     Durations {
         /// Given.
@@ -171,7 +171,7 @@ pub enum SimulationError {
         setting: &'static str,
         /// Its value.
         found: f64,
-        /// What it can be.
+        /// Its bounds.
         expected: &'static str,
     },
 }

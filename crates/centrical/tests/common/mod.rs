@@ -51,7 +51,7 @@ impl Random {
     }
 }
 
-/// The [K5.5] experiment with proof masses apart, Earth rotation and eight levels up to 200 g.
+/// The [K5.5] experiment with proof masses apart, Earth rotation and eight levels up to 200 g, speeds to 10 ppm.
 pub fn experiment(third: ThirdPosition, pair_relation: PairRelation, radii: &[f64]) -> Experiment {
     let plan = Normalised {
         third,
@@ -63,6 +63,7 @@ pub fn experiment(third: ThirdPosition, pair_relation: PairRelation, radii: &[f6
     };
     let mut experiment = plan.experiment();
     experiment.site.latitude = Some(0.97);
+    experiment.centrifuge.speed_uncertainty = 1e-5;
     experiment
 }
 

@@ -5,12 +5,11 @@ use nalgebra::{DMatrix, Vector3};
 use crate::common::{Random, truth};
 use crate::validity::{session, source_model};
 
-const SPEED: f64 = 1e-5;
 const INSTRUMENT: std::ops::Range<usize> = 28..49;
 
 fn calibrate(x: &[f64], random: &mut Random) -> Estimates {
     let model = source_model();
-    let fit = fit::exact(&model, &session(&model, x, random), SPEED).unwrap();
+    let fit = fit::exact(&model, &session(&model, x, random)).unwrap();
     let covariance = DMatrix::from_fn(21, 21, |i, j| fit.covariance(28 + i, 28 + j).unwrap());
     let names = INSTRUMENT.map(|j| model.parameters()[j].name.clone()).collect();
     Estimates { names, values: INSTRUMENT.map(|j| fit.value(j).unwrap()).collect(), covariance }

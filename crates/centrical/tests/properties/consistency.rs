@@ -2,7 +2,7 @@
 
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
-use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, reduce};
+use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
 use centrical::simulate::{
     Coloured, Gaps, Machine, Recorder, Sensor, Settings, Simulation, Spikes, Tachometer, draw_truth,
 };
@@ -33,6 +33,7 @@ fn model() -> MeasurementModel {
     }
     .experiment();
     experiment.site.latitude = Some(52.1_f64.to_radians());
+    experiment.centrifuge.speed_uncertainty = SPEED_ERROR;
     kozlov(experiment)
 }
 
@@ -87,7 +88,7 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
         })
         .collect();
     let noise = NoiseModel::pool(&reduced);
-    reduced.iter().flat_map(|mounting| mounting.means(&noise)).collect()
+    reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise)).collect()
 }
 
 /// Calibration from plateau means, each with the covariance that `covariance` gives it.
@@ -102,7 +103,7 @@ fn calibrated(
         covariance: covariance(mean),
     };
     let observations: Vec<Observation> = means.iter().enumerate().map(observation).collect();
-    fit::exact(model, &observations, SPEED_ERROR).expect("the session determines everything")
+    fit::exact(model, &observations).expect("the session determines everything")
 }
 
 /// Squared error of all parameters over their stated covariance: as many as there are parameters, on average.

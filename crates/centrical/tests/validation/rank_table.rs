@@ -69,7 +69,7 @@ fn plan(row: &Row, third: ThirdPosition, pair_relation: PairRelation, rho: Matri
 fn study(plan: &Normalised, extensions: &[Extension]) -> Study {
     let model = MeasurementModel::new(plan.experiment(), ErrorModel::kozlov_2017(), extensions);
     let weights = Weight::equal(model.experiment().set_points.len(), 1.0);
-    Study::at_zero(model, weights, 0.0).unwrap()
+    Study::at_zero(model, weights).unwrap()
 }
 
 fn is_printed_as(value: f64, printed: f64) -> bool {

@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use centrical::uncertainty::Estimates;
+use centrical_table::write_whole;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +16,6 @@ use super::budget_and_checks::{BudgetSummary, ValiditySummary};
 use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
 use crate::error::{Error, Place};
 use crate::record::{Input, RecordOverview};
-use crate::write::write_whole;
 
 /// Name of the schema's present version.
 pub const SCHEMA: &str = "centrical-result/1";
@@ -299,9 +299,9 @@ impl CalibrationResult {
     /// Writes the file, whole or not at all.
     ///
     /// # Errors
-    /// [`Error::Io`] when the folder does not take it.
+    /// [`Error::Table`] when the folder does not take it.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
-        write_whole(path, self.to_json().as_bytes())
+        Ok(write_whole(path, self.to_json().as_bytes())?)
     }
 
     /// The text of the file.

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use centrical::noise::Estimator;
+use centrical::stability::Estimator;
+use centrical_table::ColumnName;
 
 use super::analysis::analyse_noise;
 use super::series::Series;
@@ -11,7 +12,6 @@ use crate::error::Error;
 use crate::experiment::{PlateauName, Session};
 use crate::quantity::Dimension;
 use crate::record::{Column, Columns, Scale};
-use crate::table::ColumnName;
 
 /// Which readings are analysed, and how.
 #[derive(Debug, Clone, PartialEq)]

@@ -102,7 +102,7 @@ impl<'a> Following<'a> {
         keep_history(&request.out.join(HISTORY_FILE), state.plateaus.len())?;
         // One that has been taken up before is held out from now on.
         state.plateaus.iter_mut().for_each(|plateau| plateau.held_out |= held_out.contains(&plateau.set_point));
-        let follower = Follower::resume(model, session.speed_uncertainty, state.taken(), &state.point)
+        let follower = Follower::resume(model, state.taken(), &state.point)
             .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
         Ok(Self { request, session, model, follower, state, held_out })
     }
@@ -173,13 +173,13 @@ impl<'a> Following<'a> {
 
     fn progress(&self, now: Progress, last: &Observation) -> Result<WatchProgress<'_>, Error> {
         let next = (0..self.session.experiment.set_points.len()).find(|&set_point| !self.has(set_point));
-        let expected = |next| Ok((next, self.fitted(self.follower.expected(next, last.covariance))?));
+        let expected = |next| self.follower.expected(next, last.covariance).map(|progress| (next, progress));
         Ok(WatchProgress {
             session: self.session,
             model: self.model,
             plateaus: &self.state.plateaus,
             now,
-            next: next.map(expected).transpose()?,
+            next: self.fitted(next.map(expected).transpose())?,
             best: self.best_next(last)?,
         })
     }
@@ -196,7 +196,7 @@ impl<'a> Following<'a> {
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
         let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
         let criterion = Criterion::Reading(ReadingRange { force });
-        let gains = next_best(self.model, self.session.speed_uncertainty, &criterion, &taken, &remaining)
+        let gains = next_best(self.model, &criterion, &taken, &remaining)
             .map_err(|source| Error::Planning { file: self.session.file.clone(), source })?;
         let on_the_arm = experiment.set_points[last.set_point].mounting;
         let is_here = |gain: &&Gain| experiment.set_points[gain.set_point].mounting == on_the_arm;
@@ -232,12 +232,10 @@ fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) 
     groups.dedup();
     match wanted.iter().find(|group| !groups.contains(&group.as_str())) {
         None => Ok(()),
-        Some(unknown) => Err(Error::Content {
-            file: session.file.clone(),
-            place: Place::Whole,
-            found: format!("a target for {unknown:?}"),
-            expected: format!("one of the groups {}", groups.join(", ")),
-        }),
+        Some(unknown) => {
+            let expected = format!("one of the groups {}", groups.join(", "));
+            Err(Error::content(&session.file, Place::Whole, format!("a target for {unknown:?}"), expected))
+        }
     }
 }
 
