@@ -42,22 +42,15 @@ fn poisson_tail(count: usize, mean: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::piled_up;
-
-    /// Sums of twelve uniform numbers: nearly normal, unit variance.
-    fn normal(n: usize) -> Vec<f64> {
-        let mut state = 1_u64;
-        let mut uniform = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        (0..n).map(|_| (0..12).map(|_| uniform()).sum::<f64>() - 6.0).collect()
-    }
+    use crate::random::Random;
 
     #[test]
     fn clipped_readings_pile_up_and_noise_does_not() {
+        let mut random = Random::stream(1, 0);
+        let readings: Vec<f64> = (0..100_000).map(|_| random.normal()).collect();
         for digit in [0.0, 1e-3, 0.1, 0.5, 1.0] {
             let rounded = |f: f64| if digit > 0.0 { (f / digit).round() * digit } else { f };
-            for part in normal(100_000).chunks(2000) {
+            for part in readings.chunks(2000) {
                 let plain: Vec<f64> = part.iter().map(|f| rounded(*f)).collect();
                 assert_eq!(piled_up(plain), None, "digit {digit}");
                 if digit < 0.2 {
