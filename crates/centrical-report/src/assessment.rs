@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical::uncertainty::{Budget, Cleaned, CurvePoint, Degrees, Pattern, Validity, coverage_factor};
+use centrical::uncertainty::{Budget, CurvePoint, Degrees, Pattern, Validity, coverage_factor};
 use centrical::{Experiment, Fit, MeasurementModel, Parameters, STANDARD_GRAVITY};
 use centrical_session::{Follows, PatternSummary};
 
@@ -138,14 +138,13 @@ pub fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[P
     text
 }
 
-/// Which plateaus were left out and what it changed against the fit `before`.
-pub fn outliers_text(model: &MeasurementModel, before: &Fit, cleaned: &Cleaned) -> String {
-    let after = &cleaned.fit;
-    if cleaned.left_out.is_empty() {
+/// Which plateaus were left out, and what changed between the fits before and after.
+pub fn outliers_text(model: &MeasurementModel, [before, after]: [&Fit; 2], left_out: &[(usize, f64)]) -> String {
+    if left_out.is_empty() {
         return "OUTLIERS  no plateau stands out\n\n".to_owned();
     }
-    let mut text = format!("OUTLIERS  {} plateaus left out\n", cleaned.left_out.len());
-    for (set_point, probability) in &cleaned.left_out {
+    let mut text = format!("OUTLIERS  {} plateaus left out\n", left_out.len());
+    for (set_point, probability) in left_out {
         let _ = writeln!(text, "  {}, probability {probability:.1e}", plateau(model.experiment(), *set_point));
     }
     let _ = writeln!(

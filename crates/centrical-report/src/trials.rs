@@ -33,7 +33,7 @@ pub fn monte_carlo_table(parameters: &Parameters, monte_carlo: &MonteCarlo, cove
             s.standard_deviation / s.stated,
             s.bias / s.stated,
             100.0 * s.coverage,
-            if s.leans_on_lost { crate::plan::LEANING } else { "" }
+            if s.is_affected_by_null_space { crate::plan::LEANING } else { "" }
         );
     }
     let chance = 2.0 * (percent * (100.0 - percent) / monte_carlo.runs.max(1) as f64).sqrt();

@@ -10,24 +10,14 @@
 //!   symbols to its name here.
 //! - Nothing here reads files, prints, or depends on the number of threads.
 
-mod convergence;
-mod design;
-mod error;
-mod error_model;
-mod experiment;
 /// Estimation from plateau means.
 pub mod fit;
-mod frame;
 mod least_squares;
-mod measurement;
+mod model;
 /// What an experiment can see, why not more, and what would help.
 pub mod observability;
-mod parameter;
 /// Plans of experiments.
 pub mod plan;
-/// The positions of the unit on the arm.
-pub mod position;
-mod prior;
 mod random;
 /// Reduction of continuous records to plateau means.
 pub mod reduction;
@@ -40,19 +30,12 @@ mod statistics;
 /// How far a calibration can be trusted.
 pub mod uncertainty;
 
-pub use convergence::{Checkpoint, convergence};
-pub use design::{Observation, Weight};
-pub use error::FitError;
-pub use error_model::{ErrorModel, Extra, Monomial, Term};
-pub use experiment::{
-    Centrifuge, EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint,
-    Site, Unit,
-};
-pub use fit::{Fit, Termination};
-pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
+pub use fit::{Calibration, Checkpoint, Data, Fit, Termination};
 pub use least_squares::LeastSquares;
-pub use measurement::{ArmMotion, Linearisation, MeasurementModel, linear};
+pub use model::{
+    ArmMotion, Centrifuge, EARTH_RATE, ErrorModel, Experiment, Extension, Extra, FitError, Kind, Law, Linearisation,
+    MeasurementModel, Monomial, Mounting, NULL_HOLD, Observation, PairRelation, Parameter, Parameters, Position, Prior,
+    PriorError, PriorUse, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint, Site, Term, Unit, Weight, carousel, hat,
+    is_rotation, linear, position, rotation, rotation_rate,
+};
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};
-pub use parameter::{Extension, Kind, Law, NULL_HOLD, Parameter, Parameters};
-pub use position::Position;
-pub use prior::{Prior, PriorError, PriorUse};

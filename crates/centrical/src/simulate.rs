@@ -23,9 +23,7 @@ pub use record::Records;
 pub use settings::{Coloured, Gaps, Machine, Recorder, Sensor, Settings, SimulationError, Spikes, Tachometer};
 pub use telemetry::Telemetry;
 
-use crate::experiment::SetPoint;
-use crate::measurement::MeasurementModel;
-use crate::parameter::Parameters;
+use crate::model::{MeasurementModel, Parameters, SetPoint};
 use draw::Draw;
 use motion::Motion;
 use noise::Sampling;

@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use centrical::uncertainty::{Budget, Compensated, Validity, patterns, without_outliers};
-use centrical::{Fit, FitError, MeasurementModel, Observation, STANDARD_GRAVITY, fit, linear};
+use centrical::uncertainty::{Budget, Compensated};
+use centrical::{Calibration, Data, Fit, FitError, MeasurementModel, Observation, STANDARD_GRAVITY, linear};
 use centrical_report::{budget_table, correlation_table, outliers_text, prediction_table, validity_text};
 use centrical_session::{Error, Problem, Session};
 use nalgebra::{DMatrix, Vector3};
@@ -53,20 +53,20 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 
 fn assess(arguments: &Arguments, session: &Session, problem: &Problem) -> Result<String, FitError> {
     let model = &problem.model;
-    let mut observations = problem.reduced.observations();
-    let mut fit = fit::exact(model, &observations)?;
+    let all = Data::new(model, problem.reduced.observations())?;
     let mut text = String::new();
-    if let Some(alpha) = arguments.without_outliers {
-        let cleaned = without_outliers(model, &observations, alpha)?;
-        text.push_str(&outliers_text(model, &fit, &cleaned));
-        (fit, observations) = (cleaned.fit, cleaned.observations);
+    let whole = Calibration::exact(&all)?;
+    let cleaned = arguments.without_outliers.map(|alpha| all.without_outliers(alpha)).transpose()?;
+    let after = cleaned.as_ref().map(|cleaned| Calibration::exact(&cleaned.data)).transpose()?;
+    if let Some((cleaned, after)) = cleaned.as_ref().zip(after.as_ref()) {
+        text.push_str(&outliers_text(model, [whole.fit(), after.fit()], &cleaned.left_out));
     }
-    let mut budget = Budget::new(&fit, model, &observations, &session.type_b)?;
+    let calibration = after.as_ref().unwrap_or(&whole);
+    let mut budget = calibration.budget(&session.type_b)?;
     if arguments.scale_by_residuals {
-        budget = budget.scaled_by_residuals(&fit);
+        budget = budget.scaled_by_residuals(calibration.fit());
     }
-    let validity = Validity::of(&fit, model, &observations)?;
-    let patterns = patterns(&fit, model, &observations)?;
+    let (validity, patterns) = (calibration.validity()?, calibration.patterns()?);
     text.push_str(&budget_table(model.parameters(), &budget, arguments.coverage));
     text.push('\n');
     if arguments.correlations {
@@ -75,8 +75,8 @@ fn assess(arguments: &Arguments, session: &Session, problem: &Problem) -> Result
     }
     text.push_str(&validity_text(model.experiment(), &validity, &patterns));
     text.push('\n');
-    let range = arguments.range.map_or_else(|| highest(model, &observations), |g| g * STANDARD_GRAVITY);
-    text.push_str(&prediction(model, &fit, &budget, range));
+    let range = arguments.range.map_or_else(|| highest(model, calibration.data().observations()), |g| g * STANDARD_GRAVITY);
+    text.push_str(&prediction(model, calibration.fit(), &budget, range));
     Ok(text)
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use centrical::plan::unit_of;
 use centrical::uncertainty::{Method, MonteCarlo, Settings, TypeB, monte_carlo};
-use centrical::{FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight, fit};
+use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight};
 use centrical_report::monte_carlo_table;
 use centrical_session::{Error, Plan, Problem, Session, read_plan};
 use nalgebra::Vector3;
@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         None => Case::measured(&Session::read(file)?)?,
     };
     if arguments.typical {
-        case.truth = case.model.parameters().typical_in_turn();
+        case.truth = case.model.parameters().typical_alternating();
     }
     let monte_carlo = draw(arguments, &case).map_err(failed)?;
     let text = monte_carlo_table(case.model.parameters(), &monte_carlo, arguments.coverage);
@@ -73,9 +73,8 @@ impl Case {
         let Problem { model, reduced } = Problem::of(session, &|bytes| bar.inc(bytes))?;
         bar.finish_and_clear();
         let observations = reduced.observations();
-        let fit =
-            fit::exact(&model, &observations).map_err(|source| Error::Fit { file: session.file.clone(), source })?;
-        let truth = fit.state().to_vec();
+        let truth = estimated(&model, &observations)
+            .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
         Ok(Self { model, observations, truth, stated: session.type_b })
     }
 
@@ -95,7 +94,7 @@ impl Case {
     fn unit(&self) -> &'static str {
         if self.truth.iter().all(|value| *value == 0.0) {
             "A unit without errors, as it is predicted; --typical draws for one of typical errors\n"
-        } else if self.truth == self.model.parameters().typical_in_turn() {
+        } else if self.truth == self.model.parameters().typical_alternating() {
             "A unit of typical errors, signs in turn\n"
         } else {
             ""
@@ -103,7 +102,13 @@ impl Case {
     }
 }
 
+fn estimated(model: &MeasurementModel, observations: &[Observation]) -> Result<Vec<f64>, FitError> {
+    let data = Data::new(model, observations.to_vec())?;
+    Ok(Calibration::exact(&data)?.fit().state().to_vec())
+}
+
 fn draw(arguments: &Arguments, case: &Case) -> Result<MonteCarlo, FitError> {
+    let data = Data::new(&case.model, case.observations.clone())?;
     let settings = Settings {
         runs: arguments.runs,
         seed: arguments.seed,
@@ -113,7 +118,7 @@ fn draw(arguments: &Arguments, case: &Case) -> Result<MonteCarlo, FitError> {
     };
     let bar = progress::calibrations(arguments.runs);
     let done = |count: usize| bar.inc(count as u64);
-    let outcome = monte_carlo(&case.model, &case.truth, &case.observations, &settings, &done);
+    let outcome = monte_carlo(&data, &case.truth, &settings, &done);
     bar.finish_and_clear();
     outcome
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use centrical::fit::recursive::{Follower, Progress};
+use centrical::fit::{Follower, Progress};
 use centrical::plan::{Criterion, Gain, ReadingRange, next_best};
 use centrical::{MeasurementModel, Observation, SetPoint, Weight, linear};
 use centrical_report::{

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::error_model::{ErrorModel, Monomial};
+use crate::model::{ErrorModel, Monomial};
 
 /// Highest power gathered into the polynomials.
 const DEGREE: usize = 3;

@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, Vector3};
 
-use crate::error_model::ErrorModel;
+use crate::model::ErrorModel;
 
 /// A calibrated error model.
 #[derive(Debug, Clone, PartialEq)]
