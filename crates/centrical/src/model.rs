@@ -23,7 +23,7 @@ pub(crate) mod prior;
 pub(crate) mod whitening;
 
 pub use error::FitError;
-pub use error_model::{ErrorModel, Extra, Monomial, Term};
+pub use error_model::{ErrorModel, Extra, Term};
 pub use experiment::{
     Centrifuge, EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint,
     Site, Unit,

@@ -6,11 +6,12 @@
 
 use std::collections::HashSet;
 
+use centrical_compensate::Monomial;
 use nalgebra::DMatrix;
 
 use super::coverage::chi_squared_tail;
 use super::validity::f_tail;
-use crate::model::{ErrorModel, Extension, Extra, FitError, Kind, Law, MeasurementModel, Monomial, Observation, Parameter, Term};
+use crate::model::{ErrorModel, Extension, Extra, FitError, Kind, Law, MeasurementModel, Observation, Parameter, Term};
 use crate::fit::{Calibration, Data, Termination};
 
 /// A model that could be meant.
