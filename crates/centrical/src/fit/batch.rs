@@ -189,7 +189,8 @@ impl<'a> Search<'a> {
     /// Releases the null directions, once, if the data keep them well within the hold.
     fn release_null_space(&mut self, step: &Step<'_>) -> bool {
         let null_basis = &self.start.structure.null_basis;
-        let free = self.null_weight > 0.0 && (null_basis.transpose() * step.inverse()).norm() < RELEASE_BELOW * NULL_HOLD;
+        let free =
+            self.null_weight > 0.0 && (null_basis.transpose() * step.inverse()).norm() < RELEASE_BELOW * NULL_HOLD;
         if free {
             self.null_weight = 0.0;
         }
@@ -213,7 +214,8 @@ impl<'a> Search<'a> {
     fn objective(&self, x: &DVector<f64>, there: &[Linearisation]) -> Result<f64, FitError> {
         let structure = self.start.structure;
         let held = structure.null_basis.transpose() * x.component_div(&structure.typical) * self.null_weight;
-        let residuals: Vec<_> = self.start.data.observations().iter().zip(there).map(|(o, l)| o.mean - l.reading).collect();
+        let residuals: Vec<_> =
+            self.start.data.observations().iter().zip(there).map(|(o, l)| o.mean - l.reading).collect();
         Ok(self.chi_squared(&residuals, x)? + held.norm_squared())
     }
 

@@ -93,7 +93,8 @@ impl<'m> Follower<'m> {
     /// [`FitError`] when the observation cannot be one.
     pub fn take(&mut self, observation: Observation) -> Result<(), FitError> {
         self.data.push(observation)?;
-        let typical = DVector::from_iterator(self.point.len(), self.data.model().parameters().iter().map(|p| p.typical));
+        let typical =
+            DVector::from_iterator(self.point.len(), self.data.model().parameters().iter().map(|p| p.typical));
         for _ in 0..STEP_LIMIT {
             let linearisations = self.linearised();
             let design = self.design_of(&linearisations)?;
