@@ -84,6 +84,14 @@ pub enum Error {
         /// Which setting or value, and why.
         source: centrical::simulate::SimulationError,
     },
+    /// A document has a value that has no place in JSON.
+    #[error("{document}: cannot be written as JSON: {source}")]
+    Json {
+        /// Its schema or file name.
+        document: &'static str,
+        /// Which value, and why.
+        source: serde_json::Error,
+    },
 }
 
 impl Error {

@@ -1,7 +1,19 @@
-//! Session folders and records in, calibration results out.
+//! What stands in the files of a session, and the whole jobs on them: session folders in, results out.
 //!
 //! Inputs are of any make: nothing in a file can make this crate panic, hang or fill the memory. What is
 //! wrong with a file is an [`Error`] with the file, the place, what was found and what was expected.
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use centrical_session::{Method, Session, calibrate};
+//!
+//! let session = Session::read(Path::new("../../examples/ta-200"))?;
+//! let result = calibrate(&session, Method::Exact, &|_| ())?;
+//! let bias = result.parameter("df_1").expect("the error model has a bias");
+//! assert!(bias.estimable && bias.standard_uncertainty.is_some_and(|u| u < 1e-3));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! # Formats of records and telemetry
 //! | format | columns |
@@ -13,7 +25,7 @@
 //! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
 //! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
 //!
-//! The format is told by the first bytes. Time is a number in a unit, a count of samples at a rate, or (text and
+//! The first bytes decide the format. Time is a number in a unit, a count of samples at a rate, or (text and
 //! Parquet) a stamp. It never decreases; it may stand still.
 
 mod document;

@@ -1,26 +1,26 @@
 //! Reduction of continuous records to plateau means.
 //!
-//! A record is one stream per mounting: plateaus of constant speed, the ramps between them, and settling after
+//! A record is one stream per mounting: plateaus of constant speed, ramps between them, and settling after
 //! each ramp. Every scheduled plateau is found in the record itself, and its reading is estimated by
 //!
 //! `f'(t) = mean + a exp(-(t - t_0) / tau) + c cos(Omega (t - t_0)) + s sin(Omega (t - t_0)) + noise`,
 //!
-//! the second term being what is left of the settling and the next two the once-per-revolution term (tilt of
-//! the axis of rotation); at rest only the mean is there. The noise is coloured, and one plateau is too short to tell
-//! its colour: it is pooled over all plateaus of the session ([`NoiseModel`]), and then gives every mean its
-//! covariance.
+//! The second term is the remaining settling, the next two are the once-per-revolution term (tilt of the axis of
+//! rotation); at rest the mean is the only term. The noise is coloured, and one plateau is too short to show its
+//! colour: it is pooled over all plateaus of the session ([`NoiseModel`]), and then gives every mean its covariance
+//! ([`plateau_means`]).
 //!
-//! Samples are taken with equal weight, or not at all: what is off the fit by more than `sqrt(2 ln 20 n)` robust standard
-//! deviations of `n` samples, what is stuck, and what is no number. Fewer than one in twenty plateaus loses a good sample
+//! Samples are taken with equal weight or rejected: spikes (off the fit by more than `sqrt(2 ln 20 n)` robust standard
+//! deviations of `n` samples), stuck readings, and readings that are not numbers. Fewer than one in twenty plateaus loses a good sample
 //! on an axis, so the mean has an efficiency above `1 - (2 ln 20 n) / (20 n)` of that of least squares, 0.999 of a thousand
 //! samples, and up to half of the samples may be spikes.
 //!
-//! A record that is decisively better explained by a mistake in taking it down, exchanged axes for one, is refused with
-//! that mistake by name ([`Mistake`]).
+//! A record that a recording mistake explains decisively better, such as exchanged axes, is refused with the name of
+//! that mistake ([`Mistake`]).
 //!
-//! Two passes, so that a record need never be held as a whole: the first makes blocks of it and finds the windows
-//! ([`Survey`]); the second takes the samples of one window at a time ([`Located`]). [`reduce`] is both, for a record in
-//! memory.
+//! Two passes, so that a record need never be held as a whole. The first condenses it to blocks ([`Survey`]), in which
+//! the windows are found ([`locate`]); the second takes the samples of one window at a time ([`Averaging`]). [`reduce`]
+//! does both for a record in memory.
 
 #![allow(
     clippy::inline_always,
@@ -48,11 +48,11 @@ pub use survey::{Condensed, Extremes, Survey};
 
 /// Finds and averages the scheduled plateaus of one mounting.
 ///
-/// The record and the schedule alone tell where the plateaus are. Telemetry adds the offset of its clock and the
-/// measured speeds.
+/// The plateaus are found by the record and the schedule alone. Telemetry adds the offset of its clock and the measured
+/// speeds.
 ///
 /// # Errors
-/// [`ReductionError`] if the record is not one (lengths, times), or a scheduled plateau is not in it.
+/// [`ReductionError`] if the record is invalid (lengths, times), or a scheduled plateau is not in it.
 pub fn reduce(
     record: &Record,
     telemetry: Option<&SpeedTrace>,
@@ -80,7 +80,7 @@ mod tests {
     const OMEGA: [f64; 4] = [0.0, 20.0, 45.0, 30.0];
     const ARM: f64 = 0.5;
 
-    /// Half a metre from the axis: settling, revolutions, coloured noise, spikes, a gap, a repeated stamp, a reading that is none.
+    /// Half a metre from the axis: settling, revolutions, coloured noise, spikes, a gap, a repeated stamp, a missing reading.
     fn record(seed: u64) -> Record {
         let mut random = Random::stream(seed, 0);
         let mut colour = Vector3::zeros();
@@ -117,7 +117,7 @@ mod tests {
             let means =
                 mountings.each_ref().map(|mounting| (mounting.settling_time(), plateau_means(mounting, &noise)));
             assert!(means.iter().flat_map(|(_, means)| means).any(|mean| mean.left_out.spikes > 0));
-            // Every number in the shortest form that tells it from all others.
+            // Every number in the shortest form that distinguishes it from all others.
             format!("{noise:?} {means:?}")
         });
     }

@@ -11,16 +11,16 @@
 //! `Default` is perfect equipment: every imperfection has to be named.
 
 mod draw;
+mod equipment;
 mod motion;
-mod noise;
 mod record;
 mod response;
-mod settings;
+mod sensor_noise;
 mod telemetry;
 
+pub use equipment::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, SimulationError, Spikes, Tachometer};
 pub use motion::TruePlateau;
 pub use record::Records;
-pub use settings::{Coloured, Gaps, Machine, Recorder, Sensor, Settings, SimulationError, Spikes, Tachometer};
 pub use telemetry::Telemetry;
 
 use crate::experiment::SetPoint;
@@ -28,17 +28,17 @@ use crate::measurement::MeasurementModel;
 use crate::parameter::Parameters;
 use draw::Draw;
 use motion::Motion;
-use noise::Sampling;
 use record::Physics;
+use sensor_noise::Sampling;
 
-/// A session as it would be recorded: a pure function of model, truth, settings and seed.
+/// A session as it would be recorded: a pure function of model, truth, equipment and seed.
 #[derive(Debug, Clone, Copy)]
 pub struct Simulation<'a> {
     model: &'a MeasurementModel,
     truth: &'a [f64],
-    settings: &'a Settings,
+    equipment: &'a Equipment,
     seed: u64,
-    /// Duration of each plateau in place of the machine's [s]; empty for none.
+    /// Duration of each plateau in place of the machine's [s]; empty for the machine's.
     durations: &'a [f64],
 }
 
@@ -54,14 +54,14 @@ impl<'a> Simulation<'a> {
     /// A session of `model`'s experiment with the unknowns at `truth` (in the order of the model's parameters).
     ///
     /// # Errors
-    /// [`SimulationError`] when `truth` does not fit this model, or a setting is out of its bounds.
+    /// [`SimulationError`] when `truth` does not fit this model, or a setting of the equipment is out of its bounds.
     pub fn new(
         model: &'a MeasurementModel,
         truth: &'a [f64],
-        settings: &'a Settings,
+        equipment: &'a Equipment,
         seed: u64,
     ) -> Result<Self, SimulationError> {
-        settings.check()?;
+        equipment.check()?;
         let parameters = model.parameters();
         if truth.len() != parameters.len() {
             return Err(SimulationError::TruthLength { found: truth.len(), expected: parameters.len() });
@@ -69,7 +69,7 @@ impl<'a> Simulation<'a> {
         if let Some(j) = truth.iter().position(|value| !value.is_finite()) {
             return Err(SimulationError::Truth { name: parameters[j].name.clone(), found: truth[j] });
         }
-        Ok(Self { model, truth, settings, seed, durations: &[] })
+        Ok(Self { model, truth, equipment, seed, durations: &[] })
     }
 
     /// The session with a duration for every set point [s] in place of [`Machine::plateau`].
@@ -82,7 +82,7 @@ impl<'a> Simulation<'a> {
             return Err(SimulationError::Durations { found: durations.len(), expected });
         }
         for &plateau in durations {
-            Settings { machine: Machine { plateau, ..self.settings.machine }, ..*self.settings }.check()?;
+            Equipment { machine: Machine { plateau, ..self.equipment.machine }, ..*self.equipment }.check()?;
         }
         Ok(Self { durations, ..self })
     }
@@ -90,11 +90,11 @@ impl<'a> Simulation<'a> {
     /// One mounting, by its index in the experiment.
     pub fn mounting(&self, mounting: usize) -> SimulatedMounting<'a> {
         let set_points = &self.model.experiment().set_points;
-        let duration = |n: usize| self.durations.get(n).copied().unwrap_or(self.settings.machine.plateau);
+        let duration = |n: usize| self.durations.get(n).copied().unwrap_or(self.equipment.machine.plateau);
         let visited = set_points.iter().enumerate().filter(|(_, s)| s.mounting == mounting);
         let schedule: Vec<(SetPoint, f64)> = visited.map(|(n, s)| (*s, duration(n))).collect();
         let random = Draw::Motion.stream(self.seed, mounting);
-        let motion = Motion::new(&schedule, &self.settings.machine, random);
+        let motion = Motion::new(&schedule, &self.equipment.machine, random);
         SimulatedMounting { simulation: *self, mounting, motion }
     }
 }
@@ -112,15 +112,15 @@ impl SimulatedMounting<'_> {
 
     /// The record, a stretch of it at a time.
     pub fn records(&self) -> Records<'_> {
-        let Simulation { model, truth, settings, seed, .. } = self.simulation;
-        let (interval, duration) = (1.0 / settings.recorder.rate, self.duration());
+        let Simulation { model, truth, equipment, seed, .. } = self.simulation;
+        let (interval, duration) = (1.0 / equipment.recorder.rate, self.duration());
         let sampling = Sampling { seed, mounting: self.mounting, interval, duration };
-        Records::new(Physics::new(model, truth, self.mounting), &self.motion, settings, &sampling)
+        Records::new(Physics::new(model, truth, self.mounting), &self.motion, equipment, &sampling)
     }
 
     /// The centrifuge's telemetry.
     pub fn telemetry(&self) -> Telemetry {
-        Telemetry::new(&self.motion, &self.simulation.settings.tachometer, self.simulation.seed, self.mounting)
+        Telemetry::new(&self.motion, &self.simulation.equipment.tachometer, self.simulation.seed, self.mounting)
     }
 }
 

@@ -6,7 +6,7 @@
 //! [`analyse`] does all of it:
 //! - [`regular_grid`] lays time-stamped readings on a regular grid.
 //! - [`leave_out_spikes`] removes errors of transmission.
-//! - [`Phase::integrate`] makes the phase, and bridges and counts missing readings ([`Gaps`]).
+//! - [`Phase::integrate`] makes the phase, and bridges and counts missing readings ([`BridgedGaps`]).
 //! - [`deviations`] gives any [`Estimator`] of the Allan family with chi^2 confidence intervals.
 //! - [`power_spectrum`] gives the spectral density, [`fit_noise_terms`] the terms of IEEE Std 952 and 1293.
 //!
@@ -14,7 +14,6 @@
 //! 2008, cited as SP 1065.
 
 mod analyse;
-mod components;
 mod degrees_of_freedom;
 mod deviation;
 mod error;
@@ -26,6 +25,7 @@ mod phase;
 mod power_law;
 mod spectrum;
 mod spikes;
+mod stochastic_terms;
 mod terms;
 mod total;
 mod variance;
@@ -36,7 +36,7 @@ pub use deviation::{Deviation, deviations};
 pub use error::NoiseError;
 pub use estimator::Estimator;
 pub use grid::{Grid, regular_grid};
-pub use phase::{Gaps, Phase};
+pub use phase::{BridgedGaps, Phase};
 pub use power_law::PowerLaw;
 pub use spectrum::{Spectrum, SpectrumBand, SpectrumLine, power_spectrum};
 pub use spikes::leave_out_spikes;

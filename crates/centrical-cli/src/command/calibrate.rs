@@ -72,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         write_all_documents(&result, laboratory.as_deref(), (*language).into(), folder)?;
     }
     let objections = objections(&result);
-    let text = if arguments.json { result.to_json() } else { report(&result, &objections, file.as_deref()) };
+    let text = if arguments.json { result.to_json()? } else { report(&result, &objections, file.as_deref()) };
     print(&text);
     Ok(Outcome::acceptable(objections.is_empty()))
 }

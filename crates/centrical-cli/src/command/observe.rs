@@ -24,7 +24,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let subject = subject(&arguments.design, &|_| ())?;
     let report = ObservabilityReport::of(&subject, &arguments.combination)?;
-    let text = if arguments.json { report.to_json() } else { observation_text(&report) };
+    let text = if arguments.json { report.to_json()? } else { observation_text(&report) };
     print(&text);
     Ok(Outcome::acceptable(report.is_acceptable()))
 }

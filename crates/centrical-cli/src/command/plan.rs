@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if let Some(file) = &arguments.svg {
         write_whole(file, frontier_plot(&report).as_bytes())?;
     }
-    let text = if arguments.json { report.to_json() } else { plan_text(&report) };
+    let text = if arguments.json { report.to_json()? } else { plan_text(&report) };
     print(&text);
     Ok(Outcome::acceptable(report.is_acceptable()))
 }

@@ -2,8 +2,10 @@
 
 use serde::Serialize;
 
+use crate::document::json;
 use crate::document::prediction::PredictionReport;
 use crate::document::result::Program;
+use crate::error::Error;
 
 /// Name of the schema's present version.
 pub(crate) const SCHEMA: &str = "centrical-plan/1";
@@ -142,10 +144,10 @@ impl PlanReport {
     }
 
     /// The text of the document.
-    pub fn to_json(&self) -> String {
-        // Plain structs with text keys: serialisation has nothing to fail on.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(SCHEMA, self)
     }
 }

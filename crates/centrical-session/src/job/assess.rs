@@ -86,6 +86,6 @@ fn prediction(model: &MeasurementModel, fit: &Fit, budget: &Budget, range: f64) 
     let values: Option<Vec<f64>> = terms.iter().map(|&j| fit.value(j)).collect();
     let covariance = |a: usize, b: usize| budget.covariance(terms[a], terms[b]).unwrap_or(f64::NAN);
     let covariance = DMatrix::from_fn(terms.len(), terms.len(), covariance);
-    let compensated = Compensated::new(model.error_model().clone(), values?, covariance)?;
+    let compensated = Compensated::new(model.error_model().with_coefficients(&values?), covariance)?;
     Some([0, 1, 2].map(|axis| compensated.curve(&Vector3::ith(axis, 1.0), range, POINTS)))
 }

@@ -28,15 +28,15 @@ pub struct Averaging<'a> {
     window: &'a Window,
     blocks: &'a Blocks,
     fitted: Fitted,
-    /// Their triangle and coefficients.
+    /// Triangle and coefficients of all samples so far.
     fit: Option<(Triangle, Vec<Vector3<f64>>)>,
-    /// Samples that are not used.
+    /// Rejected samples.
     left_out: LeftOut,
     /// Stamp of the last one [s].
     last: Option<f64>,
 }
 
-/// A mounting whose plateaus are found and averaged, before the noise of the session is known.
+/// A mounting with its plateaus located and averaged, before the noise of the session is known.
 #[derive(Debug, Clone)]
 pub struct ReducedMounting {
     pub(super) plateaus: Vec<PlateauFit>,
@@ -97,7 +97,7 @@ impl<'a> Averaging<'a> {
             if !strips.judge(&coefficients, once_out) {
                 break Some((triangle, coefficients));
             }
-            // From the second fit on, once out is out: the set shrinks, and the loop ends.
+            // From the second fit on, a rejected sample stays out: the set shrinks, and the loop ends.
             once_out = true;
         };
         check_range(&samples, &strips, index)?;
@@ -131,18 +131,18 @@ impl ReducedMounting {
         Self { plateaus, speeds, settling_time, clock_offset }
     }
 
-    /// Time constant of the settling after a ramp [s]; none if the record shows no settling.
+    /// Time constant of the settling after a ramp [s]; `None` if the record shows no settling.
     pub fn settling_time(&self) -> Option<f64> {
         self.settling_time
     }
 
-    /// The centrifuge's clock against the unit's; none without telemetry, or if no ramp is in both.
+    /// The centrifuge's clock against the unit's; `None` without telemetry, or if no ramp is in both.
     pub fn clock_offset(&self) -> Option<ClockOffset> {
         self.clock_offset
     }
 }
 
-/// Refuses good readings that pile up at the end of their range: what is cut off there is missing in the mean.
+/// Refuses good readings that pile up at the end of their range: the part cut off is missing in the mean.
 fn check_range(samples: &Samples, strips: &Strips, index: usize) -> Result<(), ReductionError> {
     let told = |axis: &usize| samples.white[*axis] > samples.digit[*axis];
     let looked_at = (0..3).filter(told).filter(|axis| may_be_piled_up(strips.most_at_an_end(*axis)));

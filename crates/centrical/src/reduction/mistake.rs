@@ -43,7 +43,7 @@ impl Mistake {
         i32::try_from(moved.saturating_sub(1) + reversed + units).unwrap_or(i32::MAX)
     }
 
-    /// Whether another orientation of the unit gives the same readings: a proper rotation, in the right unit.
+    /// Whether another mounting of the unit would give the same readings: a proper rotation, in the right unit.
     fn is_turn(&self) -> bool {
         let row = |i: usize| Vector3::ith(usize::from(self.source[i]), f64::from(self.sign[i]));
         self.factor == 1.0 && Matrix3::from_columns(&[row(0), row(1), row(2)]).determinant() > 0.0

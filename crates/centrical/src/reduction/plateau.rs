@@ -22,7 +22,7 @@ pub struct PlateauMean {
     pub samples: usize,
     /// Samples of the window left out: spikes, missing and stuck readings.
     pub rejected: usize,
-    /// What was left out, by kind.
+    /// The rejected samples, by kind.
     pub left_out: LeftOut,
     /// Mean reading, instrument axes [m/s^2].
     pub mean: Vector3<f64>,
@@ -36,20 +36,20 @@ pub struct PlateauMean {
     pub drift_uncertainty: Vector3<f64>,
     /// Covariance of either quadrature of the once-per-revolution term [m^2/s^4].
     pub once_per_revolution_covariance: Matrix3<f64>,
-    /// Median speed by the telemetry [rad/s], the clocks brought together.
+    /// Median speed by the telemetry [rad/s], corrected for the offset of its clock.
     pub measured_speed: Option<f64>,
-    /// What was left of the settling at the start of the window [m/s^2].
+    /// Remaining settling at the start of the window [m/s^2].
     pub settling: Vector3<f64>,
 }
 
-/// What is not used of a plateau's window, in samples.
+/// Rejected samples of a plateau's window, by kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeftOut {
-    /// Samples that stand out of the noise on some axis.
+    /// Samples outside the noise on some axis.
     pub spikes: usize,
     /// Samples in runs that repeat one reading for longer than noise does.
     pub stuck: usize,
-    /// Samples that never came, and readings that are not numbers.
+    /// Samples missing from the record, and readings that are not numbers.
     pub missing: usize,
     /// Samples with the stamp of the one before.
     pub repeated: usize,

@@ -19,7 +19,7 @@ pub struct RecordSlice<'a> {
 }
 
 impl Record {
-    /// The whole of it.
+    /// All of it.
     pub fn as_slice(&self) -> RecordSlice<'_> {
         RecordSlice { t: &self.t, f_z: self.f_z.each_ref().map(Vec::as_slice) }
     }
@@ -44,7 +44,7 @@ impl<'a> RecordSlice<'a> {
     #[must_use]
     pub fn repeated(&self, before: f64) -> Vec<usize> {
         let next = self.t.get(1..).unwrap_or_default();
-        // All are looked at, side by side: nearly always there is none.
+        // All are compared side by side first: repeated stamps are rare.
         let count = self.t.iter().zip(next).filter(|(t, next)| next <= t).count();
         if count == 0 && self.t.first().is_none_or(|first| *first > before) {
             return Vec::new();
@@ -53,7 +53,8 @@ impl<'a> RecordSlice<'a> {
         (0..self.t.len()).filter(is_repeated).collect()
     }
 
-    /// The record without these samples, in ascending order: few as a rule, and what is between them is copied at once.
+    /// The record without these samples, given in ascending order. They are few as a rule: each stretch between them is copied
+    /// at once.
     #[must_use]
     pub fn without(&self, samples: &[usize]) -> Record {
         let room = || Vec::with_capacity(self.t.len() - samples.len());

@@ -17,12 +17,12 @@ use grid::{Grid, SAMPLES};
 pub struct Survey {
     grid: Grid,
     blocks: Vec<Block>,
-    /// Samples of the block that the next stretch may go on with, and its number.
+    /// Samples of the block that the next stretch may continue, and its number.
     open: Record,
     number: usize,
 }
 
-/// A stretch condensed: its first and last block may be parts, and keep their samples.
+/// A condensed stretch: its first and last block may be incomplete, and keep their samples.
 #[derive(Debug, Clone)]
 pub struct Condensed {
     first: (usize, Record),
@@ -42,11 +42,10 @@ pub struct Extremes {
 }
 
 impl Survey {
-    /// Samples that a survey wants to see before it begins, if the record has them: their times tell the sampling
-    /// interval.
+    /// Samples that a survey needs to begin, if the record has them: their times give the sampling interval.
     pub const BEGINNING: usize = 4096;
 
-    /// Begins with the first times of a record; all but [`Survey::BEGINNING`] of them are left aside.
+    /// Begins with the first times of a record; those after the first [`Survey::BEGINNING`] are ignored.
     pub fn new(times: &[f64]) -> Self {
         let grid = Grid::new(&times[..times.len().min(Self::BEGINNING)]);
         Self { grid, blocks: Vec::new(), open: Record::default(), number: 0 }
@@ -64,7 +63,7 @@ impl Survey {
         Ok(survey)
     }
 
-    /// Condenses a stretch: nearly all the work, and nothing of it depends on other stretches.
+    /// Condenses a stretch: nearly all the work, independent of other stretches.
     pub fn condense(&self, stretch: RecordSlice) -> Condensed {
         let mut parts = self.grid.divide(stretch);
         let of = |part: Option<(usize, RecordSlice)>| {
@@ -96,7 +95,7 @@ impl Survey {
         }
     }
 
-    /// Goes on with a block, which may be the one that is open.
+    /// Adds samples to a block, which may be the open one.
     fn go_on(&mut self, number: usize, samples: &Record) {
         if number != self.number {
             self.close();
@@ -112,7 +111,7 @@ impl Survey {
         }
     }
 
-    /// What the record looks like, block by block.
+    /// The range of the readings, block by block.
     pub fn extremes(&self) -> impl Iterator<Item = Extremes> {
         let extremes = |block: &Block| Extremes { t: self.grid.middle(block.number), low: block.low, high: block.high };
         self.blocks.iter().map(extremes)

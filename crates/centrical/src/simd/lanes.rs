@@ -1,20 +1,20 @@
-//! Sums over many numbers in lanes that do not wait for each other, in an order that is always the same.
+//! Sums over many numbers in independent lanes, in an order that is always the same.
 //!
-//! What a [`widest`] work calls is compiled for the processor's vectors only where it is inlined: hence the attributes, and
-//! loops where an iterator's own would be a call.
+//! A function called by a [`widest`] work is compiled for the processor's vectors only if it is inlined: hence the
+//! attributes, and loops in place of iterator methods that would be calls.
 
 #[cfg(not(test))]
 use pulp::Arch;
 use pulp::{Simd, WithSimd};
 
-/// Lanes: as many as the widest processor has for one instruction.
+/// Lanes of one instruction of the widest processor.
 pub(crate) const LANES: usize = 8;
 
-/// Lanes of a long product: a processor has as many instructions under way.
+/// Lanes of a long product, so that a processor has several instructions in flight.
 const LONG: usize = 4 * LANES;
 
-/// Does a work with the widest vectors of the machine. They add and multiply as single numbers do, and what is fused is
-/// written so: the outcome is the same on any.
+/// Does a work with the widest vectors of the machine. They add and multiply as single numbers do, and fused operations
+/// are explicit: the result is the same on any machine.
 pub(crate) fn widest<W: WithSimd>(work: W) -> W::Output {
     #[cfg(test)]
     let processor = tests::PROCESSOR.get();
@@ -147,7 +147,7 @@ impl WithSimd for Product<'_> {
     }
 }
 
-/// Lanes joined by halves, each of which is a vector of its own.
+/// Lanes joined by halves, so that each half is a vector.
 #[inline(always)]
 pub(crate) fn joined<T: Copy>(lanes: [T; LANES], join: impl Fn(T, T) -> T) -> T {
     let [a, b, c, d, e, f, g, h] = lanes;
@@ -165,7 +165,7 @@ pub(crate) mod tests {
     use crate::random::Random;
 
     thread_local! {
-        /// Whose vectors this thread works with: the machine's own, unless a test chooses others.
+        /// The processor whose vectors this thread uses: the machine's own, unless a test chooses another.
         pub(crate) static PROCESSOR: Cell<Arch> = Cell::new(Arch::new());
     }
 
@@ -181,9 +181,9 @@ pub(crate) mod tests {
         processors
     }
 
-    /// Everything on all processors is that of single numbers, bit by bit.
+    /// The result on every processor equals that of single numbers, bit by bit.
     pub(crate) fn on_all<T: PartialEq + std::fmt::Debug + Send>(of: impl Fn() -> T + Sync) {
-        // Of one thread, so that all of the work is done on the one that the choice is made for.
+        // One thread, so that the choice of the processor holds for all of the work.
         let on = |processor: Arch| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
             pool.install(|| {

@@ -4,7 +4,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::settings::Machine;
+use super::equipment::Machine;
 use crate::experiment::SetPoint;
 use crate::measurement::ArmMotion;
 use crate::random::Random;
@@ -28,9 +28,9 @@ pub struct TruePlateau {
 /// A stretch of one law.
 #[derive(Debug, Clone, Copy)]
 struct Segment {
-    /// When it begins [s].
+    /// Begin [s].
     start: f64,
-    /// How long it lasts [s].
+    /// Duration [s].
     duration: f64,
     /// Carousel angle as it begins [rad].
     angle: f64,
@@ -110,7 +110,7 @@ impl Motion {
 struct Path<'a> {
     machine: &'a Machine,
     segments: Vec<Segment>,
-    /// When the last segment ends [s], and the angle there [rad].
+    /// End of the last segment [s], and the angle at it [rad].
     end: f64,
     angle: f64,
 }

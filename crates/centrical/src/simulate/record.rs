@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::draw::{Arrivals, Draw};
+use super::equipment::Equipment;
 use super::motion::Motion;
-use super::noise::{Noise, Sampling};
 use super::response::Response;
-use super::settings::Settings;
+use super::sensor_noise::{Sampling, SensorNoise};
 use crate::measurement::{ArmMotion, Carried, MeasurementModel};
 use crate::reduction::Record;
 
@@ -23,7 +23,7 @@ pub struct Records<'a> {
     /// Samples per second [Hz].
     rate: f64,
     physics: Physics<'a>,
-    noise: [Noise; 3],
+    noise: [SensorNoise; 3],
     transmission: Transmission,
     /// Segment of the motion that the last sample was in.
     segment: usize,
@@ -33,8 +33,8 @@ pub struct Records<'a> {
 }
 
 impl<'a> Records<'a> {
-    pub(super) fn new(physics: Physics<'a>, motion: &'a Motion, settings: &Settings, sampling: &Sampling) -> Self {
-        let rate = settings.recorder.rate;
+    pub(super) fn new(physics: Physics<'a>, motion: &'a Motion, equipment: &Equipment, sampling: &Sampling) -> Self {
+        let rate = equipment.recorder.rate;
         // Lengths are finite and not negative, and a cast to an integer saturates.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let count = (sampling.duration * rate) as u64 + 1;
@@ -42,8 +42,8 @@ impl<'a> Records<'a> {
             motion,
             rate,
             physics,
-            noise: [0, 1, 2].map(|axis| Noise::new(&settings.sensor, sampling, axis)),
-            transmission: Transmission::new(settings, sampling),
+            noise: [0, 1, 2].map(|axis| SensorNoise::new(&equipment.sensor, sampling, axis)),
+            transmission: Transmission::new(equipment, sampling),
             segment: 0,
             next: 0,
             count,
@@ -125,13 +125,13 @@ struct Transmission {
 }
 
 impl Transmission {
-    fn new(settings: &Settings, sampling: &Sampling) -> Self {
+    fn new(equipment: &Equipment, sampling: &Sampling) -> Self {
         let random = |draw: Draw| draw.stream(sampling.seed, sampling.mounting);
-        let (recorder, sensor) = (&settings.recorder, &settings.sensor);
+        let (recorder, sensor) = (&equipment.recorder, &equipment.sensor);
         Self {
             spikes: Arrivals::new(random(Draw::Spikes), recorder.spikes.probability),
             spike_size: recorder.spikes.size,
-            gaps: Arrivals::new(random(Draw::Gaps), recorder.gaps.probability),
+            gaps: Arrivals::new(random(Draw::Losses), recorder.gaps.probability),
             gap_end: 1.0 / recorder.gaps.length,
             resumes: 0,
             repeats: Arrivals::new(random(Draw::Repeats), recorder.repeats),
@@ -140,7 +140,7 @@ impl Transmission {
         }
     }
 
-    /// Adds sample `n` to the record as none, one or two rows.
+    /// Adds sample `n` to the record, as zero, one or two rows.
     #[inline]
     fn pass(&mut self, n: u64, t: f64, mut f: Vector3<f64>, record: &mut Record) {
         if let Some(random) = self.spikes.at(n) {
@@ -175,7 +175,7 @@ impl Transmission {
 /// [`f64::round`], which is a call where the processor that is compiled for has no instruction for it.
 #[inline]
 fn rounded(x: f64) -> f64 {
-    /// From here on there are no fractions.
+    /// Numbers from here on have no fraction.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     if x.abs() < WHOLE {
         #[expect(clippy::cast_possible_truncation)]

@@ -4,7 +4,7 @@ use super::deviation::{Deviation, deviations};
 use super::error::NoiseError;
 use super::estimator::Estimator;
 use super::grid::regular_grid;
-use super::phase::{Gaps, Phase};
+use super::phase::{BridgedGaps, Phase};
 use super::spectrum::{Spectrum, power_spectrum};
 use super::spikes::leave_out_spikes;
 use super::terms::{NoiseTerms, fit_noise_terms};
@@ -26,7 +26,7 @@ pub struct Analysis {
     /// Samples left out as repeated.
     pub repeated: usize,
     /// Missing readings that were bridged, spikes among them.
-    pub gaps: Gaps,
+    pub gaps: BridgedGaps,
     /// Deviations by estimator, at averaging factors 1, 2, 4, ...
     pub deviations: Vec<(Estimator, Vec<Deviation>)>,
     /// The spectrum, or why it could not be computed.

@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-/// What keeps a record from being analysed for noise.
+/// The reasons why the noise of a record cannot be analysed.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NoiseError {
     /// No finite sample at all.
@@ -9,7 +9,7 @@ pub enum NoiseError {
         /// Samples found.
         found: usize,
     },
-    /// Too few samples for what was asked.
+    /// Too few samples.
     #[error("found {found} samples, expected at least {expected}")]
     TooShort {
         /// Samples found.
@@ -23,7 +23,7 @@ pub enum NoiseError {
         /// Interval found, s.
         found: f64,
     },
-    /// Times and readings come in different numbers.
+    /// The numbers of times and readings differ.
     #[error("found {times} times for {readings} readings, expected as many of each")]
     Unpaired {
         /// Number of times.
@@ -66,7 +66,7 @@ pub enum NoiseError {
     /// A variance of the record vanishes.
     #[error("the record is constant or repeats exactly: it holds no noise to analyse")]
     Constant,
-    /// Gaps leave too little of the record in one piece.
+    /// BridgedGaps leave too little of the record in one piece.
     #[error("found {missing} of {readings} readings missing, expected stretches of which a tenth is missing at most")]
     TooManyGaps {
         /// Readings missing.

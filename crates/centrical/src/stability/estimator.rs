@@ -76,7 +76,7 @@ impl Estimator {
         }
     }
 
-    /// The variance at averaging factor `m`; none if the record, less its gaps, has no term that long.
+    /// The variance at averaging factor `m`; `None` if the record, less its gaps, has no term that long.
     pub fn variance(self, phase: &Phase, m: usize) -> Option<RawVariance> {
         let tau = m as f64 * phase.tau0();
         let phase_unit = |variance: RawVariance| RawVariance { value: variance.value * tau * tau / 3.0, ..variance };

@@ -8,7 +8,7 @@ use crate::statistics::{median, whole};
 pub struct Grid {
     /// Sampling interval, s.
     pub interval: f64,
-    /// One reading per grid point; NaN where the record has none.
+    /// One reading per grid point; NaN where it is missing.
     pub readings: Vec<f64>,
     /// Samples dropped because their grid point was taken by an earlier one.
     pub repeated: usize,

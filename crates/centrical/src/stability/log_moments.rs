@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use statrs::function::gamma::digamma;
 
-use super::components::{COMPONENTS, density, hadamard_response};
+use super::stochastic_terms::{STOCHASTIC, density, hadamard_response};
 
 /// The moments of the logarithms of overlapping Hadamard variances, as a function of the spectrum.
 ///
@@ -47,8 +47,8 @@ impl MomentModel {
         Self { frequency, response, factors, terms }
     }
 
-    /// Moments where the spectrum is the sum of the components with squared coefficients `theta`.
-    pub(super) fn moments(&self, theta: &[f64; COMPONENTS]) -> LogMoments {
+    /// Moments where the spectrum is the sum of the terms with squared coefficients `theta`.
+    pub(super) fn moments(&self, theta: &[f64; STOCHASTIC]) -> LogMoments {
         let spectrum: Vec<f64> = self.frequency.iter().map(|&f| density(theta, f)).collect();
         let mut filtered = self.response.clone();
         for (mut column, s) in filtered.column_iter_mut().zip(&spectrum) {
@@ -95,7 +95,7 @@ fn trigamma(x: f64) -> f64 {
 mod tests {
     use std::f64::consts::PI;
 
-    use super::super::components::hadamard_shares;
+    use super::super::stochastic_terms::hadamard_shares;
     use super::*;
 
     /// The spectra and the shares of the variance are two statements of the same noises.
@@ -103,8 +103,8 @@ mod tests {
     fn the_integral_of_each_spectrum_is_its_hadamard_variance() {
         let model = MomentModel::new(vec![16, 64], vec![1, 1]);
         let step = (model.frequency[1] / model.frequency[0]).ln();
-        for k in 0..COMPONENTS {
-            let mut theta = [0.0; COMPONENTS];
+        for k in 0..STOCHASTIC {
+            let mut theta = [0.0; STOCHASTIC];
             theta[k] = 1.0;
             for (i, m) in [16, 64].into_iter().enumerate() {
                 let two_sided = 2.0 * step;
@@ -114,7 +114,7 @@ mod tests {
                 // The band's upper end falls between two frequencies: half a step of 1 %.
                 assert!(
                     (two_sided * sum / expected - 1.0).abs() < 0.01,
-                    "component {k}, m = {m}: {} for {expected}",
+                    "term {k}, m = {m}: {} for {expected}",
                     two_sided * sum
                 );
             }

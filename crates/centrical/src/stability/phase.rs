@@ -13,14 +13,14 @@ use super::error::NoiseError;
 pub struct Phase {
     x: Vec<f64>,
     tau0: f64,
-    /// Filled readings before each phase point; none if nothing was filled.
+    /// Filled readings before each phase point; `None` without filled readings.
     filled_before: Option<Vec<u32>>,
-    gaps: Gaps,
+    gaps: BridgedGaps,
 }
 
-/// What was missing inside a record and had to be filled.
+/// Missing readings inside a record, which were filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Gaps {
+pub struct BridgedGaps {
     /// Runs of missing readings.
     pub runs: usize,
     /// Missing readings in all.
@@ -41,7 +41,7 @@ impl Phase {
         }
         match x.iter().position(|value| !value.is_finite()) {
             Some(index) => Err(NoiseError::NotFinite { index, found: x[index] }),
-            None => Ok(Self { x, tau0, filled_before: None, gaps: Gaps::default() }),
+            None => Ok(Self { x, tau0, filled_before: None, gaps: BridgedGaps::default() }),
         }
     }
 
@@ -50,8 +50,8 @@ impl Phase {
     /// A reading that is not finite is missing. Missing readings at the ends are cut off. A run of L missing ones
     /// inside is bridged by a straight line between the means of the readings within L on either side: for white
     /// noise such a bridge adds less variance than the readings it stands for (a line between the two neighbours
-    /// alone would add more). [`Phase::gaps`] says what was bridged, and the estimators built on differences leave
-    /// out every term of which more than a tenth was.
+    /// alone would add more). [`Phase::gaps`] counts the bridged readings; the estimators built on differences omit
+    /// every term with more than a tenth of them.
     ///
     /// # Errors
     /// [`NoiseError`] if `tau0` is not positive or fewer than 2 readings are finite.
@@ -66,7 +66,7 @@ impl Phase {
             return Err(NoiseError::TooShort { found: readings.len(), expected: 2 });
         }
         let runs = missing_runs(readings);
-        let gaps = Gaps {
+        let gaps = BridgedGaps {
             runs: runs.len(),
             missing: runs.iter().map(ExactSizeIterator::len).sum(),
             longest: runs.iter().map(ExactSizeIterator::len).max().unwrap_or(0),
@@ -95,8 +95,8 @@ impl Phase {
         self.tau0
     }
 
-    /// What was missing and bridged.
-    pub fn gaps(&self) -> Gaps {
+    /// The missing readings that were bridged.
+    pub fn gaps(&self) -> BridgedGaps {
         self.gaps
     }
 
@@ -133,7 +133,7 @@ fn missing_runs(readings: &[f64]) -> Vec<Range<usize>> {
 }
 
 fn mean_of_seen(readings: &[f64]) -> f64 {
-    // Two passes: the second takes off what rounding left in the first.
+    // Two passes: the second removes the rounding of the first.
     let seen = || readings.iter().filter(|y| y.is_finite());
     let count = seen().count() as f64;
     let mean = seen().sum::<f64>() / count;
@@ -171,7 +171,7 @@ mod tests {
         let mut gapped = ramp.clone();
         gapped[7..11].fill(f64::NAN);
         let (whole, bridged) = (Phase::integrate(&ramp, 0.5).unwrap(), Phase::integrate(&gapped, 0.5).unwrap());
-        assert_eq!(bridged.gaps(), Gaps { runs: 1, missing: 4, longest: 4 });
+        assert_eq!(bridged.gaps(), BridgedGaps { runs: 1, missing: 4, longest: 4 });
         // The means differ, so the phases differ by a straight line that second differences do not see.
         let bend = |p: &Phase, k: usize| p.x[k] - 2.0 * p.x[k - 1] + p.x[k - 2];
         assert!((2..21).all(|k| (bend(&whole, k) - bend(&bridged, k)).abs() < 1e-12));

@@ -1,4 +1,4 @@
-//! Power-law noises and which of them a record looks like at a given tau.
+//! Power-law noises, and the identification of the one that dominates at a given tau.
 
 use super::phase::Phase;
 
@@ -51,7 +51,7 @@ impl PowerLaw {
     /// Every m-th phase point, less a quadratic, is differenced until it is no longer more correlated than flicker:
     /// `rho = r_1 / (1 + r_1) < 1/4` or `order` times; then `alpha = 2 - round(2 rho) - 2 d` after d differences.
     /// `order` is that of the estimator, 2 (Allan) or 3 (Hadamard); its reddest noise is alpha = 2 - 2 order.
-    /// None with fewer than 30 points left, or if they do not vary.
+    /// `None` with fewer than 30 points left, or if they do not vary.
     /// Source: Riley and Greenhall, "Power law noise identification using the lag 1 autocorrelation", EFTF 2004.
     pub fn identify(phase: &Phase, m: usize, order: usize) -> Option<Self> {
         const FEWEST: usize = 30;
@@ -83,7 +83,7 @@ impl PowerLaw {
     }
 }
 
-/// `sum (z_i - mean)(z_(i+1) - mean) / sum (z_i - mean)^2`; none for a constant.
+/// `sum (z_i - mean)(z_(i+1) - mean) / sum (z_i - mean)^2`; `None` for a constant.
 fn lag_1_autocorrelation(z: &[f64]) -> Option<f64> {
     let mean = z.iter().sum::<f64>() / z.len() as f64;
     let variance: f64 = z.iter().map(|v| (v - mean).powi(2)).sum();

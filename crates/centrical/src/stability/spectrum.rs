@@ -19,7 +19,7 @@ pub struct Spectrum {
     pub skipped: usize,
     /// Equivalent degrees of freedom of a density (those at both ends of the band have half as many).
     pub degrees_of_freedom: f64,
-    /// Noise bandwidth of the window, Hz: what is narrower is not resolved.
+    /// Noise bandwidth of the window, Hz: narrower features are not resolved.
     pub resolution: f64,
 }
 
@@ -44,8 +44,8 @@ pub struct SpectrumLine {
 }
 
 impl Spectrum {
-    /// Mean densities of bands of equal width in logarithm, so many an octave; without the ends of the spectrum: the
-    /// mean at frequency 0 is taken off, and half the sampling rate has one side only.
+    /// Mean densities of bands of equal logarithmic width, `per_octave` of them an octave. They omit the ends of the spectrum:
+    /// the mean at frequency 0 is removed, and half the sampling rate has one side only.
     pub fn bands(&self, per_octave: f64) -> Vec<SpectrumBand> {
         let inner = 1..self.density.len().saturating_sub(1).max(1);
         let band = |k: &usize| (self.frequency[*k].log2() * per_octave).floor();
@@ -57,13 +57,13 @@ impl Spectrum {
             .collect()
     }
 
-    /// Lines: peaks above what the noise on both sides of them comes to by chance once in a thousand spectra.
+    /// Lines: peaks above the level that the noise about them exceeds in one of a thousand spectra.
     ///
     /// The noise about a peak is the larger of the medians of the densities on either side, the window's main lobe left
     /// out; densities of noise follow chi^2 with the spectrum's degrees of freedom.
     pub fn lines(&self) -> Vec<SpectrumLine> {
         const CHANCE: f64 = 1e-3;
-        /// Bins of the main lobe of the Hann window on either side of a line, and bins that tell the noise.
+        /// Bins of the main lobe of the Hann window on either side of a line, and bins that show the noise.
         const LOBE: usize = 2;
         const SIDE: usize = 24;
         let Ok(law) = ChiSquared::new(self.degrees_of_freedom) else { return Vec::new() };
@@ -174,7 +174,7 @@ fn hann(length: usize) -> Vec<f64> {
     (0..length).map(|j| (std::f64::consts::PI * j as f64 / length as f64).sin().powi(2)).collect()
 }
 
-/// The segment less its mean, windowed, and the window's power over what is present; none if too little is.
+/// The segment less its mean, windowed, and the window's power over what is present; `None` if too little is present.
 fn windowed(segment: &[f64], window: &[f64]) -> Option<(Vec<f64>, f64)> {
     let seen = || segment.iter().filter(|y| y.is_finite());
     let count = seen().count();

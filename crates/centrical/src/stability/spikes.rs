@@ -1,8 +1,8 @@
-//! Spikes: readings that are off their neighbours by more than noise.
+//! Spikes: readings that differ from their neighbours by more than noise.
 
 use crate::statistics::{MAD, cut, median};
 
-/// Marks the spikes among evenly spaced readings as missing (NaN) and says how many there were.
+/// Marks the spikes among evenly spaced readings as missing (NaN) and returns their number.
 ///
 /// A reading is compared with the median of the two on either side of it, which one more spike among them does not
 /// move. The limit is what fewer than one in twenty records of good readings exceed anywhere, `sqrt(2 ln 20 n)` robust

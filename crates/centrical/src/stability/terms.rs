@@ -5,12 +5,12 @@ use std::f64::consts::{LN_2, PI};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::components::{COMPONENTS, hadamard_shares};
 use super::error::NoiseError;
 use super::estimator::Estimator;
 use super::log_fit::LogFit;
 use super::log_moments::MomentModel;
 use super::phase::Phase;
+use super::stochastic_terms::{STOCHASTIC, hadamard_shares};
 
 /// A noise term: its two-sided spectrum and its share of the Allan variance.
 ///
@@ -74,7 +74,7 @@ impl NoiseTerm {
     }
 }
 
-/// What the record says of a coefficient.
+/// A coefficient as far as the record determines it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coefficient {
     /// The record shows the term.
@@ -103,7 +103,7 @@ pub struct NoiseTerms {
     /// Averaging times less terms present in the best fit. See [`NoiseTerms::is_consistent`].
     pub degrees_of_freedom: usize,
     /// Squared Q, N, B, K of the best fit, determined or not.
-    best: [f64; COMPONENTS],
+    best: [f64; STOCHASTIC],
 }
 
 impl NoiseTerms {
@@ -112,15 +112,15 @@ impl NoiseTerms {
         self.coefficients[term as usize]
     }
 
-    /// Whether chi-squared is such as the terms alone come to in 999 of 1000 records. If not, the record holds other
-    /// noise (a line, a colour of its own), and neither coefficients nor uncertainties should be quoted as they are.
+    /// Whether chi-squared is below the value that the terms alone stay below in 999 of 1000 records. If not, the record
+    /// holds other noise (a line, a colour of its own), and neither coefficients nor uncertainties should be quoted as they are.
     pub fn is_consistent(&self) -> bool {
         ChiSquared::new(self.degrees_of_freedom as f64)
             .is_ok_and(|distribution| self.chi_squared <= distribution.inverse_cdf(0.999))
     }
 
     /// Allan deviation at `tau` (s) of the best fit: a determined ramp, and the other terms at their most likely
-    /// values even where the record does not tell one from another.
+    /// values even where the record cannot separate them.
     pub fn allan_deviation(&self, tau: f64) -> f64 {
         let stochastic =
             NoiseTerm::ALL.iter().zip(&self.best).map(|(term, square)| term.allan_variance(square.sqrt(), tau));
@@ -138,7 +138,7 @@ impl NoiseTerms {
 /// take a ramp for random walk): their logarithms are fitted by least squares with the full covariance that the
 /// fitted spectrum implies, the squared coefficients held non-negative. All four are always free, so the uncertainty
 /// of each allows for any of the others. A term is determined if a record without it, the others free to take its
-/// place, costs 3^2 or more in chi-squared (for Gaussian residuals an absent term comes to that once in 700
+/// place, costs 3^2 or more in chi-squared (for Gaussian residuals an absent term reaches that once in 700
 /// records); else its upper bound is where chi-squared has risen by 1.645^2.
 ///
 /// The ramp is the least-squares slope of the readings, with the uncertainty that the fitted noise gives a slope; it
@@ -155,7 +155,7 @@ pub fn fit_noise_terms(phase: &Phase) -> Result<NoiseTerms, NoiseError> {
     let model = fit.best().ok_or(NoiseError::Indescribable)?;
     let deviations = fit.standard_deviations(&model).ok_or(NoiseError::Indescribable)?;
     let mut coefficients = [Coefficient::NotDetermined { upper_bound: f64::INFINITY }; 5];
-    for k in 0..COMPONENTS {
+    for k in 0..STOCHASTIC {
         let cost = fit.cost_of_absence(&model, k).ok_or(NoiseError::Indescribable)?;
         let unit = units[k].sqrt();
         coefficients[k] = if cost >= SHOWN {
@@ -166,7 +166,7 @@ pub fn fit_noise_terms(phase: &Phase) -> Result<NoiseTerms, NoiseError> {
         };
     }
     let best = std::array::from_fn(|k| model.theta[k] * units[k]);
-    coefficients[COMPONENTS] = ramp(phase, &coefficients, &best);
+    coefficients[STOCHASTIC] = ramp(phase, &coefficients, &best);
     let present = model.theta.iter().filter(|theta| **theta > 0.0).count();
     Ok(NoiseTerms {
         coefficients,
@@ -179,7 +179,7 @@ pub fn fit_noise_terms(phase: &Phase) -> Result<NoiseTerms, NoiseError> {
 
 /// The Hadamard variances of the record, in units of the first of them and of tau0, and those units of the squared
 /// Q, N, B, K: `s^2 (tau0^2, tau0, 1, 1 / tau0)`.
-fn prepare(phase: &Phase) -> Result<(LogFit, [f64; COMPONENTS]), NoiseError> {
+fn prepare(phase: &Phase) -> Result<(LogFit, [f64; STOCHASTIC]), NoiseError> {
     const SHORTEST: usize = 64;
     /// Intervals the longest tau leaves: fewer and the third differences have hardly two degrees of freedom.
     const INTERVALS: usize = 5;
@@ -192,7 +192,7 @@ fn prepare(phase: &Phase) -> Result<(LogFit, [f64; COMPONENTS]), NoiseError> {
         .into_iter()
         .filter_map(|m| Some((m, Estimator::OverlappingHadamard.variance(phase, m)?)))
         .collect();
-    if variances.len() < COMPONENTS {
+    if variances.len() < STOCHASTIC {
         return Err(NoiseError::TooManyGaps { missing: phase.gaps().missing, readings });
     }
     if variances.iter().any(|(_, variance)| variance.value <= 0.0) {
@@ -204,7 +204,7 @@ fn prepare(phase: &Phase) -> Result<(LogFit, [f64; COMPONENTS]), NoiseError> {
     let (factors, terms): (Vec<_>, Vec<_>) = variances.iter().map(|(m, variance)| (*m, variance.terms)).unzip();
     let fit = LogFit {
         logarithms: DVector::from_iterator(factors.len(), logarithms),
-        shares: DMatrix::from_fn(factors.len(), COMPONENTS, |j, k| shares[j][k]),
+        shares: DMatrix::from_fn(factors.len(), STOCHASTIC, |j, k| shares[j][k]),
         moments: MomentModel::new(factors.clone(), terms),
         factors,
     };
@@ -216,13 +216,13 @@ fn prepare(phase: &Phase) -> Result<(LogFit, [f64; COMPONENTS]), NoiseError> {
 ///
 /// Its variance over the record's length T is `72 Q^2/T^4 + 12 N^2/T^3 + 9 B^2/(pi T^2) + 6 K^2/(5 T)`: the double
 /// integral of the weights `12 t / T^3` with each noise's generalised autocovariance.
-fn ramp(phase: &Phase, stochastic: &[Coefficient; 5], best: &[f64; COMPONENTS]) -> Coefficient {
-    let variance = |squares: [f64; COMPONENTS]| {
+fn ramp(phase: &Phase, stochastic: &[Coefficient; 5], best: &[f64; STOCHASTIC]) -> Coefficient {
+    let variance = |squares: [f64; STOCHASTIC]| {
         let length = (phase.points().len() - 1) as f64 * phase.tau0();
         let shares = [72.0 / length.powi(4), 12.0 / length.powi(3), 9.0 / (PI * length * length), 1.2 / length];
         squares.iter().zip(shares).map(|(square, share)| square * share).sum::<f64>()
     };
-    let at_most: [f64; COMPONENTS] = std::array::from_fn(|k| match stochastic[k] {
+    let at_most: [f64; STOCHASTIC] = std::array::from_fn(|k| match stochastic[k] {
         Coefficient::Determined { value, .. } => value * value,
         Coefficient::NotDetermined { upper_bound } => upper_bound * upper_bound,
     });

@@ -7,7 +7,7 @@ pub struct RawVariance {
     pub value: f64,
     /// Terms in the mean.
     pub terms: usize,
-    /// Terms there would be without gaps.
+    /// Number of terms without gaps.
     pub possible: usize,
 }
 

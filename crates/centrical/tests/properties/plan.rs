@@ -368,7 +368,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let model = candidates.scenarios[0].model.in_experiment(experiment);
     // Noise of 20 ug/sqrt(Hz) at this rate.
     let white = 20e-6 * 9.80665 * (0.5 * RATE).sqrt();
-    let settings = centrical::simulate::Settings {
+    let settings = centrical::simulate::Equipment {
         machine: Machine { plateau: 40.0, speed_error: 1e-5, ..Machine::default() },
         sensor: Sensor { white, ..Sensor::default() },
         recorder: Recorder { rate: RATE, ..Recorder::default() },
@@ -410,7 +410,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
 fn calibration_means(
     model: &MeasurementModel,
     truth: &[f64],
-    settings: &centrical::simulate::Settings,
+    settings: &centrical::simulate::Equipment,
     seed: u64,
 ) -> Vec<Observation> {
     let simulation = Simulation::new(model, truth, settings, seed).unwrap();
@@ -449,7 +449,7 @@ fn reading_criterion_is_the_mean_over_forces() {
     let [_, cubature] = prediction.reading(RANGE).unwrap();
     let first = model.parameters().find("df_1").unwrap();
     let covariance = DMatrix::from_fn(21, 21, |i, j| prediction.budget().covariance(first + i, first + j).unwrap());
-    let compensated = Compensated::new(ErrorModel::kozlov_2017(), vec![0.0; 21], covariance).unwrap();
+    let compensated = Compensated::new(ErrorModel::kozlov_2017().with_coefficients(&[0.0; 21]), covariance).unwrap();
     let mut random = Random::new(9);
     let draws = 40_000;
     let mut squares = Vec::with_capacity(draws);

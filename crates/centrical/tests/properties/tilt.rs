@@ -3,7 +3,7 @@
 use centrical::PairRelation;
 use centrical::position::ThirdPosition;
 use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
-use centrical::simulate::{Machine, Sensor, Settings, Simulation, draw_truth};
+use centrical::simulate::{Equipment, Machine, Sensor, Simulation, draw_truth};
 use centrical::uncertainty::{OncePerRevolution, TiltComparison, tilt_while_spinning};
 use centrical::{MeasurementModel, Observation, fit, linear};
 use nalgebra::Vector3;
@@ -13,13 +13,13 @@ use crate::common::{experiment, kozlov};
 const SPEED_ERROR: f64 = 1e-5;
 
 fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean> {
-    let settings = Settings {
+    let equipment = Equipment {
         machine: Machine { plateau: 8.0, speed_error: SPEED_ERROR, settling: 1e-3, ..Machine::default() },
         sensor: Sensor { white: 2e-3, ..Sensor::default() },
-        ..Settings::default()
+        ..Equipment::default()
     };
     let experiment = model.experiment();
-    let simulation = Simulation::new(model, truth, &settings, seed).expect("the settings make sense");
+    let simulation = Simulation::new(model, truth, &equipment, seed).expect("the equipment is within its bounds");
     let of_mounting = |m: usize| {
         let record = simulation.mounting(m).records().fold(Record::default(), |mut whole, stretch| {
             whole.t.extend(stretch.t);

@@ -1,4 +1,4 @@
-//! A window's residuals and design condensed to equal cells of time: all that the slow part of the noise needs.
+//! A window's residuals and design summed over equal cells of time: all that the slow part of the noise needs.
 
 use nalgebra::Vector3;
 
@@ -43,7 +43,7 @@ impl Cells {
         }
     }
 
-    /// Fills a cell: how many good samples, their residuals and orthonormal columns summed.
+    /// Fills a cell: the number of good samples, and the sums of their residuals and orthonormal columns.
     pub fn fill(&mut self, cell: usize, count: usize, residuals: Vector3<f64>, q: &[f64]) {
         self.counts[cell] = count as f64;
         self.residuals[cell] = residuals;
@@ -52,15 +52,15 @@ impl Cells {
         }
     }
 
-    /// How the mean weighs the samples.
+    /// The weights of the samples in the mean.
     pub fn mean_weights(&self) -> Weights {
         let q = &self.q[self.q.len() - 1];
         let squares = 1.0 / (self.mean_scale * self.mean_scale);
         Weights { by_cell: q.iter().map(|q| q / self.mean_scale).collect(), squares }
     }
 
-    /// The part of a slow function of time, one value a cell, that the fit leaves to the residuals: as weights, and its
-    /// product with the readings.
+    /// The part of a slow function of time, one value a cell, that the fit does not absorb: as weights, and its product
+    /// with the readings.
     pub fn contrast(&self, function: &[f64]) -> (Weights, Vector3<f64>) {
         let fitted: Vec<f64> = self.q.iter().map(|q| dot(q, function)).collect();
         let mut by_cell: Vec<f64> = function.iter().zip(&self.counts).map(|(v, n)| v * n).collect();
@@ -77,7 +77,7 @@ impl Cells {
     pub fn free_of(&self, function: &[f64], other: &[f64]) -> Vec<f64> {
         let (weights, _) = self.contrast(other);
         let share = dot(&weights.by_cell, function) / weights.squares;
-        // What the fit has taken up wholly is not there to be taken out.
+        // A function that the fit absorbs wholly has no contrast.
         let share = if share.is_finite() { share } else { 0.0 };
         function.iter().zip(other).map(|(f, o)| f - share * o).collect()
     }

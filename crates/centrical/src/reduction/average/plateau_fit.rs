@@ -1,4 +1,4 @@
-//! What the samples of a plateau's window say: the mean, the other terms, and sums for the covariance.
+//! The fit of a plateau's window: the mean, the other terms, and the sums for the covariance.
 
 use nalgebra::Vector3;
 
@@ -9,7 +9,7 @@ use crate::reduction::plateau::LeftOut;
 use crate::reduction::survey::Blocks;
 use crate::reduction::triangle::{TERMS, Triangle};
 
-/// One plateau, fitted; what its covariance needs is kept in cells.
+/// The fit of one plateau; the cells hold what its covariance needs.
 #[derive(Debug, Clone)]
 pub struct PlateauFit {
     pub(in crate::reduction) window: [f64; 2],
@@ -25,7 +25,7 @@ pub struct PlateauFit {
     pub(in crate::reduction) variance: Vector3<f64>,
     /// Settling at the start of the window [m/s^2].
     pub(in crate::reduction) settling: Vector3<f64>,
-    /// Residuals and design, condensed.
+    /// Residuals and design, summed by cell.
     pub(in crate::reduction) cells: Cells,
 }
 

@@ -1,4 +1,4 @@
-//! The samples of a plateau's window, and what is looked up in them before and after the fit.
+//! The samples of a plateau's window: their spread, a robust first fit, and the count of the rejected ones.
 
 use std::borrow::Cow;
 use std::f64::consts::SQRT_2;
@@ -18,8 +18,8 @@ use crate::reduction::triangle::Triangle;
 use crate::simd::lanes::{subtract_all, widest};
 use crate::statistics::{MAD, cut, median, whole};
 
-/// Samples of a window that show their spread, and of these the neighbours that are taken together, for they come from the
-/// memory together.
+/// Samples of a window that represent all of them, and the neighbours among these that are taken together, since the
+/// memory delivers them together.
 const SHOWN: usize = 4096;
 const NEIGHBOURS: usize = 8;
 
@@ -34,7 +34,7 @@ pub(super) struct Samples<'a> {
     pub f_z: [Cow<'a, [f64]>; 3],
     /// Share of readings that repeat the one before by chance.
     pub repeat_rate: [f64; 3],
-    /// Some of all, that show their spread.
+    /// A subset that represents all of them.
     shown: Shown,
     /// Samples with the stamp of the one before.
     repeated: usize,
@@ -44,7 +44,7 @@ pub(super) struct Samples<'a> {
     pub interval: f64,
 }
 
-/// Some of a window's samples with their design.
+/// A subset of a window's samples with their design.
 struct Shown {
     t: Vec<f64>,
     columns: Vec<Vec<f64>>,
@@ -52,7 +52,7 @@ struct Shown {
 }
 
 impl<'a> Samples<'a> {
-    /// The samples of a record, all in a window, without repeated stamps; so many of these had been left out of it before.
+    /// The samples of a record within a window, without the repeated stamps; `repeated` of these are already removed.
     pub fn cut_out(record: RecordSlice<'a>, repeated: usize, window: &'a Window, blocks: &'a Blocks) -> Self {
         let RecordSlice { t, f_z } = record;
         let came = t.len();
@@ -78,7 +78,7 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// How many there are.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         self.t.len()
     }
@@ -99,8 +99,8 @@ impl<'a> Samples<'a> {
         })
     }
 
-    /// A fit through the medians of the cells, which no spike moves, of the samples that are shown. The once-per-revolution
-    /// term is not in it: cells may be longer than a revolution.
+    /// A fit through the medians of the cells, over the shown samples: no spike moves it. It has no once-per-revolution
+    /// term, since cells may be longer than a revolution.
     pub fn fit_of_medians(&self) -> Vec<Vector3<f64>> {
         let [from, to] = self.window.span;
         let shape = Shape { omega: 0.0, ..self.window.shape };
@@ -116,17 +116,16 @@ impl<'a> Samples<'a> {
         Triangle::fit(shape.columns(&middles), medians).unwrap_or_default()
     }
 
-    /// How large a residual of a good sample may be, the last terms having these coefficients. The spread is seen by some
-    /// thousands of samples.
+    /// The largest residual of a good sample, the last terms having these coefficients. Some thousands of samples show
+    /// the spread.
     pub fn limits(&self, coefficients: &[Vector3<f64>]) -> Vector3<f64> {
         let cut = cut(self.len());
-        // Rounding moves a reading by a digit at most, and may leave no spread to see.
+        // Rounding moves a reading by a digit at most, and may leave no spread.
         Vector3::from_fn(|axis, _| cut * MAD * self.shown.median_residual(coefficients, axis) + self.digit[axis])
     }
 
-    /// What is not used, by kind, `rejected` being the samples that came and are not, with those among them that are stuck
-    /// and those that are no numbers. Samples that never came are counted by the intervals between those that did, the stamp
-    /// before all of them among these.
+    /// The rejected samples by kind: `rejected` of the recorded ones, among them the stuck and the unreadable. Samples
+    /// missing from the record are counted by the intervals between the recorded ones, from the stamp `before` on.
     pub fn left_out(&self, before: Option<f64>, rejected: usize, (stuck, unreadable): (usize, usize)) -> LeftOut {
         let gap = 1.5 * self.interval;
         let to_first = before.zip(self.t.first()).map_or(0.0, |(before, first)| first - before);
@@ -135,18 +134,18 @@ impl<'a> Samples<'a> {
         LeftOut { spikes: rejected - stuck - unreadable, stuck, missing: unreadable + missing, repeated: self.repeated }
     }
 
-    /// Samples that never came: in steps of at least so long.
+    /// Samples missing from the record, in steps of at least `least`.
     fn samples_in_gaps(&self, least: f64) -> usize {
         let gaps = self.t.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step >= least);
         gaps.map(|step| self.samples_in(step)).sum()
     }
 
-    /// Samples that should have come within a step.
+    /// Samples missing within a step.
     fn samples_in(&self, step: f64) -> usize {
         whole((step / self.interval).round()) - 1
     }
 
-    /// Why most samples cannot be used.
+    /// The reason why most samples are rejected.
     pub fn unsteady(&self, index: usize, good: usize) -> ReductionError {
         let (window, samples) = (self.window.span, self.len());
         let (axis, (value, stuck)) = [0, 1, 2]
@@ -154,7 +153,7 @@ impl<'a> Samples<'a> {
             .into_iter()
             .max_by_key(|most| most.1.1)
             .unwrap_or_default();
-        // Most: a lesser number of equal readings does not keep the others from being averaged.
+        // A smaller share of equal readings does not keep the others from being averaged.
         if 3 * stuck > samples {
             ReductionError::Stuck { index, window, axis, value, samples, stuck }
         } else {
@@ -163,7 +162,7 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// Steps of time, of which the shortest and the longest are looked for.
+/// The shortest and the longest step of time.
 struct Steps<'a> {
     t: &'a [f64],
 }
@@ -209,9 +208,8 @@ impl Shown {
     }
 }
 
-/// Some of so many samples, or all of them: neighbours in each of equal ranges, at a place in it that is as good as random, so that
-/// nothing periodic is always seen at the same phase. Places in steps would not do: with the ranges they make steps again, and some
-/// rotation has whole turns in each.
+/// A subset of `all` samples: neighbours in each of equal ranges, at a quasi-random place in it, so that nothing periodic
+/// is always sampled at the same phase. Places at equal steps would fail: some rotation has whole turns in each step.
 fn spread_out(all: usize) -> impl Iterator<Item = Range<usize>> {
     let step = (all * NEIGHBOURS).div_ceil(SHOWN).max(NEIGHBOURS);
     (0..all).step_by(step).enumerate().map(move |(k, from)| {
@@ -228,7 +226,7 @@ mod tests {
 
     use super::{NEIGHBOURS, spread_out};
 
-    /// How much the samples that are shown are seen at one phase of something with so many turns per sample: 1 if always.
+    /// The concentration of the shown samples at one phase of something with `turns` per sample: 1 if always.
     fn concentration(all: usize, turns: f64) -> f64 {
         let phases = spread_out(all).map(|part| TAU * (turns * part.start as f64).fract());
         let (count, cosines, sines) =

@@ -1,14 +1,14 @@
 //! Saturation: readings that pile up at the end of their range.
 
-/// What chance is not believed to do.
+/// Probability below which a count is not chance.
 const CHANCE: f64 = 1e-6;
 
-/// The value at which readings pile up, and how many do; none if they do not.
+/// The value at which readings pile up, and their number; `None` if they do not.
 ///
 /// The numbers of readings at the outermost values of a noisy reading fall off: log-concavity, which the normal law keeps
 /// when it is rounded, makes the outermost number no more than `n_1^2 / n_2` of the next two on average. A number that
-/// Poisson's law has less than once in a million times about that is a pile. Where noise is less than a digit nothing can
-/// be told: the crest of a slow wave piles up as well.
+/// Poisson's law exceeds less than once in a million times about that average is a pile. Noise below a digit allows no
+/// decision: the crest of a slow wave piles up as well.
 pub(super) fn piled_up(mut readings: Vec<f64>) -> Option<(f64, usize)> {
     readings.sort_by(f64::total_cmp);
     let counts: Vec<(f64, usize)> = readings.chunk_by(f64::eq).map(|same| (same[0], same.len())).collect();
@@ -21,12 +21,12 @@ pub(super) fn piled_up(mut readings: Vec<f64>) -> Option<(f64, usize)> {
     top.into_iter().chain(bottom).max_by_key(|end| end.1)
 }
 
-/// Whether so many readings at the end of their range are worth a look at the others: nearly always there is one or two.
+/// Whether this number of readings at the end of their range calls for a closer look: nearly always it is one or two.
 pub(super) fn may_be_piled_up(most: usize) -> bool {
     poisson_tail(most, 1.0) < CHANCE
 }
 
-/// The value that readings have most often, and how often.
+/// The most frequent value of the readings, and its count.
 pub(super) fn standing(f: &[f64]) -> (f64, usize) {
     let mut values: Vec<f64> = f.iter().copied().filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
@@ -42,22 +42,15 @@ fn poisson_tail(count: usize, mean: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::piled_up;
-
-    /// Sums of twelve uniform numbers: nearly normal, unit variance.
-    fn normal(n: usize) -> Vec<f64> {
-        let mut state = 1_u64;
-        let mut uniform = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        (0..n).map(|_| (0..12).map(|_| uniform()).sum::<f64>() - 6.0).collect()
-    }
+    use crate::random::Random;
 
     #[test]
     fn clipped_readings_pile_up_and_noise_does_not() {
         for digit in [0.0, 1e-3, 0.1, 0.5, 1.0] {
             let rounded = |f: f64| if digit > 0.0 { (f / digit).round() * digit } else { f };
-            for part in normal(100_000).chunks(2000) {
+            let mut random = Random::stream(1, 0);
+            let normal: Vec<f64> = (0..100_000).map(|_| random.normal()).collect();
+            for part in normal.chunks(2000) {
                 let plain: Vec<f64> = part.iter().map(|f| rounded(*f)).collect();
                 assert_eq!(piled_up(plain), None, "digit {digit}");
                 if digit < 0.2 {

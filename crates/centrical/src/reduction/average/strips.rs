@@ -1,4 +1,4 @@
-//! The samples of a window in strips that stay in the fastest memory: which are good, and what they say.
+//! The samples of a window in strips that fit the fastest memory: which are good, and their information.
 
 use std::ops::Range;
 
@@ -10,26 +10,26 @@ use super::stuck::{longest_run, may_be_longer, stuck_on_any_axis};
 use crate::reduction::triangle::{TERMS, Triangle};
 use crate::simd::lanes::{dot, largest, range, subtract, widest};
 
-/// Samples of a strip at most.
+/// Most samples of a strip.
 const STRIP: usize = 512;
 
 /// A part of a window's samples, judged by a fit.
 pub(super) struct Strips<'a> {
     samples: &'a Samples<'a>,
-    /// The stuck ones, if there are any.
+    /// The stuck samples, if any.
     stuck: Option<Vec<bool>>,
-    /// With those of the parts before, which are fitted together with these.
+    /// With the strips of the parts before, which are fitted together with these.
     fitted: Fitted,
     /// The first of this part.
     first: usize,
 }
 
-/// Strips whose samples are not needed any more.
+/// Strips whose samples are no longer needed.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Fitted {
-    /// Terms that are fitted.
+    /// Number of fitted terms.
     terms: usize,
-    /// Near the readings: less of them is left to rounding.
+    /// A value near the readings, subtracted from them to reduce rounding.
     reference: [f64; 3],
     each: Vec<Strip>,
 }
@@ -39,13 +39,13 @@ pub(super) struct Fitted {
 pub(super) struct Strip {
     pub cell: usize,
     range: Range<usize>,
-    /// Those that are not good, counted within the strip, in ascending order.
+    /// The bad samples, counted within the strip, in ascending order.
     bad: Vec<usize>,
-    /// Of the good ones, as is what follows.
+    /// Of the good samples, as are the fields that follow.
     triangle: Triangle,
     /// Largest entry of each column of `Q`.
     reach: [f64; TERMS],
-    /// Largest of what the strip's own fit leaves of the readings, and its square sum [m/s^2].
+    /// Largest residual of the strip's own fit, and the sum of the squares [m/s^2].
     largest: [f64; 3],
     squares: [f64; 3],
     /// Lowest and highest reading [m/s^2].
@@ -68,13 +68,13 @@ pub(super) struct Sums {
 struct Fit {
     /// Of the readings less the reference [m/s^2].
     coefficients: [[f64; 3]; TERMS],
-    /// How large a residual of a good sample may be [m/s^2].
+    /// Largest residual of a good sample [m/s^2].
     limits: [f64; 3],
-    /// Whether those that were not good stay out.
+    /// Whether bad samples stay out.
     once_out: bool,
 }
 
-/// Room to work in, in lines of the fastest memory.
+/// Working memory, aligned to cache lines.
 #[repr(align(64))]
 struct Room {
     columns: [[f64; STRIP]; TERMS],
@@ -103,7 +103,7 @@ impl<'a> Strips<'a> {
         let mut may_be_stuck = false;
         strips.each(|strip, strips, room| {
             widest(Orthogonalisation { strip, strips, room });
-            // Looked at while the readings are at hand.
+            // Checked while the readings are in the cache.
             may_be_stuck =
                 may_be_stuck || (0..3).any(|axis| may_be_longer(&samples.f_z[axis], &strip.range, longest[axis]));
         });
@@ -113,7 +113,7 @@ impl<'a> Strips<'a> {
         strips
     }
 
-    /// What is left of this part once it is judged.
+    /// The strips of the judged samples.
     pub fn into_fitted(self) -> Fitted {
         self.fitted
     }
@@ -123,8 +123,8 @@ impl<'a> Strips<'a> {
         self.fitted.solve()
     }
 
-    /// Judges the samples by a fit whose last terms have these coefficients: whether other ones are good than before. With
-    /// `once_out`, those that were not good stay out.
+    /// Judges the samples by a fit whose last terms have these coefficients; true if the set of good samples changed. With
+    /// `once_out`, bad samples stay out.
     pub fn judge(&mut self, coefficients: &[Vector3<f64>], once_out: bool) -> bool {
         let limits = self.samples.limits(coefficients).into();
         let fit = Fit { coefficients: self.fitted.less_reference(coefficients), limits, once_out };
@@ -147,12 +147,12 @@ impl<'a> Strips<'a> {
         &self.fitted.each[self.first..]
     }
 
-    /// How many are good.
+    /// Number of good samples.
     pub fn good(&self) -> usize {
         self.part().iter().map(Strip::good).sum()
     }
 
-    /// How many are stuck, and how many of the others are no numbers on some axis.
+    /// Numbers of stuck samples, and of unreadable ones among the others.
     pub fn stuck_and_unreadable(&self) -> (usize, usize) {
         let is_stuck = |i: &usize| self.stuck.as_ref().is_some_and(|stuck| stuck[*i]);
         let is_readable = |i: &usize| self.samples.f_z.iter().all(|f| f[*i].is_finite());
@@ -160,7 +160,7 @@ impl<'a> Strips<'a> {
         (bad().filter(is_stuck).count(), bad().filter(|i| !is_stuck(i) && !is_readable(i)).count())
     }
 
-    /// How many good samples have the lowest reading on an axis, or the highest, whichever are more.
+    /// The number of good samples with the lowest reading on an axis, or with the highest, whichever is larger.
     pub fn most_at_an_end(&self, axis: usize) -> usize {
         let low = self.part().iter().map(|strip| strip.low[axis]).fold(f64::INFINITY, f64::min);
         let high = self.part().iter().map(|strip| strip.high[axis]).fold(f64::NEG_INFINITY, f64::max);
@@ -178,12 +178,12 @@ impl<'a> Strips<'a> {
 }
 
 impl Fitted {
-    /// How many are good.
+    /// Number of good samples.
     pub fn good(&self) -> usize {
         self.each.iter().map(Strip::good).sum()
     }
 
-    /// How many are not.
+    /// Number of bad samples.
     pub fn bad(&self) -> usize {
         self.each.iter().map(|strip| strip.bad.len()).sum()
     }
@@ -203,7 +203,7 @@ impl Fitted {
         self.each.iter().map(move |strip| (strip.cell, strip.sums(&coefficients, self.terms)))
     }
 
-    /// The coefficients of all terms, the constant's less the reference; of terms that are not given, zero.
+    /// The coefficients of all terms, zero where not given, with the reference subtracted from the constant's.
     fn less_reference(&self, coefficients: &[Vector3<f64>]) -> [[f64; 3]; TERMS] {
         let mut all = [[0.0; 3]; TERMS];
         let given = &mut all[self.terms - coefficients.len()..self.terms];
@@ -213,7 +213,7 @@ impl Fitted {
     }
 }
 
-/// A strip to be fitted by itself.
+/// A strip to be fitted on its own.
 struct Orthogonalisation<'a> {
     strip: &'a mut Strip,
     strips: &'a Strips<'a>,
@@ -298,20 +298,20 @@ impl Strip {
         good.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], f| [low.min(f), high.max(f)])
     }
 
-    /// Whether all samples are seen to be good without a look at each: a residual is what the strip's own fit leaves, and
-    /// what the coefficients leave in the directions of `Q`.
+    /// Whether a bound shows all samples to be good: a residual is the sum of that of the strip's own fit and of what the
+    /// coefficients leave in the directions of `Q`.
     #[inline(always)]
     fn is_within(&self, strips: &Strips, fit: &Fit) -> bool {
         let left = self.triangle.left(&fit.coefficients);
         let is_within = |axis: usize| {
             let of_directions: f64 = left.iter().zip(&self.reach).map(|(left, reach)| left[axis].abs() * reach).sum();
-            // Readings that are no numbers leave no square sum.
+            // Unreadable readings leave no finite sum of squares.
             self.largest[axis] + of_directions <= fit.limits[axis] && self.squares[axis].is_finite()
         };
         self.bad.is_empty() && strips.stuck.is_none() && is_within(0) && is_within(1) && is_within(2)
     }
 
-    /// Judges the samples one by one: whether other ones are good than before.
+    /// Judges the samples one by one; true if the set of good samples changed.
     #[inline(always)]
     fn judge<S: Simd>(&mut self, simd: S, strips: &Strips, fit: &Fit, room: &mut Room) -> bool {
         let bad = self.bad_by(strips, fit, room);
@@ -323,7 +323,7 @@ impl Strip {
         changed
     }
 
-    /// Which samples are spikes or stuck on any axis. The limits are symmetric, so that the mean of good samples is not
+    /// The samples that are spikes or stuck on any axis. The limits are symmetric, so that the mean of good samples is not
     /// biased.
     #[inline(always)]
     fn bad_by(&self, strips: &Strips, fit: &Fit, room: &mut Room) -> Vec<usize> {
@@ -343,7 +343,7 @@ impl Strip {
         }
         let stuck = strips.stuck.as_ref().map(|stuck| &stuck[self.range.clone()]);
         let is_bad = |i: &usize| {
-            // A reading that is not a number is within no limit.
+            // Comparison with a NaN is false: an unreadable sample is bad.
             let is_within = (0..3).all(|axis| residuals[axis][*i].abs() <= fit.limits[axis]);
             !is_within || stuck.is_some_and(|stuck| stuck[*i]) || fit.once_out && self.bad.binary_search(i).is_ok()
         };

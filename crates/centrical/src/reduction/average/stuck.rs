@@ -1,12 +1,10 @@
-//! Readings that repeat themselves for longer than noise lets them: a stuck sensor, a saturated one, a logger that
-//! holds.
+//! Readings that repeat for longer than noise allows: a stuck or saturated sensor, or a logger that holds a value.
 
 use std::ops::Range;
 
 use crate::statistics::whole;
 
-/// Which samples are in a run of equal readings longer than the longest that chance makes, on any axis; none if not one
-/// is.
+/// The samples in a run of equal readings longer than chance makes, on any axis; `None` without such a run.
 pub(super) fn stuck_on_any_axis(f_z: [&[f64]; 3], longest: &[f64; 3]) -> Option<Vec<bool>> {
     let mut stuck: Option<Vec<bool>> = None;
     for (f, longest) in f_z.into_iter().zip(longest) {
@@ -22,15 +20,15 @@ pub(super) fn stuck_on_any_axis(f_z: [&[f64]; 3], longest: &[f64; 3]) -> Option<
     stuck
 }
 
-/// The longest run of equal readings that chance makes: `n` readings of that repeat rate have a longer one less than once
-/// in a million times.
+/// The longest run of equal readings that chance makes: `n` readings of that repeat rate have a longer one in fewer than
+/// one case in a million.
 pub(super) fn longest_run(n: usize, repeat_rate: f64) -> f64 {
     const CHANCE: f64 = 1e-6;
     1.0 + (CHANCE / n as f64).ln() / repeat_rate.ln()
 }
 
-/// Whether a run longer than that has a reading in a range. A run of `m` equal pairs of neighbours has one in every `m`-th
-/// place: hardly any pair need be looked at.
+/// Whether a run longer than that has a reading in a range. A run of `m` equal pairs of neighbours covers an `m`-th
+/// place: few pairs have to be compared.
 pub(super) fn may_be_longer(f: &[f64], range: &Range<usize>, longest: f64) -> bool {
     let m = whole(longest).max(1);
     let is_equal = |i: usize| f[i] == f[i + 1];

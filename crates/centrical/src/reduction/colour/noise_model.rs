@@ -1,10 +1,9 @@
 //! The colour of the noise, pooled over all plateaus of a session.
 //!
 //! Model: white noise and first-order Markov processes, each with a 3x3 spectral density; it is the usual model
-//! of inertial sensors (IEEE Std 952), and a sum of a few follows any falling spectrum. What the
-//! plateaus tell of it: products of the readings with cosines of whole half-periods in the window, taken orthogonal to
-//! everything that was fitted and to the time constant of the settling, so that they do not depend on it and their
-//! expectation is known exactly.
+//! of inertial sensors (IEEE Std 952), and a sum of a few follows any falling spectrum. The data are contrasts: products
+//! of the readings with cosines of whole half-periods in the window, orthogonal to the fitted terms and to the time
+//! constant of the settling. They do not depend on these, and their expectation is known exactly.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, SQRT_2, TAU};
@@ -20,10 +19,10 @@ use crate::statistics::whole;
 /// Cosines of nearly the same frequency are pooled: groups per octave.
 const PER_OCTAVE: f64 = 4.0;
 
-/// Steps of the likelihood's ascent for a candidate, and for the noise that is taken in the end.
+/// Steps of the likelihood's ascent for a candidate, and for the final model.
 const STEPS: (usize, usize) = (100, 400);
 
-/// Noise of a unit: what the covariance of a mean is computed from.
+/// Noise of a unit, which gives the covariance of a mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseModel {
     components: Vec<Component>,
@@ -32,7 +31,7 @@ pub struct NoiseModel {
 /// One component of the noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Component {
-    /// Correlation time [s]; none for white noise.
+    /// Correlation time [s]; `None` for white noise.
     correlation_time: Option<f64>,
     /// Two-sided spectral density at zero frequency [m^2/s^4/Hz].
     density: Matrix3<f64>,
@@ -41,8 +40,7 @@ struct Component {
 impl NoiseModel {
     /// Estimates the noise from all plateaus of a session.
     ///
-    /// Components are taken in one by one, the likeliest first, for as long as Schwarz's criterion says that they are
-    /// seen.
+    /// Components are added one by one, the likeliest first, as long as Schwarz's criterion accepts them.
     pub fn pool<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> Self {
         let plateaus: Vec<&PlateauFit> = mountings.into_iter().flat_map(|mounting| &mounting.plateaus).collect();
         let times = correlation_times(&plateaus);
@@ -182,7 +180,7 @@ fn grouped_contrasts(plateaus: &[&PlateauFit], times: &[f64]) -> Vec<Group> {
     let of = |plateau: &&PlateauFit| -> Vec<(usize, Contrast)> {
         let cells = &plateau.cells;
         let markov = Markov::new(times, cells.width);
-        // The time constant of the settling has not had its last step yet: what it is off by is no noise.
+        // The time constant of the settling is not final yet: its error is not noise.
         let rate = plateau.settling_rate();
         let contrast = |(number, cosine): &(usize, Vec<f64>)| {
             let frequency = *number as f64 * longest / cells.width;
@@ -211,7 +209,7 @@ fn cosine(half_periods: usize) -> Vec<f64> {
 }
 
 impl Contrast {
-    /// The part of a function that the fit leaves; none if it leaves nothing.
+    /// The part of a function that the fit does not absorb; `None` if it absorbs all of it.
     fn of(cells: &Cells, function: &[f64], markov: &Markov) -> Option<Self> {
         let (weights, y) = cells.contrast(function);
         let white = gain(None, &weights, cells);
@@ -260,8 +258,8 @@ impl Fit {
         fit
     }
 
-    /// With one component more, of the likeliest correlation time out of 1 to `times`: of every octave first, then
-    /// closer.
+    /// With one component more, of the likeliest correlation time out of 1 to `times`: by octaves first, then by
+    /// neighbours.
     fn with_best_time(&self, times: usize, groups: &[Group]) -> Self {
         let octaves: Vec<usize> = (1..=times).step_by(4).collect();
         let octaves: Vec<Self> = octaves.into_par_iter().map(|time| self.with(time, groups)).collect();
@@ -279,8 +277,7 @@ impl Fit {
         best
     }
 
-    /// With one component more. It starts too large: the ascent shrinks a component fast, and raises it from nothing
-    /// slowly.
+    /// With one component more. It starts too large: the ascent shrinks a component fast and raises one slowly.
     fn with(&self, time: usize, groups: &[Group]) -> Self {
         let mut fit = self.clone();
         let largest = self.parts.iter().max_by(|a, b| a.1.trace().total_cmp(&b.1.trace()));

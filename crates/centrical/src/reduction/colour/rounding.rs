@@ -1,10 +1,10 @@
-//! What rounding does to a mean.
+//! The bias that rounding leaves in a mean.
 
 use std::f64::consts::PI;
 
 /// Variance of the bias that rounding to the digit `d` leaves in the mean of readings of variance `v`, the level
 /// being anywhere between two digits: `sum_k d^2 / (2 pi^2 k^2) exp(-4 pi^2 k^2 v / d^2)` (Widrow and Kollar,
-/// Quantization Noise, 2008): `d^2 / 12` without noise, and nothing once the noise is a digit.
+/// Quantization Noise, 2008): `d^2 / 12` without noise, and negligible once the noise is a digit.
 pub(super) fn bias_variance(digit: f64, variance: f64) -> f64 {
     // The hundredth term is 1e-4 of the first at most.
     const TERMS: i32 = 100;

@@ -1,14 +1,14 @@
 //! The time constant of the settling, from the samples of all plateaus of a mounting.
 //!
-//! The windows take it from block levels. Here it is improved by one Gauss-Newton step of generalised least squares,
-//! the noise being known by now, and what its uncertainty does to the means is added to their covariances.
+//! The windows take it from block levels. With the noise known, one Gauss-Newton step of generalised least squares
+//! improves it, and its uncertainty adds to the covariances of the means.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::noise_model::NoiseModel;
 use crate::reduction::average::{Cells, PlateauFit};
 
-/// `d ln tau`: how far the time constant is to be moved.
+/// `d ln tau`: the correction of the time constant.
 pub(super) struct TimeStep {
     value: f64,
     variance: f64,
@@ -35,7 +35,7 @@ impl TimeStep {
         Self { value: 0.0, variance: 0.0 }
     }
 
-    /// What the step does to a mean, and the covariance that its uncertainty adds.
+    /// The correction of a mean, and the covariance that the uncertainty of the step adds.
     pub fn effect(&self, plateau: &PlateauFit) -> (Vector3<f64>, Matrix3<f64>) {
         let Some(rate) = plateau.settling_rate() else { return (Vector3::zeros(), Matrix3::zeros()) };
         let per_step = -plateau.settling * mean_of(&plateau.cells, &rate);

@@ -1,4 +1,4 @@
-//! Which blocks of a record belong to which scheduled plateau: by order, level and steadiness.
+//! The blocks of a record that belong to each scheduled plateau: by order, level and steadiness.
 
 use std::ops::Range;
 
@@ -12,10 +12,10 @@ use crate::reduction::error::{ReductionError, Stretch};
 use crate::reduction::plateau::ScheduledPlateau;
 use crate::reduction::survey::Blocks;
 
-/// More rounds than it takes.
+/// More rounds than are needed.
 const ROUNDS: usize = 8;
 
-/// The core of each scheduled plateau, in blocks; not in a record that was taken down by mistake.
+/// The core of each scheduled plateau, in blocks; an error for a record with a recording mistake.
 pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
     let other = |schedule: &[ScheduledPlateau]| by_schedule(blocks, schedule).ok();
     match by_schedule(blocks, schedule) {
@@ -45,8 +45,8 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
         let seen = stretches.map(|range| stretch(blocks, range, &cores, &candidates)).collect();
         return Err(ReductionError::PlateauNotFound { index, count: schedule.len(), omega, level_z: nominal_z, seen });
     }
-    // Now that it is known where the plateaus are, the changes on each tell their own noise, far below that of a
-    // sample; and so again, until nothing of the ramps is left in it.
+    // With the plateaus located, the changes on each give their own noise, far below that of a sample. This is repeated
+    // until the noise holds no part of the ramps.
     for _ in 0..ROUNDS {
         let own = candidates.par_iter().zip(&cores).map(|(candidate, core)| candidate.noise_of_change(core));
         let own: Vec<Vector3<f64>> = own.collect();
@@ -60,12 +60,12 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
     Ok(cores)
 }
 
-/// A plateau that was passed over, or got what a ramp has at its turn.
+/// A plateau that was passed over, or matched only the turn of a ramp.
 fn missing(cores: &[Range<usize>]) -> Option<usize> {
     cores.iter().position(|core| core.len() < 3)
 }
 
-/// A steady stretch, and what it was taken for.
+/// A steady stretch, and the plateau it was taken for.
 fn stretch(blocks: &Blocks, range: Range<usize>, cores: &[Range<usize>], candidates: &[Candidate]) -> Stretch {
     let half = 0.5 * blocks.width;
     let middle = usize::midpoint(range.start, range.end);

@@ -12,7 +12,7 @@ use crate::simd::lanes::{subtract, subtract_all, widest};
 use crate::statistics::{MAD, median};
 
 /// Blocks that are orthogonalised once for all ranges.
-const STRIP: usize = 64;
+const SEGMENT: usize = 64;
 
 /// The levels of the blocks about a plateau, with the design of its reading.
 pub(super) struct Levels {
@@ -22,8 +22,8 @@ pub(super) struct Levels {
     columns: Vec<Vec<f64>>,
     /// The levels, less a reference near them [m/s^2].
     f_z: [Vec<f64>; 3],
-    /// What every `STRIP` of them say of the coefficients.
-    strips: Vec<Triangle>,
+    /// The triangle of every `SEGMENT` of them.
+    segments: Vec<Triangle>,
     /// Smallest spread that the sampling allows [m/s^2].
     floor: Vector3<f64>,
 }
@@ -47,30 +47,30 @@ impl Levels {
         // Rounded readings may leave no spread at all.
         let floor = blocks.sample_noise * (blocks.interval / blocks.width).sqrt() + blocks.digit / MAD;
         let columns = shape.columns(&blocks.t[range.clone()]);
-        let mut all = Self { first: range.start, columns, f_z: levels, strips: Vec::new(), floor };
-        all.strips = (0..range.len() / STRIP).map(|k| all.triangle(k * STRIP..(k + 1) * STRIP)).collect();
+        let mut all = Self { first: range.start, columns, f_z: levels, segments: Vec::new(), floor };
+        all.segments = (0..range.len() / SEGMENT).map(|k| all.triangle(k * SEGMENT..(k + 1) * SEGMENT)).collect();
         all
     }
 
-    /// The fit over a range of blocks; none if their design is short of rank.
+    /// The fit over a range of blocks; `None` if their design is rank-deficient.
     pub fn fit(&self, range: Range<usize>) -> Option<BlockFit<'_>> {
         let range = range.start - self.first..range.end - self.first;
-        let whole = range.start.div_ceil(STRIP)..range.end / STRIP;
+        let whole = range.start.div_ceil(SEGMENT)..range.end / SEGMENT;
         let parts = if whole.is_empty() {
             vec![self.triangle(range.clone())]
         } else {
-            vec![self.triangle(range.start..whole.start * STRIP), self.triangle(whole.end * STRIP..range.end)]
+            vec![self.triangle(range.start..whole.start * SEGMENT), self.triangle(whole.end * SEGMENT..range.end)]
         };
-        let strips = self.strips.get(whole).unwrap_or_default();
-        let triangle = Triangle::joined(&parts.iter().chain(strips).collect::<Vec<_>>(), self.columns.len());
+        let segments = self.segments.get(whole).unwrap_or_default();
+        let triangle = Triangle::joined(&parts.iter().chain(segments).collect::<Vec<_>>(), self.columns.len());
         let coefficients = triangle.solve(self.columns.len())?;
         Some(BlockFit { of: self, range, triangle, coefficients })
     }
 
-    /// The triangle of some blocks, less than two strips of them.
+    /// The triangle of some blocks, fewer than two segments.
     fn triangle(&self, range: Range<usize>) -> Triangle {
         let n = range.len();
-        let (mut columns, mut levels) = ([[0.0; 2 * STRIP]; TERMS], [[0.0; 2 * STRIP]; 3]);
+        let (mut columns, mut levels) = ([[0.0; 2 * SEGMENT]; TERMS], [[0.0; 2 * SEGMENT]; 3]);
         let rooms = columns[..self.columns.len()].iter_mut().chain(&mut levels);
         for (room, column) in rooms.zip(self.columns.iter().chain(&self.f_z)) {
             room[..n].copy_from_slice(&column[range.clone()]);
@@ -98,7 +98,7 @@ impl BlockFit<'_> {
         spread(&self.residuals(), &self.of.floor)
     }
 
-    /// What the fit leaves of the levels, per axis [m/s^2].
+    /// Residuals of the levels, per axis [m/s^2].
     pub fn residuals(&self) -> [Vec<f64>; 3] {
         [0, 1, 2].map(|axis| {
             let mut residuals = self.of.f_z[axis][self.range.clone()].to_vec();
@@ -120,16 +120,16 @@ impl BlockFit<'_> {
         columns
     }
 
-    /// Which blocks are off the fit by more than noise of the given scale: `r^2 > c^2 s^2 (1 - h)`, the leverage `h` being
-    /// the part of the noise that the fit takes up.
+    /// The blocks that are off the fit by more than noise of the given scale: `r^2 > c^2 s^2 (1 - h)`, the leverage `h` being
+    /// the part of the noise that the fit absorbs.
     pub fn off(&self, scale: &Vector3<f64>, cut: f64) -> Vec<bool> {
         self.off_among(self.range.clone(), scale, cut)
     }
 
-    /// Whether two neighbouring blocks are off. A ramp shows at an end: there they are looked for first.
+    /// Whether two neighbouring blocks are off. A ramp shows at an end: the ends are searched first.
     pub fn has_two_off(&self, scale: &Vector3<f64>, cut: f64) -> bool {
         let Range { start, end } = self.range;
-        let near = STRIP.min(self.range.len());
+        let near = SEGMENT.min(self.range.len());
         let parts = [end - near..end, start..start + near, self.range.clone()];
         let two_off = |part| self.off_among(part, scale, cut).windows(2).any(|pair| pair == [true, true]);
         parts.into_iter().any(two_off)
@@ -137,14 +137,14 @@ impl BlockFit<'_> {
 
     fn off_among(&self, range: Range<usize>, scale: &Vector3<f64>, cut: f64) -> Vec<bool> {
         let mut off = vec![false; range.len()];
-        for (from, verdicts) in range.clone().step_by(STRIP).zip(off.chunks_mut(STRIP)) {
+        for (from, verdicts) in range.clone().step_by(SEGMENT).zip(off.chunks_mut(SEGMENT)) {
             widest(Off { fit: self, from, verdicts, scale, cut });
         }
         off
     }
 }
 
-/// Blocks from `from` on, to be told from those that are off; a piece at most.
+/// Verdicts on the blocks from `from` on, a segment at most.
 struct Off<'a> {
     fit: &'a BlockFit<'a>,
     from: usize,
@@ -162,9 +162,9 @@ impl WithSimd for Off<'_> {
         let n = verdicts.len();
         let piece = from..from + n;
         let (terms, r) = (fit.coefficients.len(), &fit.triangle.r);
-        // The columns of Q, one after another, and what they leave of the noise.
-        let mut q = [[0.0; STRIP]; TERMS];
-        let mut left = [1.0; STRIP];
+        // The columns of Q, one after another, and the share of the noise that they leave.
+        let mut q = [[0.0; SEGMENT]; TERMS];
+        let mut left = [1.0; SEGMENT];
         for j in 0..terms {
             let (done, rest) = q.split_at_mut(j);
             let column = &mut rest[0][..n];
@@ -178,10 +178,10 @@ impl WithSimd for Off<'_> {
                 *left -= *q * *q;
             }
         }
-        // The largest square of what the fit leaves of the levels, in units of what may be left.
-        let mut worst = [0.0_f64; STRIP];
+        // The largest squared residual of the levels, in units of the limit.
+        let mut worst = [0.0_f64; SEGMENT];
         for axis in 0..3 {
-            let mut residuals = [0.0; STRIP];
+            let mut residuals = [0.0; SEGMENT];
             let residuals = &mut residuals[..n];
             residuals.copy_from_slice(&fit.of.f_z[axis][piece.clone()]);
             for (column, b) in fit.of.columns.iter().zip(&fit.coefficients) {

@@ -1,4 +1,4 @@
-//! The centrifuge's clock against the unit's, from the ramps that both have seen.
+//! The centrifuge's clock against the unit's, from the ramps that both recorded.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ pub struct SpeedTrace {
     pub omega: Vec<f64>,
 }
 
-/// What to add to the centrifuge's time to have the unit's.
+/// The unit's time less the centrifuge's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClockOffset {
     /// Median over the ramps [s].
@@ -54,7 +54,7 @@ pub(super) fn offset(
     Some(ClockOffset { seconds, standard_uncertainty, ramps })
 }
 
-/// Median speed that the telemetry has in a window of the unit's time [rad/s].
+/// Median speed by the telemetry in a window of the unit's time [rad/s].
 pub(super) fn median_speed(telemetry: &SpeedTrace, offset: &ClockOffset, window: [f64; 2]) -> Option<f64> {
     let [from, to] = window.map(|t| t - offset.seconds);
     let inside = telemetry.t.partition_point(|t| *t < from)..telemetry.t.partition_point(|t| *t <= to);
@@ -64,10 +64,10 @@ pub(super) fn median_speed(telemetry: &SpeedTrace, offset: &ClockOffset, window:
 
 /// A passage through the middle between two plateaus.
 struct Ramp {
-    /// Square of the speed there [rad^2/s^2].
+    /// Square of the speed in the middle [rad^2/s^2].
     square: f64,
     rising: bool,
-    /// When, on the unit's clock [s].
+    /// Instant on the unit's clock [s].
     t: f64,
 }
 

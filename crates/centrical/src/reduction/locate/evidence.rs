@@ -1,4 +1,4 @@
-//! What the blocks of a record say of where they belong, as logarithms of probability densities.
+//! The evidence of a record's blocks for the plateaus, as logarithms of probability densities.
 //!
 //! A block shows its level, and the change of level about it. In a transition (a ramp, handling, a plateau nobody
 //! scheduled) both are anything in the record's span. On a plateau the change is noise and the level is near the
@@ -21,7 +21,7 @@ use crate::statistics::{MAD, median, whole};
 const DISTURBED: f64 = 0.01;
 
 /// Half-width of the level's density on a plateau, relative and absolute [m/s^2]: the uncalibrated unit's scale,
-/// misalignment and bias. The density has the tails of Cauchy's law, so a unit ten times worse is found as well.
+/// misalignment and bias. The density has the tails of Cauchy's law, so the plateaus of a unit ten times worse are found too.
 pub(super) const LEVEL: (f64, f64) = (5e-3, 0.05);
 
 /// Blocks whose mean is compared with that of as many before: the more, the slower a change is seen.
@@ -247,7 +247,7 @@ impl WithSimd for Mixture<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        // Beyond this one of the two is less than the rounding of the other.
+        // Beyond this, one of the two terms is below the rounding of the other.
         const ONE_ONLY: f64 = 45.0;
         let (share, of_share) = (self.share, self.share.ln());
         for x in self.x {
@@ -266,7 +266,7 @@ impl Candidate<'_> {
         widest(Mixture { share: 1.0 - DISTURBED, x: density });
     }
 
-    /// Whether the level of a block is rather the plateau's than any.
+    /// Whether the level of a block is more likely the plateau's than any other.
     pub fn has_level(&self, block: usize) -> bool {
         self.levels[block] > 0.0
     }

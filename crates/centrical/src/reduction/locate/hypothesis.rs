@@ -1,10 +1,10 @@
-//! Recording mistakes recognised: exchanged axes, reversed signs, a wrong unit. The readings are right by another reading
+//! Recognition of recording mistakes: exchanged axes, reversed signs, a wrong unit. The readings are right by another reading
 //! of the schedule, and so a mistake is recognised by comparing likelihoods, not by limits.
 //!
 //! The nominal readings of one mounting lie on a line, `f = a + Omega^2 c`: gravity and the centripetal part. A record
-//! tells both. Of every hypothesis `k S` (48 signed permutations `S` of the axes, three factors `k` of the unit) it is
-//! computed how far `k S a` and `k S c` are from what was seen, in half-widths of the law by which real units differ from
-//! their nominal ones; two numbers, whatever the number of plateaus, since the errors of a unit are the same on all.
+//! shows both. For every hypothesis `k S` (48 signed permutations `S` of the axes, three factors `k` of the unit), the
+//! distances of `k S a` and `k S c` from the observed line are computed, in half-widths of the law by which real units
+//! differ from nominal ones. These are two numbers, whatever the number of plateaus: a unit has the same errors on all.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ use crate::reduction::mistake::Mistake;
 use crate::reduction::plateau::ScheduledPlateau;
 use crate::reduction::survey::Blocks;
 
-/// Odds that a record was taken down by mistake, against that it was not.
+/// Odds of a recording mistake against none.
 pub(super) const ODDS: f64 = 1e-6;
 
 /// Odds of one more mistake in the same record.
@@ -24,7 +24,7 @@ const FURTHER: f64 = 1e-2;
 
 /// Refuses a record that is decisively better explained by a mistake than as it stands.
 ///
-/// `cores` are the plateaus as found, or none if they were not.
+/// `cores` are the plateaus as found, `None` if they were not.
 pub(super) fn recognise(
     blocks: &Blocks,
     schedule: &[ScheduledPlateau],
@@ -41,7 +41,7 @@ pub(super) fn recognise(
     };
     let found = match cores {
         Some(cores) => seen(cores).and_then(|seen| likeliest(&seen)).map(|(mistake, _)| (mistake, cores.to_vec())),
-        // Nothing was found by the schedule as it stands: is it found by another reading of it?
+        // The plateaus were not found by the schedule as it stands: they may be by another reading of it.
         None => by_levels(blocks, schedule).into_iter().find_map(|mistake| {
             let other: Vec<ScheduledPlateau> = schedule.iter().map(|p| mistake.scheduled(p)).collect();
             let cores = align(&other)?;
@@ -50,7 +50,7 @@ pub(super) fn recognise(
         }),
     };
     let Some((mistake, cores)) = found else { return Ok(()) };
-    // Shown where the mistake shows most.
+    // The message shows the plateau where the mistake is largest.
     let off = |k: &usize| (blocks.level(&cores[*k]) - schedule[*k].nominal_z).norm();
     let index = (0..schedule.len()).max_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
     let ScheduledPlateau { omega, nominal_z } = schedule[index];
@@ -88,7 +88,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Through the slowest and the fastest plateau. `None` of one speed only.
+    /// Through the slowest and the fastest plateau. `None` if all have the same speed.
     pub fn through(plateaus: impl Iterator<Item = (f64, Vector3<f64>)>) -> Option<Self> {
         let squares: Vec<(f64, Vector3<f64>)> = plateaus.map(|(omega, f)| (omega * omega, f)).collect();
         let slowest = squares.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -107,7 +107,7 @@ impl Line {
     }
 }
 
-/// Cauchy's law in three dimensions about the nominal reading, of the half-width that alignment takes: logarithm.
+/// Cauchy's law in three dimensions about the nominal reading, of the half-width that alignment uses: logarithm.
 fn log_density(found: &Vector3<f64>, expected: &Vector3<f64>) -> f64 {
     let width = LEVEL.0 * expected.norm() + LEVEL.1;
     let distance = (found - expected).norm() / width;

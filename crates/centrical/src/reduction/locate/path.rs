@@ -9,7 +9,7 @@ use std::ops::Range;
 /// Odds of a plateau that is in the schedule and not in the record.
 const MISSING: f64 = 1e-6;
 
-/// Blocks whose densities are asked for together: what is made for them stays in the fastest memory.
+/// Blocks whose densities are computed together, so that they stay in the fastest memory.
 pub(super) const LAYER: usize = 512;
 
 /// All paths of a record through a schedule.
@@ -20,22 +20,22 @@ pub(super) struct Trellis {
 }
 
 impl Trellis {
-    /// The trellis of so many plateaus and blocks.
+    /// The trellis of a number of plateaus and blocks.
     pub fn new(plateaus: usize, blocks: usize) -> Self {
         Self { plateaus, came_from: vec![0; states(plateaus) * blocks] }
     }
 
-    /// Blocks of each plateau on the best path; none for a plateau passed over.
+    /// Blocks of each plateau on the best path; an empty range for a plateau passed over.
     ///
-    /// `between[i]` is the logarithm of the probability density of block `i` in any transition; `on` is asked for those on a
-    /// plateau, of a piece of blocks from one on.
+    /// `between[i]` is the logarithm of the probability density of block `i` in any transition; `on` computes those on a
+    /// plateau, for a layer of blocks from the given one on.
     pub fn best_path(&mut self, between: &[f64], on: impl Fn(usize, usize, &mut [f64])) -> Vec<Range<usize>> {
         let (odds, states) = (MISSING.ln(), states(self.plateaus));
         // State 2k is the transition before plateau k, state 2k + 1 the plateau k.
         let mut score: Vec<f64> = (0..states).map(|state| (state / 2) as f64 * odds).collect();
         let mut room = vec![[0.0; LAYER]; self.plateaus];
-        let pieces = between.chunks(LAYER).zip(self.came_from.chunks_mut(LAYER * states));
-        for (number, (between, came_from)) in pieces.enumerate() {
+        let layers = between.chunks(LAYER).zip(self.came_from.chunks_mut(LAYER * states));
+        for (number, (between, came_from)) in layers.enumerate() {
             for (k, room) in room.iter_mut().enumerate() {
                 on(k, number * LAYER, &mut room[..between.len()]);
             }
@@ -51,7 +51,7 @@ impl Trellis {
                 last[0] += between;
             }
         }
-        // The record may end anywhere: plateaus still to come are passed over.
+        // The record may end anywhere: the remaining plateaus are passed over.
         let total = |state: &usize| score[*state] + ((states - 1 - state) / 2) as f64 * odds;
         let last = (0..states).max_by(|a, b| total(a).total_cmp(&total(b))).unwrap_or(0);
         trace(self.came_from.chunks_exact(states), last, self.plateaus)
@@ -62,7 +62,7 @@ fn states(plateaus: usize) -> usize {
     2 * plateaus + 1
 }
 
-/// One block on: the best predecessor of every state. Which one it is depends on noise: there are no branches to guess.
+/// One block on: the best predecessor of every state, without branches, since noise would make them unpredictable.
 fn advance(score: &mut [f64], from: &mut [u32], odds: f64) {
     // The best transition so far, plateaus between it and here passed over; and the plateau just before, as it was.
     let (mut transition, mut transition_score) = (0, f64::NEG_INFINITY);
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_is_found_piece_by_piece() {
+    fn a_path_is_found_layer_by_layer() {
         let long = |seen: Option<usize>| std::iter::repeat_n(seen, LAYER - 1);
         let seen: Vec<_> = [None, Some(0), None, Some(1), None, Some(2)].into_iter().flat_map(long).collect();
         let at = |k: usize| k * (LAYER - 1)..(k + 1) * (LAYER - 1);

@@ -1,5 +1,5 @@
-//! The sense of rotation, from the ramps: on plateaus it hardly shows, since the pull goes with the square of the speed.
-//! While the speed changes, a proof mass at the radius `R` is pulled along with `dOmega/dt R`, across the arm.
+//! The sense of rotation, from the ramps: plateaus hardly show it, since the centripetal part goes with the square of the
+//! speed. While the speed changes, a proof mass at the radius `R` has the tangential acceleration `dOmega/dt R`.
 
 use std::ops::Range;
 
@@ -12,8 +12,8 @@ use crate::reduction::survey::Blocks;
 
 /// Refuses a record whose ramps fit the other sense of rotation decisively better.
 ///
-/// Of a ramp, `S` is the sum of squares of what is left of the readings across the way from one plateau to the next, less
-/// the tangential part as expected or with the other sign. A ramp counts as two independent readings, the two directions
+/// For a ramp, `S` is the sum of squares of the readings across the line from one plateau to the next, less the
+/// tangential part as expected or with the other sign. A ramp counts as two independent readings, the two directions
 /// across the way, however many samples it has: then the odds of the two senses are `S- / S+`.
 pub(super) fn check(
     blocks: &Blocks,
@@ -39,7 +39,7 @@ fn per_acceleration(schedule: &[ScheduledPlateau]) -> Option<Vector3<f64>> {
     Some(up.cross(&-line.c))
 }
 
-/// What a ramp tells.
+/// The evidence of a ramp.
 struct Ramp {
     /// Sums of squares less the expected, and less the reversed tangential part [m^2/s^4].
     off_expected: f64,
@@ -50,7 +50,7 @@ struct Ramp {
 }
 
 impl Ramp {
-    /// The ramp before plateau `k`; none if the speed does not change there or changes its sign.
+    /// The ramp before plateau `k`; `None` if the speed does not change or changes its sign.
     fn seen(
         blocks: &Blocks,
         schedule: &[ScheduledPlateau],

@@ -5,17 +5,17 @@ use pulp::{Simd, WithSimd};
 use crate::simd::elementary::{cos_sin, exp};
 use crate::simd::lanes::widest;
 
-/// Time constants after which less is left of the settling than rounding leaves of a reading.
+/// Time constants after which the settling is below the rounding of a reading.
 pub(super) const FADED: f64 = 40.0;
 
-/// Which terms a plateau has: `[cos, sin,] [settling,] 1`. The constant stands last.
+/// The terms of a plateau: `[cos, sin,] [settling,] 1`. The constant stands last.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::reduction) struct Shape {
-    /// Where phase and settling count from [s].
+    /// Origin of phase and settling [s].
     pub start: f64,
     /// Speed [rad/s]; 0 for no once-per-revolution term.
     pub omega: f64,
-    /// What is left of the settling.
+    /// The remaining settling.
     pub settling: Option<Settling>,
 }
 
@@ -43,7 +43,7 @@ impl Settling {
         x * fading * (1.0 + 2.0 * self.bend * fading)
     }
 
-    /// What is left after a time, over the straight part at the start.
+    /// The settling after a time, relative to its linear part at the start.
     #[inline(always)]
     pub fn value(self, since: f64) -> f64 {
         let fading = exp(-since / self.time);
@@ -77,7 +77,7 @@ impl Shape {
         columns
     }
 
-    /// The same into `columns` that are there, each as long as `t`.
+    /// The same into existing `columns`, each as long as `t`.
     #[inline(always)]
     pub fn design(&self, t: &[f64], columns: &mut [&mut [f64]]) {
         let mut columns = columns.iter_mut();

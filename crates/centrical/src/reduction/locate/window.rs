@@ -2,7 +2,7 @@
 //!
 //! Block levels are fitted by a constant, the once-per-revolution term and, while spinning, the exponential end
 //! of the settling. A window is the longest stretch about the middle of a plateau that this fit describes to within the
-//! noise: the settling is left out until it is exponential, and what remains of it is fitted. Its time constant is a
+//! noise: it begins once the settling is exponential, and the remaining settling is fitted. Its time constant is a
 //! property of the drive, common to the mounting.
 
 use std::f64::consts::TAU;
@@ -34,7 +34,7 @@ pub(super) struct Windows {
 pub(in crate::reduction) struct Window {
     /// From, to [s].
     pub span: [f64; 2],
-    /// What is fitted in it.
+    /// The fitted terms.
     pub shape: Shape,
 }
 
@@ -83,8 +83,8 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Longer windows tell the time constant better, and a better one allows longer windows. The cores hold hardly any
-    /// settling; what they hint at is tried, and judged once the windows have grown by it.
+    /// Longer windows give a better time constant, and a better one allows longer windows. The cores hold little settling:
+    /// their first estimate is tried, and judged once the windows have grown by it.
     fn grow(&mut self) {
         for _ in 0..ROUNDS {
             self.settling_time = self.best_settling().map(|settling| settling.time);
@@ -116,7 +116,7 @@ impl Search<'_> {
         let ln_tau = maximum(low, high, explained);
         let blocks: usize = self.ranges.iter().map(Range::len).sum();
         let coefficients = 3 * spinning.len() + 1;
-        // Slow noise looks like settling to block residuals: what it explains of them counts so much less.
+        // Slow noise looks like settling in block residuals: the explained part counts less in proportion.
         let colour = steady.iter().map(|(fit, _)| fit.colour).sum::<f64>() / steady.len() as f64;
         let chance = colour.max(1.0) * coefficients as f64 * (blocks as f64).ln();
         Some(Guess { time: ln_tau.exp(), seen: explained(ln_tau) > chance })
@@ -133,8 +133,8 @@ impl Search<'_> {
     }
 
     /// The levels of some blocks with the design of a plateau's reading. Settling that began earlier has the same shape:
-    /// the fits over any of these blocks have the design in common. The once-per-revolution term is in it if as many blocks
-    /// as `shown` show it.
+    /// the fits over any of these blocks have the design in common. It has the once-per-revolution term if `shown`
+    /// blocks show it.
     fn levels(&self, k: usize, range: Range<usize>, shown: usize, settling: Option<Settling>) -> Levels {
         let omega = self.schedule[k].omega;
         let omega = if turns_seen(omega, self.blocks.width, shown) { omega } else { 0.0 };
@@ -148,7 +148,7 @@ impl Search<'_> {
         self.ranges = ranges;
     }
 
-    /// The bend of a plateau's settling at the start of its range: a quarter of the force's relative error there.
+    /// The bend of a plateau's settling at the start of its range: a quarter of the force's relative error.
     fn bend(&self, k: usize) -> f64 {
         let (nominal_z, range) = (self.schedule[k].nominal_z, self.ranges[k].clone());
         let Some(settling) = self.settling_at(k, &range) else { return 0.0 };
@@ -178,8 +178,8 @@ impl Search<'_> {
         start + at_edge(off.first())..end - at_edge(off.last())
     }
 
-    /// The windows, with a margin: the block at an edge may hold the onset of the ramp below the noise, and what does
-    /// not follow the law of the settling is given another time constant to fade.
+    /// The windows, with a margin: the block at an edge may hold the onset of the ramp below the noise, and deviations
+    /// from the settling's law get another time constant to fade.
     fn windows(&self) -> Windows {
         let half = 0.5 * self.blocks.width;
         let window = |k: usize| {
@@ -194,7 +194,7 @@ impl Search<'_> {
     }
 }
 
-/// A time constant of the settling [s], and whether there is settling at all.
+/// A time constant of the settling [s], and whether the record shows any settling.
 #[derive(Clone, Copy)]
 struct Guess {
     time: f64,
@@ -202,7 +202,7 @@ struct Guess {
 }
 
 /// The greatest of `0..=most` that is accepted, by steps halved on refusal. Passes are repeated while they gain: chance
-/// may refuse a value below the limit, and hardly its neighbours too. What was refused once is not asked for again.
+/// may refuse a value below the limit, but rarely its neighbours too. A refused value is not tried again.
 fn furthest(most: usize, accepted: impl Fn(usize) -> bool) -> usize {
     let (mut reached, mut refused) = (0, Vec::new());
     loop {
@@ -257,7 +257,7 @@ impl Steady {
         Self { since, q: fit.orthonormal(), residuals: scaled(residuals), colour: colour(&scaled(about)) }
     }
 
-    /// How much of the residuals' square sum a settling takes away.
+    /// The part of the residuals' sum of squares that a settling explains.
     fn explained_by(&self, settling: Settling) -> f64 {
         widest(Explained { of: self, settling })
     }
@@ -277,7 +277,7 @@ impl WithSimd for Explained<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let Steady { since, q, residuals, .. } = self.of;
-        // What is left after that is nothing beside the rest.
+        // Later values are negligible.
         let n = since.partition_point(|since| *since < FADED * self.settling.time);
         let mut column = vec![0.0; n];
         for (value, since) in column.iter_mut().zip(since) {
@@ -308,7 +308,7 @@ fn colour(residuals: &[Vec<f64>; 3]) -> f64 {
 }
 
 /// Whether blocks of this width show at least two turns in `n`, directly or by aliasing. Otherwise they have
-/// averaged whole turns, and the term is neither there nor to be told from a constant.
+/// averaged whole turns, and the term vanishes or cannot be separated from a constant.
 fn turns_seen(omega: f64, width: f64, n: usize) -> bool {
     let turns = omega * width / TAU;
     (turns - turns.round()).abs() * n as f64 > 2.0

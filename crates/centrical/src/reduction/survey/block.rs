@@ -1,4 +1,4 @@
-//! One block of a record, condensed: its level without spikes, and what its samples tell of their digits and noise.
+//! One block of a record, condensed: its level without spikes, and the digit and noise of its samples.
 
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
@@ -8,7 +8,7 @@ use crate::reduction::record::RecordSlice;
 use crate::simd::lanes::{LANES, joined, range, sum, widest};
 use crate::statistics::{MAD, cut, median};
 
-/// What is kept of the samples of one block of time.
+/// The samples of one block of time, condensed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
     /// Its number, the record's first block being 0.
@@ -18,17 +18,17 @@ pub(super) struct Block {
     /// Lowest and highest reading [m/s^2].
     pub low: Vector3<f64>,
     pub high: Vector3<f64>,
-    /// Smallest step between neighbours [m/s^2]; infinite where there is none.
+    /// Smallest step between neighbours [m/s^2]; infinite without one.
     pub step: Vector3<f64>,
     /// Readings whose own predecessor was different, and of these the ones that the next repeats.
     pub fresh: [u64; 3],
     pub repeated: [u64; 3],
-    /// Mean without spikes and standard deviation of a sample from one to the next [m/s^2]; none of a block of too few
+    /// Mean without spikes and standard deviation of a sample from one to the next [m/s^2]; `None` for a block of too few
     /// samples.
     pub level: Option<(Vector3<f64>, Vector3<f64>)>,
 }
 
-/// What is kept of the samples of one axis.
+/// The samples of one axis, condensed.
 struct Axis {
     /// Whether every reading is a number.
     is_whole: bool,
@@ -63,7 +63,7 @@ impl Block {
     }
 }
 
-/// The samples of one axis, and how many standard deviations are too many.
+/// The samples of one axis, and the limit for spikes in standard deviations.
 struct OneAxis<'a> {
     f: &'a [f64],
     cut: f64,
@@ -79,7 +79,7 @@ impl WithSimd for OneAxis<'_> {
         // A converted unit leaves steps of f64's own rounding.
         let rounding = (low.abs().max(high.abs()) * 1e-12).max(f64::MIN_POSITIVE);
         let Walk { sum, step, fresh, repeated, squares } = Walk::along(f, low, rounding);
-        // Half-filled blocks stand beside a gap: too few samples for a median that a spike cannot move.
+        // Half-filled blocks lie beside a gap: too few samples for a median that a spike cannot move.
         let level = if f.len() > SAMPLES / 2 { level(f, sum, [low, high], cut) } else { None };
         // White noise by its second differences, whose variance is six-fold.
         let noise = (squares / (6 * f.len().saturating_sub(2)) as f64).sqrt();
@@ -94,11 +94,11 @@ impl WithSimd for OneAxis<'_> {
     }
 }
 
-/// What is seen on the way from reading to reading.
+/// Sums and counts along the readings.
 struct Walk {
     /// Sum of the readings above the lowest.
     sum: f64,
-    /// The smallest step above a limit; infinite if there is none.
+    /// The smallest step above a limit; infinite without one.
     step: f64,
     /// Readings different from the one before, and of these the ones that the next repeats: a long run counts once.
     fresh: u64,
@@ -152,15 +152,15 @@ impl Walk {
     }
 }
 
-/// Mean of the values that are no spikes. A mean, since the median of part of a revolution is no linear function of
-/// its phase. The sum of the values above the lowest is given. `None` of too few values.
+/// Mean of the values without spikes. A mean, since the median of part of a revolution is not a linear function of
+/// its phase. The sum of the values above the lowest is given. `None` if the values are too few.
 #[inline(always)]
 fn level(f: &[f64], above_low: f64, [low, high]: [f64; 2], cut: f64) -> Option<f64> {
     let count = f.len() as f64;
     let mean = low + above_low / count;
     if mean.is_finite() && (high - low).is_finite() {
-        // What the robust spread must be at least for the value farthest from the mean to be no spike. If it is that,
-        // half the values being at least so far from the mean, there are no spikes to look for.
+        // The least robust spread with which the value farthest from the mean is not a spike. If half the values are at
+        // least as far from the mean, the spread reaches it, and there are no spikes.
         let least = (high - mean).max(mean - low) / (cut * MAD);
         if 2.0 * sum(f, |value| f64::from(u8::from((value - mean).abs() < least))) <= count {
             return Some(mean);

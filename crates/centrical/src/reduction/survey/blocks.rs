@@ -14,7 +14,7 @@ use crate::statistics::median;
 pub(in crate::reduction) struct Blocks {
     /// Width of a block [s].
     pub width: f64,
-    /// Sampling interval [s]: the median one of the record's beginning, unless the blocks tell that it is much longer.
+    /// Sampling interval [s]: the median one of the record's beginning, unless the blocks show a much longer one.
     pub interval: f64,
     /// Middle of each block [s].
     pub t: Vec<f64>,
@@ -24,7 +24,7 @@ pub(in crate::reduction) struct Blocks {
     pub digit: Vector3<f64>,
     /// Share of readings that repeat the one before by chance.
     pub repeat_rate: [f64; 3],
-    /// Standard deviation of a single sample from one to the next, whatever the ramps and the colour [m/s^2].
+    /// Standard deviation of a single sample from one to the next, independent of ramps and colour [m/s^2].
     pub sample_noise: Vector3<f64>,
 }
 
@@ -43,12 +43,12 @@ impl Blocks {
                 .fold(0.0, f64::max)
         };
         let step = gathered.iter().fold(Vector3::repeat(f64::INFINITY), |step, block| step.inf(&block.step));
-        // Readings that never change have no digit to see.
+        // Constant readings show no digit.
         let digit = |axis: usize| {
             if step[axis].is_finite() { step[axis] } else { (largest(axis) * 1e-12).max(f64::MIN_POSITIVE) }
         };
         let filled = || gathered.iter().filter_map(|block| Some((block.number, block.level?)));
-        // As many samples as blocks have: a clock that stands still at first, or stutters, tells less there, or nothing.
+        // By the samples of a block: a clock that stands still at first, or stutters, misleads the first estimate.
         let mut counts: Vec<f64> = gathered.iter().map(|block| block.readable as f64).collect();
         let by_blocks = grid.width / median(&mut counts).max(1.0);
         let mut blocks = Self {

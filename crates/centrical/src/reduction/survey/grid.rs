@@ -39,7 +39,7 @@ impl Grid {
         self.start + (number as f64 + 0.5) * self.width
     }
 
-    /// The samples of each block that a stretch has samples of.
+    /// The samples of a stretch, block by block.
     pub fn divide<'a>(&self, stretch: RecordSlice<'a>) -> impl Iterator<Item = (usize, RecordSlice<'a>)> {
         let mut from = 0;
         std::iter::from_fn(move || {
@@ -51,8 +51,8 @@ impl Grid {
         })
     }
 
-    /// How many of the times, that do not decrease, are in a block of that number at most: those of equal steps up to its end, or
-    /// else it is looked for from the beginning, as a block is short beside a stretch.
+    /// The number of times, in ascending order, up to the end of a block. Equal steps give the first guess; otherwise the end
+    /// is searched from the beginning, since a block is short beside a stretch.
     fn samples_up_to(&self, number: usize, t: &[f64]) -> usize {
         let is_in = |i: usize| self.number(t[i]) <= number;
         let steps = whole((self.middle(number) + 0.5 * self.width - t[0]) / self.interval);

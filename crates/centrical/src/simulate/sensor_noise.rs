@@ -3,7 +3,7 @@
 use std::f64::consts::{LN_2, PI};
 
 use super::draw::Draw;
-use super::settings::Sensor;
+use super::equipment::Sensor;
 use crate::random::Random;
 
 /// The sampling of one record.
@@ -19,7 +19,7 @@ pub(super) struct Sampling {
 
 /// The noise of one newtonometer, sample after sample.
 #[derive(Debug, Clone)]
-pub(super) struct Noise {
+pub(super) struct SensorNoise {
     white: White,
     coloured: GaussMarkov,
     flicker: Flicker,
@@ -28,7 +28,7 @@ pub(super) struct Noise {
     slope: f64,
 }
 
-impl Noise {
+impl SensorNoise {
     pub fn new(sensor: &Sensor, sampling: &Sampling, axis: usize) -> Self {
         let random = |draw: Draw| draw.stream_of(sampling.seed, sampling.mounting, axis);
         let Sampling { interval, duration, .. } = *sampling;
@@ -42,7 +42,7 @@ impl Noise {
         }
     }
 
-    /// Noise of sample `n`, asked for in order [m/s^2].
+    /// SensorNoise of sample `n` [m/s^2]; `n` ascends from call to call.
     #[inline]
     pub fn at(&mut self, n: u64) -> f64 {
         self.white.next() + self.coloured.next() + self.flicker.at(n) + self.walk.next() + self.slope * n as f64

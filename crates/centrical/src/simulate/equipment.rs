@@ -4,7 +4,7 @@ use thiserror::Error;
 
 /// The laboratory's equipment. The default is perfect, at 100 Hz.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Settings {
+pub struct Equipment {
     /// The centrifuge.
     pub machine: Machine,
     /// The unit's noise.
@@ -32,23 +32,23 @@ pub struct Machine {
     pub settling_time: f64,
 }
 
-/// Noise of each of the three newtonometers, alike and independent.
+/// SensorNoise of each of the three newtonometers, alike and independent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sensor {
     /// Standard deviation of white noise of one sample [m/s^2].
     pub white: f64,
-    /// Noise of one correlation time.
+    /// SensorNoise of one correlation time.
     pub coloured: Coloured,
     /// Bias instability `B` (IEEE Std 952) [m/s^2]: two-sided spectrum `B^2 / (2 pi f)`, Allan deviation
     /// `sqrt(2 ln 2 / pi) B = 0.664 B`; correlation times from 8 samples to the length of the record.
     pub bias_instability: f64,
-    /// Random walk `K` of the bias [m/s^2 per sqrt(s)]: variance `K^2 t`, none as a record begins.
+    /// Random walk `K` of the bias [m/s^2 per sqrt(s)]: variance `K^2 t`, zero as a record begins.
     pub random_walk: f64,
     /// Standard deviation of the slope of the bias, one slope a record [m/s^3].
     pub drift: f64,
-    /// Step of the output [m/s^2]; 0: none.
+    /// Step of the output [m/s^2]; 0 for all digits.
     pub quantum: f64,
-    /// Largest magnitude of the output [m/s^2]; none: unlimited.
+    /// Largest magnitude of the output [m/s^2]; `None` for unlimited.
     pub range: Option<f64>,
 }
 
@@ -69,7 +69,7 @@ pub struct Recorder {
     /// Errors of transmission in one newtonometer's reading.
     pub spikes: Spikes,
     /// Samples lost.
-    pub gaps: Gaps,
+    pub gaps: Losses,
     /// Probability that a sample is recorded twice, with the same time.
     pub repeats: f64,
 }
@@ -83,9 +83,9 @@ pub struct Spikes {
     pub size: f64,
 }
 
-/// Runs of lost samples.
+/// Runs of lost samples: gaps in the record.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gaps {
+pub struct Losses {
     /// Probability per sample that a run of losses begins.
     pub probability: f64,
     /// Mean length of a run [samples], geometrically distributed.
@@ -103,7 +103,7 @@ pub struct Tachometer {
     pub clock_drift: f64,
     /// Standard deviation of a report [rad/s].
     pub noise: f64,
-    /// Step of the report [rad/s]; 0: none.
+    /// Step of the report [rad/s]; 0 for all digits.
     pub quantum: f64,
 }
 
@@ -121,11 +121,11 @@ impl Default for Coloured {
 
 impl Default for Recorder {
     fn default() -> Self {
-        Self { rate: 100.0, spikes: Spikes::default(), gaps: Gaps::default(), repeats: 0.0 }
+        Self { rate: 100.0, spikes: Spikes::default(), gaps: Losses::default(), repeats: 0.0 }
     }
 }
 
-impl Default for Gaps {
+impl Default for Losses {
     fn default() -> Self {
         Self { probability: 0.0, length: 1.0 }
     }
@@ -176,7 +176,7 @@ pub enum SimulationError {
     },
 }
 
-impl Settings {
+impl Equipment {
     /// Whether every setting is within its bounds.
     ///
     /// # Errors
