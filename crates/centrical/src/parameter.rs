@@ -2,7 +2,9 @@
 
 use std::ops::Index;
 
-use crate::error_model::{ErrorModel, Monomial};
+use centrical_compensate::Monomial;
+
+use crate::error_model::ErrorModel;
 use crate::experiment::{Experiment, PairRelation, ReferencePoint, STANDARD_GRAVITY};
 
 /// Standard deviation with which null directions are held about zero, in typical magnitudes of the parameters
@@ -200,7 +202,7 @@ impl Parameters {
         });
         let terms = list.len();
         for (index, term) in error_model.terms.iter().enumerate() {
-            let unit = term.monomial.coefficient_unit();
+            let unit = term.unit();
             let typical = typical_coefficient(&term.monomial);
             let power_of_acceleration = 1 - i32::from(term.monomial.degree());
             let coefficient = parameter(term.name.clone(), &unit, term.group, Kind::Term(index), typical);

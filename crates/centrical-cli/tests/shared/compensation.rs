@@ -50,10 +50,10 @@ impl Clean {
     /// The calibrated error model with the covariance of its coefficients.
     fn prediction(&self) -> Compensated {
         let terms = self.instrument();
-        let values = terms.iter().map(|&j| self.result.parameters[j].value.unwrap()).collect();
+        let values: Vec<f64> = terms.iter().map(|&j| self.result.parameters[j].value.unwrap()).collect();
         let covariance = |a: usize, b: usize| self.result.covariance[terms[a]][terms[b]].unwrap();
         let covariance = DMatrix::from_fn(terms.len(), terms.len(), covariance);
-        Compensated::new(self.model.error_model().clone(), values, covariance).unwrap()
+        Compensated::new(self.model.error_model().with_coefficients(&values), covariance).unwrap()
     }
 
     /// Truth with an ideal unit: its reading is the specific force.

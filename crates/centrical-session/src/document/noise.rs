@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use centrical::stability::{Analysis, Coefficient, Deviation, Estimator, NoiseTerm, NoiseTerms, Spectrum};
+use centrical_table::write_whole;
 use serde_json::{Value, json};
 
 use crate::error::Error;
-use crate::write::write_whole;
 
 /// Name of the schema's present version.
 pub const NOISE_SCHEMA: &str = "centrical-noise/1";
@@ -44,9 +44,9 @@ impl NoiseAnalysis {
     /// Writes the analysis as JSON; the file appears whole or not at all.
     ///
     /// # Errors
-    /// [`Error::Io`] when the folder does not take it.
+    /// [`Error::Table`] when the folder does not take it.
     pub fn write(&self, file: &Path) -> Result<(), Error> {
-        write_whole(file, self.to_json().as_bytes())
+        Ok(write_whole(file, self.to_json().as_bytes())?)
     }
 
     /// The analysis as JSON: values in the readings' unit (m/s^2) and seconds; the same input gives the same bytes.

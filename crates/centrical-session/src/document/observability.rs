@@ -9,6 +9,7 @@ use centrical::{Combination, MeasurementModel, SetPoint, Study, Weight, linear};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+use crate::document::json;
 use crate::document::prediction::PredictionReport;
 use crate::document::result::{PriorSummary, Program};
 use crate::error::{Error, Place};
@@ -239,6 +240,11 @@ pub struct CombinationReport {
 }
 
 impl ObservabilityReport {
+    /// Whether every parameter of the instrument is estimable and the rank beyond doubt.
+    pub fn is_acceptable(&self) -> bool {
+        !self.doubtful && self.parameters.iter().all(|p| p.estimable || !p.of_instrument)
+    }
+
     /// Studies a design, and the combinations that are asked for.
     ///
     /// # Errors
@@ -272,11 +278,11 @@ impl ObservabilityReport {
     }
 
     /// The text of the document.
-    pub fn to_json(&self) -> String {
-        // Plain structs with text keys: serialisation has nothing to fail on.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(OBSERVABILITY_SCHEMA, self)
     }
 }
 

@@ -15,7 +15,6 @@ use crate::error::Error;
 use crate::experiment::Session;
 use crate::record::{Input, Kept, RecordFile, RecordOverview, Room, Windows};
 use crate::reduced::{MountingFindings, Reduced, ReducedPlateau};
-use crate::table;
 
 /// Reads and reduces the records of a session, or takes its plateau table. `progress` is told of bytes of records as
 /// they are read, from any thread, twice of nearly each; the outcome does not depend on the number of threads.
@@ -124,7 +123,7 @@ fn all_mountings(
 /// Samples of the longest record, if all files tell at a glance.
 fn most_rows_at_a_glance(session: &Session) -> Option<u64> {
     let count = session.experiment.mountings.len();
-    let rows = (0..count).map(|number| table::rows_at_a_glance(session.record_file(number).ok()?));
+    let rows = (0..count).map(|number| centrical_table::rows_at_a_glance(session.record_file(number).ok()?));
     rows.collect::<Option<Vec<_>>>()?.into_iter().max()
 }
 

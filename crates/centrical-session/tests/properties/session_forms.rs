@@ -8,7 +8,7 @@ use centrical::{ErrorModel, Experiment, Monomial, PairRelation, ReferencePoint};
 use centrical_session::{Column, ColumnName, PlateauMean, Scale, Session, write_plateaus};
 use nalgebra::{Matrix3, Vector3};
 
-const EXPERIMENT: &str = include_str!("../data/experiment.toml");
+const EXPERIMENT: &str = include_str!("../fuzz/seeds/experiment.toml");
 
 fn read(experiment: &str) -> Session {
     let folder = tempfile::tempdir().unwrap();

@@ -57,7 +57,7 @@ impl MeasurementModel {
             Kind::Term(index) => {
                 // df0 + Gamma(f0) f0
                 let term = &self.error_model.terms[index];
-                Vector3::ith(term.axis, term.monomial.value(f0))
+                Vector3::ith(term.axis, term.monomial.value((*f0).into()))
             }
             _ => match self.extension_share(set_point, kind) {
                 Share::None => Vector3::zeros(),

@@ -129,8 +129,8 @@ impl Prediction {
     /// coefficient is not determined.
     pub fn curves(&self, range: f64, points: usize) -> Option<[Vec<CurvePoint>; 3]> {
         let covariance = self.covariance()?;
-        let coefficients = vec![0.0; covariance.nrows()];
-        let compensated = Compensated::new(self.model.error_model().clone(), coefficients, covariance)?;
+        let nominal = self.model.error_model().with_coefficients(&vec![0.0; covariance.nrows()]);
+        let compensated = Compensated::new(nominal, covariance)?;
         Some([0, 1, 2].map(|axis| compensated.curve(&Vector3::ith(axis, 1.0), range, points)))
     }
 

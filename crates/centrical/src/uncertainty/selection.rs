@@ -6,13 +6,14 @@
 
 use std::collections::HashSet;
 
+use centrical_compensate::Monomial;
 use nalgebra::DMatrix;
 
 use super::coverage::chi_squared_tail;
 use super::validity::{Validity, f_tail};
 use crate::design::Observation;
 use crate::error::FitError;
-use crate::error_model::{ErrorModel, Extra, Monomial, Term};
+use crate::error_model::{ErrorModel, Extra, Term};
 use crate::fit::{self, Fit, Gain, Termination};
 use crate::measurement::MeasurementModel;
 use crate::parameter::{Extension, Kind, Law, Parameter};

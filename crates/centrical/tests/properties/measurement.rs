@@ -115,7 +115,7 @@ fn jacobian_equals_differences() {
 
 /// Transverse axes stand near zero, where `|f| f` has a jump in its second derivative that no difference should
 /// straddle: the coefficients of odd terms are set to zero. Their columns stay tested here, and their gradients
-/// in `gradients_of_monomials`.
+/// in the tests of `centrical-compensate`.
 fn without_kinks(model: &MeasurementModel, mut x: Vec<f64>) -> Vec<f64> {
     for (value, parameter) in x.iter_mut().zip(model.parameters()) {
         if parameter.name.starts_with("odd") {
@@ -123,30 +123,6 @@ fn without_kinks(model: &MeasurementModel, mut x: Vec<f64>) -> Vec<f64> {
         }
     }
     x
-}
-
-#[test]
-fn gradients_of_monomials() {
-    let f = Vector3::new(-1.5, 0.8, 2.1);
-    let monomials = [
-        Monomial::ONE,
-        Monomial::power(0, 1),
-        Monomial::power(2, 3),
-        Monomial::product(0, 2),
-        Monomial::odd_square(0),
-        Monomial::odd_square(1),
-        Monomial { powers: [1, 2, 1], sign_of: Some(0) },
-    ];
-    for monomial in monomials {
-        let gradient = monomial.gradient(&f);
-        for j in 0..3 {
-            let step = Vector3::ith(j, 1e-3);
-            let at = |steps: f64| monomial.value(&(f + step * steps));
-            let numeric = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / 12e-3;
-            assert!((numeric - gradient[j]).abs() < 1e-11, "{monomial:?}");
-        }
-    }
-    assert_eq!(Monomial::odd_square(0).value(&f), -2.25);
 }
 
 /// `d f' / d ln Omega` of the full model against differences of the speed.
@@ -180,7 +156,7 @@ fn mean_over_a_revolution_is_exact() {
         name: "none".to_owned(),
         group: "none",
         axis: 0,
-        monomial: centrical::Monomial { powers: [60, 0, 0], sign_of: None },
+        monomial: Monomial { powers: [60, 0, 0], sign_of: None },
     });
     let fine = MeasurementModel::new(model.experiment().clone(), finer, &[]);
     let mut x_fine = x.clone();

@@ -449,7 +449,7 @@ fn reading_criterion_is_the_mean_over_forces() {
     let [_, cubature] = prediction.reading(RANGE).unwrap();
     let first = model.parameters().find("df_1").unwrap();
     let covariance = DMatrix::from_fn(21, 21, |i, j| prediction.budget().covariance(first + i, first + j).unwrap());
-    let compensated = Compensated::new(ErrorModel::kozlov_2017(), vec![0.0; 21], covariance).unwrap();
+    let compensated = Compensated::new(ErrorModel::kozlov_2017().with_coefficients(&[0.0; 21]), covariance).unwrap();
     let mut random = Random::new(9);
     let draws = 40_000;
     let mut squares = Vec::with_capacity(draws);

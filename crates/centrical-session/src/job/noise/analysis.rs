@@ -16,12 +16,12 @@ pub fn analyse_noise(series: &Series, estimators: &[Estimator]) -> Result<NoiseA
     let analysed = columns.map(|(name, unit, values)| {
         let failed = |source| Error::Noise { file: series.file.clone(), reading: name.clone(), source };
         let noise = analyse(&series.t, values, estimators).map_err(failed)?;
-        Ok(ReadingNoise { name: name.clone(), unit: unit.clone(), noise })
+        Ok::<_, Error>(ReadingNoise { name: name.clone(), unit: unit.clone(), noise })
     });
     Ok(NoiseAnalysis {
         file: series.file.clone(),
         window: [series.t.first(), series.t.last()].map(|t| t.copied().unwrap_or(f64::NAN)),
         confidence: CONFIDENCE,
-        readings: analysed.collect::<Result<_, _>>()?,
+        readings: analysed.collect::<Result<_, Error>>()?,
     })
 }
