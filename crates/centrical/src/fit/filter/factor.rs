@@ -17,7 +17,7 @@ pub struct Factor {
     rows: Vec<f64>,
     /// Three readings on their way through the triangle, as rows like those of `rows`.
     incoming: [Vec<f64>; 3],
-    /// Sum of squares of what the equations could not take up.
+    /// Sum of squares of the misfit that the equations could not take up.
     rest: f64,
 }
 
@@ -105,19 +105,6 @@ impl Factor {
             next.rows[start + states] = old[old.len() - 1];
         }
         next
-    }
-
-    /// The factor of given rows, each from its diagonal on; `None` if the lengths are not those of a triangle.
-    pub(super) fn from_rows(rows: &[Vec<f64>], rest: f64) -> Option<Self> {
-        let states = rows.len();
-        let mut factor = Self::new(states);
-        factor.rest = rest;
-        for (j, row) in rows.iter().enumerate() {
-            let start = j * (states + 1) + j;
-            factor.rows.get_mut(start..start + states + 1 - j)?.get_mut(..row.len())?.copy_from_slice(row);
-            (row.len() == states + 1 - j).then_some(())?;
-        }
-        Some(factor)
     }
 }
 
