@@ -14,7 +14,8 @@ const TOLD: f64 = 0.05;
 /// The whole assessment, expanded uncertainties for a probability of `coverage`; the correlations if they are wanted.
 pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: bool) -> String {
     let Assessment { model, fit, cleaned, budget, validity, patterns, prediction } = assessment;
-    let mut text = cleaned.as_ref().map_or(String::new(), |(after, left_out)| outliers_text(model, [fit, after], left_out));
+    let mut text =
+        cleaned.as_ref().map_or(String::new(), |(after, left_out)| outliers_text(model, [fit, after], left_out));
     text.push_str(&budget_table(model.parameters(), budget, coverage));
     text.push('\n');
     if correlations {

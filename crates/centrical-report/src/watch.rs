@@ -46,7 +46,8 @@ pub fn states_text(model: &MeasurementModel, order: &[usize]) -> String {
     let lifetimes = Lifetimes::new(model, order);
     let mut text = format!("{} states of {} unknowns at a time\n", lifetimes.states(), lifetimes.unknowns());
     if lifetimes.cost() > 0 {
-        let waiting: Vec<&str> = lifetimes.waiting(model).iter().map(|&j| model.parameters()[j].name.as_str()).collect();
+        let waiting: Vec<&str> =
+            lifetimes.waiting(model).iter().map(|&j| model.parameters()[j].name.as_str()).collect();
         let _ = writeln!(
             text,
             "The order does not keep positions together, which costs {} states; waiting at the fullest: {}",

@@ -12,7 +12,8 @@ use crate::Outcome;
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// The session folder, its experiment.toml, or a plan: the same form without records, or a preset
-    design: PathBuf,
+    #[arg(value_name = "SESSION|PLAN")]
+    subject: PathBuf,
     /// Print the report as JSON instead of text
     #[arg(long)]
     json: bool,
@@ -21,9 +22,9 @@ pub struct Arguments {
     combination: Vec<String>,
 }
 
-/// Runs the command. Not acceptable: an instrument's parameter is lost, or the rank is a matter of rounding.
+/// Runs the command. Not acceptable: a parameter of the instrument is undetermined, or the rank depends on rounding.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let subject = subject(&arguments.design, &|_| ())?;
+    let subject = subject(&arguments.subject, &|_| ())?;
     let report = ObservabilityReport::of(&subject, &arguments.combination)?;
     let text = if arguments.json { report.to_json()? } else { observation_text(&report) };
     // A reader that has seen enough (`| head`) is no failure.

@@ -46,8 +46,8 @@ impl MonteCarloCase {
     pub fn measured(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
         let Problem { model, reduced } = Problem::of(session, progress)?;
         let (observations, file) = (reduced.observations(), session.file.clone());
-        let truth = estimated(&model, observations.clone())
-            .map_err(|source| Error::Fit { file: file.clone(), source })?;
+        let truth =
+            estimated(&model, observations.clone()).map_err(|source| Error::Fit { file: file.clone(), source })?;
         Ok(Self { model, truth, file, observations, stated: session.type_b })
     }
 

@@ -93,7 +93,10 @@ impl Case {
             );
             let (Some(statistics), Some(predicted)) = (statistics, predicted) else { continue };
             let is_affected_by_null_space = prediction.is_affected_by_null_space(j);
-            assert_eq!(statistics.is_affected_by_null_space, is_affected_by_null_space, "{name}, {parameter}: leans by one of them only");
+            assert_eq!(
+                statistics.is_affected_by_null_space, is_affected_by_null_space,
+                "{name}, {parameter}: leans by one of them only"
+            );
             let ratio = statistics.standard_deviation / predicted;
             compared.push(Compared { parameter: parameter.clone(), ratio, is_affected_by_null_space });
         }
@@ -183,7 +186,10 @@ fn every_parameter_of_four_positions_scatters_as_predicted() {
     let four = Case::of("four-positions.toml", "opposite");
     let compared = four.compared("four positions, type A", &four.truth(1.0), TypeB::default());
     for Compared { parameter, ratio, is_affected_by_null_space } in &compared {
-        println!("  {parameter:<14}{ratio:.4}{}", if *is_affected_by_null_space { "  leans on what is lost" } else { "" });
+        println!(
+            "  {parameter:<14}{ratio:.4}{}",
+            if *is_affected_by_null_space { "  leans on what is lost" } else { "" }
+        );
     }
     let names = |leaning: bool| {
         let there = compared.iter().filter(move |c| c.is_affected_by_null_space == leaning);

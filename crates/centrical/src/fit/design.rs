@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::data::Data;
 use crate::model::prior::{self, Prior};
 use crate::model::whitening::Whitener;
-use super::data::Data;
 use crate::model::{FitError, Linearisation};
 
 /// Weighted linearised equations `rows du = misfit` of all plateaus, and of the priors if any.

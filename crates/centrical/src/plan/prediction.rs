@@ -17,8 +17,8 @@ use nalgebra::{DMatrix, Vector3};
 
 use super::candidates::{Candidates, Schedule};
 use super::criterion::ReadingRange;
-use crate::model::{Experiment, FitError, MeasurementModel, Mounting, Observation, Weight};
 use crate::fit::{Calibration, Data, Structure};
+use crate::model::{Experiment, FitError, MeasurementModel, Mounting, Observation, Weight};
 use crate::uncertainty::{Budget, Compensated, CurvePoint, TypeB};
 
 /// What a plan will know.

@@ -87,14 +87,7 @@ struct Point {
 
 /// Seeks the optimum of `polytope` from `start` until it is known as well as `precision` asks.
 pub(super) fn relax(scenes: &Scenes, polytope: &Polytope, start: Option<&[f64]>, precision: Precision) -> Relaxed {
-    let mut search = Search {
-        scenes,
-        polytope,
-        best: f64::NEG_INFINITY,
-        models: 0,
-        exponent: 1.0,
-        precision,
-    };
+    let mut search = Search { scenes, polytope, best: f64::NEG_INFINITY, models: 0, exponent: 1.0, precision };
     let has_norm = scenes.has_norm();
     let mut w = polytope.within(&start.map_or_else(|| search.spread(), <[f64]>::to_vec));
     search.exponent = if has_norm { 4.0 } else { 1.0 };

@@ -9,8 +9,8 @@ use nalgebra::DMatrix;
 
 use super::coverage::{Degrees, effective_degrees_of_freedom};
 use super::source::{Influence, Quantity, Source, TypeB, influences};
-use crate::model::{FitError, MeasurementModel, Observation};
 use crate::fit::{Calibration, Fit};
+use crate::model::{FitError, MeasurementModel, Observation};
 
 /// A parameter is affected by the null space when that leaves more than this part of its variance.
 const AFFECTED: f64 = 0.1;

@@ -11,8 +11,8 @@ use super::budget::Budget;
 use super::comparison::weighted_square;
 use super::coverage::{Degrees, chi_squared_tail, coverage_factor};
 use super::source::{Influence, TypeB, influences};
-use crate::model::{FitError, MeasurementModel, Observation};
 use crate::fit::{Calibration, Data, Fit, Structure, Termination};
+use crate::model::{FitError, MeasurementModel, Observation};
 use crate::random::Random;
 
 /// What to draw, and how often.

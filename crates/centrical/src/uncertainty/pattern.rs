@@ -8,8 +8,8 @@
 use nalgebra::DMatrix;
 
 use super::validity::f_tail;
-use crate::model::{Experiment, FitError, Observation, SetPoint};
 use crate::fit::Calibration;
+use crate::model::{Experiment, FitError, Observation, SetPoint};
 
 /// What the residuals of one newtonometer could follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,8 +11,8 @@ use nalgebra::DMatrix;
 
 use super::coverage::chi_squared_tail;
 use super::validity::f_tail;
-use crate::model::{ErrorModel, Extension, Extra, FitError, Kind, Law, MeasurementModel, Observation, Parameter, Term};
 use crate::fit::{Calibration, Data, Termination};
+use crate::model::{ErrorModel, Extension, Extra, FitError, Kind, Law, MeasurementModel, Observation, Parameter, Term};
 
 /// A model that could be meant.
 #[derive(Debug, Clone, PartialEq)]
@@ -175,9 +175,17 @@ impl Best<'_> {
 
     /// The terms of the model that could be left out, each by its own uncertainty.
     fn own_terms(&self) -> Vec<TermVerdict> {
-        let optional = self.0.data().model().parameters().iter().enumerate().filter(|(_, p)| can_go(self.0.data().model(), p.kind));
+        let optional = self
+            .0
+            .data()
+            .model()
+            .parameters()
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| can_go(self.0.data().model(), p.kind));
         let verdict = optional.map(|(j, parameter)| {
-            let significance = self.0.fit().value(j).zip(self.0.fit().standard_uncertainty(j)).map(|(value, u)| value / u);
+            let significance =
+                self.0.fit().value(j).zip(self.0.fit().standard_uncertainty(j)).map(|(value, u)| value / u);
             let kept = significance.is_some_and(|t| t * t > self.threshold());
             TermVerdict { name: parameter.name.clone(), significance, kept }
         });
@@ -217,7 +225,8 @@ impl Best<'_> {
             let Some(j) = richer.parameters().find(&parameter.name) else { return Vec::new() };
             x[j] = *value;
         }
-        let is_further = |p: &Parameter| self.0.data().model().parameters().find(&p.name).is_none() && can_go(richer, p.kind);
+        let is_further =
+            |p: &Parameter| self.0.data().model().parameters().find(&p.name).is_none() && can_go(richer, p.kind);
         let further = richer.parameters().iter().enumerate().filter(|(_, p)| is_further(p));
         let mut columns: Vec<(usize, DMatrix<f64>)> =
             further.map(|(j, _)| (j, DMatrix::zeros(3 * self.0.data().observations().len(), 1))).collect();

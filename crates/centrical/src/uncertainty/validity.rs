@@ -12,8 +12,8 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use statrs::function::beta::beta_reg;
 
 use super::coverage::chi_squared_tail;
-use crate::model::FitError;
 use crate::fit::{Calibration, Data};
+use crate::model::FitError;
 
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
 const REDUNDANT: f64 = 1e-8;

@@ -1,7 +1,7 @@
 //! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
 
-use centrical::{Calibration, Experiment, FitError};
 use centrical::uncertainty::{Budget, Degrees, Pattern, Prediction, Source, Trend, Validity};
+use centrical::{Calibration, Experiment, FitError};
 use serde::{Deserialize, Serialize};
 
 /// Family-wise error at which a plateau stands out and a pattern is told.

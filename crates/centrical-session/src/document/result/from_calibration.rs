@@ -219,11 +219,7 @@ fn plateaus(calibration: &Calibration, reduced: &Reduced) -> Vec<PlateauSummary>
 }
 
 /// Covariance with the speed's term and residual of a plateau against a fit that it has no part in.
-fn against(
-    calibration: &Calibration,
-    set_point: &SetPoint,
-    plateau: &ReducedPlateau,
-) -> (Matrix3<f64>, Vector3<f64>) {
+fn against(calibration: &Calibration, set_point: &SetPoint, plateau: &ReducedPlateau) -> (Matrix3<f64>, Vector3<f64>) {
     let there = calibration.data().model().linearise(set_point, calibration.fit().state());
     (plateau.covariance + there.speed_error * there.speed_error.transpose(), plateau.mean - there.reading)
 }
