@@ -1,6 +1,6 @@
 //! Tables of numbers in any format, in and out.
 //!
-//! Columns are chosen by name or number and handed over in blocks of rows of bounded size, whatever the format and length of
+//! Columns are chosen by name or number and read in batches of rows of bounded size, whatever the format and length of
 //! the file. Files are of any make: nothing in one can make this crate panic, hang or fill the memory. What is wrong with a
 //! file is an [`Error`] with the file, the place, what was found and what was expected.
 //!
@@ -19,16 +19,16 @@
 mod binary;
 mod column;
 mod error;
+mod reader;
 mod rows;
 mod stamp;
-mod table;
 mod text;
 mod write;
 
 pub use column::{ColumnName, Field, Rule};
 pub use error::{Error, Place, quoted};
-pub use rows::{Block, Visitor};
-pub use table::{Extent, read, read_batches, rows_at_a_glance};
+pub use reader::{Extent, TableReader, estimate_rows};
+pub use rows::Rows;
 pub use text::{Index, Reread};
 pub use write::{
     Decimals, TableFormat, TableWriter, create_folder, parquet_bytes, write_stream, write_table, write_whole,
