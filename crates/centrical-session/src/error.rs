@@ -74,7 +74,7 @@ pub enum Error {
         /// The column.
         reading: String,
         /// What was found and what was expected.
-        source: centrical::noise::NoiseError,
+        source: centrical::stability::NoiseError,
     },
     /// Nothing can be simulated of a truth.
     #[error("{}: {source}", file.display())]
@@ -83,6 +83,14 @@ pub enum Error {
         file: PathBuf,
         /// Which setting or value, and why.
         source: centrical::simulate::SimulationError,
+    },
+    /// A document has a value that has no place in JSON.
+    #[error("{document}: cannot be written as JSON: {source}")]
+    Json {
+        /// Its schema or file name.
+        document: &'static str,
+        /// Which value, and why.
+        source: serde_json::Error,
     },
 }
 

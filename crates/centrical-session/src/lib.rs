@@ -1,20 +1,22 @@
-//! Session folders and records in, calibration results out.
+//! What stands in the files of a session, and the whole jobs on them: session folders in, results out.
 //!
 //! Inputs are of any make: nothing in a file can make this crate panic, hang or fill the memory. What is
 //! wrong with a file is an [`Error`] with the file, the place, what was found and what was expected.
 //!
-//! # Formats of records and telemetry
-//! | format | columns |
-//! |---|---|
-//! | text, also in gzip or Zstandard: any delimiter, decimal commas, comments | by name, or by number without a header |
-//! | Parquet (uncompressed, snappy, gzip, lz4, zstd) | by name or number |
-//! | Arrow IPC: files (Feather) and streams, plain, lz4 or zstd | by name or number |
-//! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number |
-//! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
-//! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
+//! ```
+//! use std::path::Path;
 //!
-//! The format is told by the first bytes. Time is a number in a unit, a count of samples at a rate, or (text and
-//! Parquet) a stamp. It never decreases; it may stand still.
+//! use centrical_session::{Method, Session, calibrate};
+//!
+//! let session = Session::read(Path::new("../../examples/ta-200"))?;
+//! let result = calibrate(&session, Method::Exact, &|_| ())?;
+//! let bias = result.parameter("df_1").expect("the error model has a bias");
+//! assert!(bias.estimable && bias.standard_uncertainty.is_some_and(|u| u < 1e-3));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Records and telemetry are tables in any format of [`centrical_table`]. Time is a number in a unit, a count of samples at
+//! a rate, or (text and Parquet) a stamp. It never decreases; it may stand still.
 
 mod document;
 mod error;
@@ -27,7 +29,9 @@ mod record_writer;
 mod reduced;
 mod truth;
 
+pub use centrical::STANDARD_GRAVITY;
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+pub use centrical::stability::Estimator;
 pub use centrical_table::{ColumnName, TableFormat, create_folder, write_whole};
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
@@ -46,9 +50,11 @@ pub use experiment::{
     earlier_result, read_plateaus, write_plateaus,
 };
 pub use job::{
-    Compensated, FirstOutside, Method, PlanRequest, Problem, Series, USUAL_LEVELS, Watch, analyse_noise, calibrate,
-    calibrate_without, compensate_record, read_plan, read_planning, reduce, reduce_without_inputs, simulate_session,
-    subject, write_reduced,
+    Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following, Method,
+    MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series, USUAL_LEVELS, USUAL_TIMES, Watch,
+    WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess, calibrate, calibrate_without, compare_results,
+    compensate, compensate_record, noise_of, read_plan, read_planning, reduce, reduce_without_inputs, select_model,
+    simulate_session, subject, write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,

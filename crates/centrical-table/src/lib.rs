@@ -15,6 +15,27 @@
 //! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
 //!
 //! The format is told by the first bytes. Written are CSV and Parquet.
+//!
+//! # The mean of a column
+//! ```
+//! use std::path::Path;
+//!
+//! use centrical_table::{ColumnName, Extent, Field, Rule, TableReader};
+//!
+//! let name = ColumnName::Name("f1".into());
+//! let fields = [Field { name, expected: "a number in m/s^2".into(), rule: Rule::Any }];
+//! let (mut sum, mut count) = (0.0, 0);
+//! let file = Path::new("../../examples/ta-200/records/m01.csv");
+//! let mut table = TableReader::open(file, Extent::Whole, &fields, "a record")?;
+//! while let Some(batch) = table.next_batch()? {
+//!     for rows in batch {
+//!         sum += rows[0].iter().sum::<f64>();
+//!         count += rows[0].len();
+//!     }
+//! }
+//! assert!(count > 1000 && (sum / count as f64).abs() < 2000.0);
+//! # Ok::<(), centrical_table::Error>(())
+//! ```
 
 mod binary;
 mod column;

@@ -32,32 +32,6 @@ pub enum Extent {
 }
 
 /// A table that is read batch by batch, in memory that does not grow with it.
-///
-/// ```
-/// # fn main() -> Result<(), centrical_table::Error> {
-/// # let folder = std::env::temp_dir().join("centrical-table-doc");
-/// # std::fs::create_dir_all(&folder).unwrap();
-/// # let file = folder.join("record.csv");
-/// # std::fs::write(&file, "t,f1\n0,9.81\n0.5,9.83\n").unwrap();
-/// use centrical_table::{ColumnName, Extent, Field, Rule, TableReader};
-///
-/// let field = |name: &str, rule| Field {
-///     name: ColumnName::Name(name.to_owned()),
-///     expected: "a number".to_owned(),
-///     rule,
-/// };
-/// let fields = [field("t", Rule::Ascending { stamps: true }), field("f1", Rule::Any)];
-/// let mut table = TableReader::open(&file, Extent::Whole, &fields, "a record")?;
-/// let mut sum = 0.0;
-/// while let Some(batch) = table.next_batch()? {
-///     for rows in batch {
-///         sum += rows[1].iter().sum::<f64>();
-///     }
-/// }
-/// assert_eq!(sum, 9.81 + 9.83);
-/// # Ok(())
-/// # }
-/// ```
 pub struct TableReader {
     file: PathBuf,
     /// What the file is, for messages.

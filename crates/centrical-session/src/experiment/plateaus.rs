@@ -12,7 +12,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use centrical::SetPoint;
+use centrical::{Rotation, SetPoint};
 use centrical_table::{ColumnName, Extent, Field, Rule, TableReader, parquet_bytes, write_whole};
 use nalgebra::{Matrix3, Vector3};
 
@@ -53,9 +53,9 @@ impl PlateauTable {
         Ok(Self { file, rows })
     }
 
-    pub(crate) fn set_points(&self, sign: f64) -> Vec<SetPoint> {
+    pub(crate) fn set_points(&self, rotation: Rotation) -> Vec<SetPoint> {
         let set_point =
-            |p: &PlateauMean| SetPoint { mounting: p.mounting, omega: sign * p.speed + 0.0, angle: p.angle };
+            |p: &PlateauMean| SetPoint { mounting: p.mounting, omega: rotation.sign() * p.speed + 0.0, angle: p.angle };
         self.rows.iter().map(set_point).collect()
     }
 }

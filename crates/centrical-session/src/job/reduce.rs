@@ -5,7 +5,7 @@ mod scheduler;
 
 use std::path::Path;
 
-use centrical::reduction::{NoiseModel, ReducedMounting};
+use centrical::reduction::{NoiseModel, ReducedMounting, plateau_means};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
@@ -44,7 +44,7 @@ fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Re
     let mountings = with_thread_limit(|| Scheduler::new(session, progress).run())?;
     let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) = mountings.into_iter().unzip();
     let noise = NoiseModel::pool(&reduced);
-    let means = reduced.iter().flat_map(|mounting| mounting.means(&noise));
+    let means = reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise));
     let findings =
         |m: &ReducedMounting| MountingFindings { settling_time: m.settling_time(), clock_offset: m.clock_offset() };
     Ok(Reduced {

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use centrical::reduction::{Located, Plateau, PlateauFit, Record, RecordSlice, ReductionError, Survey};
+use centrical::reduction::{Averaging, Located, PlateauFit, Record, RecordSlice, ReductionError, Survey};
 use rayon::prelude::*;
 
 use super::columns::Columns;
@@ -157,12 +157,12 @@ struct PlateauInParts<'a> {
     parts: Vec<[f64; 2]>,
     /// How many of them are added.
     added: usize,
-    plateau: Result<Plateau<'a>, ReductionError>,
+    plateau: Result<Averaging<'a>, ReductionError>,
 }
 
 impl<'a> PlateauInParts<'a> {
     fn new(located: &'a Located, plateau: usize) -> Self {
-        Self { parts: located.parts(plateau), added: 0, plateau: Ok(located.plateau(plateau)) }
+        Self { parts: located.parts(plateau), added: 0, plateau: Ok(Averaging::new(located, plateau)) }
     }
 
     /// The part whose samples are to be added next.
@@ -186,7 +186,7 @@ impl<'a> PlateauInParts<'a> {
         while self.next_part().is_some() {
             self.add(samples, 0);
         }
-        self.plateau.and_then(Plateau::finish)
+        self.plateau.and_then(Averaging::finish)
     }
 }
 

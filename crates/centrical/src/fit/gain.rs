@@ -5,10 +5,12 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, QR};
 
-use super::{Fit, NULL_HOLD, Structure};
-use crate::design::{Design, Observation, Whitener};
-use crate::error::FitError;
-use crate::measurement::{Linearisation, MeasurementModel};
+use super::assembly::Assembly;
+use super::data::Data;
+use super::estimates::Fit;
+use super::structure::Structure;
+use crate::model::whitening::Whitener;
+use crate::model::{FitError, NULL_HOLD};
 
 /// The factored design at the estimate of a fit.
 #[derive(Debug, Clone)]
@@ -23,28 +25,16 @@ pub struct Gain {
 }
 
 impl Gain {
-    /// Gain of `fit`, which was made of `observations` of `model` with `speed_uncertainty`.
-    ///
-    /// # Errors
-    /// [`FitError`] when an observation cannot be one.
-    pub fn of(
-        fit: &Fit,
-        model: &MeasurementModel,
-        observations: &[Observation],
-        speed_uncertainty: f64,
-    ) -> Result<Self, FitError> {
-        let structure = Structure::of(model, observations, speed_uncertainty)?;
-        let set_points = &model.experiment().set_points;
-        let linearisations: Vec<Linearisation> =
-            observations.iter().map(|o| model.linearise(&set_points[o.set_point], fit.state())).collect();
-        let design = Design::at(fit.state(), model, observations, &linearisations, speed_uncertainty)?;
-        let pairs = observations.iter().zip(&linearisations);
-        let whiteners =
-            pairs.map(|(o, l)| Whitener::new(&o.into(), &l.speed, speed_uncertainty)).collect::<Result<_, _>>()?;
-        let hold = if fit.null_directions_held { 1.0 / NULL_HOLD } else { 0.0 };
-        let equations = structure.equations(&design, &DVector::from_column_slice(fit.state()), hold);
+    /// Gain of the fit of `data`, whose design has that structure.
+    pub(super) fn of(data: &Data, structure: &Structure, fit: &Fit) -> Result<Self, FitError> {
+        let linearisations = data.linearised(fit.state());
+        let design = Assembly::Batch.design(data, fit.state(), &linearisations)?;
+        let pairs = data.observations().iter().zip(&linearisations);
+        let whiteners = pairs.map(|(o, l)| Whitener::new(&o.into(), &l.speed_error)).collect::<Result<_, _>>()?;
+        let null_weight = if fit.null_directions_held { 1.0 / NULL_HOLD } else { 0.0 };
+        let equations = structure.equations(&design, &DVector::from_column_slice(fit.state()), null_weight);
         let (rows, qr) = (equations.rows.nrows(), equations.rows.qr());
-        Ok(Self { qr, whiteners, rows, residuals: design.misfit, typical: structure.typical })
+        Ok(Self { qr, whiteners, rows, residuals: design.misfit, typical: structure.typical.clone() })
     }
 
     /// Changes of the estimates, `p x m` [units of the parameters], that `m` changes of the readings make,
@@ -79,7 +69,7 @@ impl Gain {
         self.rotated(readings).rows(p, self.rows - p).into_owned()
     }
 
-    /// The residuals in the same coordinates: all that they can tell.
+    /// The residuals in the same coordinates: their testable part.
     pub fn redundant_residuals(&self) -> DVector<f64> {
         let p = self.typical.len();
         let mut rotated = self.residuals.clone().resize_vertically(self.rows, 0.0);

@@ -5,10 +5,7 @@ use std::collections::BTreeSet;
 use nalgebra::{Matrix3, Vector3};
 
 use super::Study;
-use crate::design::Weight;
-use crate::error::FitError;
-use crate::experiment::{Experiment, Mounting, PairRelation, SetPoint};
-use crate::position::Position;
+use crate::model::{Experiment, FitError, Mounting, PairRelation, Position, SetPoint, Weight};
 
 /// One addition to an experiment.
 ///
@@ -87,7 +84,7 @@ impl Addition {
         }
         let (experiment, weights) = draft.finish();
         let model = model.unwrap_or_else(|| study.model().in_experiment(experiment));
-        Study::at_zero(model, weights, study.speed_uncertainty())
+        Study::at_zero(model, weights)
     }
 
     /// Rank of its kind in the order of cost, and the number of plateaus, mountings or fixtures it takes.

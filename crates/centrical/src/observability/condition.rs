@@ -8,9 +8,7 @@ use nalgebra::Matrix3;
 
 use super::remedy::{axis_attitudes, new_angle, new_id, new_radius, new_speed};
 use super::{Addition, Study};
-use crate::experiment::SetPoint;
-use crate::parameter::Kind;
-use crate::position::Position;
+use crate::model::{Kind, Position, SetPoint};
 
 /// "An order of magnitude or more" above gravity.
 const LOAD_RATIO: f64 = 10.0;
@@ -163,7 +161,7 @@ impl Study {
     fn lost_without(&self, removed: &dyn Fn(&SetPoint) -> bool) -> usize {
         let set_points = &self.model().experiment().set_points;
         let weights: Vec<_> = self.weights().iter().filter(|w| !removed(&set_points[w.set_point])).copied().collect();
-        let Ok(study) = Self::at_zero(self.model().clone(), weights, self.speed_uncertainty()) else {
+        let Ok(study) = Self::at_zero(self.model().clone(), weights) else {
             return self.observability().columns();
         };
         let unused = self.model().parameters().iter().enumerate().filter(|(j, parameter)| {

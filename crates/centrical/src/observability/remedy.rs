@@ -6,10 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Addition, Observability, Study};
-use crate::experiment::PairRelation;
-use crate::parameter::Kind;
-use crate::position::Position;
-use crate::rotation;
+use crate::model::{Kind, PairRelation, Position, rotation};
 
 /// Two angles, speeds or radii closer than this part of the largest are one: a schedule's "180 deg" is no new angle
 /// beside 3.1416 rad.
@@ -161,8 +158,7 @@ pub(super) fn new_angle(study: &Study) -> Option<Addition> {
 pub(super) fn new_speed(study: &Study) -> Option<Addition> {
     let experiment = study.model().experiment();
     let middle = widest_gap(experiment.set_points.iter().map(|s| s.omega * s.omega))?;
-    let sign = experiment.set_points.iter().map(|s| s.omega).find(|omega| *omega != 0.0)?.signum();
-    let omega = sign * middle.sqrt();
+    let omega = experiment.centrifuge.rotation.sign() * middle.sqrt();
     Some(Addition::Speed { mountings: (0..experiment.mountings.len()).collect(), omega })
 }
 

@@ -4,9 +4,7 @@ use nalgebra::Matrix3;
 
 use super::error::PlanError;
 use super::robustness::Robustness;
-use crate::design::Weight;
-use crate::experiment::Experiment;
-use crate::measurement::MeasurementModel;
+use crate::model::{Experiment, MeasurementModel, Weight};
 
 /// White noise down to a floor: the variance of the mean of a plateau of duration `T` is `density^2 / 2T + floor^2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,8 +37,6 @@ pub struct Scenario {
     pub nominal: Vec<f64>,
     /// The noise that is reckoned with.
     pub noise: Noise,
-    /// Relative standard uncertainty of the speed of a plateau.
-    pub speed_uncertainty: f64,
     /// Its weight among the scenarios; they are divided by their sum.
     pub weight: f64,
 }

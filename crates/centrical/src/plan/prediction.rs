@@ -17,11 +17,8 @@ use nalgebra::{DMatrix, Vector3};
 
 use super::candidates::{Candidates, Schedule};
 use super::criterion::ReadingRange;
-use crate::design::{Observation, Weight};
-use crate::error::FitError;
-use crate::experiment::{Experiment, Mounting};
-use crate::fit::{self, Structure};
-use crate::measurement::MeasurementModel;
+use crate::fit::{Calibration, Data, Structure};
+use crate::model::{Experiment, FitError, MeasurementModel, Mounting, Observation, Weight};
 use crate::uncertainty::{Budget, Compensated, CurvePoint, TypeB};
 
 /// What a plan will know.
@@ -29,8 +26,8 @@ use crate::uncertainty::{Budget, Compensated, CurvePoint, TypeB};
 pub struct Prediction {
     model: MeasurementModel,
     budget: Budget,
-    /// By parameter: whether it leans on what is lost.
-    leans: Vec<bool>,
+    /// By parameter: whether the null space affects it.
+    affected: Vec<bool>,
 }
 
 /// Predicts the budget of a calibration of `model` with the plateaus' `weights`, for the unknowns `truth` (in the order of the
@@ -41,16 +38,15 @@ pub struct Prediction {
 pub fn predict(
     model: &MeasurementModel,
     weights: &[Weight],
-    speed_uncertainty: f64,
     stated: &TypeB,
     truth: &[f64],
 ) -> Result<Prediction, FitError> {
-    let (truth, structure) = unit_with_structure(model, weights, speed_uncertainty, truth)?;
-    let perfect = readings(model, weights, &truth);
-    let fit = fit::exact_with(&structure, model, &perfect, speed_uncertainty)?;
-    let budget = Budget::new(&fit, model, &perfect, speed_uncertainty, stated)?;
-    let leans = (0..truth.len()).map(|j| budget.leans_on_lost(&fit, j)).collect();
-    Ok(Prediction { model: model.clone(), budget, leans })
+    let (truth, structure) = unit_with_structure(model, weights, truth)?;
+    let perfect = Data::new(model, readings(model, weights, &truth))?;
+    let calibration = Calibration::with_structure(structure, &perfect)?;
+    let budget = calibration.budget(stated)?;
+    let affected = (0..truth.len()).map(|j| budget.is_affected_by_null_space(calibration.fit(), j)).collect();
+    Ok(Prediction { model: model.clone(), budget, affected })
 }
 
 /// The unknowns that a plan is predicted for, and its calibrations are drawn for: those expected, or where none is and the
@@ -58,25 +54,19 @@ pub fn predict(
 ///
 /// # Errors
 /// As [`predict`].
-pub fn unit_of(
-    model: &MeasurementModel,
-    weights: &[Weight],
-    speed_uncertainty: f64,
-    expected: &[f64],
-) -> Result<Vec<f64>, FitError> {
-    unit_with_structure(model, weights, speed_uncertainty, expected).map(|(unit, _)| unit)
+pub fn unit_of(model: &MeasurementModel, weights: &[Weight], expected: &[f64]) -> Result<Vec<f64>, FitError> {
+    unit_with_structure(model, weights, expected).map(|(unit, _)| unit)
 }
 
 fn unit_with_structure(
     model: &MeasurementModel,
     weights: &[Weight],
-    speed_uncertainty: f64,
     expected: &[f64],
 ) -> Result<(Vec<f64>, Structure), FitError> {
-    let structure = Structure::of(model, &readings(model, weights, expected), speed_uncertainty)?;
+    let structure = Structure::of(&Data::new(model, readings(model, weights, expected))?)?;
     let is_short = structure.observability().rank() < expected.len();
     let expects_none = expected.iter().all(|value| *value == 0.0);
-    let unit = if expects_none && is_short { model.parameters().typical_in_turn() } else { expected.to_vec() };
+    let unit = if expects_none && is_short { model.parameters().typical_alternating() } else { expected.to_vec() };
     Ok((unit, structure))
 }
 
@@ -102,14 +92,14 @@ impl Prediction {
     }
 
     /// Combined standard uncertainty of parameter `j`, if it is determined and told by it
-    /// ([`crate::Parameter::is_told_by`]) [its unit].
+    /// ([`crate::Parameter::is_informative`]) [its unit].
     pub fn standard_uncertainty(&self, j: usize) -> Option<f64> {
-        self.budget.standard_uncertainty(j).filter(|u| self.model.parameters()[j].is_told_by(*u))
+        self.budget.standard_uncertainty(j).filter(|u| self.model.parameters()[j].is_informative(*u))
     }
 
-    /// Whether lost combinations leave doubt in parameter `j` that is not in its uncertainty: see [`Budget::leans_on_lost`].
-    pub fn leans_on_lost(&self, j: usize) -> bool {
-        self.leans[j]
+    /// Whether lost combinations leave doubt in parameter `j` that is not in its uncertainty: see [`Budget::is_affected_by_null_space`].
+    pub fn is_affected_by_null_space(&self, j: usize) -> bool {
+        self.affected[j]
     }
 
     /// Standard uncertainty of parameter `j` by what the fit weighs alone, noise, speeds and priors, if it is determined
@@ -136,8 +126,8 @@ impl Prediction {
     /// coefficient is not determined.
     pub fn curves(&self, range: f64, points: usize) -> Option<[Vec<CurvePoint>; 3]> {
         let covariance = self.covariance()?;
-        let coefficients = vec![0.0; covariance.nrows()];
-        let compensated = Compensated::new(self.model.error_model().clone(), coefficients, covariance)?;
+        let nominal = self.model.error_model().with_coefficients(&vec![0.0; covariance.nrows()]);
+        let compensated = Compensated::new(nominal, covariance)?;
         Some([0, 1, 2].map(|axis| compensated.curve(&Vector3::ith(axis, 1.0), range, points)))
     }
 

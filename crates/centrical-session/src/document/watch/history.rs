@@ -6,10 +6,11 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use centrical::MeasurementModel;
-use centrical::fit::recursive::{Innovation, Progress};
+use centrical::fit::{Innovation, Progress};
 use centrical_table::write_whole;
 use serde::{Deserialize, Serialize};
 
+use crate::document::json;
 use crate::error::{Error, Place};
 
 /// What was known after a plateau.
@@ -78,11 +79,9 @@ impl HistoryEstimate {
 /// Adds a line to the history.
 ///
 /// # Errors
-/// [`Error::Table`] when the file does not take it; it is as it was then.
+/// [`Error::Json`] when a value has no place in JSON, [`Error::Table`] when the file does not take it; it is as it was then.
 pub fn append_history(file: &Path, entry: &HistoryEntry) -> Result<(), Error> {
-    // Plain structs: serialisation has nothing to fail on.
-    let mut line = serde_json::to_string(entry).unwrap_or_default();
-    line.push('\n');
+    let line = json::line("watch-history.jsonl", entry)?;
     let mut open = OpenOptions::new();
     let written = open.create(true).append(true).open(file).and_then(|file| append(file, line.as_bytes()));
     written.map_err(|error| Error::writing(file, error))

@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::history::InnovationSummary;
+use crate::document::json;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::Input;
@@ -86,11 +87,9 @@ impl WatchState {
     /// Writes the state, whole or not at all; after a power cut it may be lost, and is made anew from the session's records.
     ///
     /// # Errors
-    /// [`Error::Table`] when the folder does not take it.
+    /// [`Error::Json`] when a value has no place in JSON, [`Error::Table`] when the folder does not take it.
     pub fn write(&self, file: &Path) -> Result<(), Error> {
-        // Plain structs: serialisation has nothing to fail on.
-        let mut text = serde_json::to_string(self).unwrap_or_default();
-        text.push('\n');
+        let text = json::line(SCHEMA, self)?;
         Ok(write_stream(file, |output| output.write_all(text.as_bytes()))?)
     }
 

@@ -47,7 +47,7 @@ impl Planning {
             continuous_gap: (1.0 + plan.continuous.gap()).sqrt() - 1.0,
             nodes: plan.nodes,
             least_time: plan.least_time,
-            for_typical: candidates.scenarios[0].nominal == self.model().parameters().typical_in_turn(),
+            for_typical: candidates.scenarios[0].nominal == self.model().parameters().typical_alternating(),
             candidates: candidates.len(),
             time: schedule.time,
             time_by_use: [measuring, visits - measuring, schedule.time - visits],
@@ -69,7 +69,7 @@ impl Planning {
         let expected =
             |p: &centrical::Parameter| scenario.model.parameters().find(&p.name).map_or(0.0, |j| scenario.nominal[j]);
         let nominal: Vec<f64> = model.parameters().iter().map(expected).collect();
-        predict(&model, &weights, scenario.speed_uncertainty, &self.type_b, &nominal)
+        predict(&model, &weights, &self.type_b, &nominal)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })
     }
 

@@ -1,7 +1,7 @@
 //! A mounting's record in two passes: where its plateaus are, then what they read.
 
 use centrical::linear;
-use centrical::reduction::{ReducedMounting, ReductionError, ScheduledPlateau};
+use centrical::reduction::{ReducedMounting, ReductionError, ScheduledPlateau, locate};
 
 use crate::error::Error;
 use crate::experiment::Session;
@@ -22,10 +22,10 @@ pub(super) fn reduce_mounting(
     };
     let survey = record.survey(cache)?;
     let telemetry = session.telemetry(number)?;
-    let located = survey.locate(telemetry.as_ref(), &schedule(session, number)).map_err(refused)?;
+    let located = locate(&survey, telemetry.as_ref(), &schedule(session, number)).map_err(refused)?;
     let means = record.means(cache, &located)?.into_iter().collect::<Result<_, _>>().map_err(refused)?;
     let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
-    Ok((located.into_mounting(means), overview))
+    Ok((ReducedMounting::new(located, means), overview))
 }
 
 /// The plateaus of a mounting in their order.

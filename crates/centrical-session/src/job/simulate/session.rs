@@ -36,9 +36,9 @@ pub fn simulate_session(
     let columns = Headers::of(plan)?;
     let text = with_files(plan, format)?;
     // Plateaus last as long as the plan says, or as the machine makes them.
-    let stated = plan.durations.iter().map(|duration| duration.unwrap_or(truth.settings.machine.plateau));
+    let stated = plan.durations.iter().map(|duration| duration.unwrap_or(truth.equipment.machine.plateau));
     let durations: Vec<f64> = stated.collect();
-    let simulation = Simulation::new(&truth.model, &truth.values, &truth.settings, seed)
+    let simulation = Simulation::new(&truth.model, &truth.values, &truth.equipment, seed)
         .and_then(|simulation| simulation.with_durations(&durations))
         .map_err(|source| Error::Simulation { file: truth.file.clone(), source })?;
     create_folder(&folder.join("records"))?;

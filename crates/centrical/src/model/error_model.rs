@@ -1,0 +1,166 @@
+//! The unit's error model: reading = ideal specific force + a sum of monomial terms per axis [K4.1], [K4.2].
+
+use centrical_compensate::Monomial;
+use nalgebra::{Matrix3, Vector3};
+
+/// `f' = f + sum_t c_t m_t(f) e_axis(t)`: a list of terms; their coefficients `c_t` are parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorModel {
+    /// The terms in the order of their parameters.
+    pub terms: Vec<Term>,
+}
+
+/// One term of the error model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Term {
+    /// Name of its coefficient: `G0_21`.
+    pub name: String,
+    /// Group of the coefficient: bias, scale, misalignment, quadratic, cubic, ...
+    pub group: &'static str,
+    /// Newtonometer it acts on, 0 to 2.
+    pub axis: usize,
+    /// What multiplies the coefficient.
+    pub monomial: Monomial,
+}
+
+/// An error model about a specific force.
+pub(crate) struct Expanded {
+    /// `f'` [m/s^2].
+    pub reading: Vector3<f64>,
+    /// `d f' / d f`.
+    pub gain: Matrix3<f64>,
+}
+
+/// Terms beyond the source's model, which its text permits ("for example"), each off by default.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extra {
+    /// The cross terms `K_ip f_i f_p`, `K_io f_i f_o`, `K_po f_p f_o` of IEEE Std 1293: for every newtonometer `i`
+    /// the products of two of the three components, 9 coefficients `K_1[f1*f2]`, ... Which of the other two axes is
+    /// the pendulous axis `p` and which the output axis `o` is the sensor's affair and changes no product.
+    CrossProducts,
+    /// The odd quadratic terms `K_oq f_i |f_i|` of IEEE Std 1293: 3 coefficients `K_1[f1*|f1|]`, ...
+    OddQuadratic,
+}
+
+impl Extra {
+    /// The extra of a name as written in sessions: `cross-products`, `odd-quadratic`.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "cross-products" => Some(Self::CrossProducts),
+            "odd-quadratic" => Some(Self::OddQuadratic),
+            _ => None,
+        }
+    }
+
+    /// Its terms, newtonometer by newtonometer.
+    pub fn terms(self) -> Vec<Term> {
+        let monomials = |axis: usize| match self {
+            Self::CrossProducts => {
+                let (p, o) = ((axis + 1) % 3, (axis + 2) % 3);
+                vec![Monomial::product(axis, p), Monomial::product(axis, o), Monomial::product(p, o)]
+            }
+            Self::OddQuadratic => vec![Monomial::odd_square(axis)],
+        };
+        (0..3).flat_map(|axis| monomials(axis).into_iter().map(move |m| Term::new(axis, m))).collect()
+    }
+}
+
+impl Term {
+    /// A term beyond the presets, named after its axis and monomial: `K_1[f1*f2]`.
+    pub fn new(axis: usize, monomial: Monomial) -> Self {
+        let axes = monomial.powers.iter().filter(|p| **p > 0).count();
+        let group = match (axes, monomial.degree()) {
+            (2.., _) => "cross-coupling",
+            (_, 0) => "bias",
+            (_, 1) if monomial.sign_of.is_some() => "asymmetry",
+            (_, 1) if monomial.powers[axis] == 1 => "scale",
+            (_, 1) => "misalignment",
+            (_, 2) => "quadratic",
+            (_, 3) => "cubic",
+            _ => "higher order",
+        };
+        Self { name: format!("K_{}[{monomial}]", axis + 1), group, axis, monomial }
+    }
+
+    /// Unit of its coefficient: reading per monomial.
+    pub fn unit(&self) -> String {
+        match self.monomial.degree() {
+            0 => "m/s^2".to_owned(),
+            1 => "1".to_owned(),
+            2 => "s^2/m".to_owned(),
+            d => format!("s^{}/m^{}", 2 * (d - 1), d - 1),
+        }
+    }
+}
+
+impl ErrorModel {
+    /// The source's model, 21 coefficients [K4.2]: bias `df_i`; `G0` lower triangular (scale, misalignment);
+    /// `G1` full, on squares; `G2` diagonal, on cubes.
+    ///
+    /// The source prints `Gamma_12` in row 2 of `Gamma^(0)`; `Gamma_21` is meant, since the upper part is
+    /// zero by the choice of the instrument frame (test `g0_is_lower_triangular`).
+    pub fn kozlov_2017() -> Self {
+        let term = |name: String, group, axis, monomial| Term { name, group, axis, monomial };
+        let mut terms: Vec<Term> = (0..3).map(|i| term(format!("df_{}", i + 1), "bias", i, Monomial::ONE)).collect();
+        for i in 0..3 {
+            for j in 0..=i {
+                let group = if i == j { "scale" } else { "misalignment" };
+                terms.push(term(format!("G0_{}{}", i + 1, j + 1), group, i, Monomial::power(j, 1)));
+            }
+        }
+        for i in 0..3 {
+            for j in 0..3 {
+                terms.push(term(format!("G1_{}{}", i + 1, j + 1), "quadratic", i, Monomial::power(j, 2)));
+            }
+        }
+        for i in 0..3 {
+            terms.push(term(format!("G2_{0}{0}", i + 1), "cubic", i, Monomial::power(i, 3)));
+        }
+        Self { terms }
+    }
+
+    /// The model with further terms at the end.
+    #[must_use]
+    pub fn with(mut self, extra: Extra) -> Self {
+        self.terms.extend(extra.terms());
+        self
+    }
+
+    /// Reading `f' = f + sum_t c_t m_t(f)` [m/s^2] of the ideal specific force `f` [m/s^2].
+    pub fn reading(&self, coefficients: &[f64], f: &Vector3<f64>) -> Vector3<f64> {
+        let mut reading = *f;
+        for (term, c) in self.terms.iter().zip(coefficients) {
+            reading[term.axis] += c * term.monomial.value((*f).into());
+        }
+        reading
+    }
+
+    /// The terms with their coefficients.
+    pub fn with_coefficients(&self, coefficients: &[f64]) -> Vec<centrical_compensate::Term> {
+        let term = |(term, c): (&Term, &f64)| centrical_compensate::Term {
+            axis: term.axis,
+            monomial: term.monomial,
+            coefficient: *c,
+        };
+        self.terms.iter().zip(coefficients).map(term).collect()
+    }
+
+    /// [`ErrorModel::reading`] and its gain at `f`; `each` takes the index and value of every monomial.
+    pub(crate) fn expanded(
+        &self,
+        coefficients: &[f64],
+        f: &Vector3<f64>,
+        mut each: impl FnMut(usize, f64),
+    ) -> Expanded {
+        let mut at = Expanded { reading: *f, gain: Matrix3::identity() };
+        for (t, (term, c)) in self.terms.iter().zip(coefficients).enumerate() {
+            let value = term.monomial.value((*f).into());
+            each(t, value);
+            at.reading[term.axis] += c * value;
+            for (j, derivative) in term.monomial.gradient((*f).into()).into_iter().enumerate() {
+                at.gain[(term.axis, j)] += derivative * c;
+            }
+        }
+        at
+    }
+}

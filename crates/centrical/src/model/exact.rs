@@ -1,0 +1,289 @@
+//! The exact model. Newtonometer `i` of the unit in position `k` is ideally pulled by
+//!
+//! `f_i = e_i^T B ( g u(alpha_3) + D (r + B^T rho e_i) )`,  `B = rotation(delta_k) P_k`,
+//! `D = -w diag(1, 1, 0)`,  `u = carousel(alpha_3) rotation(alpha) e_3`,  `r = R0_k + dR_k`,  `rho = rho0 + drho`,
+//!
+//! [K3.1] and [K3.2] without their small-angle step. `w = Omega^2 + 2 Omega omega_E sin(latitude)` holds the
+//! constant part of the Coriolis term, which the source takes for a term of zero mean. The reading is the
+//! error model [K4.1] of `f`, averaged over a revolution while spinning, at the known `alpha_3` at rest.
+
+use std::borrow::Cow;
+
+use nalgebra::{Matrix3, Matrix3x2, Vector3};
+
+use super::experiment::SetPoint;
+use super::frame::{carousel, hat, rotation, rotation_rate};
+use super::measurement::{Linearisation, MeasurementModel};
+use super::parameter::Kind;
+
+impl MeasurementModel {
+    /// Mean reading `f'` [m/s^2] of a plateau at the unknowns `x` (in the order of [`super::Parameters`]).
+    pub fn reading(&self, set_point: &SetPoint, x: &[f64]) -> Vector3<f64> {
+        let geometry = self.geometry(set_point, x);
+        let pull = geometry.pull();
+        let coefficients = self.parameters.coefficients(x);
+        let turns = self.turns(set_point);
+        let sum: Vector3<f64> = turns
+            .iter()
+            .map(|turn| self.error_model.reading(coefficients, &(pull + geometry.weight_of(turn) * geometry.up)))
+            .sum();
+        sum / turns.len() as f64
+    }
+
+    /// Mean specific force `f` [m/s^2] along the three sensitive axes on a plateau at the unknowns `x`: what an
+    /// instrument without errors would read.
+    pub fn specific_force(&self, set_point: &SetPoint, x: &[f64]) -> Vector3<f64> {
+        let geometry = self.geometry(set_point, x);
+        let turns = self.turns(set_point);
+        let weight: Vector3<f64> = turns.iter().map(|turn| geometry.weight_of(turn) * geometry.up).sum();
+        geometry.pull() + weight / turns.len() as f64
+    }
+
+    /// Mean reading of a plateau with its analytic first derivatives by `x` and by the logarithm of the speed.
+    pub fn linearise(&self, set_point: &SetPoint, x: &[f64]) -> Linearisation {
+        let geometry = self.geometry(set_point, x);
+        let pull = geometry.pull();
+        let coefficients = self.parameters.coefficients(x);
+        let turns = self.turns(set_point);
+        let share = 1.0 / turns.len() as f64;
+
+        let mut reading = Vector3::zeros();
+        let mut gain_mean = Matrix3::zeros();
+        let mut by_tilt = Matrix3x2::zeros();
+        let mut by_weight_turn = Matrix3::zeros();
+        let mut monomials = vec![0.0; self.error_model.terms.len()];
+        let up_by_tilt = geometry.up_by_tilt();
+        for turn in turns.iter() {
+            let weight_of = geometry.weight_of(turn);
+            let weight = weight_of * geometry.up;
+            let at =
+                self.error_model.expanded(coefficients, &(pull + weight), |t, value| monomials[t] += share * value);
+            let gain = share * at.gain;
+            reading += share * at.reading;
+            gain_mean += gain;
+            by_tilt += gain * (weight_of * up_by_tilt);
+            by_weight_turn += gain * turned(&weight);
+        }
+        let partials = Partials {
+            tilt: by_tilt,
+            turn: (by_weight_turn + gain_mean * geometry.pull_by_turn()) * rotation_rate(&geometry.turn),
+            arm: gain_mean * geometry.pull_by_arm(),
+            proof_mass: gain_mean * Matrix3::from_diagonal(&geometry.pull_by_proof_mass()),
+            rate: gain_mean * geometry.pull_by_rate(),
+        };
+        Linearisation {
+            reading,
+            speed_error: self.by_log_speed(set_point, x, &partials) * self.experiment.centrifuge.speed_uncertainty,
+            columns: self.columns(set_point, &partials, &monomials),
+        }
+    }
+
+    /// The plateau's geometry at `x`.
+    pub(super) fn geometry(&self, set_point: &SetPoint, x: &[f64]) -> Geometry {
+        let (experiment, parameters) = (&self.experiment, &self.parameters);
+        let mounting = &experiment.mountings[set_point.mounting];
+        let omega_squared = set_point.omega * set_point.omega;
+        let turn = parameters.turn_of(mounting.position);
+        let shift = parameters.shift_of(mounting.position);
+        let shift_y = Vector3::new(x[shift.column], x[shift.column + 1], 0.0) * shift.sign;
+        let mut geometry = Geometry {
+            gravity: experiment.site.gravity,
+            p_zy: experiment.positions[mounting.position].p_zy,
+            tilt: Vector3::new(x[0], x[1], 0.0),
+            up: Vector3::z(),
+            turn: Vector3::new(x[turn], x[turn + 1], x[turn + 2]),
+            arm_y: mounting.arm_y + shift_y,
+            rho_z: experiment.unit.rho_z,
+            rate_squared: experiment.rate_squared(set_point),
+            c_zy: Matrix3::zeros(),
+        };
+        if let Some(column) = parameters.proof_mass() {
+            geometry.rho_z[(1, 1)] += x[column];
+            geometry.rho_z[(2, 2)] += x[column + 1];
+        }
+        for (column, kind) in parameters.extensions() {
+            match self.extension_share(set_point, kind) {
+                Share::None => {}
+                Share::Turn(axis, per_unit) => geometry.turn[axis] += per_unit * x[column],
+                Share::Arm(per_unit) => geometry.arm_y += per_unit * x[column],
+                Share::Rate => geometry.rate_squared += omega_squared * x[column],
+            }
+        }
+        geometry.up = rotation(&geometry.tilt) * Vector3::z();
+        geometry.c_zy = rotation(&geometry.turn) * geometry.p_zy;
+        geometry
+    }
+
+    /// How an extension's parameter enters the geometry of a plateau.
+    pub(super) fn extension_share(&self, set_point: &SetPoint, kind: Kind) -> Share {
+        let omega_squared = set_point.omega * set_point.omega;
+        let position = self.experiment.mountings[set_point.mounting].position;
+        let r0_y = self.experiment.arm_of(set_point);
+        match kind {
+            Kind::ElasticTurn { law, axis, position: k } if k == position => {
+                Share::Turn(axis, law.value(omega_squared, r0_y.x))
+            }
+            Kind::ArmStretch { law, seat }
+                if seat.is_none_or(|seat| seat == self.experiment.seat_of(set_point.mounting)) =>
+            {
+                Share::Arm(Vector3::x() * (r0_y.x * law.value(omega_squared, r0_y.x)))
+            }
+            Kind::RadiusScale => Share::Arm(*r0_y),
+            Kind::SpeedScale => Share::Rate,
+            _ => Share::None,
+        }
+    }
+
+    /// Turns of the carousel whose mean is the mean of the reading: the known one at rest, equal steps while spinning.
+    fn turns(&self, set_point: &SetPoint) -> Cow<'_, [Matrix3<f64>]> {
+        if set_point.is_rest() { Cow::Owned(vec![carousel(set_point.angle)]) } else { Cow::Borrowed(&self.revolution) }
+    }
+
+    /// `d f' / d ln Omega`: through the rate and through every deformation that grows with its square.
+    fn by_log_speed(&self, set_point: &SetPoint, x: &[f64], partials: &Partials) -> Vector3<f64> {
+        let omega = set_point.omega;
+        let mut speed = partials.rate * (omega * (2.0 * omega + self.experiment.site.coriolis()));
+        for (column, kind) in self.parameters.extensions() {
+            speed += match (self.extension_share(set_point, kind), kind) {
+                (Share::Turn(axis, per_unit), _) => partials.turn.column(axis) * (2.0 * per_unit * x[column]),
+                (Share::Arm(per_unit), Kind::ArmStretch { .. }) => partials.arm * per_unit * (2.0 * x[column]),
+                (Share::Rate, _) => partials.rate * (2.0 * omega * omega * x[column]),
+                _ => Vector3::zeros(),
+            };
+        }
+        speed
+    }
+
+    fn columns(&self, set_point: &SetPoint, partials: &Partials, monomials: &[f64]) -> Vec<(usize, Vector3<f64>)> {
+        let parameters = &self.parameters;
+        let position = self.experiment.mountings[set_point.mounting].position;
+        let mut columns = Vec::with_capacity(10 + monomials.len());
+        for axis in 0..2 {
+            columns.push((axis, partials.tilt.column(axis).into_owned()));
+        }
+        for axis in 0..3 {
+            columns.push((parameters.turn_of(position) + axis, partials.turn.column(axis).into_owned()));
+        }
+        if !set_point.is_rest() {
+            let shift = parameters.shift_of(position);
+            for axis in 0..2 {
+                columns.push((shift.column + axis, partials.arm.column(axis) * shift.sign));
+            }
+            for (column, axis) in parameters.proof_mass().into_iter().flat_map(|c| [(c, 1), (c + 1, 2)]) {
+                columns.push((column, partials.proof_mass.column(axis).into_owned()));
+            }
+        }
+        for ((column, term), monomial) in (parameters.first_term()..).zip(&self.error_model.terms).zip(monomials) {
+            columns.push((column, Vector3::ith(term.axis, *monomial)));
+        }
+        for (column, kind) in parameters.extensions() {
+            match self.extension_share(set_point, kind) {
+                Share::None => {}
+                Share::Turn(axis, per_unit) => columns.push((column, partials.turn.column(axis) * per_unit)),
+                Share::Arm(per_unit) => columns.push((column, partials.arm * per_unit)),
+                Share::Rate => columns.push((column, partials.rate * (set_point.omega * set_point.omega))),
+            }
+        }
+        columns
+    }
+}
+
+/// How one unit of an extension's parameter enters the geometry.
+pub(super) enum Share {
+    /// Not in this plateau.
+    None,
+    /// Turn about an instrument axis [rad per unit].
+    Turn(usize, f64),
+    /// Displacement in arm axes [m per unit].
+    Arm(Vector3<f64>),
+    /// Relative change of `Omega^2`.
+    Rate,
+}
+
+/// Derivatives of the mean reading by the geometry.
+struct Partials {
+    /// By `alpha_1, alpha_2`.
+    tilt: Matrix3x2<f64>,
+    /// By the turn about the three instrument axes.
+    turn: Matrix3<f64>,
+    /// By the place of the reference point, arm axes.
+    arm: Matrix3<f64>,
+    /// By `rho_11, rho_22, rho_33`.
+    proof_mass: Matrix3<f64>,
+    /// By `w`.
+    rate: Vector3<f64>,
+}
+
+/// Geometry of one plateau.
+pub(super) struct Geometry {
+    pub gravity: f64,
+    pub p_zy: Matrix3<f64>,
+    pub tilt: Vector3<f64>,
+    /// `rotation(alpha) e_3`.
+    pub up: Vector3<f64>,
+    pub turn: Vector3<f64>,
+    pub arm_y: Vector3<f64>,
+    pub rho_z: Matrix3<f64>,
+    /// `w` [rad^2/s^2].
+    pub rate_squared: f64,
+    /// `B`.
+    pub c_zy: Matrix3<f64>,
+}
+
+impl Geometry {
+    /// `g B carousel(alpha_3)`: takes the vertical to gravity's reaction.
+    fn weight_of(&self, turn: &Matrix3<f64>) -> Matrix3<f64> {
+        self.c_zy * turn * self.gravity
+    }
+
+    /// `d rotation(alpha) e_3 / d (alpha_1, alpha_2)`.
+    fn up_by_tilt(&self) -> Matrix3x2<f64> {
+        (turned(&self.up) * rotation_rate(&self.tilt)).fixed_columns::<2>(0).into_owned()
+    }
+
+    /// Centripetal part: `w ( B d r + diag(M rho) )` with `d = -diag(1, 1, 0)`, `M = B d B^T`.
+    fn pull(&self) -> Vector3<f64> {
+        self.pull_by_rate() * self.rate_squared
+    }
+
+    pub fn pull_by_rate(&self) -> Vector3<f64> {
+        self.c_zy * horizontal(&self.arm_y) + (self.m() * self.rho_z).diagonal()
+    }
+
+    fn pull_by_arm(&self) -> Matrix3<f64> {
+        self.c_zy * Matrix3::from_diagonal(&horizontal(&Vector3::repeat(1.0))) * self.rate_squared
+    }
+
+    fn pull_by_proof_mass(&self) -> Vector3<f64> {
+        self.m().diagonal() * self.rate_squared
+    }
+
+    /// By a small turn `psi` on top of `B`: `dB = hat(psi) B`, `dM = hat(psi) M - M hat(psi)`.
+    fn pull_by_turn(&self) -> Matrix3<f64> {
+        let m = self.m();
+        let mut by_turn = turned(&(self.c_zy * horizontal(&self.arm_y)));
+        for axis in 0..3 {
+            let h = hat(&Vector3::ith(axis, 1.0));
+            let own = ((h * m - m * h) * self.rho_z).diagonal();
+            let mut column = by_turn.column_mut(axis);
+            column += own;
+        }
+        by_turn * self.rate_squared
+    }
+
+    /// `M = B d B^T`, the source's `M_k` for a unit rate.
+    fn m(&self) -> Matrix3<f64> {
+        let axis_z = self.c_zy.column(2);
+        axis_z * axis_z.transpose() - Matrix3::identity()
+    }
+}
+
+/// `-diag(1, 1, 0) r`.
+fn horizontal(r_y: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(-r_y.x, -r_y.y, 0.0)
+}
+
+/// The matrix that takes a small turn `psi` to its effect on a vector, `hat(psi) v = -hat(v) psi`.
+fn turned(v: &Vector3<f64>) -> Matrix3<f64> {
+    -hat(v)
+}

@@ -1,0 +1,185 @@
+//! The experiment as data: where the laboratory is, what the unit is, how it was mounted and what was set.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::position::Position;
+
+/// Standard gravity, exact by definition [m/s^2]: what "1 g" means in every quantity shown to people.
+pub const STANDARD_GRAVITY: f64 = 9.80665;
+
+/// Mean sidereal rate of the Earth's rotation [rad/s], IERS conventions.
+pub const EARTH_RATE: f64 = 7.292_115e-5;
+
+/// An experiment: everything that is known before any reading is taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Experiment {
+    /// The laboratory.
+    pub site: Site,
+    /// The unit's geometry.
+    pub unit: Unit,
+    /// The centrifuge.
+    pub centrifuge: Centrifuge,
+    /// Nominal attitudes.
+    pub positions: Vec<Position>,
+    /// How `dR` of the positions of one pair are related.
+    pub pair_relation: PairRelation,
+    /// Installations of the unit on the arm, in the order of the session.
+    pub mountings: Vec<Mounting>,
+    /// All plateaus, mounting by mounting in the order of the schedule.
+    pub set_points: Vec<SetPoint>,
+}
+
+/// The laboratory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Site {
+    /// Local gravity `g` [m/s^2].
+    pub gravity: f64,
+    /// Geodetic latitude [rad]; with it the Earth-rate term is applied.
+    pub latitude: Option<f64>,
+}
+
+/// Geometry of the unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// `rho0`: column `j` is the point of proof mass `j` from the reference point, instrument axes [m].
+    pub rho_z: Matrix3<f64>,
+    /// What the reference point is.
+    pub reference: ReferencePoint,
+}
+
+/// The centrifuge.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Centrifuge {
+    /// Sense of its rotation.
+    pub rotation: Rotation,
+    /// Relative standard uncertainty of the speed of a plateau.
+    pub speed_uncertainty: f64,
+}
+
+/// Sense of rotation about the third arm axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Rotation {
+    /// Right-handed about Up.
+    #[default]
+    Positive,
+    /// Left-handed about Up.
+    Negative,
+}
+
+/// The two conventions of the source for the unit's reference point, which decide the form of `rho0`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ReferencePoint {
+    /// Proof mass 1: the first column of `rho0` is zero and `drho_22`, `drho_33` are unknown.
+    FirstProofMass,
+    /// The point from which no proof mass is displaced along its own axis: the diagonal of `rho0` is zero
+    /// by definition and no `drho` acts on the readings.
+    OwnAxes,
+}
+
+/// How the errors `dR` of the two positions of a pair are related.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PairRelation {
+    /// The shift is fixed to the seat on the arm: `dR` of the second position `= + dR` of the first.
+    Common,
+    /// As the source prints: `dR` of the second position `= - dR` of the first (the shift is fixed to the unit).
+    Opposite,
+    /// Every position has its own `dR`.
+    Free,
+}
+
+/// One installation of the unit on the arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mounting {
+    /// Index of its position in [`Experiment::positions`].
+    pub position: usize,
+    /// `R0`: nominal place of the reference point, arm axes [m].
+    pub arm_y: Vector3<f64>,
+}
+
+/// What was set for one plateau.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SetPoint {
+    /// Index of its mounting in [`Experiment::mountings`].
+    pub mounting: usize,
+    /// Angular speed `Omega` about the third arm axis [rad/s], positive when right-handed about Up; 0 at rest.
+    pub omega: f64,
+    /// Carousel angle `alpha_3` at rest [rad]; of no meaning while spinning.
+    pub angle: f64,
+}
+
+impl ReferencePoint {
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FirstProofMass => "first-proof-mass",
+            Self::OwnAxes => "own-axes",
+        }
+    }
+}
+
+impl Rotation {
+    /// Sign of the angular speed.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Positive => 1.0,
+            Self::Negative => -1.0,
+        }
+    }
+}
+
+impl PairRelation {
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Common => "common",
+            Self::Opposite => "opposite",
+            Self::Free => "free",
+        }
+    }
+}
+
+impl Unit {
+    /// Whether coordinate `i` of proof mass `j` is taken as exact: neither zero by the choice of the reference point
+    /// nor an unknown of the fit, as `rho_22` and `rho_33` are when the reference is proof mass 1.
+    pub fn is_coordinate_taken_as_exact(&self, i: usize, j: usize) -> bool {
+        i != j && (self.reference == ReferencePoint::OwnAxes || j != 0)
+    }
+}
+
+impl SetPoint {
+    /// Whether the centrifuge stands still.
+    pub fn is_rest(&self) -> bool {
+        self.omega == 0.0
+    }
+}
+
+impl Site {
+    /// `2 omega_E sin(latitude)` [rad/s]: with it `Omega^2` becomes `Omega^2 + coriolis Omega`, the constant
+    /// part of the Coriolis term in the arm frame (`docs/source-and-findings.md`). Zero when no latitude is given.
+    pub fn coriolis(&self) -> f64 {
+        self.latitude.map_or(0.0, |latitude| 2.0 * EARTH_RATE * latitude.sin())
+    }
+}
+
+impl Experiment {
+    /// Position of a plateau.
+    pub fn position_of(&self, set_point: &SetPoint) -> &Position {
+        &self.positions[self.mountings[set_point.mounting].position]
+    }
+
+    /// Nominal place `R0` of a plateau, arm axes [m].
+    pub fn arm_of(&self, set_point: &SetPoint) -> &Vector3<f64> {
+        &self.mountings[set_point.mounting].arm_y
+    }
+
+    /// Index of the first mounting on the same seat (same `R0`) as mounting `m`.
+    pub fn seat_of(&self, m: usize) -> usize {
+        let arm = self.mountings[m].arm_y;
+        self.mountings.iter().position(|other| other.arm_y == arm).unwrap_or(m)
+    }
+
+    /// `Omega^2 + 2 Omega omega_E sin(latitude)` of a plateau [rad^2/s^2].
+    pub fn rate_squared(&self, set_point: &SetPoint) -> f64 {
+        set_point.omega * (set_point.omega + self.site.coriolis())
+    }
+}

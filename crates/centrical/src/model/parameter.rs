@@ -1,0 +1,389 @@
+//! The unknowns: their names, order, units and meaning [K5.4].
+
+use std::ops::Index;
+
+use centrical_compensate::Monomial;
+
+use super::error_model::ErrorModel;
+use super::experiment::{Experiment, PairRelation, ReferencePoint, STANDARD_GRAVITY};
+
+/// Standard deviation with which null directions are held about zero, in typical magnitudes of the parameters
+/// (5 mm, 10 mrad, 1e-2 of scale): ten times what any real unit shows, so that it holds and does not inform.
+pub const NULL_HOLD: f64 = 10.0;
+
+/// One unknown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Name in results: `delta_2[4]`, `G1_31`.
+    pub name: String,
+    /// Unit of its value, SI.
+    pub unit: String,
+    /// Name of the group it belongs to: tilt, turn, shift, bias, scale, ...
+    pub group: &'static str,
+    /// What it is.
+    pub kind: Kind,
+    /// Power of acceleration in its unit, which people are shown in g to that power: -1 for s^2/m.
+    pub power_of_acceleration: i32,
+    /// Order of magnitude it has in real units [its unit]: 1 mrad, 0.5 mm, 5 mg, 1e-3, 1e-5 /g, 1e-7 /g^2. Used to
+    /// scale columns before any is measured and to hold null directions; never as knowledge about a value.
+    pub typical: f64,
+}
+
+impl Parameter {
+    /// Whether a standard uncertainty [its unit] is informative: one of [`NULL_HOLD`] typical magnitudes or more is known
+    /// without any data, and so far from the estimate the model is not linear.
+    pub fn is_informative(&self, standard_uncertainty: f64) -> bool {
+        standard_uncertainty < NULL_HOLD * self.typical
+    }
+}
+
+/// What a parameter is in the measurement model. Axes are 0, 1, 2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// `alpha_1`, `alpha_2`: tilt of the rotation axis [rad].
+    Tilt(usize),
+    /// `delta_ik`: turn of the unit in position `k` about instrument axis `i` [rad].
+    Turn {
+        /// Instrument axis.
+        axis: usize,
+        /// Index of the position.
+        position: usize,
+    },
+    /// `dR_ik`: error of the place of the reference point along arm axis `i` [m].
+    Shift {
+        /// Arm axis, 0 or 1.
+        axis: usize,
+        /// Index of the position, the first of its pair, whose `dR` this is.
+        position: usize,
+    },
+    /// `drho_ii`: error of the place of proof mass `i` along its own axis [m].
+    ProofMass(usize),
+    /// Coefficient of a term of the error model, by its index.
+    Term(usize),
+    /// Elastic turn of the unit in position `k` about instrument axis `i`, per unit of its law.
+    ElasticTurn {
+        /// What it grows with.
+        law: Law,
+        /// Instrument axis.
+        axis: usize,
+        /// Index of the position.
+        position: usize,
+    },
+    /// Relative stretch of the arm, `R_1 (1 + kappa law)` (IEEE Std 836), of one seat or of all.
+    ArmStretch {
+        /// What it grows with.
+        law: Law,
+        /// Index of the first mounting on the seat; `None` when all seats share one stretch.
+        seat: Option<usize>,
+    },
+    /// One relative error of all radii: `R0 (1 + s)`.
+    RadiusScale,
+    /// One relative error of the square of all speeds: `Omega^2 (1 + s)`.
+    SpeedScale,
+}
+
+impl Parameter {
+    /// Whether it belongs to the instrument: a coefficient of its error model, as opposed to the geometry.
+    pub fn is_of_instrument(&self) -> bool {
+        matches!(self.kind, Kind::Term(_))
+    }
+}
+
+/// What an elastic deformation grows with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Law {
+    /// `Omega^2` [rad^2/s^2].
+    Speed,
+    /// The load `Omega^2 |R0_1|` [m/s^2].
+    Load,
+}
+
+impl Law {
+    /// Value at a rate squared [rad^2/s^2] and a radius [m].
+    pub fn value(self, omega_squared: f64, radius: f64) -> f64 {
+        match self {
+            Self::Speed => omega_squared,
+            Self::Load => omega_squared * radius.abs(),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Speed => "speed",
+            Self::Load => "load",
+        }
+    }
+
+    fn unit_of_inverse(self) -> &'static str {
+        match self {
+            Self::Speed => "s^2",
+            Self::Load => "s^2/m",
+        }
+    }
+
+    /// Largest value the machines of the field reach (10 rev/s, 200 g): what turns a deformation into a coefficient.
+    fn full_scale(self) -> f64 {
+        match self {
+            Self::Speed => (20.0 * std::f64::consts::PI).powi(2),
+            Self::Load => 200.0 * STANDARD_GRAVITY,
+        }
+    }
+}
+
+/// Unknowns beyond the source's 49, each off by default.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extension {
+    /// Elastic turn of the unit, three per position.
+    ElasticTurn(Law),
+    /// Stretch of the arm, one for all seats.
+    ArmStretch(Law),
+    /// Stretch of the arm, one per seat (distinct `R0`).
+    SeatStretch(Law),
+    /// One scale of all radii.
+    RadiusScale,
+    /// One scale of the square of all speeds.
+    SpeedScale,
+}
+
+impl Extension {
+    /// Every extension with its name as written in sessions and plans.
+    pub const NAMED: [(&'static str, Self); 8] = [
+        ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
+        ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
+        ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
+        ("arm-stretch-load", Self::ArmStretch(Law::Load)),
+        ("seat-stretch-speed", Self::SeatStretch(Law::Speed)),
+        ("seat-stretch-load", Self::SeatStretch(Law::Load)),
+        ("radius-scale", Self::RadiusScale),
+        ("speed-scale", Self::SpeedScale),
+    ];
+
+    /// The extension of a name, if it is one of [`Extension::NAMED`].
+    pub fn named(name: &str) -> Option<Self> {
+        Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, extension)| *extension)
+    }
+}
+
+/// The unknowns of an experiment in the order of `X` [K5.4]: `alpha`, `delta` by position, `dR` by pair (by
+/// position when free), `drho`, the coefficients of the error model, then the extensions as asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameters {
+    list: Vec<Parameter>,
+    turn: Vec<usize>,
+    shift: Vec<Shared>,
+    proof_mass: Option<usize>,
+    terms: usize,
+    extensions: usize,
+}
+
+/// A column shared by several positions, with the sign it takes in this one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shared {
+    pub column: usize,
+    pub sign: f64,
+}
+
+impl Parameters {
+    /// The unknowns of `experiment` with `error_model` and `extensions`.
+    pub fn new(experiment: &Experiment, error_model: &ErrorModel, extensions: &[Extension]) -> Self {
+        let mut list = Vec::new();
+        for axis in 0..2 {
+            list.push(parameter(format!("alpha_{}", axis + 1), "rad", "tilt", Kind::Tilt(axis), 1e-3));
+        }
+        let turn = turns(experiment, &mut list);
+        let shift = shifts(experiment, &mut list);
+        let proof_mass = (experiment.unit.reference == ReferencePoint::FirstProofMass).then(|| {
+            let first = list.len();
+            for axis in 1..3 {
+                let name = format!("drho_{0}{0}", axis + 1);
+                list.push(parameter(name, "m", "proof mass", Kind::ProofMass(axis), 5e-4));
+            }
+            first
+        });
+        let terms = list.len();
+        for (index, term) in error_model.terms.iter().enumerate() {
+            let unit = term.unit();
+            let typical = typical_coefficient(&term.monomial);
+            let power_of_acceleration = 1 - i32::from(term.monomial.degree());
+            let coefficient = parameter(term.name.clone(), &unit, term.group, Kind::Term(index), typical);
+            list.push(Parameter { power_of_acceleration, ..coefficient });
+        }
+        let first_extension = list.len();
+        for &extension in extensions {
+            extend(experiment, extension, &mut list);
+        }
+        Self { list, turn, shift, proof_mass, terms, extensions: first_extension }
+    }
+
+    /// Unknowns of typical size with alternating signs: those of a unit of which nothing is known.
+    pub fn typical_alternating(&self) -> Vec<f64> {
+        let sign = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
+        self.iter().enumerate().map(|(j, parameter)| sign(j) * parameter.typical).collect()
+    }
+
+    /// Number of unknowns.
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The unknowns in order.
+    pub fn iter(&self) -> std::slice::Iter<'_, Parameter> {
+        self.list.iter()
+    }
+
+    /// Index of a parameter by name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.list.iter().position(|p| p.name == name)
+    }
+
+    /// Indices of the parameters that `name` stands for: a parameter (`drho_22`), a group (`proof mass`), or the
+    /// stem of several (`dR`, `delta_1`, `G1`). Empty when it stands for none.
+    pub fn select(&self, name: &str) -> Vec<usize> {
+        if let Some(parameter) = self.find(name) {
+            return vec![parameter];
+        }
+        let has_stem = |p: &Parameter| p.name.strip_prefix(name).is_some_and(|rest| rest.starts_with(['_', '[']));
+        let columns = self.iter().enumerate();
+        columns.filter(|(_, p)| p.group == name || has_stem(p)).map(|(column, _)| column).collect()
+    }
+
+    /// Coefficients of the error model's terms within `x`.
+    pub(crate) fn coefficients<'x>(&self, x: &'x [f64]) -> &'x [f64] {
+        &x[self.terms..self.extensions]
+    }
+
+    /// First column of the error model's coefficients.
+    pub(crate) fn first_term(&self) -> usize {
+        self.terms
+    }
+
+    /// First of the three columns of `delta` of a position.
+    pub(crate) fn turn_of(&self, position: usize) -> usize {
+        self.turn[position]
+    }
+
+    /// First of the two columns of `dR` of a position, and the sign with which they act there.
+    pub(crate) fn shift_of(&self, position: usize) -> Shared {
+        self.shift[position]
+    }
+
+    /// First of the two columns `drho_22`, `drho_33`, if they are unknown.
+    pub(crate) fn proof_mass(&self) -> Option<usize> {
+        self.proof_mass
+    }
+
+    /// Columns and kinds of the extensions.
+    pub(crate) fn extensions(&self) -> impl Iterator<Item = (usize, Kind)> + '_ {
+        self.list.iter().enumerate().skip(self.extensions).map(|(column, p)| (column, p.kind))
+    }
+}
+
+impl<'p> IntoIterator for &'p Parameters {
+    type Item = &'p Parameter;
+    type IntoIter = std::slice::Iter<'p, Parameter>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl Index<usize> for Parameters {
+    type Output = Parameter;
+
+    fn index(&self, column: usize) -> &Parameter {
+        &self.list[column]
+    }
+}
+
+fn parameter(name: String, unit: &str, group: &'static str, kind: Kind, typical: f64) -> Parameter {
+    Parameter { name, unit: unit.to_owned(), group, kind, power_of_acceleration: 0, typical }
+}
+
+fn turns(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<usize> {
+    let mut first_columns = Vec::with_capacity(experiment.positions.len());
+    for (k, position) in experiment.positions.iter().enumerate() {
+        first_columns.push(list.len());
+        for axis in 0..3 {
+            let name = format!("delta_{}[{}]", axis + 1, position.id);
+            list.push(parameter(name, "rad", "turn", Kind::Turn { axis, position: k }, 1e-3));
+        }
+    }
+    first_columns
+}
+
+/// `dR` by pair, or by position when free; the value belongs to the pair's first position.
+fn shifts(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<Shared> {
+    let mut shared: Vec<Shared> = Vec::with_capacity(experiment.positions.len());
+    for (k, position) in experiment.positions.iter().enumerate() {
+        let first_of_pair = match experiment.pair_relation {
+            PairRelation::Free => k,
+            _ => experiment.positions.iter().position(|p| p.pair == position.pair).unwrap_or(k),
+        };
+        if first_of_pair < k {
+            let sign = if experiment.pair_relation == PairRelation::Opposite { -1.0 } else { 1.0 };
+            shared.push(Shared { sign, ..shared[first_of_pair] });
+            continue;
+        }
+        shared.push(Shared { column: list.len(), sign: 1.0 });
+        let id = if experiment.pair_relation == PairRelation::Free { &position.id } else { &position.pair };
+        for axis in 0..2 {
+            let name = format!("dR_{}[{id}]", axis + 1);
+            list.push(parameter(name, "m", "shift", Kind::Shift { axis, position: k }, 5e-4));
+        }
+    }
+    shared
+}
+
+fn typical_coefficient(monomial: &Monomial) -> f64 {
+    match monomial.degree() {
+        0 => 5e-3 * STANDARD_GRAVITY,
+        1 => 1e-3,
+        d => 1e-3 / (100.0 * STANDARD_GRAVITY).powi(i32::from(d) - 1),
+    }
+}
+
+fn extend(experiment: &Experiment, extension: Extension, list: &mut Vec<Parameter>) {
+    match extension {
+        Extension::ElasticTurn(law) => {
+            for (k, position) in experiment.positions.iter().enumerate() {
+                for axis in 0..3 {
+                    let name = format!("elastic_{}_{}[{}]", law.name(), axis + 1, position.id);
+                    let kind = Kind::ElasticTurn { law, axis, position: k };
+                    list.push(per_law(name, "elastic turn", law, kind));
+                }
+            }
+        }
+        Extension::ArmStretch(law) => list.push(stretch(format!("stretch_{}", law.name()), law, None)),
+        Extension::SeatStretch(law) => {
+            for seat in 0..experiment.mountings.len() {
+                if experiment.seat_of(seat) == seat {
+                    let radius = experiment.mountings[seat].arm_y.x;
+                    list.push(stretch(format!("stretch_{}[{radius}]", law.name()), law, Some(seat)));
+                }
+            }
+        }
+        Extension::RadiusScale => {
+            list.push(parameter("radius_scale".to_owned(), "1", "scale of radii", Kind::RadiusScale, 1e-3));
+        }
+        Extension::SpeedScale => {
+            list.push(parameter("speed_scale".to_owned(), "1", "scale of speed", Kind::SpeedScale, 1e-3));
+        }
+    }
+}
+
+fn stretch(name: String, law: Law, seat: Option<usize>) -> Parameter {
+    let kind = Kind::ArmStretch { law, seat };
+    per_law(name, "arm stretch", law, kind)
+}
+
+/// A deformation per unit of its law.
+fn per_law(name: String, group: &'static str, law: Law, kind: Kind) -> Parameter {
+    let power_of_acceleration = if law == Law::Load { -1 } else { 0 };
+    let deformation = parameter(name, law.unit_of_inverse(), group, kind, 1e-3 / law.full_scale());
+    Parameter { power_of_acceleration, ..deformation }
+}

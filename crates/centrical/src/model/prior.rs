@@ -1,0 +1,118 @@
+//! Priors: what is known of an unknown before any reading, as one more equation `x_j / sigma_j = 0 +- 1`.
+//!
+//! Unknowns are errors against nominal values, so a prior is always about zero. A prior is never silent: an
+//! estimate can be asked how much of its variance comes from priors ([`share`]), and a prior how much the data
+//! have added to it ([`PriorUse`]).
+
+use nalgebra::DMatrix;
+use thiserror::Error;
+
+use super::parameter::Parameters;
+
+/// Prior knowledge of one parameter: zero, with a standard uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prior {
+    /// Index of the parameter.
+    pub parameter: usize,
+    /// Standard uncertainty, in the parameter's unit.
+    pub standard_uncertainty: f64,
+}
+
+/// What the data add to a prior.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PriorUse {
+    /// The prior.
+    pub prior: Prior,
+    /// Standard uncertainty after the data over that before: 1 when the value rests on the prior alone, near 0 when
+    /// the data determine it.
+    pub posterior_over_prior: f64,
+}
+
+/// Why a prior cannot be one.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PriorError {
+    /// The name stands for no parameter.
+    #[error("prior {name:?}: found no such parameter or group, expected a name such as {example}")]
+    Unknown {
+        /// As given.
+        name: String,
+        /// A name that would do.
+        example: String,
+    },
+    /// The name stands for parameters of different units.
+    #[error("prior {name:?}: found parameters in {} and in {}, expected one unit", units[0], units[1])]
+    MixedUnits {
+        /// As given.
+        name: String,
+        /// Two of the units.
+        units: [String; 2],
+    },
+    /// The uncertainty is not one.
+    #[error("prior {name:?}: found a standard uncertainty of {found}, expected a positive number")]
+    NotPositive {
+        /// As given.
+        name: String,
+        /// As given.
+        found: f64,
+    },
+    /// A parameter has a prior already.
+    #[error("prior {name:?}: found a second prior on {parameter}, expected one")]
+    Twice {
+        /// As given.
+        name: String,
+        /// The parameter.
+        parameter: String,
+    },
+}
+
+/// Priors on all parameters that `name` selects.
+pub(crate) fn select(
+    parameters: &Parameters,
+    present: &[Prior],
+    name: &str,
+    standard_uncertainty: f64,
+) -> Result<Vec<Prior>, PriorError> {
+    let name = name.to_owned();
+    if !(standard_uncertainty > 0.0 && standard_uncertainty.is_finite()) {
+        return Err(PriorError::NotPositive { name, found: standard_uncertainty });
+    }
+    let selected = parameters.select(&name);
+    let Some(first) = selected.first().map(|&j| &parameters[j]) else {
+        return Err(PriorError::Unknown { name, example: parameters[0].name.clone() });
+    };
+    for &j in &selected {
+        let parameter = &parameters[j];
+        if parameter.unit != first.unit {
+            return Err(PriorError::MixedUnits { name, units: [first.unit.clone(), parameter.unit.clone()] });
+        }
+        if present.iter().any(|prior| prior.parameter == j) {
+            return Err(PriorError::Twice { name, parameter: parameter.name.clone() });
+        }
+    }
+    Ok(selected.into_iter().map(|parameter| Prior { parameter, standard_uncertainty }).collect())
+}
+
+/// What the data add to each prior, from the covariance of the estimates with the priors in.
+pub(crate) fn uses(priors: &[Prior], covariance: impl Fn(usize, usize) -> f64) -> Vec<PriorUse> {
+    let ratio = |p: &Prior| covariance(p.parameter, p.parameter).sqrt() / p.standard_uncertainty;
+    priors.iter().map(|prior| PriorUse { prior: *prior, posterior_over_prior: ratio(prior) }).collect()
+}
+
+/// Part of the variance of estimate `j` that comes from the priors: `sum_k (C_jk / sigma_k)^2 / C_jj`, from 0 (data
+/// alone) to 1 (priors alone).
+///
+/// The weighted least-squares estimate is `x = C A^T b` of independent unit-variance `b`; the row of prior `k` is
+/// `e_k / sigma_k`, so its `b` contributes `(C_jk / sigma_k)^2` to `C_jj`.
+pub(crate) fn share(priors: &[Prior], j: usize, covariance: impl Fn(usize, usize) -> f64) -> f64 {
+    let from = |p: &Prior| (covariance(j, p.parameter) / p.standard_uncertainty).powi(2);
+    priors.iter().map(from).sum::<f64>() / covariance(j, j)
+}
+
+/// The rows `e_j / sigma_j` of the priors.
+pub(crate) fn rows(priors: &[Prior], columns: usize) -> DMatrix<f64> {
+    let mut rows = DMatrix::zeros(priors.len(), columns);
+    for (n, prior) in priors.iter().enumerate() {
+        rows[(n, prior.parameter)] = 1.0 / prior.standard_uncertainty;
+    }
+    rows
+}
