@@ -19,7 +19,6 @@ mod calibration;
 mod convergence;
 mod data;
 mod design;
-mod equations;
 mod estimates;
 /// The same estimates by a filter over plateaus, with the states that the order of the experiments asks for.
 pub mod filter;

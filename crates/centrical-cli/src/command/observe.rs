@@ -1,12 +1,11 @@
 //! `centrical observe SESSION|PLAN.toml`: rank, undetermined combinations, causes, remedies.
 
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical_report::observation_text;
 use centrical_session::{Error, ObservabilityReport, subject};
 
-use crate::Outcome;
+use crate::outcome::{Outcome, print};
 
 /// Analyse observability: rank, undetermined combinations, causes, remedies; before or after the experiment.
 #[derive(Debug, clap::Args)]
@@ -27,7 +26,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let subject = subject(&arguments.subject, &|_| ())?;
     let report = ObservabilityReport::of(&subject, &arguments.combination)?;
     let text = if arguments.json { report.to_json()? } else { observation_text(&report) };
-    // A reader that has seen enough (`| head`) is no failure.
-    let _ = io::stdout().write_all(text.as_bytes());
-    Ok(if report.is_acceptable() { Outcome::Done } else { Outcome::NotAcceptable })
+    print(&text);
+    Ok(Outcome::acceptable(report.is_acceptable()))
 }

@@ -6,9 +6,9 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::data::Data;
 use super::design::Design;
-use super::equations::Step;
 use super::estimates::{Fit, Termination};
 use super::structure::Structure;
+use crate::linalg::least_squares::{LeastSquares, Solution};
 use crate::model::{FitError, Linearisation, NULL_HOLD};
 
 /// The null directions are released when the data keep every one of them to this part of the hold: it then informs by less
@@ -59,13 +59,11 @@ impl<'a> Start<'a> {
     }
 
     /// The first step, from zero: every fit of one experiment has the same equations there, and its own misfit.
-    fn step(&self) -> Step<'a> {
+    fn step(&self) -> (&'a LeastSquares, Solution) {
         let zero = DVector::zeros(self.structure.typical.len());
-        let equations = || self.structure.equations(&self.design, &zero, 1.0 / NULL_HOLD);
-        let factored = self.structure.start.get_or_init(|| equations().rows.qr());
-        let lost = self.structure.null_basis.ncols();
-        let misfit = self.design.misfit.clone().resize_vertically(self.design.misfit.len() + lost, 0.0);
-        Step::of(factored, misfit, &self.structure.typical)
+        let equations = || self.structure.equations(&self.design, &zero, 1.0 / NULL_HOLD).0;
+        let equations = self.structure.start.get_or_init(equations);
+        (equations, equations.solve(self.design.misfit.clone()))
     }
 
     /// Degrees of freedom left by the estimable combinations.
@@ -76,18 +74,18 @@ impl<'a> Start<'a> {
 
     /// The linear fit: the residual of `Z - H X`.
     pub fn solve(self) -> Fit {
-        let step = self.step();
-        let covariance = step.covariance();
+        let (equations, step) = self.step();
+        let covariance = equations.covariance();
         let residuals = (self.data.observations().iter())
             .zip(&self.structure.linearisations)
             .map(|(o, l)| {
-                let predicted: Vector3<f64> = l.columns.iter().map(|(j, column)| column * step.dx[*j]).sum();
+                let predicted: Vector3<f64> = l.columns.iter().map(|(j, column)| column * step.x[*j]).sum();
                 o.mean - l.reading - predicted
             })
             .collect();
-        let whitened = &self.design.misfit - &self.design.rows * &step.dx;
+        let whitened = &self.design.misfit - &self.design.rows * &step.x;
         Fit {
-            values: step.dx.as_slice().to_vec(),
+            values: step.x.as_slice().to_vec(),
             covariance,
             chi_squared: whitened.norm_squared() + self.design.rest.powi(2),
             degrees_of_freedom: self.degrees_of_freedom(),
@@ -125,7 +123,7 @@ pub(super) struct Search<'a> {
 impl<'a> Search<'a> {
     pub fn from(start: Start<'a>) -> Self {
         let null_weight = if start.structure.null_basis.ncols() > 0 { 1.0 / NULL_HOLD } else { 0.0 };
-        let x = start.step().dx;
+        let x = start.step().1.x;
         Self {
             start,
             x,
@@ -164,14 +162,14 @@ impl<'a> Search<'a> {
     /// One Gauss-Newton step, halved until chi^2 falls with the weights as they are.
     fn step(&mut self) -> Result<(), FitError> {
         let Some(design) = self.design.take() else { return Ok(()) };
-        let equations = self.start.structure.equations(&design, &self.x, self.null_weight);
-        let objective_norm = equations.misfit.norm().hypot(design.rest);
-        let step = equations.solve();
+        let (equations, misfit) = self.start.structure.equations(&design, &self.x, self.null_weight);
+        let objective_norm = misfit.norm().hypot(design.rest);
+        let step = equations.solve(misfit);
         // Of a sum of squares of readings that are known to a few units of their last place.
         let rounding = 100.0 * f64::EPSILON * design.magnitude;
         if step.whitened_length <= CONVERGED + rounding {
-            self.x += &step.dx;
-            self.termination = (!self.release_null_space(&step)).then_some(Termination::Converged);
+            self.x += &step.x;
+            self.termination = (!self.release_null_space(&equations)).then_some(Termination::Converged);
         } else if let Some((x, linearisations)) = self.descend(&step, (objective_norm + rounding).powi(2))? {
             (self.x, self.ahead) = (x, Some(linearisations));
             if self.iterations == ITERATION_LIMIT {
@@ -181,16 +179,16 @@ impl<'a> Search<'a> {
             self.termination = Some(Termination::Stalled);
         }
         if self.termination.is_some() {
-            self.covariance = step.covariance();
+            self.covariance = equations.covariance();
         }
         Ok(())
     }
 
     /// Releases the null directions, once, if the data keep them well within the hold.
-    fn release_null_space(&mut self, step: &Step<'_>) -> bool {
+    fn release_null_space(&mut self, equations: &LeastSquares) -> bool {
         let null_basis = &self.start.structure.null_basis;
         let free =
-            self.null_weight > 0.0 && (null_basis.transpose() * step.inverse()).norm() < RELEASE_BELOW * NULL_HOLD;
+            self.null_weight > 0.0 && (null_basis.transpose() * equations.inverse()).norm() < RELEASE_BELOW * NULL_HOLD;
         if free {
             self.null_weight = 0.0;
         }
@@ -198,9 +196,9 @@ impl<'a> Search<'a> {
     }
 
     /// The point one step on, halved until the objective falls, and the linearisations there; none if it does not.
-    fn descend(&self, step: &Step, objective: f64) -> Result<Option<Place>, FitError> {
+    fn descend(&self, step: &Solution, objective: f64) -> Result<Option<Place>, FitError> {
         for halvings in 0..HALVING_LIMIT {
-            let x = &self.x + &step.dx * 0.5_f64.powi(halvings.cast_signed());
+            let x = &self.x + &step.x * 0.5_f64.powi(halvings.cast_signed());
             let linearisations = self.start.data.linearised(x.as_slice());
             if self.objective(&x, &linearisations)? <= objective {
                 return Ok(Some((x, linearisations)));

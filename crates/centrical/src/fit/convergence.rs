@@ -4,9 +4,10 @@
 //! [`NULL_HOLD`] typical magnitudes for every unknown, and each plateau adds its three whitened rows by a
 //! QR factorisation. The uncertainties are the lengths of the rows of `R^-1`.
 
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::{DMatrix, DVector, Matrix3};
 
 use super::calibration::Calibration;
+use crate::linalg::least_squares::LeastSquares;
 use crate::model::{Linearisation, NULL_HOLD};
 
 /// The uncertainties at some stage of the session.
@@ -22,8 +23,8 @@ impl Calibration<'_> {
     /// Standard uncertainties at no more than `most` evenly spread stages of the session; the last stage has all plateaus.
     pub fn convergence(&self, most: usize) -> Vec<Checkpoint> {
         let (model, observations, fit) = (self.data().model(), self.data().observations(), self.fit());
-        let typical: Vec<f64> = model.parameters().iter().map(|p| p.typical).collect();
-        let p = typical.len();
+        let p = model.parameters().len();
+        let typical = DVector::from_iterator(p, model.parameters().iter().map(|p| p.typical));
         let every = observations.len().div_ceil(most.max(1)).max(1);
         let mut stack = DMatrix::zeros(p + 3, p);
         stack.fill_diagonal(1.0 / NULL_HOLD);
@@ -31,11 +32,11 @@ impl Calibration<'_> {
         let linearisations = self.data().linearised(fit.state());
         for (n, (linearisation, covariance)) in linearisations.iter().zip(&fit.observation_covariances).enumerate() {
             stack.rows_mut(p, 3).copy_from(&whitened_rows(linearisation, covariance, &typical));
-            let r = stack.clone().qr().unpack_r();
-            stack.rows_mut(0, p).copy_from(&r);
+            let equations = LeastSquares::new(stack.clone(), typical.clone());
+            stack.rows_mut(0, p).copy_from(equations.triangle());
             let plateaus = n + 1;
             if plateaus % every == 0 || plateaus == observations.len() {
-                checkpoints.push(Checkpoint { plateaus, standard_uncertainty: uncertainties(&r, &typical) });
+                checkpoints.push(Checkpoint { plateaus, standard_uncertainty: equations.standard_uncertainties() });
             }
         }
         checkpoints
@@ -43,7 +44,7 @@ impl Calibration<'_> {
 }
 
 /// The rows of one plateau at the fit, whitened, in typical units.
-fn whitened_rows(linearisation: &Linearisation, covariance: &Matrix3<f64>, typical: &[f64]) -> DMatrix<f64> {
+fn whitened_rows(linearisation: &Linearisation, covariance: &Matrix3<f64>, typical: &DVector<f64>) -> DMatrix<f64> {
     let mut rows = DMatrix::zeros(3, typical.len());
     // A fit accepts positive definite covariances only.
     let Some(factor) = covariance.cholesky() else { return rows };
@@ -53,12 +54,4 @@ fn whitened_rows(linearisation: &Linearisation, covariance: &Matrix3<f64>, typic
         }
     }
     rows
-}
-
-fn uncertainties(r: &DMatrix<f64>, typical: &[f64]) -> Vec<f64> {
-    let mut inverse = DMatrix::identity(typical.len(), typical.len());
-    // The start has full rank, and rows only add to it.
-    let solved = r.solve_upper_triangular_mut(&mut inverse);
-    debug_assert!(solved, "the start has full rank");
-    inverse.row_iter().zip(typical).map(|(row, typical)| row.norm() * typical).collect()
 }

@@ -10,12 +10,11 @@
 //! [`Follower`](super::Follower) is for the time while the centrifuge turns: after each plateau it stands where a fit of the
 //! plateaus so far stands.
 
-mod factor;
 mod information;
 pub(super) mod innovation;
 mod lifetimes;
 
-pub use factor::Factor;
+pub use crate::linalg::factor::Factor;
 pub(super) use information::smoothed;
 pub use information::{Filter, Readings};
 pub use innovation::Innovation;

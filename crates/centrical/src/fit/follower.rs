@@ -12,9 +12,9 @@ use super::assembly::Assembly;
 use super::batch::HALVING_LIMIT;
 use super::data::Data;
 use super::design::Design;
-use super::equations::Equations;
 use super::filter::innovation::{Innovation, Unexplained};
 use super::structure::Structure;
+use crate::linalg::least_squares::LeastSquares;
 use crate::model::{FitError, Linearisation, MeasurementModel, NULL_HOLD, Observation};
 
 /// A point is close enough when the last step was below this many standard uncertainties: what the step after it would
@@ -98,12 +98,13 @@ impl<'m> Follower<'m> {
         for _ in 0..STEP_LIMIT {
             let linearisations = self.linearised();
             let design = self.design_of(&linearisations)?;
-            let step = self.held(&design, &typical).solve();
+            let (equations, misfit) = self.held(&design, &typical);
+            let step = equations.solve(misfit);
             if step.whitened_length < CLOSE {
-                self.point += &step.dx;
+                self.point += &step.x;
                 break;
             }
-            let Some(point) = self.descend(&step.dx, &linearisations, &typical)? else { break };
+            let Some(point) = self.descend(&step.x, &linearisations, &typical)? else { break };
             self.point = point;
         }
         Ok(())
@@ -140,9 +141,9 @@ impl<'m> Follower<'m> {
             return Err(FitError::Empty);
         }
         let (structure, _) = Structure::by(Assembly::Filter, &self.data)?;
-        let step = structure.equations(&self.design()?, &self.point, 1.0 / NULL_HOLD).solve();
-        let covariance = step.covariance();
-        let known = |j: usize| (self.point[j] + step.dx[j], covariance[(j, j)].sqrt());
+        let (equations, misfit) = structure.equations(&self.design()?, &self.point, 1.0 / NULL_HOLD);
+        let (step, covariance) = (equations.solve(misfit), equations.covariance());
+        let known = |j: usize| (self.point[j] + step.x[j], covariance[(j, j)].sqrt());
         let estimates =
             (0..self.point.len()).map(|j| structure.observability.is_estimable(j).then(|| known(j))).collect();
         Ok(Progress { rank: structure.observability.rank(), estimates })
@@ -168,10 +169,8 @@ impl<'m> Follower<'m> {
         }
         let (structure, _) = Structure::by(Assembly::Filter, &self.data)?;
         let design = self.design()?;
-        let Equations { rows, mut misfit, .. } = structure.equations(&design, &self.point, 1.0 / NULL_HOLD);
-        let unknowns = rows.ncols();
-        rows.qr().q_tr_mul(&mut misfit);
-        let left = misfit.rows_range(unknowns..).norm_squared();
+        let (equations, misfit) = structure.equations(&design, &self.point, 1.0 / NULL_HOLD);
+        let left = equations.redundant(&misfit).norm_squared();
         Ok(Unexplained { squared: left + design.rest.powi(2), rank: structure.observability.rank() })
     }
 
@@ -187,14 +186,14 @@ impl<'m> Follower<'m> {
         Assembly::Filter.design(&self.data, self.point(), linearisations)
     }
 
-    /// The equations with every unknown held about zero, in typical units.
-    fn held<'t>(&self, design: &Design, typical: &'t DVector<f64>) -> Equations<'t> {
+    /// The equations and their misfit, with every unknown held about zero.
+    fn held(&self, design: &Design, typical: &DVector<f64>) -> (LeastSquares, DVector<f64>) {
         let (n, p) = design.rows.shape();
         let mut rows = design.rows.clone().resize_vertically(n + p, 0.0);
         rows.column_iter_mut().zip(typical.iter()).for_each(|(mut column, typical)| column *= *typical);
         rows.rows_mut(n, p).fill_diagonal(1.0 / NULL_HOLD);
         let mut misfit = design.misfit.clone().resize_vertically(n + p, 0.0);
         misfit.rows_mut(n, p).copy_from(&(self.point.component_div(typical) / -NULL_HOLD));
-        Equations { rows, misfit, typical }
+        (LeastSquares::new(rows, typical.clone()), misfit)
     }
 }

@@ -2,12 +2,12 @@
 
 use std::sync::OnceLock;
 
-use nalgebra::{DMatrix, DVector, Dyn, QR};
+use nalgebra::{DMatrix, DVector};
 
 use super::assembly::Assembly;
 use super::data::Data;
 use super::design::Design;
-use super::equations::Equations;
+use crate::linalg::least_squares::LeastSquares;
 use crate::model::{FitError, Linearisation};
 use crate::observability::Observability;
 
@@ -26,7 +26,7 @@ pub struct Structure {
     /// Of the observations at `X = 0`.
     pub(super) linearisations: Vec<Linearisation>,
     /// The equations at `X = 0`, null directions held, factored when the first fit starts from them.
-    pub(super) start: OnceLock<QR<f64, Dyn, Dyn>>,
+    pub(super) start: OnceLock<LeastSquares>,
 }
 
 impl Structure {
@@ -60,9 +60,14 @@ impl Structure {
         &self.observability
     }
 
-    /// The whitened equations in typical units, with one equation more for each null direction: its component
-    /// is zero, with weight `null_weight`.
-    pub(super) fn equations(&self, design: &Design, x: &DVector<f64>, null_weight: f64) -> Equations<'_> {
+    /// The whitened equations and their misfit, with one equation more for each null direction: its component is zero, with
+    /// weight `null_weight`.
+    pub(super) fn equations(
+        &self,
+        design: &Design,
+        x: &DVector<f64>,
+        null_weight: f64,
+    ) -> (LeastSquares, DVector<f64>) {
         let (n, p, lost) = (design.rows.nrows(), design.rows.ncols(), self.null_basis.ncols());
         let mut rows = DMatrix::zeros(n + lost, p);
         rows.rows_mut(0, n).copy_from(&design.rows);
@@ -72,7 +77,7 @@ impl Structure {
         misfit.rows_mut(0, n).copy_from(&design.misfit);
         misfit.rows_mut(n, lost).copy_from(&(-&held * x.component_div(&self.typical)));
         rows.rows_mut(n, lost).copy_from(&held);
-        Equations { rows, misfit, typical: &self.typical }
+        (LeastSquares::new(rows, self.typical.clone()), misfit)
     }
 }
 

@@ -2,7 +2,7 @@
 //! as printed, for any number of positions and any pair relation.
 //!
 //! Unlike the source, `Omega^2` here stands for `Omega^2 + 2 Omega omega_E sin(latitude)` when the site gives
-//! a latitude (model notes, section 8): the Coriolis term is not of zero mean in the arm frame.
+//! a latitude (docs/source-and-findings.md): the Coriolis term is not of zero mean in the arm frame.
 
 use nalgebra::{Matrix3, Vector3};
 

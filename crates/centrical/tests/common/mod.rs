@@ -89,8 +89,7 @@ impl Regression {
         let (n, p) = a.shape();
         let sizes = DVector::from_iterator(p, a.column_iter().map(|column| column.norm().recip()));
         let equations = LeastSquares::new(a * DMatrix::from_diagonal(&sizes), sizes);
-        let rotated = equations.rotated(DMatrix::from_column_slice(n, 1, b.as_slice()));
-        let sum_of_squares = rotated.rows(p, n - p).norm_squared();
+        let sum_of_squares = equations.redundant(b).norm_squared();
         let variance = sum_of_squares / (n - p) as f64;
         let covariance = equations.covariance() * variance;
         Self { x: equations.solve(b.clone()).x, covariance, sum_of_squares, variance }

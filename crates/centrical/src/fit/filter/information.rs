@@ -10,8 +10,8 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::super::data::Data;
 use super::super::design::Design;
-use super::factor::Factor;
 use super::lifetimes::Lifetimes;
+use crate::linalg::factor::Factor;
 use crate::model::whitening::Whitener;
 use crate::model::{FitError, Linearisation, Observation};
 use crate::observability::RANK_TOLERANCE;

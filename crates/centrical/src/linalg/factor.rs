@@ -82,18 +82,18 @@ impl Factor {
     }
 
     /// `R`.
-    pub(super) fn triangle(&self) -> DMatrix<f64> {
+    pub(crate) fn triangle(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.states, self.states, |i, j| self.rows[i * (self.states + 1) + j])
     }
 
     /// `b`.
-    pub(super) fn right_side(&self) -> DVector<f64> {
+    pub(crate) fn right_side(&self) -> DVector<f64> {
         DVector::from_fn(self.states, |i, _| self.rows[i * (self.states + 1) + self.states])
     }
 
     /// The equations of the states from `first` on among `states` of a new order, old state `first + n` being
     /// `slots[n]` there; `slots` rises, so that the triangle stays one.
-    pub(super) fn rearranged(&self, first: usize, slots: &[usize], states: usize) -> Self {
+    pub(crate) fn rearranged(&self, first: usize, slots: &[usize], states: usize) -> Self {
         let mut next = Self::new(states);
         next.rest = self.rest;
         for (i, &slot) in slots.iter().enumerate() {
