@@ -67,4 +67,5 @@ pub use model::{
     PriorError, PriorUse, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint, Site, Term, Unit, Weight, carousel,
     hat, is_rotation, linear, position, rotation, rotation_rate,
 };
+pub use nalgebra;
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};

@@ -110,7 +110,7 @@ fn refusal(at: &TomlPath, entry: &PriorEntry, error: PriorError) -> Error {
         PriorError::NotPositive { found, .. } => {
             (format!("a standard uncertainty of {found}"), "a positive number".to_owned())
         }
-        PriorError::Twice { parameter, .. } => (format!("a second prior on {parameter}"), "one".to_owned()),
+        PriorError::Duplicate { parameter, .. } => (format!("a second prior on {parameter}"), "one".to_owned()),
     };
     at.unexpected(&entry.name, found, expected)
 }

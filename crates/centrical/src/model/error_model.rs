@@ -33,6 +33,7 @@ pub(crate) struct Expanded {
 
 /// Terms beyond the source's model, which its text permits ("for example"), each off by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Extra {
     /// The cross terms `K_ip f_i f_p`, `K_io f_i f_o`, `K_po f_p f_o` of IEEE Std 1293: for every newtonometer `i`
     /// the products of two of the three components, 9 coefficients `K_1[f1*f2]`, ... Which of the other two axes is

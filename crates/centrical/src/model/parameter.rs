@@ -39,6 +39,7 @@ impl Parameter {
 
 /// What a parameter is in the measurement model. Axes are 0, 1, 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Kind {
     /// `alpha_1`, `alpha_2`: tilt of the rotation axis [rad].
     Tilt(usize),
@@ -82,6 +83,35 @@ pub enum Kind {
     SpeedScale,
 }
 
+impl Kind {
+    /// Whether it is a deformation that grows with the square of the speed.
+    pub(crate) fn is_elastic(self) -> bool {
+        match self {
+            Self::ElasticTurn { .. } | Self::ArmStretch { .. } => true,
+            Self::Tilt(_)
+            | Self::Turn { .. }
+            | Self::Shift { .. }
+            | Self::ProofMass(_)
+            | Self::Term(_)
+            | Self::RadiusScale
+            | Self::SpeedScale => false,
+        }
+    }
+
+    /// Whether it belongs to a position or to a pair of positions.
+    pub(crate) fn is_of_position(self) -> bool {
+        match self {
+            Self::Turn { .. } | Self::Shift { .. } | Self::ElasticTurn { .. } => true,
+            Self::Tilt(_)
+            | Self::ProofMass(_)
+            | Self::Term(_)
+            | Self::ArmStretch { .. }
+            | Self::RadiusScale
+            | Self::SpeedScale => false,
+        }
+    }
+}
+
 impl Parameter {
     /// Whether it belongs to the instrument: a coefficient of its error model, as opposed to the geometry.
     pub fn is_of_instrument(&self) -> bool {
@@ -91,6 +121,7 @@ impl Parameter {
 
 /// What an elastic deformation grows with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Law {
     /// `Omega^2` [rad^2/s^2].
     Speed,
@@ -132,6 +163,7 @@ impl Law {
 
 /// Unknowns beyond the source's 49, each off by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Extension {
     /// Elastic turn of the unit, three per position.
     ElasticTurn(Law),
