@@ -10,9 +10,6 @@ use centrical_io::{CalibrationResult, Laboratory};
 use crate::language::Language;
 use xml::Xml;
 
-/// Probability that the expanded uncertainties cover.
-const COVERAGE: &str = "0.95";
-
 /// The certificate of a result. The same data give the same bytes.
 pub fn digital_certificate(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> String {
     let mut xml = Xml::new();

@@ -1,10 +1,15 @@
 //! The languages of the documents: how each writes numbers, units and dates.
 
+mod english;
+mod messages;
+mod russian;
+
 use centrical_io::Date;
 
-use crate::customary::with_uncertainty;
-use crate::message::{ENGLISH, Messages, RUSSIAN};
-use crate::plot::power_of_ten;
+use self::english::ENGLISH;
+pub(crate) use self::messages::Messages;
+use self::russian::RUSSIAN;
+use crate::number::{power_of_ten, scientific, shortest, significant, with_uncertainty};
 
 /// A language of the documents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -57,22 +62,21 @@ impl Language {
         if value >= 1e-3 || value == 0.0 {
             return self.fixed(value, 3);
         }
-        let digits = format!("{value:.1e}");
-        let (digits, power) = digits.split_once('e').unwrap_or((&digits, "0"));
-        format!("{}·{}", self.number(digits), power_of_ten(power.parse().unwrap_or(0)))
+        self.with_power(scientific(value, 2))
     }
 
     /// A number to `digits` significant digits, never in powers of ten.
-    pub(crate) fn significant(self, value: f64, digits: i32) -> String {
-        let places = usize::try_from(digits - 1 - exponent(value)).unwrap_or(0);
-        self.fixed(value, places)
+    pub(crate) fn significant(self, value: f64, digits: u8) -> String {
+        self.number(&significant(value, digits, i32::MIN..i32::MAX))
     }
 
     /// `1.5·10⁻⁵`, with the digits that the number has.
     pub(crate) fn scientific(self, value: f64) -> String {
-        let plain = format!("{value:e}");
-        let (digits, power) = plain.split_once('e').unwrap_or((&plain, "0"));
-        format!("{}·{}", self.number(digits), power_of_ten(power.parse().unwrap_or(0)))
+        self.with_power(shortest(value))
+    }
+
+    fn with_power(self, (digits, power): (String, i32)) -> String {
+        format!("{}·{}", self.number(&digits), power_of_ten(power))
     }
 
     /// `value ± uncertainty` to two digits of the uncertainty.
@@ -83,7 +87,7 @@ impl Language {
 
     /// `(value ± uncertainty)·10ⁿ` with a leading digit before the point.
     pub(crate) fn plus_minus_scientific(self, value: f64, uncertainty: f64) -> String {
-        let power = exponent(value.abs().max(uncertainty));
+        let power = shortest(value.abs().max(uncertainty)).1;
         if (-1..4).contains(&power) {
             return self.plus_minus(value, uncertainty);
         }
@@ -132,13 +136,6 @@ impl Language {
             Self::Russian => format!("{:02}.{:02}.{:04}", date.day, date.month, date.year),
         }
     }
-}
-
-/// Power of ten of the leading digit; 0 for zero.
-#[allow(clippy::cast_possible_truncation)]
-fn exponent(value: f64) -> i32 {
-    let size = value.abs();
-    if size > 0.0 && size.is_finite() { size.log10().floor() as i32 } else { 0 }
 }
 
 #[cfg(test)]

@@ -1,48 +1,32 @@
 //! What a calibration leaves on paper and screen. Pure functions from data to text; no files, no network.
 //!
-//! Everything is made from a [`centrical_io::CalibrationResult`], and what a certificate says beside it from a
-//! [`centrical_io::Laboratory`]. The same data give the same bytes.
+//! [`report`] and [`certificate`] say what a document holds, as data; [`html`] and [`pdf`] draw any of them. The same
+//! data give the same bytes.
 
-mod assessment;
-mod certificate;
 pub mod codegen;
-mod conformity;
-mod customary;
 mod dcc;
-mod equation;
-mod expanded;
-mod figures;
-mod groups;
-mod html;
+mod document;
+mod evaluation;
+mod figure;
 mod language;
-mod message;
-mod noise;
-mod observation;
-mod pdf;
-mod plan;
+mod number;
 pub mod plot;
-mod positions_figure;
-mod reading_error;
-mod steadiness;
+mod render;
 mod terminal;
-mod trials;
-mod verdict;
-mod watch;
+mod units;
 
-pub use assessment::{
-    budget_table, correlation_table, outliers_text, pattern_in_words, prediction_table, validity_text,
-};
-pub use certificate::pdf_certificate;
-pub use customary::{customary, with_uncertainty};
 pub use dcc::digital_certificate;
-pub use figures::{Figure, figures, history_figure};
-pub use html::{html_report, html_report_with};
+pub use document::{
+    Align, Block, Column, Document, Fact, Margins, Opening, Row, Section, Table, TableKind, Tone, certificate, report,
+};
+pub use evaluation::{Objection, objections};
+pub use figure::{Figure, figures, frontier_plot, history_figure, noise_plots, positions_figure};
 pub use language::Language;
-pub use noise::{noise_plots, noise_table, noise_warnings};
-pub use observation::observation_text;
-pub use plan::{frontier_plot, plan_text, prediction_text};
-pub use positions_figure::positions_figure;
-pub use terminal::{terminal_table, verdict_text};
-pub use trials::{comparison_table, monte_carlo_table, selection_table};
-pub use verdict::{Objection, objections};
-pub use watch::{WatchView, WatchedTest, states_text, watch_table};
+pub use number::with_uncertainty;
+pub use render::{html, pdf};
+pub use terminal::{
+    WatchView, WatchedTest, budget_table, comparison_table, correlation_table, monte_carlo_table, noise_table,
+    noise_warnings, observation_text, outliers_text, plan_text, prediction_table, selection_table, states_text,
+    terminal_table, validity_text, verdict_text, watch_table,
+};
+pub use units::customary;

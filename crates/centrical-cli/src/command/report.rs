@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use centrical_io::{CalibrationResult, Error, Laboratory, Place, create_folder, read_history, write_whole};
 use centrical_report::codegen::{NamedTerm, compensation_source, heading};
 use centrical_report::{
-    Language, digital_certificate, figures, history_figure, html_report, html_report_with, objections, pdf_certificate,
-    verdict_text,
+    Language, certificate, digital_certificate, figures, history_figure, html, objections, pdf, report, verdict_text,
 };
 use clap::ValueEnum;
 
@@ -78,12 +77,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         let history = arguments.history.as_deref().map(read_history).transpose()?.unwrap_or_default();
         let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group.as_str());
         let further = history_figure(&history, &group_of, language);
-        write_whole(file, html_report_with(&result, further.as_slice(), language).as_bytes())?;
+        write_whole(file, html(&report(&result, further.as_slice(), language)).as_bytes())?;
     }
     if let Some(laboratory) = laboratory {
         if let Some(file) = &arguments.pdf {
             let before = arguments.before.as_deref().map(|file| before(file, &result, &laboratory)).transpose()?;
-            write_whole(file, &pdf_certificate(&result, before.as_ref(), &laboratory, language))?;
+            write_whole(file, &pdf(&certificate(&result, before.as_ref(), &laboratory, language)))?;
         }
         if let Some(file) = &arguments.dcc {
             write_whole(file, digital_certificate(&result, &laboratory, language).as_bytes())?;
@@ -143,9 +142,9 @@ impl Documents {
     pub fn write_all(&self, result: &CalibrationResult, folder: &Path) -> Result<(), Error> {
         let language = self.language.into();
         let laboratory = self.laboratory(result)?;
-        write_whole(&folder.join("report.html"), html_report(result, language).as_bytes())?;
+        write_whole(&folder.join("report.html"), html(&report(result, &[], language)).as_bytes())?;
         if let Some(laboratory) = laboratory {
-            write_whole(&folder.join("certificate.pdf"), &pdf_certificate(result, None, &laboratory, language))?;
+            write_whole(&folder.join("certificate.pdf"), &pdf(&certificate(result, None, &laboratory, language)))?;
             let dcc = digital_certificate(result, &laboratory, language);
             write_whole(&folder.join("certificate.xml"), dcc.as_bytes())?;
         }

@@ -1,6 +1,6 @@
 //! The error model as statements of a language: `error_2 += c[4] * f_1`, a line for each term and derivative.
 
-use super::{NamedTerm, harmless};
+use super::term::{NamedTerm, harmless};
 
 /// How a language writes what the error model is made of. Indices count from 0.
 pub(super) trait Language {

@@ -5,13 +5,14 @@ use centrical_io::{CalibrationResult, Condition, Laboratory, ParameterEstimate};
 use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::COVERAGE;
 use super::administrative::{identification, software};
 use super::unit::Unit;
 use super::xml::Xml;
-use crate::expanded::{Expanded, expanded};
+use crate::evaluation::{self, Expanded, ReadingError, equation, expanded, reading_errors};
 use crate::language::Language;
-use crate::reading_error::{self, ReadingError, reading_errors};
+
+/// Probability that the expanded uncertainties cover.
+const COVERAGE: &str = "0.95";
 
 pub(super) fn list(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
     let messages = language.messages();
@@ -133,7 +134,7 @@ fn parameters(xml: &mut Xml, result: &CalibrationResult, language: Language) {
     let messages = language.messages();
     xml.element_with("dcc:result", &[("refType", "centrical_parameters")], |xml| {
         xml.content("dcc:name", messages.parameters, language);
-        xml.content("dcc:description", &crate::equation::equation(result), language);
+        xml.content("dcc:description", &equation(result), language);
         xml.element("dcc:data", |xml| {
             xml.element("dcc:list", |xml| {
                 for parameter in &result.parameters {
@@ -230,7 +231,7 @@ fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                     column(messages.specific_force, |e| e.force);
                     column(messages.before, |e| e.before);
                     column(messages.after, |e| e.after);
-                    column(messages.compensation_uncertainty, |e| reading_error::COVERAGE * e.prediction);
+                    column(messages.compensation_uncertainty, |e| evaluation::COVERAGE * e.prediction);
                 });
             }
         });
