@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use centrical_compensate::{Compensation, Term};
-use centrical_io::{Columns, RecordSlice, RecordWriter, compensate_record, scan_record};
+use centrical_session::{Columns, RecordSlice, RecordWriter, compensate_record, scan_record};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use tempfile::TempDir;

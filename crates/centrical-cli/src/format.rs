@@ -1,6 +1,6 @@
-//! The format of tables, as it is asked for.
+//! The format of written tables, as an argument.
 
-use centrical_io::TableFormat;
+use centrical_session::TableFormat;
 
 /// CSV or Parquet.
 #[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]

@@ -1,6 +1,6 @@
 //! Calibrate newtonometer (accelerometer) triads on a precision centrifuge.
 //!
-//! Arguments to calls to exit code: 0 done, 1 done but the result is not acceptable, 2 bad input or usage.
+//! From arguments to one job to an exit code: 0 done, 1 done but the result is not acceptable, 2 bad input or usage.
 
 mod command;
 mod format;
@@ -18,7 +18,7 @@ struct Arguments {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the result is not acceptable (it is said why); \
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the result is not acceptable (the reason is printed); \
                           2 bad input or usage.";
 
 #[derive(Debug, Subcommand)]
@@ -38,12 +38,12 @@ enum Command {
     Watch(command::watch::Arguments),
 }
 
-/// How a command ended that could do its work.
+/// How a command ended that completed its work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
     /// Done.
     Done,
-    /// Done, but the result is not acceptable; it was said why.
+    /// Done, but the result is not acceptable; the reason was printed.
     NotAcceptable,
 }
 

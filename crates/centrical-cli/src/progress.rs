@@ -1,6 +1,6 @@
 //! A bar for a person who waits; nothing when the output is not a terminal.
 
-use centrical_io::Session;
+use centrical_session::Session;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar over the records of a session, each read twice, on standard error. indicatif hides it when that is not a

@@ -13,7 +13,7 @@ mod term;
 mod vectors;
 
 use centrical_compensate::{Compensation, NotInvertible, Term};
-use centrical_io::CalibrationResult;
+use centrical_session::CalibrationResult;
 
 use self::model::Model;
 pub use self::term::NamedTerm;

@@ -5,7 +5,7 @@ mod results;
 mod unit;
 mod xml;
 
-use centrical_io::{CalibrationResult, Laboratory};
+use centrical_session::{CalibrationResult, Laboratory};
 
 use crate::language::Language;
 use xml::Xml;

@@ -9,8 +9,6 @@ mod report;
 mod tables;
 
 pub use self::certificate::certificate;
-pub use self::content::{
-    Align, Block, Column, Document, Fact, Margins, Opening, Row, Section, Table, TableKind, Tone,
-};
+pub use self::content::{Align, Block, Column, Document, Fact, Margins, Opening, Row, Section, Table, TableKind, Tone};
 pub(crate) use self::objection::objection;
 pub use self::report::report;

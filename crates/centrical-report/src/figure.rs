@@ -11,7 +11,7 @@ mod prediction;
 mod record;
 
 use centrical::Position;
-use centrical_io::CalibrationResult;
+use centrical_session::CalibrationResult;
 use nalgebra::Matrix3;
 
 pub use self::drawing::Figure;

@@ -4,7 +4,7 @@ mod english;
 mod messages;
 mod russian;
 
-use centrical_io::Date;
+use centrical_session::Date;
 
 use self::english::ENGLISH;
 pub(crate) use self::messages::Messages;

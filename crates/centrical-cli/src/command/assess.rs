@@ -1,12 +1,12 @@
-//! `centrical assess SESSION`: how far the calibration of a session can be trusted.
+//! `centrical assess SESSION`: uncertainty budget and checks of a session's calibration.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical::uncertainty::{Budget, Compensated, Validity, patterns, without_outliers};
 use centrical::{Fit, FitError, MeasurementModel, Observation, STANDARD_GRAVITY, fit, linear};
-use centrical_io::{Error, Problem, Session};
 use centrical_report::{budget_table, correlation_table, outliers_text, prediction_table, validity_text};
+use centrical_session::{Error, Problem, Session};
 use nalgebra::{DMatrix, Vector3};
 
 use crate::{Outcome, progress};
@@ -16,13 +16,13 @@ use crate::{Outcome, progress};
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
-    /// Probability of the expanded uncertainties
+    /// Coverage probability of the expanded uncertainties
     #[arg(long, default_value_t = 0.95, value_parser = probability)]
     coverage: f64,
     /// Fit without outlying plateaus, at this family-wise error, and show the difference
     #[arg(long, value_name = "ERROR", num_args = 0..=1, default_missing_value = "0.05", value_parser = probability)]
     without_outliers: Option<f64>,
-    /// Scale noise and speed of the plateaus by the residuals: for weights known up to a factor only
+    /// Scale the noise and speed uncertainty of the plateaus by the residuals: for weights known only up to a factor
     #[arg(long)]
     scale_by_residuals: bool,
     /// Show the correlations of the parameters of the instrument; all of them are in the covariance of result.json

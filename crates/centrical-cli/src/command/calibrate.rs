@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use centrical_io::{CalibrationResult, Error, Method, PlateauName, Session, calibrate_without, create_folder};
 use centrical_report::{Objection, objections, states_text, terminal_table, verdict_text};
+use centrical_session::{CalibrationResult, Error, Method, PlateauName, Session, calibrate_without, create_folder};
 
 use crate::command::report::Documents;
 use crate::{Outcome, progress};
@@ -14,8 +14,8 @@ use crate::{Outcome, progress};
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
-    /// Folder for result.json, the report and its plots, made if it is not there [default: result.json alone, in the
-    /// current folder]
+    /// Folder for result.json, the report and its plots, created if absent [default: result.json alone, in the current
+    /// folder]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print result.json instead of the table; a file is written only if --out is given
@@ -26,15 +26,15 @@ pub struct Arguments {
     /// The linear fit of [K5.3] alone, with its second-order error
     #[arg(long)]
     linear: bool,
-    /// How the exact fit is made: all plateaus at once, or by the recursive filter, which comes to the same
+    /// How the exact fit is computed: all plateaus at once, or by the recursive filter, which gives the same estimates
     #[arg(long, value_enum, default_value_t = FitMethod::Batch, conflicts_with = "linear")]
     method: FitMethod,
-    /// Hold out a plateau of the fit, e.g. 4:3 for the third of the fourth mounting; may be repeated
+    /// Hold a plateau out of the fit, e.g. 4:3 for the third of the fourth mounting; may be repeated
     #[arg(long, value_name = "MOUNTING:PLATEAU")]
     hold_out: Vec<PlateauName>,
 }
 
-/// How the exact fit is made.
+/// How the exact fit is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum FitMethod {
     Batch,

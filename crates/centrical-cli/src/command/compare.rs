@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical::uncertainty;
-use centrical_io::{CalibrationResult, Error};
 use centrical_report::{comparison_table, customary};
+use centrical_session::{CalibrationResult, Error};
 
 use crate::Outcome;
 
@@ -21,7 +21,7 @@ pub struct Arguments {
     years: Option<f64>,
 }
 
-/// Differences as large as these come by chance once in a hundred comparisons.
+/// Chance produces differences as large as these once in a hundred comparisons.
 const CHANCE: f64 = 0.01;
 
 /// Runs the command. Exit code 1 when the two do not agree.

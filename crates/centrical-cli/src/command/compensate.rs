@@ -1,30 +1,30 @@
-//! `centrical compensate RESULT RECORD --out FILE`: from readings to specific forces.
+//! `centrical compensate RESULT RECORD --out FILE`: from readings to specific force.
 
 use std::path::{Path, PathBuf};
 
 use centrical::STANDARD_GRAVITY;
 use centrical_compensate::{Certificate, Compensation};
-use centrical_io::{
+use centrical_session::{
     CalibrationResult, Columns, Compensated, Dimension, Error, NotThatQuantity, Quantity, Session, compensate_record,
 };
 
 use crate::Outcome;
 
-/// Take a record of readings to specific forces by a calibration's result.
+/// Convert a record of readings to specific force with a calibration result.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// The result of a calibration: result.json
     result: PathBuf,
     /// The record: CSV or Parquet with t, f1, f2, f3 in s and m/s^2, unless --session says otherwise
     record: PathBuf,
-    /// File for the specific forces: Parquet if its name ends in .parquet, else CSV
+    /// Output file: Parquet if its name ends in .parquet, CSV otherwise
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// The session whose experiment.toml tells the record's columns and units
+    /// The session whose experiment.toml names the record's columns and units
     #[arg(long, value_name = "SESSION")]
     session: Option<PathBuf>,
-    /// Largest specific force on each axis, such as "200 g"; readings from beyond it become nan
-    /// [default: twice the largest plateau reading of the calibration, or as far as the inverse is certain]
+    /// Largest specific force on each axis, such as "200 g"; readings beyond it become nan
+    /// [default: twice the largest plateau reading of the calibration, within the range of the certified inverse]
     #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
     range: Option<f64>,
 }

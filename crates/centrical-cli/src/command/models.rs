@@ -1,11 +1,11 @@
-//! `centrical models SESSION`: which error model the data speak for.
+//! `centrical models SESSION`: which error model the data support.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical::uncertainty::{rivals_of, select};
-use centrical_io::{Error, Problem, Session};
 use centrical_report::selection_table;
+use centrical_session::{Error, Problem, Session};
 
 use crate::{Outcome, progress};
 

@@ -1,4 +1,4 @@
-//! `centrical montecarlo SESSION`: the whole calibration repeated on drawn readings.
+//! `centrical montecarlo SESSION`: the whole calibration repeated on simulated readings.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -6,14 +6,14 @@ use std::path::PathBuf;
 use centrical::plan::unit_of;
 use centrical::uncertainty::{Method, MonteCarlo, Settings, TypeB, monte_carlo};
 use centrical::{FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight, fit};
-use centrical_io::{Error, Plan, Problem, Session};
 use centrical_report::monte_carlo_table;
+use centrical_session::{Error, Plan, Problem, Session, read_plan};
 use nalgebra::Vector3;
 
 use super::assess::probability;
 use crate::{Outcome, progress};
 
-/// Draw noise and stated uncertainties, calibrate again and again, and compare with what is stated.
+/// Repeat the calibration on simulated noise and type B errors, and check the stated uncertainties.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// The session folder, or its experiment.toml; one without records and plateau table is a plan
@@ -24,17 +24,17 @@ pub struct Arguments {
     /// Seed of the random numbers: the same seed gives the same numbers for any number of threads
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Probability that the intervals are to cover
+    /// Coverage probability of the intervals
     #[arg(long, default_value_t = 0.95, value_parser = probability)]
     coverage: f64,
     /// The linear fit of [K5.3] alone, to see its second-order error
     #[arg(long)]
     linear: bool,
-    /// White noise of the means of a plan, in ug, in place of its own noise and durations
+    /// White noise of the plateau means of a plan, in ug, instead of the plan's noise and durations
     #[arg(long, value_name = "UG")]
     noise: Option<f64>,
-    /// Draw for a unit of typical errors, signs in turn, in place of the one that a plan is predicted for, which has none unless
-    /// the plan says so or leaves combinations of unknowns open; or in place of a session's own estimates
+    /// Assume a unit with errors of typical size (alternating signs) instead of the plan's nominal unit, or of the
+    /// session's estimates
     #[arg(long)]
     typical: bool,
 }
@@ -44,7 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let inside = arguments.session.join("experiment.toml");
     let file = if arguments.session.is_dir() { &inside } else { &arguments.session };
     let failed = |source| Error::Fit { file: file.clone(), source };
-    let mut case = match Plan::read(file)? {
+    let mut case = match read_plan(file)? {
         Some(plan) => Case::planned(plan, arguments.noise).map_err(failed)?,
         None => Case::measured(&Session::read(file)?)?,
     };

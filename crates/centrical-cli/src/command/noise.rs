@@ -4,47 +4,47 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use centrical::noise::Estimator;
-use centrical_io::{
-    Column, ColumnName, Columns, Dimension, Error, NoiseAnalysis, NotThatQuantity, PlateauName, Quantity, Scale,
-    Series, Session, create_folder, write_whole,
-};
 use centrical_report::{noise_plots, noise_table, noise_warnings};
+use centrical_session::{
+    Column, ColumnName, Columns, Dimension, Error, NotThatQuantity, PlateauName, Quantity, Scale, Series, Session,
+    analyse_noise, create_folder, write_whole,
+};
 
 use crate::Outcome;
 
-/// Noise of a record: deviations of the Allan family with intervals, spectrum, noise terms.
+/// Analyse the noise of a record: deviations of the Allan family with intervals, spectrum, noise terms.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A record in any format that is read, or a session: one of its plateaus
+    /// A record in any supported format, or a session, of which one plateau is analysed
     file: PathBuf,
     /// Plateau of the session [default: the longest at rest]
     #[arg(long, value_name = "MOUNTING:PLATEAU")]
     plateau: Option<PlateauName>,
-    /// The session whose experiment.toml tells the record's columns and units
+    /// The session whose experiment.toml names the record's columns and units
     #[arg(long, value_name = "SESSION", conflicts_with_all = ["time", "rate", "readings", "unit"])]
     session: Option<PathBuf>,
-    /// Column of time, in s: its name, or its number from 1
+    /// Time column, in s: its name, or its number from 1
     #[arg(long, value_name = "COLUMN", default_value = "t", value_parser = column_name)]
     time: ColumnName,
-    /// Sampling rate of a record without a column of time, such as "250 Hz"
+    /// Sampling rate of a record without a time column, such as "250 Hz"
     #[arg(long, value_name = "QUANTITY", value_parser = frequency, conflicts_with = "time")]
     rate: Option<f64>,
     /// Columns of readings: names, or numbers from 1
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', default_value = "f1,f2,f3", value_parser = column_name)]
     readings: Vec<ColumnName>,
-    /// Unit of the readings; another than of acceleration is shown as it is, "counts" for instance
+    /// Unit of the readings; a unit other than of acceleration, "counts" for instance, is shown as it is
     #[arg(long, default_value = "m/s^2")]
     unit: String,
-    /// Begin of the part to analyse, on the record's clock, s
+    /// Start of the interval to analyse, on the record's clock, s
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     from: Option<f64>,
-    /// End of the part to analyse
+    /// End of the interval to analyse
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     to: Option<f64>,
     /// Estimators, or "all"
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "overlapping-allan,overlapping-hadamard", value_parser = estimators)]
     estimators: Vec<Estimators>,
-    /// Folder for noise.json and the plots, made if it is not there
+    /// Folder for noise.json and the plots, created if absent
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the analysis as JSON instead of tables
@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             estimators.push(*estimator);
         }
     }
-    let analysis = NoiseAnalysis::of(&series, &estimators)?;
+    let analysis = analyse_noise(&series, &estimators)?;
     if let Some(folder) = &arguments.out {
         create_folder(folder)?;
         analysis.write(&folder.join("noise.json"))?;

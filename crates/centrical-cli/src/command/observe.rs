@@ -1,14 +1,14 @@
-//! `centrical observe SESSION|PLAN.toml`: what an experiment can see, why not more, and what would help.
+//! `centrical observe SESSION|PLAN.toml`: rank, undetermined combinations, causes, remedies.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use centrical_io::{Design, Error, ObservationReport};
 use centrical_report::observation_text;
+use centrical_session::{Error, ObservabilityReport, subject};
 
 use crate::Outcome;
 
-/// Tell what an experiment can see, before or after it is made: rank, lost combinations, reasons, remedies.
+/// Analyse observability: rank, undetermined combinations, causes, remedies; before or after the experiment.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// The session folder, its experiment.toml, or a plan: the same form without records, or a preset
@@ -16,15 +16,15 @@ pub struct Arguments {
     /// Print the report as JSON instead of text
     #[arg(long)]
     json: bool,
-    /// A linear combination of parameters to look for, such as "dR_2[A] + drho_22"; may be given several times
+    /// A linear combination of parameters to examine, such as "dR_2[A] + drho_22"; may be repeated
     #[arg(long, value_name = "SUM", allow_hyphen_values = true)]
     combination: Vec<String>,
 }
 
 /// Runs the command. Not acceptable: an instrument's parameter is lost, or the rank is a matter of rounding.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let design = Design::read(&arguments.design, &|_| ())?;
-    let report = ObservationReport::of(&design, &arguments.combination)?;
+    let subject = subject(&arguments.design, &|_| ())?;
+    let report = ObservabilityReport::of(&subject, &arguments.combination)?;
     let text = if arguments.json { report.to_json() } else { observation_text(&report) };
     // A reader that has seen enough (`| head`) is no failure.
     let _ = io::stdout().write_all(text.as_bytes());

@@ -1,36 +1,37 @@
-//! `centrical plan PLAN.toml`: the best experiment for the time, or the shortest for wanted uncertainties.
+//! `centrical plan PLAN.toml`: the best schedule for a time, or the shortest for target uncertainties.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::{Error, PlanReport, PlanRequest, Planning, USUAL_LEVELS, write_whole};
 use centrical_report::{frontier_plot, plan_text};
+use centrical_session::{Error, PlanReport, PlanRequest, USUAL_LEVELS, read_planning, write_whole};
 
 use super::assess::probability;
 use crate::Outcome;
 
-/// Plan the best experiment for the time on the centrifuge, or the shortest for wanted uncertainties.
+/// Find the schedule with the smallest uncertainty in the time available, or the shortest one that meets target
+/// uncertainties.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// What to choose from, what it costs and what is wanted: a session's form with [candidates], [cost], [target]
+    /// Plan file: an experiment.toml with [candidates], [cost] and [target] in place of mountings
     plan: PathBuf,
     /// Write the schedule as a plan file for observe, montecarlo and simulate
     #[arg(long, value_name = "TOML")]
     out: Option<PathBuf>,
-    /// Plan for other times too, and show time against uncertainty beside a uniform plan and [K5.5]
+    /// Plan for other times too, and show uncertainty against time beside a uniform plan and [K5.5]
     #[arg(long)]
     frontier: bool,
-    /// Draw time against uncertainty
+    /// Draw uncertainty against time to this file
     #[arg(long, value_name = "SVG", requires = "frontier")]
     svg: Option<PathBuf>,
     /// Levels m of [K5.5] on the frontier
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = USUAL_LEVELS, value_parser = level)]
     levels: Vec<f64>,
-    /// Search until every set of mountings is settled to 0.25 %, however long that takes, and decide on visits over 2000 nodes
+    /// Search until the optimality gap over all sets of mountings is below 0.25 %
     #[arg(long)]
     certify: bool,
-    /// Probability that expanded uncertainties are to cover
+    /// Coverage probability of the expanded uncertainties
     #[arg(long, default_value_t = 0.95, value_parser = probability)]
     coverage: f64,
     /// Print the plan as JSON instead of text
@@ -43,7 +44,7 @@ const FACTORS: [f64; 8] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0];
 
 /// Runs the command. Not acceptable: a parameter of the instrument is not determined, or a goal is missed.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let mut planning = Planning::read(&arguments.plan)?;
+    let mut planning = read_planning(&arguments.plan)?;
     let plan = planning.plan(arguments.certify)?;
     let request = PlanRequest {
         frontier: if arguments.frontier { FACTORS.to_vec() } else { Vec::new() },

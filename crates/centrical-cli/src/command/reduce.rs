@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_io::{Error, Reduced, Session, write_reduced};
+use centrical_session::{Error, Session, reduce_without_inputs, write_reduced};
 
 use crate::format::Format;
 use crate::{Outcome, progress};
@@ -12,10 +12,10 @@ use crate::{Outcome, progress};
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
-    /// Folder for experiment.toml and the table of plateaus, made if it is not there
+    /// Folder for experiment.toml and the table of plateaus, created if absent
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// How the table of plateaus is written: plateaus.csv or plateaus.parquet
+    /// Format of the table of plateaus: plateaus.csv or plateaus.parquet
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -24,7 +24,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
     let bar = progress::reading(&session);
-    let reduced = Reduced::without_inputs(&session, &|bytes| bar.inc(bytes))?;
+    let reduced = reduce_without_inputs(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
     write_reduced(&session, &reduced, arguments.format.into(), &arguments.out)?;
     let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();

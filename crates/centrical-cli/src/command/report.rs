@@ -1,48 +1,48 @@
-//! `centrical report RESULT`: what the laboratory hands over, from a result.
+//! `centrical report RESULT`: the documents that a laboratory hands over, from a result.
 
 use std::path::{Path, PathBuf};
 
-use centrical_io::{CalibrationResult, Error, Laboratory, Place, create_folder, read_history, write_whole};
 use centrical_report::codegen::{NamedTerm, compensation_source, heading};
 use centrical_report::{
     Language, certificate, digital_certificate, figures, history_figure, html, objections, pdf, report, verdict_text,
 };
+use centrical_session::{CalibrationResult, Error, Laboratory, Place, create_folder, read_history, write_whole};
 use clap::ValueEnum;
 
 use crate::Outcome;
 
-/// Make the documents of a calibration from its result.json.
+/// Write the documents of a calibration from its result.json.
 #[derive(Debug, clap::Args)]
 #[command(arg_required_else_help = true)]
 pub struct Arguments {
     /// The result.json of a calibration
     result: PathBuf,
-    /// Write the report to this file: one page, self-contained
+    /// Write the report to this file: one self-contained HTML page
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Show in the report how the uncertainties shrank while the session was watched: the watch-history.jsonl of a watch
+    /// Add a plot of the uncertainties during the session to the report, from the watch-history.jsonl of `watch`
     #[arg(long, value_name = "FILE", requires = "html")]
     history: Option<PathBuf>,
     /// Write the calibration certificate (ISO/IEC 17025) to this file
     #[arg(long, value_name = "FILE", requires = "laboratory")]
     pdf: Option<PathBuf>,
-    /// Show in the certificate the results before the unit was adjusted too: the result.json of that calibration
+    /// Add the results before an adjustment to the certificate, from the result.json of that calibration
     #[arg(long, value_name = "RESULT", requires = "pdf")]
     before: Option<PathBuf>,
     /// Write the digital calibration certificate (DCC XML 3.3.0) to this file
     #[arg(long, value_name = "FILE", requires = "laboratory")]
     dcc: Option<PathBuf>,
     /// Write the compensation as source code with test vectors to this folder: C99, MATLAB and Octave, Python
-    #[arg(long, value_name = "DIR")]
-    c: Option<PathBuf>,
+    #[arg(long, alias = "c", value_name = "DIR")]
+    code: Option<PathBuf>,
     #[command(flatten)]
     documents: Documents,
 }
 
-/// How documents are written.
+/// Language of the documents, and the laboratory's data in them.
 #[derive(Debug, clap::Args)]
 pub struct Documents {
-    /// What the certificates say of laboratory, customer, dates, standards and persons
+    /// Laboratory file: laboratory, customer, dates, standards and persons named in the certificates
     #[arg(long, value_name = "FILE")]
     laboratory: Option<PathBuf>,
     /// Language of the documents
@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             write_whole(file, digital_certificate(&result, &laboratory, language).as_bytes())?;
         }
     }
-    if let Some(folder) = &arguments.c {
+    if let Some(folder) = &arguments.code {
         write_source(&result, &arguments.result, folder)?;
     }
     let objections = objections(&result);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_io::{Error, Session, Truth, simulate_session};
+use centrical_session::{Error, Session, Truth, simulate_session};
 
 use crate::format::Format;
 use crate::{Outcome, progress};
@@ -10,18 +10,18 @@ use crate::{Outcome, progress};
 /// Simulate a session: records, telemetry and experiment.toml, with truth.json beside them.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// The plan: an experiment.toml, or the folder that holds it; its mountings need no records
+    /// The plan: an experiment.toml, or the folder that holds it; its mountings need not name records
     plan: PathBuf,
-    /// The unit as it is and the equipment as it errs
+    /// Truth file: the unit's true parameters and the equipment's errors
     #[arg(long, value_name = "TOML")]
     truth: PathBuf,
-    /// What everything random follows from
+    /// Random seed
     #[arg(long, value_name = "N")]
     seed: u64,
-    /// Folder for the session, made if it is not there
+    /// Folder for the session, created if absent
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// How records and telemetry are written
+    /// Format of records and telemetry
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }

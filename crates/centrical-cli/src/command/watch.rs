@@ -1,4 +1,4 @@
-//! `centrical watch SESSION`: follows a session folder while it is being filled.
+//! `centrical watch SESSION`: monitors a session folder while records arrive.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
@@ -10,45 +10,45 @@ use std::time::Duration;
 use centrical::fit::recursive::{Follower, Progress};
 use centrical::plan::{Criterion, Gain, ReadingRange, next_best};
 use centrical::{MeasurementModel, Observation, SetPoint, Weight, linear};
-use centrical_io::{
-    Error, HistoryEntry, HistoryEstimate, Method, Place, PlateauName, Session, Watch, WatchState, WatchedPlateau,
-    append_history, calibrate_without, create_folder, keep_history, read_history, write_whole,
-};
 use centrical_report::{
     Language, WatchView, WatchedTest, history_figure, objections, states_text, terminal_table, verdict_text,
     watch_table,
 };
+use centrical_session::{
+    Error, HistoryEntry, HistoryEstimate, Method, Place, PlateauName, Session, Watch, WatchState, WatchedPlateau,
+    append_history, calibrate_without, create_folder, keep_history, read_history, write_whole,
+};
 
 use crate::Outcome;
 
-/// Follow a session folder that is being filled: after each plateau what is known and what the next one will bring;
-/// the calibration when the schedule is complete. Stopped by Ctrl-C it goes on from there when started again.
+/// Monitor a session folder while the laboratory is still adding records: after each plateau the uncertainties and the
+/// benefit of the next; the calibration when the schedule is complete. After Ctrl-C it resumes when started again.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
-    /// Folder for watch.json (where it stands), watch-history.jsonl (a line per plateau), its plot and result.json
+    /// Folder for watch.json (its state), watch-history.jsonl (a line per plateau), its plot and result.json
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
-    /// A wanted standard uncertainty in the unit that the table shows, e.g. --target bias=0.01; may be repeated
+    /// A target standard uncertainty in the unit of the table, e.g. --target bias=0.01; may be repeated
     #[arg(long, value_name = "GROUP=VALUE", value_parser = target)]
     target: Vec<(String, f64)>,
-    /// Chance that a good session is accused of a plateau that does not fit
+    /// False-alarm probability per session
     #[arg(long, value_name = "CHANCE", default_value_t = 0.01, value_parser = chance)]
     false_alarm: f64,
     /// Hold out a plateau, e.g. 4:3 for the third of the fourth mounting; may be repeated
     #[arg(long, value_name = "MOUNTING:PLATEAU")]
     hold_out: Vec<PlateauName>,
-    /// Hold out every plateau that does not fit
+    /// Hold out every plateau that raises an alarm
     #[arg(long)]
     hold_out_alarms: bool,
-    /// Seconds between two looks at the folder
+    /// Seconds between two readings of the folder
     #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = seconds)]
     interval: f64,
     /// Seconds without change after which a record counts as finished
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
     quiet: f64,
-    /// Take up what is there and end
+    /// Process what is present and exit
     #[arg(long)]
     once: bool,
 }

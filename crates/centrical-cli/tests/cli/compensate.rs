@@ -41,7 +41,7 @@ fn readings_are_explained() {
     let copy = calibrated();
     let output = compensate(&copy, &["f.csv"]);
     assert!(output.status.success(), "{}", text(&output));
-    let result = centrical_io::CalibrationResult::read(&copy.out().join("result.json")).unwrap();
+    let result = centrical_session::CalibrationResult::read(&copy.out().join("result.json")).unwrap();
     let terms = result.error_terms().unwrap();
     assert_eq!(terms.len(), 21);
     // The region where the inverse is unique: the range asked for, and how far it could be.
@@ -120,7 +120,7 @@ fn refusals() {
 #[test]
 fn source_code() {
     let copy = calibrated();
-    let output = copy.run(&["report", "result.json", "--c", "source"]);
+    let output = copy.run(&["report", "result.json", "--code", "source"]);
     assert!(output.status.success(), "{}", text(&output));
     let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
     let mut names: Vec<String> = fs::read_dir(copy.out().join("source")).unwrap().map(name).collect();
@@ -135,7 +135,7 @@ fn source_code() {
 #[test]
 fn any_format() {
     let copy = calibrated();
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../centrical-io/tests/data");
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../centrical-session/tests/data");
     let compensated = |name: &str| {
         let record = data.join(name);
         let run = copy.run(&["compensate", "result.json", record.to_str().unwrap(), "--out", "f.csv"]);

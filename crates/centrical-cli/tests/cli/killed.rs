@@ -190,7 +190,7 @@ fn dies_in_a_watch(arguments: &[&str], file: &str, blocks: impl Fn(usize) -> usi
         }
         if history.exists() {
             let lines = fs::read_to_string(&history).unwrap().matches('\n').count();
-            assert_eq!(centrical_io::read_history(&history).unwrap().len(), lines, "{arguments:?}, {blocks}");
+            assert_eq!(centrical_session::read_history(&history).unwrap().len(), lines, "{arguments:?}, {blocks}");
         }
         whole(folder.path(), &arguments);
         let ended = files(&out);

@@ -50,7 +50,7 @@ fn calibrate_writes_everything_and_report_writes_the_same() {
         assert!(svg.starts_with("<svg") && svg.contains("<title>"), "{}", name.display());
     }
     let laboratory = example().join("laboratory.toml");
-    let arguments = ["--html", "h", "--pdf", "p", "--dcc", "d", "--c", "source", "--laboratory"];
+    let arguments = ["--html", "h", "--pdf", "p", "--dcc", "d", "--code", "source", "--laboratory"];
     let run = copy.run(&[&["report", "result.json"], &arguments[..], &[laboratory.to_str().unwrap()]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
     let again = contents(&copy.out());
@@ -74,7 +74,7 @@ fn the_same_bytes() {
             assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
         };
         run(&["calibrate", session.to_str().unwrap(), "--out", ".", "--laboratory", &laboratory]);
-        run(&["report", "result.json", "--c", "source"]);
+        run(&["report", "result.json", "--code", "source"]);
         contents(&copy.out())
     };
     let (one, two) = (documents("1"), documents("2"));

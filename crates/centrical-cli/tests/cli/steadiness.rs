@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use centrical_io::CalibrationResult;
+use centrical_session::CalibrationResult;
 
 use crate::session::{Copy, example};
 
@@ -93,7 +93,7 @@ fn a_drifting_session_is_said_to_drift() {
     let drift = result.drift.expect("records tell the drift");
     assert!(drift.probability < 1e-9, "{drift:?}");
     let [first, second] = drift.repeats[0].indices.map(|index| &result.plateaus[index]);
-    let middle = |plateau: &centrical_io::PlateauSummary| plateau.window.unwrap().iter().sum::<f64>() / 2.0;
+    let middle = |plateau: &centrical_session::PlateauSummary| plateau.window.unwrap().iter().sum::<f64>() / 2.0;
     // The slope of one plateau foretells the change to the next of its kind.
     for axis in 0..3 {
         let foretold = first.drift.unwrap()[axis] * (middle(second) - middle(first));

@@ -10,7 +10,7 @@ use std::process::Command;
 use centrical::uncertainty::Compensated;
 use centrical::{MeasurementModel, STANDARD_GRAVITY};
 use centrical_compensate::{Compensation, Term, reading};
-use centrical_io::{CalibrationResult, Session};
+use centrical_session::{CalibrationResult, Session};
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use serde_json::Value;
 
@@ -85,7 +85,7 @@ fn plateaus(clean: &Clean) -> Vec<Plateau> {
     let (prediction, geometry) = (clean.prediction(), clean.geometry());
     let sigma = clean.result.model.speed_uncertainty;
     let set_points = clean.model.experiment().set_points.iter();
-    let plateau = |(summary, set_point): (&centrical_io::PlateauSummary, &centrical::SetPoint)| {
+    let plateau = |(summary, set_point): (&centrical_session::PlateauSummary, &centrical::SetPoint)| {
         assert_eq!((summary.mounting, summary.speed), (set_point.mounting + 1, set_point.omega));
         let truth = clean.model.linearise(set_point, &geometry);
         let mean = Vector3::from(summary.mean);

@@ -1,7 +1,7 @@
 //! A term with its name, and text that may stand in a comment.
 
 use centrical_compensate::Term;
-use centrical_io::{CalibrationResult, NoErrorModel};
+use centrical_session::{CalibrationResult, NoErrorModel};
 
 /// A term and the name of its coefficient, for the comments.
 #[derive(Debug, Clone, PartialEq)]

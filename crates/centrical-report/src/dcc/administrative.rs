@@ -1,6 +1,6 @@
 //! Administrative data: software, dates, item, laboratory, persons, customer, statements.
 
-use centrical_io::{Address, CalibrationResult, Contact, DecisionRule, Laboratory};
+use centrical_session::{Address, CalibrationResult, Contact, DecisionRule, Laboratory};
 
 use super::xml::Xml;
 use crate::document::objection;

@@ -1,7 +1,7 @@
 //! Measurement results: method, software, standards, influence conditions, parameters with their covariance, reading
 //! errors.
 
-use centrical_io::{CalibrationResult, Condition, Laboratory, ParameterEstimate};
+use centrical_session::{CalibrationResult, Condition, Laboratory, ParameterEstimate};
 use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 

@@ -1,6 +1,6 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
-use centrical_io::{Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory};
+use centrical_session::{Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory};
 
 use super::content::{Align, Block, Document, Margins, Opening, Section, Table, Tone};
 use super::drift::drift_facts;
@@ -59,11 +59,7 @@ fn warning(result: &CalibrationResult, language: Language) -> Vec<Block> {
         return Vec::new();
     }
     let reasons = objections.iter().map(|reason| objection(reason, language)).collect();
-    vec![
-        Block::heading(messages.not_acceptable, 4),
-        Block::paragraph(messages.verdict_bad),
-        Block::List(reasons),
-    ]
+    vec![Block::heading(messages.not_acceptable, 4), Block::paragraph(messages.verdict_bad), Block::List(reasons)]
 }
 
 /// 7.8.2.1 a, b, d, e.
@@ -231,10 +227,8 @@ fn adjustment(
     language: Language,
 ) -> Vec<Block> {
     let (messages, adjustment) = (language.messages(), laboratory.item.adjustment.as_deref());
-    let mut blocks = vec![
-        Block::heading(messages.adjustment, 9),
-        Block::paragraph(adjustment.unwrap_or(messages.no_adjustment)),
-    ];
+    let mut blocks =
+        vec![Block::heading(messages.adjustment, 9), Block::paragraph(adjustment.unwrap_or(messages.no_adjustment))];
     blocks.extend(before.map(|before| Block::Table(results_before(result, before, language))));
     if let Some(errors) = error_table(result, language) {
         if adjustment.is_none() {
@@ -301,11 +295,7 @@ fn conformity_statement(result: &CalibrationResult, decision: &Decision, languag
         ("", 0.22, Align::Left),
     ];
     let facts = [(messages.specification, decision.specification.clone()), (messages.decision_rule, rule.to_owned())];
-    vec![
-        Block::heading(messages.conformity, 9),
-        Block::facts(facts),
-        Block::Table(Table::numbers(columns, rows)),
-    ]
+    vec![Block::heading(messages.conformity, 9), Block::facts(facts), Block::Table(Table::numbers(columns, rows))]
 }
 
 /// 7.8.2.1 d, l, o.

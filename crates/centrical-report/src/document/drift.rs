@@ -1,6 +1,6 @@
 //! What the documents say of drift and tilt, a name and a text each.
 
-use centrical_io::{CalibrationResult, DriftSummary, LeftOutSummary, TiltSummary};
+use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, TiltSummary};
 
 use crate::evaluation::drift::{
     MICRO_G, MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter,

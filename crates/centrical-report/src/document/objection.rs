@@ -1,6 +1,6 @@
 //! Objections and patterns as sentences.
 
-use centrical_io::{Follows, PatternSummary};
+use centrical_session::{Follows, PatternSummary};
 
 use crate::evaluation::{MICRO_G, Objection};
 use crate::language::Language;

@@ -1,6 +1,6 @@
 //! The errors of the readings as a table.
 
-use centrical_io::CalibrationResult;
+use centrical_session::CalibrationResult;
 use nalgebra::Vector3;
 
 use super::content::{Align, Table};

@@ -1,6 +1,6 @@
 //! The report of a calibration: verdict, session, parameters, budget, figures.
 
-use centrical_io::{CalibrationResult, ValiditySummary};
+use centrical_session::{CalibrationResult, ValiditySummary};
 
 use super::content::{Align, Block, Document, Margins, Opening, Section, Table, TableKind, Tone};
 use super::drift::drift_facts;

@@ -1,6 +1,6 @@
 //! Tables of the report.
 
-use centrical_io::{BudgetSource, CalibrationResult, ParameterEstimate};
+use centrical_session::{BudgetSource, CalibrationResult, ParameterEstimate};
 
 use super::content::{Align, Column, Row, Table, TableKind};
 use crate::evaluation::expanded;

@@ -1,6 +1,6 @@
 //! Statements of conformity: values against limits by the decision rule.
 
-use centrical_io::{CalibrationResult, Decision, DecisionRule, Limit};
+use centrical_session::{CalibrationResult, Decision, DecisionRule, Limit};
 
 use super::expanded::expanded;
 use super::verdict::objections;

@@ -2,7 +2,7 @@
 
 use centrical::STANDARD_GRAVITY;
 use centrical::uncertainty::chi_squared_tail;
-use centrical_io::{CalibrationResult, DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, TiltSummary};
+use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, TiltSummary};
 
 /// What comes by chance less often than this is said to be there.
 const CHANCE: f64 = 1e-3;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_io::CalibrationResult;
+use centrical_session::CalibrationResult;
 
 /// `f1' = f1 + df_1 + G0_11 f1 + ...` for the three newtonometers, separated by semicolons.
 pub(crate) fn equation(result: &CalibrationResult) -> String {

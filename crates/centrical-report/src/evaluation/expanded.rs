@@ -1,7 +1,7 @@
 //! Expanded uncertainties, as certificates state them.
 
 use centrical::uncertainty::{Degrees, coverage_factor};
-use centrical_io::{CalibrationResult, ParameterEstimate};
+use centrical_session::{CalibrationResult, ParameterEstimate};
 
 /// Coverage factor where the degrees of freedom are infinite.
 const NORMAL: f64 = 2.0;

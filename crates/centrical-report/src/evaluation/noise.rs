@@ -2,7 +2,7 @@
 
 use centrical::STANDARD_GRAVITY;
 use centrical::noise::{Estimator, NoiseTerm};
-use centrical_io::ReadingNoise;
+use centrical_session::ReadingNoise;
 
 /// How the numbers of one column are shown.
 pub(crate) struct Shown {

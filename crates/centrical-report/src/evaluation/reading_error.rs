@@ -2,7 +2,7 @@
 
 use centrical::uncertainty::Compensated;
 use centrical::{ErrorModel, Monomial, STANDARD_GRAVITY, Term};
-use centrical_io::{CalibrationResult, PlateauSummary};
+use centrical_session::{CalibrationResult, PlateauSummary};
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 /// One microgram in m/s^2.

@@ -1,7 +1,7 @@
 //! Whether a result can be accepted as it stands, and why not.
 
 use centrical::uncertainty::chi_squared_tail;
-use centrical_io::{CalibrationResult, PatternSummary, ValiditySummary};
+use centrical_session::{CalibrationResult, PatternSummary, ValiditySummary};
 
 /// Residuals as large as these come by chance once in ten thousand sessions.
 const CHANCE: f64 = 1e-4;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_io::CalibrationResult;
+use centrical_session::CalibrationResult;
 
 use super::drawing::Figure;
 use crate::language::Language;

@@ -1,7 +1,7 @@
 //! Plots of the fit: reading errors, residuals, singular values, convergence, stability.
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::{CalibrationResult, PlateauSummary};
+use centrical_session::{CalibrationResult, PlateauSummary};
 use nalgebra::{Matrix3, Vector3};
 
 use super::drawing::{Figure, drawn, of_plot};

@@ -1,7 +1,7 @@
 //! Time against uncertainty.
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::{FrontierRow, PlanReport};
+use centrical_session::{FrontierRow, PlanReport};
 
 use crate::plot::{Axis, Plot, Point, Series};
 

@@ -1,6 +1,6 @@
 //! The history of a session that was watched: what was known after each plateau as it came.
 
-use centrical_io::HistoryEntry;
+use centrical_session::HistoryEntry;
 
 use super::drawing::{Figure, of_plot};
 use crate::language::Language;

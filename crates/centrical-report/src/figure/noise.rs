@@ -1,7 +1,7 @@
 //! Plots of a noise analysis.
 
 use centrical::noise::{Coefficient, Deviation, NoiseTerm, NoiseTerms};
-use centrical_io::NoiseAnalysis;
+use centrical_session::NoiseAnalysis;
 
 use crate::evaluation::Shown;
 use crate::plot::{Axis, Plot, Point, Series};

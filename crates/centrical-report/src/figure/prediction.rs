@@ -2,13 +2,13 @@
 
 use centrical::STANDARD_GRAVITY;
 use centrical::uncertainty::Compensated;
-use centrical_io::CalibrationResult;
+use centrical_session::CalibrationResult;
 use nalgebra::{DMatrix, Vector3};
 
 use super::drawing::{Figure, of_plot};
+use crate::evaluation::{MICRO_G, error_model};
 use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
-use crate::evaluation::{MICRO_G, error_model};
 
 /// Points of a curve.
 const POINTS: usize = 201;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::{CalibrationResult, PlateauSummary, RecordOverview};
+use centrical_session::{CalibrationResult, PlateauSummary, RecordOverview};
 
 use super::drawing::Figure;
 use crate::language::Language;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use centrical::uncertainty::{Budget, Cleaned, CurvePoint, Degrees, Pattern, Validity, coverage_factor};
 use centrical::{Experiment, Fit, MeasurementModel, Parameters, STANDARD_GRAVITY};
-use centrical_io::PatternSummary;
+use centrical_session::PatternSummary;
 
 use super::pattern::pattern_in_words;
 use crate::number::short;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_io::{CalibrationResult, ParameterEstimate, TermSummary};
+use centrical_session::{CalibrationResult, ParameterEstimate, TermSummary};
 
 use super::drift::drift;
 use super::pattern::pattern_in_words;
@@ -270,6 +270,7 @@ pub fn verdict_text(objections: &[Objection]) -> String {
         return "ACCEPTABLE  nothing speaks against this result\n".to_owned();
     }
     let said = |reason| objection(reason, Language::English);
-    let lines: Vec<String> = objections.iter().map(|objection| format!("NOT ACCEPTABLE  {}\n", said(objection))).collect();
+    let lines: Vec<String> =
+        objections.iter().map(|objection| format!("NOT ACCEPTABLE  {}\n", said(objection))).collect();
     lines.concat()
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_io::{CalibrationResult, DriftSummary, LeftOutSummary, TiltSummary};
+use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, TiltSummary};
 
 use crate::evaluation::drift::{
     MICRO_G, MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter,

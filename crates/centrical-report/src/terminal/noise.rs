@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use centrical::noise::{Coefficient, Deviation, Estimator, NoiseTerm};
-use centrical_io::{NoiseAnalysis, ReadingNoise};
+use centrical_session::{NoiseAnalysis, ReadingNoise};
 
 use crate::evaluation::Shown;
 use crate::number::{self, with_uncertainty};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_io::{ConditionReport, ObservationReport, ObservedParameter, RemedyReport};
+use centrical_session::{ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport};
 
 use super::prediction::prediction_text;
 use crate::number::trimmed;
@@ -13,7 +13,7 @@ const MOST_REMEDIES: usize = 8;
 
 /// The report as text: rank, what is lost and why, remedies, what is hardly told apart, the source's conditions, the
 /// uncertainties to be expected.
-pub fn observation_text(report: &ObservationReport) -> String {
+pub fn observation_text(report: &ObservabilityReport) -> String {
     let mut text = String::new();
     heading(&mut text, report);
     lost(&mut text, report);
@@ -28,7 +28,7 @@ pub fn observation_text(report: &ObservationReport) -> String {
     text
 }
 
-fn heading(text: &mut String, report: &ObservationReport) {
+fn heading(text: &mut String, report: &ObservabilityReport) {
     if !report.title.is_empty() {
         let _ = writeln!(text, "{}", report.title);
     }
@@ -55,7 +55,7 @@ fn heading(text: &mut String, report: &ObservationReport) {
     let _ = writeln!(text, "  {seen} of the {count} parameters of the instrument are determined");
 }
 
-fn lost(text: &mut String, report: &ObservationReport) {
+fn lost(text: &mut String, report: &ObservabilityReport) {
     if report.lost.is_empty() {
         return;
     }
@@ -65,7 +65,7 @@ fn lost(text: &mut String, report: &ObservationReport) {
     }
 }
 
-fn remedies(text: &mut String, report: &ObservationReport) {
+fn remedies(text: &mut String, report: &ObservabilityReport) {
     if report.lost.is_empty() {
         return;
     }
@@ -97,7 +97,7 @@ fn one_remedy(text: &mut String, remedy: &RemedyReport) {
     paragraph(text, "  - ", "    ", &format!("{}{condition}", steps.join(", then ")));
 }
 
-fn combinations(text: &mut String, report: &ObservationReport) {
+fn combinations(text: &mut String, report: &ObservabilityReport) {
     if report.combinations.is_empty() {
         return;
     }
@@ -111,7 +111,7 @@ fn combinations(text: &mut String, report: &ObservationReport) {
     }
 }
 
-fn groups(text: &mut String, report: &ObservationReport) {
+fn groups(text: &mut String, report: &ObservabilityReport) {
     if report.correlated_groups.is_empty() {
         return;
     }
@@ -128,7 +128,7 @@ fn groups(text: &mut String, report: &ObservationReport) {
     }
 }
 
-fn conditions(text: &mut String, report: &ObservationReport) {
+fn conditions(text: &mut String, report: &ObservabilityReport) {
     text.push_str("\nTHE SOURCE'S SUFFICIENT CONDITIONS\n");
     for condition in &report.conditions {
         let _ = writeln!(text, "  [{}] {}", if condition.is_met { 'x' } else { ' ' }, condition.requirement);
@@ -147,7 +147,7 @@ fn need(condition: &ConditionReport) -> String {
     }
 }
 
-fn priors(text: &mut String, report: &ObservationReport) {
+fn priors(text: &mut String, report: &ObservabilityReport) {
     let given: Vec<_> = report.parameters.iter().filter_map(|p| Some((p, p.prior?))).collect();
     if given.is_empty() {
         return;
@@ -163,7 +163,7 @@ fn priors(text: &mut String, report: &ObservationReport) {
 }
 
 /// Parameters of one group and unit on a line.
-fn uncertainties(text: &mut String, report: &ObservationReport) {
+fn uncertainties(text: &mut String, report: &ObservabilityReport) {
     text.push_str("\nSTANDARD UNCERTAINTIES to be expected of a unit without errors\n");
     let mut rest: &[ObservedParameter] = &report.parameters;
     while let Some(first) = rest.first() {

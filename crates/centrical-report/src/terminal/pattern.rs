@@ -1,7 +1,7 @@
 //! A pattern in the residuals and what may cause it, in words.
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::{Follows, PatternSummary};
+use centrical_session::{Follows, PatternSummary};
 
 use crate::number::short;
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::{PlanReport, PlannedMounting, PlannedPlateau, ReasonReport};
+use centrical_session::{PlanReport, PlannedMounting, PlannedPlateau, ReasonReport};
 
 use super::prediction::prediction_text;
 use crate::figure::scale;

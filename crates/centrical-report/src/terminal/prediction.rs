@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use centrical::STANDARD_GRAVITY;
-use centrical_io::PredictionReport;
+use centrical_session::PredictionReport;
 
 use crate::number::digits;
 use crate::units::customary;

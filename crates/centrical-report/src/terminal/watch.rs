@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use centrical::fit::recursive::{Lives, Progress};
 use centrical::{MeasurementModel, Parameter};
-use centrical_io::InnovationSummary;
+use centrical_session::InnovationSummary;
 
 use crate::units::customary;
 

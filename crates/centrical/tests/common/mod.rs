@@ -6,7 +6,7 @@ use centrical::position::ThirdPosition;
 use centrical::{ErrorModel, Experiment, Extension, Law, MeasurementModel, Observation, PairRelation};
 use nalgebra::Matrix3;
 
-/// `rho0` of the rank table (model notes, section 7), in units of `R*`.
+/// `rho0` of the rank table (docs/source-and-findings.md), in units of `R*`.
 pub fn spread() -> Matrix3<f64> {
     Matrix3::new(0.0, 0.05, 0.04, 0.0, 0.03, -0.02, 0.0, 0.02, -0.03)
 }
@@ -92,7 +92,7 @@ pub fn everything(experiment: Experiment) -> MeasurementModel {
     MeasurementModel::new(experiment, error_model, &extensions)
 }
 
-/// Unknowns of realistic size (model notes, section 8), times `size`.
+/// Random parameters of typical magnitude, times `size`.
 pub fn truth(model: &MeasurementModel, size: f64, random: &mut Random) -> Vec<f64> {
     model.parameters().iter().map(|p| size * p.typical * random.normal()).collect()
 }

@@ -35,7 +35,7 @@ fn noise_free_means_are_recovered() {
     }
 }
 
-/// The second-order error of the linear fit has the size that the model notes state (section 8): with parameters
+/// The second-order error of the linear fit has the size that docs/source-and-findings.md states: with parameters
 /// up to about 1e-3 rad, 0.5 mm, 1e-3, 1e-5 /g, 1e-7 /g^2 (drawn with half of that) residuals of about 20 ug RMS.
 #[test]
 fn linear_fit_shows_the_second_order_error() {

@@ -1,5 +1,5 @@
-//! The source's sufficient conditions (its section 6, point 3), met by its own experiment, and the finding of the model
-//! notes that they are not necessary: "a single rest angle instead of two does not lower the rank".
+//! The source's sufficient conditions (its section 6, point 3), met by its own experiment, and the finding of
+//! docs/source-and-findings.md that they are not necessary: one rest angle instead of two does not lower the rank.
 
 use std::f64::consts::PI;
 
@@ -32,7 +32,7 @@ fn checklist(study: &Study) -> Vec<(bool, Need)> {
 fn the_source_meets_its_own_conditions() {
     let list = checklist(&study(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.5], &[0.0, PI]));
     assert!(list.iter().all(|(is_met, _)| *is_met));
-    // The table of the model notes: without the second radius 45 of 49, without more than one speed 48 of 49.
+    // The rank table: without the second radius 45 of 49, without more than one speed 48 of 49.
     assert_eq!(list[2].1, Need::Holds(4));
     assert_eq!(list[3].1, Need::Holds(1));
     // One rest angle does as well.

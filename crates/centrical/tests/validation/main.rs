@@ -1,5 +1,5 @@
-//! Numbers that others have published or computed independently: the source's printed formulas, and the ranks of the
-//! model notes.
+//! Numbers that others have published or computed independently: the source's printed formulas, and the ranks of
+//! docs/source-and-findings.md.
 
 #[path = "../common/mod.rs"]
 mod common;

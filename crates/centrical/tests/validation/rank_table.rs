@@ -1,6 +1,6 @@
-//! The rank table of the model notes, section 7, every cell for both P_3: computed there by an independent program
+//! The rank table of docs/source-and-findings.md, every cell for both P_3: computed by an independent program
 //! (column-scaled SVD, tolerance 1e-10), with the smallest non-zero singular value over the largest in brackets where it
-//! is below 1e-3. The null directions named there, and the ranks with extensions of section 8.
+//! is below 1e-3. The null directions and the ranks with extensions named there.
 
 use std::f64::consts::PI;
 

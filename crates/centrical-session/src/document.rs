@@ -1,0 +1,31 @@
+//! The documents that the program writes, one schema a file.
+
+mod noise;
+mod observability;
+mod plan;
+mod prediction;
+mod result;
+mod steadiness;
+mod truth;
+mod watch;
+
+pub use self::noise::{NOISE_SCHEMA, NoiseAnalysis, ReadingNoise};
+pub use self::observability::{
+    CombinationReport, ConditionReport, GroupReport, LostCombination, OBSERVABILITY_SCHEMA, ObservabilityReport,
+    ObservedParameter, PairReport, RemedyReport, SightReport, StepReport, Subject,
+};
+pub(crate) use self::plan::SCHEMA as PLAN_SCHEMA;
+pub use self::plan::{FrontierRow, GoalReport, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport};
+pub use self::prediction::{PredictedParameter, PredictionReport};
+pub use self::result::{
+    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, ModelSummary,
+    MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, ParameterEstimate, PatternSummary,
+    PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve, TermSummary,
+    ValiditySummary,
+};
+pub use self::steadiness::{DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, TiltSummary};
+pub(crate) use self::truth::{Written, truth_json};
+pub use self::watch::{
+    HistoryEntry, HistoryEstimate, InnovationSummary, WatchState, WatchedPlateau, append_history, keep_history,
+    read_history,
+};

@@ -1,0 +1,371 @@
+//! What an experiment can see, as a document: schema `centrical-observability/1`. The same design gives the same bytes.
+
+use std::path::PathBuf;
+
+use centrical::observability::{Condition, CorrelatedGroup, Need, Reason, Remedy};
+use centrical::plan::{ReadingRange, predict};
+use centrical::uncertainty::TypeB;
+use centrical::{Combination, MeasurementModel, SetPoint, Study, Weight, linear};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use crate::document::prediction::PredictionReport;
+use crate::document::result::{PriorSummary, Program};
+use crate::error::{Error, Place};
+use crate::experiment::Plan;
+
+/// Name of the schema's present version.
+pub const OBSERVABILITY_SCHEMA: &str = "centrical-observability/1";
+
+/// Probability that predicted expanded uncertainties are to cover.
+const COVERAGE: f64 = 0.95;
+
+/// A design with its weights: a plan, or a session with those of its data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Subject {
+    /// The file it was read from.
+    pub file: PathBuf,
+    /// Title.
+    pub title: String,
+    /// Where the weights are from, in words.
+    pub weighted_by: String,
+    /// What is set, and what is unknown.
+    pub model: MeasurementModel,
+    /// Expected unknowns, about which uncertainties are predicted; zero where nothing is expected.
+    pub nominal: Vec<f64>,
+    /// How well each mean is known, or will be.
+    pub weights: Vec<Weight>,
+    /// Relative standard uncertainty of the speed of a plateau.
+    pub speed_uncertainty: f64,
+    /// Standard uncertainties that the data cannot show.
+    pub type_b: TypeB,
+}
+
+impl Subject {
+    /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
+    /// the experiment.
+    fn prediction(&self) -> Result<PredictionReport, Error> {
+        let prediction = predict(&self.model, &self.weights, self.speed_uncertainty, &self.type_b, &self.nominal)
+            .map_err(|source| Error::Fit { file: self.file.clone(), source })?;
+        let experiment = self.model.experiment();
+        let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
+        let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
+        Ok(PredictionReport::of(&prediction, ReadingRange { force }, COVERAGE))
+    }
+
+    /// Studies the design at zero unknowns, where its structure is exact.
+    ///
+    /// # Errors
+    /// [`Error::Fit`] when a weight or the design is beyond all measure.
+    pub fn study(&self) -> Result<Study, Error> {
+        Study::at_zero(self.model.clone(), self.weights.clone(), self.speed_uncertainty)
+            .map_err(|source| Error::Fit { file: self.file.clone(), source })
+    }
+}
+
+impl From<Plan> for Subject {
+    fn from(plan: Plan) -> Self {
+        let density = plan.noise.density / (1e-6 * centrical::STANDARD_GRAVITY);
+        Self {
+            file: plan.file,
+            title: plan.title,
+            weighted_by: format!("a planned noise of {density:.3} ug/sqrt(Hz)"),
+            model: plan.model,
+            nominal: plan.nominal,
+            weights: plan.weights,
+            speed_uncertainty: plan.speed_uncertainty,
+            type_b: plan.type_b,
+        }
+    }
+}
+
+/// What an experiment can see, why not more, and what would help.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObservabilityReport {
+    /// [`OBSERVABILITY_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// Title of the session or plan.
+    pub title: String,
+    /// Where the weights are from.
+    pub weighted_by: String,
+    /// "common", "opposite" or "free".
+    pub pair_relation: &'static str,
+    /// Plateaus.
+    pub plateaus: usize,
+    /// Rank of the weighted, column-scaled subject.
+    pub rank: usize,
+    /// Number of unknowns.
+    pub columns: usize,
+    /// Singular values below this part of the largest count as zero.
+    pub tolerance: f64,
+    /// Whether a singular value lies within two decades of the tolerance.
+    pub doubtful: bool,
+    /// Largest singular value over the smallest that counts.
+    pub condition_number: Option<f64>,
+    /// Singular values, falling.
+    pub singular_values: Vec<f64>,
+    /// The unknowns in order.
+    pub parameters: Vec<ObservedParameter>,
+    /// What is lost.
+    pub lost: Vec<LostCombination>,
+    /// What is hardly told apart.
+    pub correlated_groups: Vec<GroupReport>,
+    /// The source's sufficient conditions.
+    pub conditions: Vec<ConditionReport>,
+    /// What would bring back what is lost, cheapest first.
+    pub remedies: Vec<RemedyReport>,
+    /// The combinations that were asked for.
+    pub combinations: Vec<CombinationReport>,
+    /// Standard and expanded uncertainties to be expected, type A and B, of the parameters and of the compensated reading.
+    pub prediction: PredictionReport,
+}
+
+/// An unknown.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObservedParameter {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// bias, scale, misalignment, ...
+    pub group: &'static str,
+    /// Whether it belongs to the instrument's error model.
+    pub of_instrument: bool,
+    /// Whether the experiment determines it.
+    pub estimable: bool,
+    /// Standard uncertainty to be expected, SI.
+    pub standard_uncertainty: Option<f64>,
+    /// Its prior, if any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub prior: Option<PriorSummary>,
+    /// Part of its variance that comes from priors; only where there are priors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub prior_share: Option<f64>,
+    /// Whether it is determined only thanks to priors.
+    pub rests_on_prior: bool,
+}
+
+/// A combination along which no reading changes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LostCombination {
+    /// Parameter to component, SI.
+    pub direction: Map<String, Value>,
+    /// The direction as people write it.
+    pub text: String,
+    /// Why it is lost.
+    pub reason: String,
+    /// What the newtonometers feel of it.
+    pub felt: Vec<SightReport>,
+    /// Parameters of the instrument that take part.
+    pub of_instrument: Vec<String>,
+}
+
+/// What one newtonometer feels of a lost combination.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SightReport {
+    /// Newtonometer, 1 to 3.
+    pub newtonometer: usize,
+    /// Positions.
+    pub positions: Vec<String>,
+    /// Parameter to coefficient, SI, up to a common factor.
+    pub sum: Map<String, Value>,
+    /// Whether it is always the same sum.
+    pub is_one_sum: bool,
+}
+
+/// Parameters that are hardly told apart.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GroupReport {
+    /// Names.
+    pub parameters: Vec<String>,
+    /// Multiple correlation of each with all others.
+    pub multiple_correlations: Vec<f64>,
+    /// Pairs at 0.99 or more.
+    pub pairs: Vec<PairReport>,
+}
+
+/// Two strongly correlated estimates.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PairReport {
+    /// Names.
+    pub parameters: [String; 2],
+    /// Correlation of the estimates.
+    pub correlation: f64,
+}
+
+/// One of the source's conditions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConditionReport {
+    /// What the source asks for.
+    pub requirement: &'static str,
+    /// What the experiment has.
+    pub found: String,
+    /// Whether that is enough.
+    pub is_met: bool,
+    /// Whether this experiment needs it.
+    pub is_needed: bool,
+    /// How many combinations depend on it: lost without it, or brought back by it.
+    pub combinations: usize,
+}
+
+/// Additions that bring back what is lost.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RemedyReport {
+    /// Whether nothing is lost any more after the last step.
+    pub restores_rank: bool,
+    /// Condition number after the last step.
+    pub condition_number: Option<f64>,
+    /// The additions.
+    pub steps: Vec<StepReport>,
+}
+
+/// An addition.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StepReport {
+    /// In words.
+    pub text: String,
+    /// Number of combinations it brings back.
+    pub gain: usize,
+}
+
+/// A combination that was asked for.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CombinationReport {
+    /// As people write it.
+    pub text: String,
+    /// Whether the experiment determines it.
+    pub estimable: bool,
+    /// Standard uncertainty to be expected, SI.
+    pub standard_uncertainty: Option<f64>,
+}
+
+impl ObservabilityReport {
+    /// Studies a design, and the combinations that are asked for.
+    ///
+    /// # Errors
+    /// [`Error`] when a combination is none, or as [`Subject::study`].
+    pub fn of(subject: &Subject, combinations: &[String]) -> Result<Self, Error> {
+        let study = subject.study()?;
+        let seen = study.observability();
+        let parse = |text: &String| combination(subject, &study, text);
+        let count = seen.columns();
+        Ok(Self {
+            schema: OBSERVABILITY_SCHEMA,
+            program: Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+            title: subject.title.clone(),
+            weighted_by: subject.weighted_by.clone(),
+            pair_relation: subject.model.experiment().pair_relation.name(),
+            plateaus: subject.weights.len(),
+            rank: seen.rank(),
+            columns: count,
+            tolerance: centrical::RANK_TOLERANCE,
+            doubtful: seen.is_doubtful(),
+            condition_number: seen.condition_number(),
+            singular_values: seen.singular_values().to_vec(),
+            parameters: (0..count).map(|j| observed(&study, j)).collect(),
+            lost: study.reasons().iter().map(|reason| lost(&study, reason)).collect(),
+            correlated_groups: seen.correlated_groups().iter().map(|group| correlated(&study, group)).collect(),
+            conditions: study.conditions().into_iter().map(condition).collect(),
+            remedies: study.remedies().iter().map(remedy).collect(),
+            combinations: combinations.iter().map(parse).collect::<Result<_, _>>()?,
+            prediction: subject.prediction()?,
+        })
+    }
+
+    /// The text of the document.
+    pub fn to_json(&self) -> String {
+        // Plain structs with text keys: serialisation has nothing to fail on.
+        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
+        text.push('\n');
+        text
+    }
+}
+
+fn observed(study: &Study, j: usize) -> ObservedParameter {
+    let parameter = &study.model().parameters()[j];
+    let has_priors = !study.model().priors().is_empty();
+    ObservedParameter {
+        name: parameter.name.clone(),
+        unit: parameter.unit.clone(),
+        group: parameter.group,
+        of_instrument: parameter.is_of_instrument(),
+        estimable: study.observability().is_estimable(j),
+        standard_uncertainty: study.standard_uncertainty(j),
+        prior: study.prior_uses().iter().find(|used| used.prior.parameter == j).map(PriorSummary::from),
+        prior_share: study.prior_share(j).filter(|_| has_priors),
+        rests_on_prior: study.rests_on_prior(j),
+    }
+}
+
+fn lost(study: &Study, reason: &Reason) -> LostCombination {
+    let (parameters, experiment) = (study.model().parameters(), study.model().experiment());
+    let felt = reason.sights.iter().map(|sight| SightReport {
+        newtonometer: sight.newtonometer + 1,
+        positions: sight.positions.iter().map(|&k| experiment.positions[k].id.clone()).collect(),
+        sum: named(study, &sight.terms),
+        is_one_sum: sight.is_one_sum,
+    });
+    LostCombination {
+        direction: named(study, reason.direction.terms()),
+        text: reason.direction.text(parameters, experiment.site.gravity),
+        reason: reason.sentence(study),
+        felt: felt.collect(),
+        of_instrument: names(study, &reason.of_instrument),
+    }
+}
+
+fn correlated(study: &Study, group: &CorrelatedGroup) -> GroupReport {
+    let name = |j: usize| study.model().parameters()[j].name.clone();
+    let pair = |&(i, j, correlation): &(usize, usize, f64)| PairReport { parameters: [name(i), name(j)], correlation };
+    GroupReport {
+        parameters: names(study, &group.parameters),
+        multiple_correlations: group.multiple_correlations.clone(),
+        pairs: group.pairs.iter().map(pair).collect(),
+    }
+}
+
+fn condition(condition: Condition) -> ConditionReport {
+    let (is_needed, combinations) = match condition.need {
+        Need::Holds(count) | Need::WouldBringBack(count) => (true, count),
+        Need::Spare | Need::Dispensable => (false, 0),
+    };
+    ConditionReport {
+        requirement: condition.requirement,
+        found: condition.found,
+        is_met: condition.is_met,
+        is_needed,
+        combinations,
+    }
+}
+
+fn remedy(remedy: &Remedy) -> RemedyReport {
+    let step = |step: &centrical::observability::Step| StepReport { text: step.text.clone(), gain: step.gain };
+    RemedyReport {
+        restores_rank: remedy.restores_rank(),
+        condition_number: remedy.after.condition_number(),
+        steps: remedy.steps.iter().map(step).collect(),
+    }
+}
+
+fn combination(subject: &Subject, study: &Study, text: &str) -> Result<CombinationReport, Error> {
+    let combination = Combination::parse(text, study.model().parameters()).map_err(|error| {
+        let place = Place::Key { table: format!("combination {text:?}"), key: format!("character {}", error.at) };
+        Error::content(&subject.file, place, error.found, error.expected)
+    })?;
+    Ok(CombinationReport {
+        text: combination.text(study.model().parameters()),
+        estimable: study.observability().sees(&combination),
+        standard_uncertainty: study.observability().standard_uncertainty(&combination),
+    })
+}
+
+fn names(study: &Study, indices: &[usize]) -> Vec<String> {
+    indices.iter().map(|&j| study.model().parameters()[j].name.clone()).collect()
+}
+
+fn named(study: &Study, terms: &[(usize, f64)]) -> Map<String, Value> {
+    let name = |j: usize| study.model().parameters()[j].name.clone();
+    terms.iter().map(|&(j, component)| (name(j), component.into())).collect()
+}

@@ -1,0 +1,15 @@
+//! `result.json`: the form in which a calibration leaves the program, schema `centrical-result/1`.
+
+mod budget_and_checks;
+mod error_terms;
+mod from_calibration;
+mod schema;
+
+pub use self::budget_and_checks::{
+    BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
+};
+pub use self::schema::{
+    CalibrationResult, ConvergenceSummary, FitSummary, ModelSummary, MountingSummary, ObservabilitySummary,
+    ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
+    TermSummary,
+};

@@ -1,0 +1,201 @@
+//! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
+
+use centrical::Experiment;
+use centrical::uncertainty::{Budget, Degrees, Pattern, Prediction, Source, Trend, Validity};
+use serde::{Deserialize, Serialize};
+
+/// Family-wise error at which a plateau stands out and a pattern is told.
+const TOLD: f64 = 0.05;
+
+/// The uncertainties by their sources.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BudgetSummary {
+    /// The sources.
+    pub sources: Vec<BudgetSource>,
+    /// Combined standard uncertainty, SI, in the order of the parameters; null where one is not estimable.
+    pub combined: Vec<Option<f64>>,
+    /// Effective degrees of freedom of each (Welch-Satterthwaite); null where they are infinite or one is not estimable.
+    #[serde(default)]
+    pub degrees_of_freedom: Vec<Option<f64>>,
+}
+
+/// What one source leaves in the parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BudgetSource {
+    /// Its name.
+    pub name: String,
+    /// Whether the fit weighs it (noise, speed of each plateau, priors); what it does not weigh, the session states.
+    #[serde(default)]
+    pub weighed_in_fit: bool,
+    /// Standard uncertainty it leaves, SI, in the order of the parameters; null where one is not estimable.
+    pub standard_uncertainty: Vec<Option<f64>>,
+}
+
+/// Whether the residuals are those of a true model with true weights.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ValiditySummary {
+    /// Probability of so large a chi^2 by chance.
+    pub probability: f64,
+    /// Plateaus that stand out at a family-wise error of 5 % (Bonferroni), the most outlying first.
+    pub outlying: Vec<OutlyingPlateau>,
+    /// Each mounting predicted from all others.
+    pub mountings: Vec<MountingPrediction>,
+    /// Patterns that were looked for in the residuals.
+    pub patterns_tested: usize,
+    /// Those found at a family-wise error of 5 % (Holm), the likeliest to be real first.
+    pub patterns: Vec<PatternSummary>,
+}
+
+/// A plateau that stands out.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OutlyingPlateau {
+    /// Mounting, counted from 1.
+    pub mounting: usize,
+    /// Plateau of the mounting's schedule, counted from 0.
+    pub index: usize,
+    /// Residuals over their standard deviations.
+    pub standardised: [f64; 3],
+    /// Probability of one so far out among all plateaus.
+    pub probability: f64,
+}
+
+/// A mounting against its prediction from all others.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct MountingPrediction {
+    /// Mounting, counted from 1.
+    pub mounting: usize,
+    /// Fall of chi^2 without it.
+    pub chi_squared: f64,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: usize,
+    /// Probability of so large a one by chance; 1 when nothing is redundant.
+    pub probability: f64,
+}
+
+/// A pattern in the residuals of one newtonometer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PatternSummary {
+    /// Newtonometer: 1, 2 or 3.
+    pub axis: usize,
+    /// What they follow.
+    #[serde(flatten)]
+    pub follows: Follows,
+    /// Amplitude [m/s^2]: of a step; at the highest speed or load; over the session.
+    pub amplitude: f64,
+    /// Its standard uncertainty [m/s^2].
+    pub standard_uncertainty: f64,
+    /// Probability of so large a one by chance among all that were looked for.
+    pub probability: f64,
+}
+
+/// What residuals follow.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "follows", rename_all = "kebab-case")]
+pub enum Follows {
+    /// A step in one position.
+    Position {
+        /// Its id.
+        position: String,
+    },
+    /// The square of the speed in one position.
+    SpeedInPosition {
+        /// Its id.
+        position: String,
+    },
+    /// The square of the speed on one seat.
+    SpeedOnSeat {
+        /// Its radius [m].
+        radius: f64,
+    },
+    /// The square of the speed.
+    Speed,
+    /// The square of the speed times the radius.
+    Load,
+    /// A step in one mounting.
+    Mounting {
+        /// Counted from 1.
+        mounting: usize,
+    },
+    /// The order of the plateaus.
+    Time,
+}
+
+impl BudgetSummary {
+    pub(crate) fn new(budget: &Budget, count: usize) -> Self {
+        let known = |j: usize| budget.standard_uncertainty(j);
+        let source = |c: &centrical::uncertainty::Contribution| BudgetSource {
+            name: Source::name(c.source).to_owned(),
+            weighed_in_fit: c.source.is_weighed(),
+            standard_uncertainty: (0..count).map(|j| known(j).map(|_| c.standard_uncertainty(j))).collect(),
+        };
+        let finite = |degrees| match degrees {
+            Degrees::Finite(nu) => Some(nu),
+            Degrees::Infinite => None,
+        };
+        Self {
+            sources: budget.contributions().iter().map(source).collect(),
+            combined: (0..count).map(known).collect(),
+            degrees_of_freedom: (0..count).map(|j| budget.degrees_of_freedom(j).and_then(finite)).collect(),
+        }
+    }
+}
+
+impl ValiditySummary {
+    /// The checks of a fit in the form of the file.
+    pub fn new(experiment: &Experiment, validity: &Validity, patterns: &[Pattern]) -> Self {
+        let family = validity.plateaus.len() as f64;
+        let mut outlying: Vec<OutlyingPlateau> = validity
+            .plateaus
+            .iter()
+            .map(|check| {
+                let mounting = experiment.set_points[check.set_point].mounting;
+                let before = experiment.set_points[..check.set_point].iter();
+                OutlyingPlateau {
+                    mounting: mounting + 1,
+                    index: before.filter(|other| other.mounting == mounting).count(),
+                    standardised: check.standardised.into(),
+                    probability: (family * check.prediction.probability).min(1.0),
+                }
+            })
+            .filter(|plateau| plateau.probability < TOLD)
+            .collect();
+        outlying.sort_by(|a, b| a.probability.total_cmp(&b.probability));
+        let prediction = |mounting: usize, p: &Prediction| MountingPrediction {
+            mounting: mounting + 1,
+            chi_squared: p.statistic,
+            degrees_of_freedom: p.degrees_of_freedom,
+            probability: p.probability,
+        };
+        let told = patterns.iter().filter(|pattern| pattern.family_wise < TOLD);
+        Self {
+            probability: validity.probability,
+            outlying,
+            mountings: validity.mountings.iter().map(|m| prediction(m.mounting, &m.prediction)).collect(),
+            patterns_tested: patterns.len(),
+            patterns: told.map(|pattern| PatternSummary::new(experiment, pattern)).collect(),
+        }
+    }
+}
+
+impl PatternSummary {
+    /// A pattern in the form of the file.
+    pub fn new(experiment: &Experiment, pattern: &Pattern) -> Self {
+        let id = |k: usize| experiment.positions[k].id.clone();
+        let follows = match pattern.trend {
+            Trend::Position(k) => Follows::Position { position: id(k) },
+            Trend::SpeedInPosition(k) => Follows::SpeedInPosition { position: id(k) },
+            Trend::SpeedOnSeat(m) => Follows::SpeedOnSeat { radius: experiment.mountings[m].arm_y.x },
+            Trend::Speed => Follows::Speed,
+            Trend::Load => Follows::Load,
+            Trend::Mounting(m) => Follows::Mounting { mounting: m + 1 },
+            Trend::Time => Follows::Time,
+        };
+        Self {
+            axis: pattern.axis + 1,
+            follows,
+            amplitude: pattern.amplitude,
+            standard_uncertainty: pattern.standard_uncertainty,
+            probability: pattern.family_wise,
+        }
+    }
+}

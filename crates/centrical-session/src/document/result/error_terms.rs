@@ -1,0 +1,46 @@
+//! The error model that a result holds, as compensation takes it.
+
+use centrical_compensate::{Compensation, NotInvertible, Term};
+
+use super::schema::{CalibrationResult, TermSummary};
+use crate::error::NoErrorModel;
+
+impl CalibrationResult {
+    /// The terms of the error model with their estimated coefficients, in the order of the model.
+    ///
+    /// # Errors
+    /// [`NoErrorModel`] naming the coefficient that is not known.
+    pub fn error_terms(&self) -> Result<Vec<Term>, NoErrorModel> {
+        self.model.error_model.iter().map(|term| self.error_term(term)).collect()
+    }
+
+    /// Largest magnitude of a plateau's mean reading on any axis [m/s^2]: how far the calibration reaches.
+    pub fn calibrated_range(&self) -> f64 {
+        self.plateaus.iter().flat_map(|plateau| plateau.mean).fold(0.0, |largest, f| f.abs().max(largest))
+    }
+
+    /// Range over which to compensate if none is asked for [m/s^2]: twice the calibrated range, since ramps and
+    /// vibration go beyond plateaus, or as far as the inverse of the model with `terms` is certain.
+    ///
+    /// # Errors
+    /// [`NotInvertible`] when it is not certain over the calibrated range.
+    pub fn compensation_range(&self, terms: &[Term]) -> Result<f64, NotInvertible> {
+        let calibrated = self.calibrated_range();
+        let margin = Compensation::new(terms, calibrated)?.certificate().margin;
+        Ok(calibrated * margin.min(2.0))
+    }
+
+    fn error_term(&self, term: &TermSummary) -> Result<Term, NoErrorModel> {
+        let name = || term.name.clone();
+        let axis = |number: usize| {
+            number.checked_sub(1).filter(|axis| *axis < 3).ok_or_else(|| NoErrorModel::Axis { name: name() })
+        };
+        let value = self.parameter(&term.name).and_then(|parameter| parameter.value);
+        Ok(Term {
+            axis: axis(term.axis)?,
+            powers: term.powers,
+            sign_of: term.sign_of.map(axis).transpose()?,
+            coefficient: value.ok_or_else(|| NoErrorModel::NotEstimable { name: name() })?,
+        })
+    }
+}

@@ -1,0 +1,252 @@
+//! From a fit to the result's form.
+
+use centrical::uncertainty::{Budget, Validity, patterns};
+use centrical::{Fit, FitError, MeasurementModel, Mounting, Observation, Position, PriorUse, SetPoint, Termination};
+use nalgebra::{Matrix3, Vector3};
+
+use super::budget_and_checks::{BudgetSummary, ValiditySummary};
+use super::schema::{
+    CalibrationResult, ConvergenceSummary, FitSummary, ModelSummary, MountingSummary, ObservabilitySummary,
+    ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, TermSummary,
+};
+use crate::document::steadiness;
+use crate::experiment::Session;
+use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
+
+impl CalibrationResult {
+    /// Puts a fit, the model it was made with and the plateaus it rests on into the form of the file.
+    pub fn new(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Self {
+        let program = Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
+        let count = model.parameters().len();
+        Self {
+            schema: SCHEMA.to_owned(),
+            program,
+            inputs: reduced.inputs.clone(),
+            session: SessionSummary::new(session),
+            model: ModelSummary::new(session, model),
+            parameters: (0..count).map(|j| ParameterEstimate::new(model, fit, j)).collect(),
+            covariance: (0..count).map(|i| (0..count).map(|j| fit.covariance(i, j)).collect()).collect(),
+            observability: ObservabilitySummary::new(model, fit),
+            fit: FitSummary::new(fit),
+            mountings: mountings(model, reduced),
+            plateaus: plateaus(session, model, reduced, fit),
+            convergence: Some(ConvergenceSummary::new(model, reduced, fit)),
+            budget: None,
+            validity: None,
+            stability: None,
+            drift: steadiness::drift(session, model, reduced, fit),
+            tilt: steadiness::tilt(model, reduced, fit),
+            records: reduced.records.clone(),
+        }
+    }
+}
+
+impl CalibrationResult {
+    /// The result with its budget and, for a fit on the exact model, its checks. Where the session states uncertainties
+    /// beyond what the fit weighs, the uncertainties and the covariance of the result become the combined ones.
+    ///
+    /// # Errors
+    /// [`FitError`] when an observation cannot be one.
+    pub fn with_trust(
+        mut self,
+        session: &Session,
+        model: &MeasurementModel,
+        observations: &[Observation],
+        fit: &Fit,
+    ) -> Result<Self, FitError> {
+        let budget = Budget::new(fit, model, observations, session.speed_uncertainty, &session.type_b)?;
+        let count = self.parameters.len();
+        if budget.contributions().iter().any(|c| !c.source.is_weighed()) {
+            for (j, parameter) in self.parameters.iter_mut().enumerate() {
+                parameter.standard_uncertainty = budget.standard_uncertainty(j);
+            }
+            self.covariance = (0..count).map(|i| (0..count).map(|j| budget.covariance(i, j)).collect()).collect();
+        }
+        self.budget = Some(BudgetSummary::new(&budget, count));
+        if fit.termination != centrical::Termination::Linear {
+            let validity = Validity::of(fit, model, observations, session.speed_uncertainty)?;
+            let patterns = patterns(fit, model, observations, session.speed_uncertainty)?;
+            self.validity = Some(ValiditySummary::new(model.experiment(), &validity, &patterns));
+        }
+        Ok(self)
+    }
+}
+
+impl From<&PriorUse> for PriorSummary {
+    fn from(used: &PriorUse) -> Self {
+        Self { standard_uncertainty: used.prior.standard_uncertainty, posterior_over_prior: used.posterior_over_prior }
+    }
+}
+
+impl SessionSummary {
+    fn new(session: &Session) -> Self {
+        Self {
+            title: session.title.clone(),
+            date: session.date.clone(),
+            unit_model: session.unit_model.clone(),
+            unit_serial: session.unit_serial.clone(),
+            text: session.text.clone(),
+        }
+    }
+}
+
+impl ModelSummary {
+    fn new(session: &Session, model: &MeasurementModel) -> Self {
+        let experiment = model.experiment();
+        let terms = model.error_model().terms.iter().map(|term| TermSummary {
+            name: term.name.clone(),
+            axis: term.axis + 1,
+            powers: term.monomial.powers,
+            sign_of: term.monomial.sign_of.map(|axis| axis + 1),
+        });
+        Self {
+            error_model: terms.collect(),
+            pair_relation: experiment.pair_relation.name().to_owned(),
+            reference: experiment.unit.reference.name().to_owned(),
+            gravity: experiment.site.gravity,
+            latitude: experiment.site.latitude,
+            speed_uncertainty: session.speed_uncertainty,
+            positions: experiment.positions.iter().map(PositionSummary::new).collect(),
+        }
+    }
+}
+
+impl PositionSummary {
+    fn new(position: &Position) -> Self {
+        Self { id: position.id.clone(), pair: position.pair.clone(), matrix: rows(&position.p_zy) }
+    }
+}
+
+impl ConvergenceSummary {
+    /// Stages that are kept: more than a plot can show apart.
+    const STAGES: usize = 60;
+
+    fn new(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Self {
+        let stages = centrical::convergence(model, &reduced.observations(), fit, Self::STAGES);
+        Self {
+            plateaus: stages.iter().map(|stage| stage.plateaus).collect(),
+            standard_uncertainty: stages.into_iter().map(|stage| stage.standard_uncertainty).collect(),
+        }
+    }
+}
+
+impl ParameterEstimate {
+    fn new(model: &MeasurementModel, fit: &Fit, j: usize) -> Self {
+        let parameter = &model.parameters()[j];
+        Self {
+            name: parameter.name.clone(),
+            value: fit.value(j),
+            standard_uncertainty: fit.standard_uncertainty(j),
+            unit: parameter.unit.clone(),
+            group: parameter.group.to_owned(),
+            estimable: fit.value(j).is_some(),
+            prior: fit.prior_uses().iter().find(|used| used.prior.parameter == j).map(PriorSummary::from),
+            prior_share: if model.priors().is_empty() { None } else { fit.prior_share(j) },
+            rests_on_prior: fit.rests_on_prior(j),
+        }
+    }
+}
+
+impl ObservabilitySummary {
+    fn new(model: &MeasurementModel, fit: &Fit) -> Self {
+        let seen = fit.observability();
+        let named = |(j, component): &(usize, f64)| (model.parameters()[*j].name.clone(), (*component).into());
+        Self {
+            rank: seen.rank(),
+            columns: seen.columns(),
+            tolerance: centrical::RANK_TOLERANCE,
+            singular_values: seen.singular_values().to_vec(),
+            null_directions: seen.null_directions().iter().map(|d| d.terms().iter().map(named).collect()).collect(),
+            null_directions_held: fit.null_directions_held,
+        }
+    }
+}
+
+impl FitSummary {
+    fn new(fit: &Fit) -> Self {
+        let (method, termination) = match fit.termination {
+            Termination::Linear => ("linear [K5.3]", "linear"),
+            Termination::Converged => ("exact, Gauss-Newton", "converged"),
+            Termination::Stalled => ("exact, Gauss-Newton", "stalled"),
+            Termination::IterationLimit => ("exact, Gauss-Newton", "iteration limit"),
+        };
+        Self {
+            method: method.to_owned(),
+            termination: termination.to_owned(),
+            iterations: fit.iterations,
+            chi_squared: fit.chi_squared,
+            degrees_of_freedom: fit.degrees_of_freedom,
+        }
+    }
+}
+
+fn mountings(model: &MeasurementModel, reduced: &Reduced) -> Vec<MountingSummary> {
+    let experiment = model.experiment();
+    let summary = |(n, mounting): (usize, &Mounting)| {
+        let findings = reduced.mountings.get(n);
+        MountingSummary {
+            position: experiment.positions[mounting.position].id.clone(),
+            arm: mounting.arm_y.into(),
+            settling_time: findings.and_then(|f| f.settling_time),
+            clock_offset: findings.and_then(|f| f.clock_offset).map(|offset| offset.seconds),
+        }
+    };
+    experiment.mountings.iter().enumerate().map(summary).collect()
+}
+
+fn plateaus(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<PlateauSummary> {
+    let mut index = 0;
+    let mut previous = None;
+    let mut summaries = Vec::with_capacity(reduced.plateaus.len());
+    let mut fitted = fit.observation_covariances.iter().zip(&fit.residuals);
+    for (n, (set_point, plateau)) in model.experiment().set_points.iter().zip(&reduced.plateaus).enumerate() {
+        let held_out = reduced.held_out.contains(&n);
+        let next = if held_out { None } else { fitted.next().map(|(c, r)| (*c, *r)) };
+        let (covariance, residual) = next.unwrap_or_else(|| against(fit, model, set_point, plateau, session));
+        index = if previous == Some(set_point.mounting) { index + 1 } else { 0 };
+        previous = Some(set_point.mounting);
+        let turning = plateau.steadiness.filter(|_| !set_point.is_rest());
+        summaries.push(PlateauSummary {
+            mounting: set_point.mounting + 1,
+            index,
+            speed: set_point.omega,
+            angle: set_point.is_rest().then_some(set_point.angle),
+            window: plateau.window,
+            samples: plateau.samples,
+            rejected: plateau.rejected,
+            mean: plateau.mean.into(),
+            covariance: rows(&plateau.covariance),
+            fit_covariance: rows(&covariance),
+            residual: residual.into(),
+            specific_force: Some(model.specific_force(set_point, fit.state()).into()),
+            once_per_revolution: plateau.once_per_revolution.map(Into::into),
+            once_per_revolution_uncertainty: turning
+                .map(|seen| seen.quadrature_covariance.diagonal().map(f64::sqrt).into()),
+            once_per_revolution_phase: turning
+                .map(|Steadiness { quadratures: [c, s], .. }| c.zip_map(&s, |c, s| (-s).atan2(c)).into()),
+            drift: plateau.steadiness.map(|seen| seen.drift.into()),
+            drift_uncertainty: plateau.steadiness.map(|seen| seen.drift_uncertainty.into()),
+            left_out: plateau.steadiness.map(|seen| seen.left_out.into()),
+            measured_speed: plateau.measured_speed,
+            held_out,
+        });
+    }
+    summaries
+}
+
+/// Covariance with the speed's term and residual of a plateau against a fit that it has no part in.
+fn against(
+    fit: &Fit,
+    model: &MeasurementModel,
+    set_point: &SetPoint,
+    plateau: &ReducedPlateau,
+    session: &Session,
+) -> (Matrix3<f64>, Vector3<f64>) {
+    let there = model.linearise(set_point, fit.state());
+    let shift = there.speed * session.speed_uncertainty;
+    (plateau.covariance + shift * shift.transpose(), plateau.mean - there.reading)
+}
+
+fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| matrix[(i, j)]))
+}

@@ -1,0 +1,359 @@
+//! `result.json`: the form in which a calibration leaves the program, schema `centrical-result/1`.
+//!
+//! Everything else (tables, reports, certificates, compensation) is made from it, so it holds all of them need.
+//! The same inputs give the same bytes: fields in a fixed order, numbers in their shortest exact decimal form,
+//! no time of day, no absolute paths.
+
+use std::fs;
+use std::path::Path;
+
+use centrical::uncertainty::Estimates;
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+use super::budget_and_checks::{BudgetSummary, ValiditySummary};
+use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
+use crate::error::{Error, Place};
+use crate::record::{Input, RecordOverview};
+use crate::write::write_whole;
+
+/// Name of the schema's present version.
+pub const SCHEMA: &str = "centrical-result/1";
+
+/// A calibration's result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CalibrationResult {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// What made it.
+    pub program: Program,
+    /// The files it was made from.
+    pub inputs: Vec<Input>,
+    /// What was calibrated, when.
+    pub session: SessionSummary,
+    /// The model that was fitted.
+    pub model: ModelSummary,
+    /// The unknowns in the order of the covariance.
+    pub parameters: Vec<ParameterEstimate>,
+    /// Covariance of the estimates, SI; null where a parameter is not estimable. The combined one of the budget where the
+    /// session states uncertainties beyond what the fit weighs.
+    pub covariance: Vec<Vec<Option<f64>>>,
+    /// What the experiment sees.
+    pub observability: ObservabilitySummary,
+    /// How the fit went.
+    pub fit: FitSummary,
+    /// The mountings, in the order of the session.
+    pub mountings: Vec<MountingSummary>,
+    /// The plateaus it rests on.
+    pub plateaus: Vec<PlateauSummary>,
+    /// How the uncertainties shrank plateau by plateau.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub convergence: Option<ConvergenceSummary>,
+    /// The uncertainties by their sources, if a budget was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub budget: Option<BudgetSummary>,
+    /// The checks of the fit, if they were made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub validity: Option<ValiditySummary>,
+    /// Stability of the reading at rest, if it was computed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stability: Option<Vec<StabilityCurve>>,
+    /// How the readings drifted over plateaus and over the session; none for a session that came already averaged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<DriftSummary>,
+    /// The tilt of the axis seen while spinning, against the fitted one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tilt: Option<TiltSummary>,
+    /// What the records look like; empty for a session that came already averaged.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<RecordOverview>,
+}
+
+/// The program and its version.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Program {
+    /// `centrical`.
+    pub name: String,
+    /// Version.
+    pub version: String,
+}
+
+/// What the session file says of itself.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SessionSummary {
+    /// Title.
+    pub title: String,
+    /// Date as written in the session.
+    pub date: String,
+    /// Model of the unit.
+    pub unit_model: String,
+    /// Serial number of the unit.
+    pub unit_serial: String,
+    /// Free text of the session.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub text: String,
+}
+
+/// The model that was fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModelSummary {
+    /// The terms of the error model: reading = f + sum of coefficient times monomial.
+    pub error_model: Vec<TermSummary>,
+    /// "common", "opposite" or "free".
+    pub pair_relation: String,
+    /// "first-proof-mass" or "own-axes".
+    pub reference: String,
+    /// Local gravity [m/s^2].
+    pub gravity: f64,
+    /// Latitude [rad], if the Earth-rate term is applied.
+    pub latitude: Option<f64>,
+    /// Relative standard uncertainty of a plateau's speed.
+    pub speed_uncertainty: f64,
+    /// Nominal attitudes of the unit.
+    #[serde(default)]
+    pub positions: Vec<PositionSummary>,
+}
+
+/// A nominal attitude of the unit on the arm.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PositionSummary {
+    /// Name, as in the names of parameters.
+    pub id: String,
+    /// Name of its pair.
+    pub pair: String,
+    /// `P_k`, row by row: takes arm axes to instrument axes.
+    pub matrix: [[f64; 3]; 3],
+}
+
+/// A term of the error model.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TermSummary {
+    /// Name of its coefficient.
+    pub name: String,
+    /// Newtonometer it acts on: 1, 2 or 3.
+    pub axis: usize,
+    /// Powers of f1, f2, f3.
+    pub powers: [u8; 3],
+    /// Newtonometer whose sign the monomial takes, for odd terms such as `|f1| f1`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sign_of: Option<usize>,
+}
+
+/// An estimate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ParameterEstimate {
+    /// Name.
+    pub name: String,
+    /// Estimate, SI; null if the data do not determine it.
+    pub value: Option<f64>,
+    /// Its standard uncertainty, SI; null if the data do not determine it.
+    pub standard_uncertainty: Option<f64>,
+    /// Unit of both.
+    pub unit: String,
+    /// bias, scale, misalignment, ...
+    pub group: String,
+    /// Whether the data determine it.
+    pub estimable: bool,
+    /// The prior it was given, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prior: Option<PriorSummary>,
+    /// Part of its variance that comes from priors, 0 to 1; only where there are priors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prior_share: Option<f64>,
+    /// Whether it is determined only thanks to priors.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rests_on_prior: bool,
+}
+
+/// A prior and what the data added to it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PriorSummary {
+    /// Standard uncertainty before the data, SI.
+    pub standard_uncertainty: f64,
+    /// Standard uncertainty after the data over that before: 1 when the value rests on the prior alone.
+    pub posterior_over_prior: f64,
+}
+
+/// What the experiment sees.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ObservabilitySummary {
+    /// Rank of the weighted, column-scaled design.
+    pub rank: usize,
+    /// Number of unknowns.
+    pub columns: usize,
+    /// Singular values below this part of the largest count as zero.
+    pub tolerance: f64,
+    /// Singular values, falling.
+    pub singular_values: Vec<f64>,
+    /// Combinations along which the data do not change: parameter to component.
+    pub null_directions: Vec<serde_json::Map<String, serde_json::Value>>,
+    /// Whether the null directions had to be held near zero in the exact fit, at ten typical magnitudes.
+    pub null_directions_held: bool,
+}
+
+/// How the fit went.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FitSummary {
+    /// "linear [K5.3]" or "exact, Gauss-Newton".
+    pub method: String,
+    /// "converged", "stalled", "iteration limit" or "linear".
+    pub termination: String,
+    /// Linearisations made.
+    pub iterations: usize,
+    /// Weighted sum of squared residuals.
+    pub chi_squared: f64,
+    /// Readings less rank.
+    pub degrees_of_freedom: usize,
+}
+
+/// A mounting.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MountingSummary {
+    /// Id of its position.
+    pub position: String,
+    /// Nominal place of the reference point, arm axes [m].
+    pub arm: [f64; 3],
+    /// Time constant of the settling after a ramp [s], if any was seen.
+    pub settling_time: Option<f64>,
+    /// What to add to the time of the telemetry to have that of the record [s]; null without telemetry.
+    pub clock_offset: Option<f64>,
+}
+
+/// A plateau.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlateauSummary {
+    /// Mounting, counted from 1 in the order of the session.
+    pub mounting: usize,
+    /// Plateau of the mounting's schedule, counted from 0.
+    pub index: usize,
+    /// Set point of the speed [rad/s], signed by the sense of rotation.
+    pub speed: f64,
+    /// Carousel angle at rest [rad]; null while spinning.
+    pub angle: Option<f64>,
+    /// First and last instant used, the record's clock [s]; null for a plateau that came already averaged.
+    pub window: Option<[f64; 2]>,
+    /// Samples used.
+    pub samples: u64,
+    /// Samples of the window left out.
+    pub rejected: u64,
+    /// Mean reading [m/s^2].
+    pub mean: [f64; 3],
+    /// Covariance of the mean from its noise [m^2/s^4].
+    pub covariance: [[f64; 3]; 3],
+    /// The same with the speed's uncertainty: the weight in the fit is its inverse [m^2/s^4].
+    pub fit_covariance: [[f64; 3]; 3],
+    /// Mean less fitted model [m/s^2].
+    pub residual: [f64; 3],
+    /// Specific force along the sensitive axes at the fitted geometry [m/s^2]: the reading without instrument errors.
+    #[serde(default)]
+    pub specific_force: Option<[f64; 3]>,
+    /// Amplitude of the once-per-revolution term [m/s^2]: the tilt of the axis seen while spinning.
+    pub once_per_revolution: Option<[f64; 3]>,
+    /// Standard uncertainty of either quadrature of that term [m/s^2].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub once_per_revolution_uncertainty: Option<[f64; 3]>,
+    /// Phase of that term as the window starts [rad]: `amplitude cos(Omega (t - start) + phase)`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub once_per_revolution_phase: Option<[f64; 3]>,
+    /// Slope of the readings over the window [m/s^3].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<[f64; 3]>,
+    /// Its standard uncertainty [m/s^3].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift_uncertainty: Option<[f64; 3]>,
+    /// Samples that are not used, by kind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<LeftOutSummary>,
+    /// Median speed by the telemetry [rad/s].
+    pub measured_speed: Option<f64>,
+    /// Whether the plateau was held out of the fit; its residual is against a fit of the others then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub held_out: bool,
+}
+
+/// How the uncertainties shrank.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ConvergenceSummary {
+    /// Numbers of plateaus at which it was looked, rising.
+    pub plateaus: Vec<usize>,
+    /// Standard uncertainty, SI: one row for each of these numbers, in the order of the parameters.
+    pub standard_uncertainty: Vec<Vec<f64>>,
+}
+
+/// Deviation of one axis against averaging time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StabilityCurve {
+    /// Newtonometer: 1, 2 or 3.
+    pub axis: usize,
+    /// Averaging times [s].
+    pub tau: Vec<f64>,
+    /// Deviations [m/s^2].
+    pub deviation: Vec<f64>,
+    /// Lower ends of their intervals [m/s^2].
+    pub lower: Vec<f64>,
+    /// Upper ends of their intervals [m/s^2].
+    pub upper: Vec<f64>,
+}
+
+impl CalibrationResult {
+    /// Writes the file, whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when the folder does not take it.
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        write_whole(path, self.to_json().as_bytes())
+    }
+
+    /// The text of the file.
+    pub fn to_json(&self) -> String {
+        // Plain structs with text keys: serialisation has nothing to fail on.
+        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
+        text.push('\n');
+        text
+    }
+
+    /// The estimates that the data determine, of the coefficients of the error model alone: what belongs to the unit
+    /// and not to how it was mounted.
+    pub fn of_unit(&self) -> Estimates {
+        let is_determined = |j: &usize| self.parameters[*j].value.is_some();
+        let of_unit = |name: &str| self.model.error_model.iter().any(|term| term.name == name);
+        let own: Vec<usize> =
+            (0..self.parameters.len()).filter(|j| of_unit(&self.parameters[*j].name)).filter(is_determined).collect();
+        let covariance = |a: usize, b: usize| self.covariance.get(own[a])?.get(own[b]).copied().flatten();
+        Estimates {
+            names: own.iter().map(|&j| self.parameters[j].name.clone()).collect(),
+            values: own.iter().filter_map(|&j| self.parameters[j].value).collect(),
+            covariance: DMatrix::from_fn(own.len(), own.len(), |a, b| covariance(a, b).unwrap_or(f64::NAN)),
+        }
+    }
+
+    /// A parameter by name.
+    pub fn parameter(&self, name: &str) -> Option<&ParameterEstimate> {
+        self.parameters.iter().find(|p| p.name == name)
+    }
+
+    /// Reads a result.
+    ///
+    /// # Errors
+    /// [`Error`] when the file is not there or is not a result of this schema.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let text = fs::read_to_string(path).map_err(|source| Error::reading(path, source, "a result.json"))?;
+        let result: Self = serde_json::from_str(&text).map_err(|error| Error::Form {
+            file: path.to_owned(),
+            place: Place::Character { line: error.line(), column: error.column() },
+            message: format!("found {error}, expected a result of schema {SCHEMA:?}"),
+        })?;
+        if result.schema == SCHEMA {
+            Ok(result)
+        } else {
+            let found = format!("schema {:?}", result.schema);
+            Err(Error::content(path, Place::Whole, found, format!("schema {SCHEMA:?}")))
+        }
+    }
+
+    /// Names of the sources that the session states beyond what the fit weighs.
+    pub fn stated_sources(&self) -> Vec<&str> {
+        let sources = self.budget.iter().flat_map(|budget| &budget.sources);
+        sources.filter(|source| !source.weighed_in_fit).map(|source| source.name.as_str()).collect()
+    }
+}

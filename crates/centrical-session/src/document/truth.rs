@@ -1,0 +1,80 @@
+//! `truth.json`: what was simulated, schema `centrical-truth/1`.
+
+use centrical::SetPoint;
+use centrical::simulate::{Settings, TruePlateau};
+use serde_json::{Value, json};
+
+use crate::experiment::Session;
+use crate::truth::Truth;
+
+/// Name of the schema's present version.
+const SCHEMA: &str = "centrical-truth/1";
+
+/// A mounting as it was simulated and written.
+#[derive(Debug)]
+pub(crate) struct Written {
+    pub plateaus: Vec<TruePlateau>,
+    pub clock_offset: f64,
+    pub clock_drift: f64,
+}
+
+/// The truth as JSON text.
+pub(crate) fn truth_json(plan: &Session, truth: &Truth, seed: u64, mountings: &[Written]) -> String {
+    let parameters = truth.model.parameters().iter().zip(&truth.values);
+    let parameters: Vec<Value> =
+        parameters.map(|(p, value)| json!({"name": p.name, "value": value, "unit": p.unit})).collect();
+    let clocks: Vec<Value> = (1..)
+        .zip(mountings)
+        .map(|(m, w)| json!({"mounting": m, "offset": w.clock_offset, "drift": w.clock_drift}))
+        .collect();
+    let plateaus: Vec<Value> =
+        mountings.iter().enumerate().flat_map(|(m, written)| plateaus_of(plan, m, &written.plateaus)).collect();
+    let whole = json!({
+        "schema": SCHEMA,
+        "program": {"name": "centrical", "version": env!("CARGO_PKG_VERSION")},
+        "seed": seed,
+        "parameters": parameters,
+        "settings": settings(&truth.settings),
+        "telemetry_clocks": clocks,
+        "plateaus": plateaus,
+    });
+    format!("{whole:#}\n")
+}
+
+/// The plateaus of mounting `m`, named as in `result.json`: mounting from 1, index from 0.
+fn plateaus_of(plan: &Session, m: usize, plateaus: &[TruePlateau]) -> Vec<Value> {
+    let schedule = plan.experiment.set_points.iter().filter(|s| s.mounting == m);
+    let plateau = |(index, (set_point, plateau)): (usize, (&SetPoint, &TruePlateau))| {
+        let angle = set_point.is_rest().then_some(set_point.angle);
+        let TruePlateau { window, omega } = plateau;
+        json!({"mounting": m + 1, "index": index, "speed": omega, "angle": angle, "window": window})
+    };
+    schedule.zip(plateaus).enumerate().map(plateau).collect()
+}
+
+/// The settings under the names that a truth file gives them, SI.
+fn settings(settings: &Settings) -> Value {
+    let Settings { machine, sensor, recorder, tachometer } = settings;
+    json!({
+        "machine": {
+            "plateau": machine.plateau, "plateau_spread": machine.plateau_spread, "ramp": machine.ramp,
+            "speed_error": machine.speed_error, "settling": machine.settling, "settling_time": machine.settling_time,
+        },
+        "sensor": {
+            "white": sensor.white,
+            "coloured": {"deviation": sensor.coloured.deviation, "time": sensor.coloured.time},
+            "bias_instability": sensor.bias_instability, "random_walk": sensor.random_walk, "drift": sensor.drift,
+            "quantum": sensor.quantum, "range": sensor.range,
+        },
+        "recorder": {
+            "rate": recorder.rate,
+            "spikes": {"probability": recorder.spikes.probability, "size": recorder.spikes.size},
+            "gaps": {"probability": recorder.gaps.probability, "length": recorder.gaps.length},
+            "repeats": recorder.repeats,
+        },
+        "tachometer": {
+            "rate": tachometer.rate, "clock_offset": tachometer.clock_offset, "clock_drift": tachometer.clock_drift,
+            "noise": tachometer.noise, "quantum": tachometer.quantum,
+        },
+    })
+}

@@ -1,0 +1,125 @@
+//! `watch.json`: where a watched session stands, to go on from after a stop.
+
+use std::fs;
+use std::path::Path;
+
+use centrical::Observation;
+use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::history::InnovationSummary;
+use crate::error::{Error, Place};
+use crate::experiment::Session;
+use crate::record::Input;
+use crate::write::write_stream;
+
+/// Name of the form's present version.
+const SCHEMA: &str = "centrical-watch/1";
+
+/// Where a watched session stands. Numbers are kept to the last bit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WatchState {
+    /// `centrical-watch/1`.
+    schema: String,
+    /// The experiment file that the state belongs to.
+    experiment: Input,
+    /// Point of linearisation reached, SI, in the order of the unknowns.
+    pub point: Vec<f64>,
+    /// Plateaus that have come, in their order.
+    pub plateaus: Vec<WatchedPlateau>,
+}
+
+/// A plateau that has come.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WatchedPlateau {
+    /// Index of the plateau in the schedule of all mountings, from 0.
+    pub set_point: usize,
+    /// Mean as it was reduced when it came [m/s^2].
+    pub mean: [f64; 3],
+    /// Its covariance [m^2/s^4].
+    pub covariance: [[f64; 3]; 3],
+    /// Its test.
+    pub innovation: InnovationSummary,
+    /// Whether it does not fit.
+    pub alarm: bool,
+    /// Whether it is held out.
+    pub held_out: bool,
+}
+
+impl WatchState {
+    /// The state before the first plateau.
+    ///
+    /// # Errors
+    /// [`Error`] when the experiment file cannot be read.
+    pub fn new(session: &Session) -> Result<Self, Error> {
+        let folder = session.file.parent().unwrap_or(Path::new(""));
+        let experiment = Input::of(folder, &session.file)?;
+        Ok(Self { schema: SCHEMA.to_owned(), experiment, point: Vec::new(), plateaus: Vec::new() })
+    }
+
+    /// The state in `file`, or the one before the first plateau if there is no such file.
+    ///
+    /// # Errors
+    /// [`Error`] when the file is of another form or belongs to another experiment file.
+    pub fn resume(session: &Session, file: &Path) -> Result<Self, Error> {
+        let fresh = Self::new(session)?;
+        if !file.exists() {
+            return Ok(fresh);
+        }
+        let expected = "the state of a watched session";
+        let text = fs::read_to_string(file).map_err(|source| Error::reading(file, source, expected))?;
+        let state: Self = serde_json::from_str(&text).map_err(|error| Error::Form {
+            file: file.to_owned(),
+            place: Place::Character { line: error.line(), column: error.column() },
+            message: format!("found {error}, expected {expected}"),
+        })?;
+        let other = state.schema != fresh.schema || state.experiment != fresh.experiment;
+        let count = session.experiment.set_points.len();
+        if other || state.plateaus.iter().any(|plateau| plateau.set_point >= count) {
+            let found = "the state of another experiment file";
+            let expected = format!("that of {}, or no such file to begin anew", session.file.display());
+            return Err(Error::content(file, Place::Whole, found, expected));
+        }
+        Ok(state)
+    }
+
+    /// Writes the state, whole or not at all; after a power cut it may be lost, and is made anew from the session's records.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when the folder does not take it.
+    pub fn write(&self, file: &Path) -> Result<(), Error> {
+        // Plain structs: serialisation has nothing to fail on.
+        let mut text = serde_json::to_string(self).unwrap_or_default();
+        text.push('\n');
+        write_stream(file, |output| output.write_all(text.as_bytes()))
+    }
+
+    /// The plateaus that are not held out, as data of a fit.
+    pub fn taken(&self) -> Vec<Observation> {
+        self.plateaus.iter().filter(|plateau| !plateau.held_out).map(WatchedPlateau::observation).collect()
+    }
+}
+
+impl WatchedPlateau {
+    /// A plateau that has come.
+    pub fn new(observation: &Observation, innovation: InnovationSummary, alarm: bool, held_out: bool) -> Self {
+        let row = |i: usize| [0, 1, 2].map(|j| observation.covariance[(i, j)]);
+        Self {
+            set_point: observation.set_point,
+            mean: observation.mean.into(),
+            covariance: [row(0), row(1), row(2)],
+            innovation,
+            alarm,
+            held_out,
+        }
+    }
+
+    /// As data of a fit.
+    pub fn observation(&self) -> Observation {
+        Observation {
+            set_point: self.set_point,
+            mean: Vector3::from(self.mean),
+            covariance: Matrix3::from_fn(|i, j| self.covariance[i][j]),
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! What stands in the files of a session before any reading: `experiment.toml`, plans, tables of plateaus.
+
+mod attitude;
+mod candidates;
+mod columns;
+mod form;
+mod plan;
+mod plateau_name;
+mod plateaus;
+mod prior;
+mod schedule;
+mod session;
+mod terms;
+mod toml_path;
+mod uncertainty;
+mod unit;
+
+pub use self::candidates::Planning;
+pub(crate) use self::form::parse as parse_form;
+pub use self::plan::{ExpectedValues, Noise, Plan, earlier_result};
+pub use self::plateau_name::PlateauName;
+pub(crate) use self::plateaus::write_plateaus_parquet;
+pub use self::plateaus::{PlateauMean, PlateauTable, read_plateaus, write_plateaus};
+pub(crate) use self::session::{EXPERIMENT_FILE, read_text};
+pub use self::session::{MountingFiles, Session};
+pub(crate) use self::toml_path::TomlPath;

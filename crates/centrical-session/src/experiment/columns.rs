@@ -1,0 +1,80 @@
+//! Columns of the records and the telemetry, and their units.
+
+use std::path::Path;
+
+use super::form::{ColumnEntry, ColumnTable, ColumnsTable, UnitTable};
+use super::toml_path::TomlPath;
+use super::unit;
+use crate::error::{Error, quoted};
+use crate::quantity::{Dimension, Quantity};
+use crate::record::{Column, Columns, Scale};
+use crate::table::ColumnName;
+
+/// The columns, those not given at their usual names.
+pub(crate) fn columns(file: &Path, table: &ColumnsTable, unit: &UnitTable) -> Result<Columns, Error> {
+    let at = TomlPath::table(file, "columns");
+    let mut columns = Columns::default();
+    for (column, scale) in columns.f.iter_mut().zip(unit::output(file, unit)?) {
+        column.scale = scale;
+        column.unit.clone_from(&unit.output_unit);
+    }
+    if let Some(unit) = &table.speed_unit {
+        set_unit(&at, "speed_unit", &mut columns.speed, unit, Dimension::Speed)?;
+    }
+    if let Some(ColumnEntry(entry)) = &table.time {
+        set_time(&at, &mut columns.time, entry)?;
+    }
+    if let Some(ColumnEntry(entry)) = &table.speed {
+        if let (Some(_), Some(_)) = (&table.speed_unit, &entry.unit) {
+            return Err(at.unexpected("speed_unit", "a unit in speed as well", "one of them"));
+        }
+        set(&at, "speed", &mut columns.speed, entry, Dimension::Speed)?;
+    }
+    if let Some(entries) = &table.f {
+        for (column, ColumnEntry(entry)) in columns.f.iter_mut().zip(entries) {
+            set(&at, "f", column, entry, Dimension::Acceleration)?;
+        }
+    }
+    Ok(columns)
+}
+
+/// A column of readings or speeds.
+fn set(at: &TomlPath, key: &str, column: &mut Column, entry: &ColumnTable, dimension: Dimension) -> Result<(), Error> {
+    if entry.rate.is_some() {
+        return Err(at.unexpected(key, "a rate", "no rate (it belongs to a column of time that counts samples)"));
+    }
+    let label = entry.column.as_ref();
+    column.name =
+        label.ok_or_else(|| at.unexpected(key, "no column", "column = its name, or number from 1"))?.0.clone();
+    match &entry.unit {
+        Some(unit) => set_unit(at, key, column, unit, dimension),
+        None => Ok(()),
+    }
+}
+
+/// The column of time: in a unit of time, a count of samples at a rate, or no column at all but a rate.
+fn set_time(at: &TomlPath, column: &mut Column, entry: &ColumnTable) -> Result<(), Error> {
+    match (&entry.rate, &entry.unit) {
+        (None, _) => return set(at, "time", column, entry, Dimension::Time),
+        (Some(_), Some(_)) => return Err(at.unexpected("time", "a rate and a unit", "one of them")),
+        (Some(rate), None) => column.scale = Scale::factor(1.0 / sampling_rate(at, rate)?),
+    }
+    "samples".clone_into(&mut column.unit);
+    column.name = entry.column.as_ref().map_or(ColumnName::Row, |label| label.0.clone());
+    Ok(())
+}
+
+/// Samples per second.
+fn sampling_rate(at: &TomlPath, rate: &Quantity) -> Result<f64, Error> {
+    let meaning = "a sampling rate such as \"1 kHz\", from 1e-3 Hz to 1 GHz";
+    at.bounded("time", rate, Dimension::Frequency, (1e-3, 1e9), meaning)
+}
+
+fn set_unit(at: &TomlPath, key: &str, column: &mut Column, unit: &str, dimension: Dimension) -> Result<(), Error> {
+    let factor = dimension
+        .factor(unit)
+        .ok_or_else(|| at.unexpected(key, quoted(unit.as_bytes()), format!("one of {}", dimension.unit_list())))?;
+    column.scale = Scale::factor(factor);
+    unit.clone_into(&mut column.unit);
+    Ok(())
+}

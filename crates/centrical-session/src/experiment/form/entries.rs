@@ -1,0 +1,191 @@
+//! Entries that may be written in more than one way.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::{self, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
+
+use crate::quantity::Quantity;
+use crate::table::ColumnName;
+
+/// A preset's name, or a list of terms.
+#[derive(Debug)]
+pub(crate) struct TermList(pub Vec<TermEntry>);
+
+/// A preset's or a coefficient's name, or a term in full.
+#[derive(Debug)]
+pub(crate) enum TermEntry {
+    Named(String),
+    Written(TermTable),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TermTable {
+    pub axis: usize,
+    pub term: String,
+}
+
+/// A column by name or number, or in full.
+#[derive(Debug)]
+pub(crate) struct ColumnEntry(pub ColumnTable);
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ColumnTable {
+    pub column: Option<ColumnLabel>,
+    pub unit: Option<String>,
+    /// Samples per second, where the column counts samples.
+    pub rate: Option<Quantity>,
+}
+
+/// A column by its name or by its number from 1.
+#[derive(Debug)]
+pub(crate) struct ColumnLabel(pub ColumnName);
+
+/// A date as TOML has it, or any text.
+pub(crate) fn date_as_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    struct DateVisitor;
+    impl<'de> Visitor<'de> for DateVisitor {
+        type Value = String;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a date such as 2026-10-05 or a string")
+        }
+
+        fn visit_str<E: de::Error>(self, text: &str) -> Result<String, E> {
+            Ok(text.to_owned())
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<String, A::Error> {
+            let date = toml::value::Datetime::deserialize(de::value::MapAccessDeserializer::new(map))?;
+            Ok(date.to_string())
+        }
+    }
+    deserializer.deserialize_any(DateVisitor)
+}
+
+/// A name: `"1"`, or `1` for short.
+pub(crate) fn name_or_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    struct NameVisitor;
+    impl Visitor<'_> for NameVisitor {
+        type Value = String;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a name such as \"1\"")
+        }
+
+        fn visit_str<E: de::Error>(self, text: &str) -> Result<String, E> {
+            Ok(text.to_owned())
+        }
+
+        fn visit_i64<E: de::Error>(self, number: i64) -> Result<String, E> {
+            Ok(number.to_string())
+        }
+    }
+    deserializer.deserialize_any(NameVisitor)
+}
+
+impl<'de> Deserialize<'de> for ColumnLabel {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct LabelVisitor;
+        impl Visitor<'_> for LabelVisitor {
+            type Value = ColumnLabel;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the name of a column, or its number from 1")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<ColumnLabel, E> {
+                Ok(ColumnLabel(ColumnName::Name(name.to_owned())))
+            }
+
+            fn visit_i64<E: de::Error>(self, number: i64) -> Result<ColumnLabel, E> {
+                let number = usize::try_from(number).ok().filter(|n| *n > 0);
+                let number = number.ok_or_else(|| E::custom("the number of a column is counted from 1"))?;
+                Ok(ColumnLabel(ColumnName::Number(number)))
+            }
+        }
+        deserializer.deserialize_any(LabelVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for ColumnEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct EntryVisitor;
+        impl<'de> Visitor<'de> for EntryVisitor {
+            type Value = ColumnEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the name of a column, its number from 1, or { column = \"f1\", unit = \"mg\" }")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<ColumnEntry, E> {
+                ColumnLabel::deserialize(name.into_deserializer()).map(ColumnEntry::from)
+            }
+
+            fn visit_i64<E: de::Error>(self, number: i64) -> Result<ColumnEntry, E> {
+                ColumnLabel::deserialize(number.into_deserializer()).map(ColumnEntry::from)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ColumnEntry, A::Error> {
+                ColumnTable::deserialize(de::value::MapAccessDeserializer::new(map)).map(ColumnEntry)
+            }
+        }
+        deserializer.deserialize_any(EntryVisitor)
+    }
+}
+
+impl From<ColumnLabel> for ColumnEntry {
+    fn from(label: ColumnLabel) -> Self {
+        Self(ColumnTable { column: Some(label), ..ColumnTable::default() })
+    }
+}
+
+impl<'de> Deserialize<'de> for TermList {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ListVisitor;
+        impl<'de> Visitor<'de> for ListVisitor {
+            type Value = TermList;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"kozlov-2017\" or a list of terms such as { axis = 1, term = \"f1*f2\" }")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<TermList, E> {
+                Ok(TermList(vec![TermEntry::Named(name.to_owned())]))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<TermList, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = list.next_element()? {
+                    entries.push(entry);
+                }
+                Ok(TermList(entries))
+            }
+        }
+        deserializer.deserialize_any(ListVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for TermEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct EntryVisitor;
+        impl<'de> Visitor<'de> for EntryVisitor {
+            type Value = TermEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"kozlov-2017\", the name of one of its terms, or { axis = 1, term = \"f1*f2\" }")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<TermEntry, E> {
+                Ok(TermEntry::Named(name.to_owned()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<TermEntry, A::Error> {
+                TermTable::deserialize(de::value::MapAccessDeserializer::new(map)).map(TermEntry::Written)
+            }
+        }
+        deserializer.deserialize_any(EntryVisitor)
+    }
+}

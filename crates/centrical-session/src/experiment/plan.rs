@@ -1,0 +1,256 @@
+//! Plans: the session form before anything is measured, or a preset experiment by name.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use centrical::plan::Normalised;
+use centrical::position::ThirdPosition;
+use centrical::uncertainty::TypeB;
+use centrical::{MeasurementModel, Parameter, Weight};
+use nalgebra::Matrix3;
+use serde::Deserialize;
+
+use super::form::{self, Form, PlanTable, PresetForm, PresetTable};
+use super::session::{Session, extensions, pair_relation, read_text, rotation};
+use super::toml_path::TomlPath;
+use super::{prior, schedule, terms};
+use crate::error::{Error, quoted};
+use crate::quantity::{Dimension, Quantity};
+
+/// Name of the source's normalised experiment [K5.5].
+const NORMALISED: &str = "kozlov-2017-normalised";
+
+/// Longest list of radii, levels or angles of a preset: beyond it the design is larger than any centrifuge has time for.
+const LONGEST_LIST: usize = 100;
+
+/// A planned experiment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The plan file.
+    pub file: PathBuf,
+    /// Title, as in a session.
+    pub title: String,
+    /// The experiment, the unit's error model, extensions and priors.
+    pub model: MeasurementModel,
+    /// Expected unknowns: those of an earlier result that `[plan]` names, zero where nothing is expected.
+    pub nominal: Vec<f64>,
+    /// How well the mean of each set point will be known.
+    pub weights: Vec<Weight>,
+    /// Relative standard uncertainty of the speed of a plateau.
+    pub speed_uncertainty: f64,
+    /// The noise that is reckoned with.
+    pub noise: Noise,
+    /// Standard uncertainties that the data will not show, as stated in `[uncertainty]`.
+    pub type_b: TypeB,
+}
+
+/// White noise down to a floor: the variance of the mean of a plateau of duration `T` is `density^2 / (2 T) + floor^2`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Square root of the one-sided spectral density [m/s^2/sqrt(Hz)].
+    pub density: f64,
+    /// What longer averaging does not get below [m/s^2].
+    pub floor: f64,
+    /// Duration of a plateau that gives none [s].
+    pub duration: f64,
+}
+
+impl Default for Noise {
+    /// 20 ug/sqrt(Hz) and no floor, a minute each: an ordinary quartz newtonometer.
+    fn default() -> Self {
+        Self { density: 20e-6 * centrical::STANDARD_GRAVITY, floor: 0.0, duration: 60.0 }
+    }
+}
+
+/// As much of a file as tells a plan from a session, and which kind of plan.
+#[derive(Deserialize)]
+struct Probe {
+    plateaus: Option<toml::Value>,
+    plan: Option<ProbeTable>,
+    #[serde(default)]
+    mounting: Vec<ProbeMounting>,
+}
+
+#[derive(Deserialize)]
+struct ProbeTable {
+    preset: Option<toml::Value>,
+    nominal: Option<toml::Value>,
+}
+
+#[derive(Deserialize)]
+struct ProbeMounting {
+    record: Option<toml::Value>,
+}
+
+impl Plan {
+    /// Reads a plan; `None` if the file is a session with records or plateaus of its own, or a folder.
+    ///
+    /// # Errors
+    /// If the file cannot be read, does not follow the form or makes no sense, as for [`Session::read`]. Unlike a session
+    /// a plan may rest all the time.
+    pub fn read(path: &Path, expected: &ExpectedValues) -> Result<Option<Self>, Error> {
+        if path.is_dir() {
+            return Ok(None);
+        }
+        let text = read_text(path)?;
+        let probe: Probe = form::parse(path, &text)?;
+        if probe.plan.as_ref().is_some_and(|plan| plan.preset.is_some()) {
+            return Self::of_preset(path, &form::parse(path, &text)?).map(Some);
+        }
+        let is_measured = probe.plateaus.is_some() || probe.mounting.iter().any(|m| m.record.is_some());
+        if is_measured && probe.plan.is_none() {
+            return Ok(None);
+        }
+        Self::of_form(path, &form::parse(path, &text)?, expected).map(Some)
+    }
+
+    fn of_form(file: &Path, form: &Form, expected: &ExpectedValues) -> Result<Self, Error> {
+        let mut session = Session::without_plateaus(file, form)?;
+        let sign = rotation(file, &form.centrifuge.rotation)?;
+        session.experiment.set_points = schedule::set_points(file, &form.mounting, sign)?;
+        let table = form.plan.as_ref();
+        let of_table = |key: fn(&PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
+        let noise = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;
+        let durations = schedule::durations(file, &form.mounting)?
+            .into_iter()
+            .map(|duration| duration.unwrap_or(noise.duration))
+            .collect();
+        let model = session.model()?;
+        Ok(Self {
+            file: file.to_owned(),
+            title: session.title.clone(),
+            nominal: expected_of(&model, expected),
+            model,
+            weights: weights(&noise, durations),
+            speed_uncertainty: session.speed_uncertainty,
+            noise,
+            type_b: session.type_b,
+        })
+    }
+
+    fn of_preset(file: &Path, form: &PresetForm) -> Result<Self, Error> {
+        let table = &form.plan;
+        if table.preset != NORMALISED {
+            let found = quoted(table.preset.as_bytes());
+            return Err(TomlPath::table(file, "plan").unexpected("preset", found, format!("{NORMALISED:?}")));
+        }
+        let plan = normalised(
+            file,
+            table,
+            Normalised { pair_relation: pair_relation(file, &form.model.pair_relation)?, ..Normalised::default() },
+        )?;
+        let experiment = plan.experiment();
+        let noise = noise(file, table.noise.as_ref(), table.floor.as_ref(), table.duration.as_ref())?;
+        let at = TomlPath::table(file, "centrifuge");
+        let meaning = "a relative standard uncertainty, zero or more and below 1";
+        let bounded = |q| at.bounded("speed_uncertainty", q, Dimension::Ratio, (0.0, 1.0), meaning);
+        let speed_uncertainty = form.centrifuge.speed_uncertainty.as_ref().map(bounded).transpose()?.unwrap_or(0.0);
+        let weights = weights(&noise, vec![noise.duration; experiment.set_points.len()]);
+        let error_model = terms::error_model(file, &form.model.error_model)?;
+        let model = MeasurementModel::new(experiment, error_model, &extensions(file, &form.model)?);
+        Ok(Self {
+            file: file.to_owned(),
+            title: form.session.title.clone(),
+            nominal: vec![0.0; model.parameters().len()],
+            model: prior::with_priors(file, model, &prior::entries(&form.prior))?,
+            weights,
+            speed_uncertainty,
+            noise,
+            type_b: TypeB::default(),
+        })
+    }
+}
+
+/// Values expected of unknowns, SI, by the names of the parameters: those of an earlier result.
+pub type ExpectedValues = BTreeMap<String, f64>;
+
+/// The earlier result that `[plan] nominal` of a file names, by its path from the folder of the file.
+///
+/// # Errors
+/// If the file cannot be read or is not TOML.
+pub fn earlier_result(path: &Path) -> Result<Option<PathBuf>, Error> {
+    let probe: Probe = form::parse(path, &read_text(path)?)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let named = probe.plan.and_then(|plan| plan.nominal);
+    Ok(named.and_then(|name| name.as_str().map(|name| folder.join(name))))
+}
+
+/// The unknowns of `model` as expected, zero where nothing is expected.
+pub(crate) fn expected_of(model: &MeasurementModel, expected: &ExpectedValues) -> Vec<f64> {
+    let value = |p: &Parameter| expected.get(&p.name).copied().unwrap_or(0.0);
+    model.parameters().iter().map(value).collect()
+}
+
+/// The normalised experiment with what the table says otherwise.
+fn normalised(file: &Path, table: &PresetTable, mut plan: Normalised) -> Result<Normalised, Error> {
+    let at = TomlPath::table(file, "plan");
+    plan.third = match table.axis_1.as_deref() {
+        None | Some("up") => ThirdPosition::AxisOneUp,
+        Some("down") => ThirdPosition::AxisOneDown,
+        Some(other) => return Err(at.unexpected("axis_1", quoted(other.as_bytes()), "\"up\" or \"down\"")),
+    };
+    if let Some(masses) = &table.proof_masses {
+        plan.rho = Matrix3::from_fn(|i, j| masses[j][i] - masses[0][i]);
+    }
+    if let Some(radii) = &table.radii {
+        plan.radii = list(&at, "radii", radii, (0.0, 1e6), "radii in units of R*, zero or more")?;
+    }
+    if let Some(levels) = &table.levels {
+        plan.levels = list(&at, "levels", levels, (0.0, 1e6), "multiples of Omega*^2, zero or more")?;
+    }
+    if let Some(angles) = &table.rest_angles {
+        let angles = angles.iter().map(|a| at.finite("rest_angles", a, Dimension::Angle));
+        let angles = angles.collect::<Result<Vec<f64>, _>>()?;
+        plan.rest_angles = list(&at, "rest_angles", &angles, (-1e6, 1e6), "angles, none of them millions of turns")?;
+    }
+    if let Some(arm) = &table.arm {
+        plan.arm = at.bounded("arm", arm, Dimension::Length, (1e-3, 1e3), "R* from 1 mm to 1 km")?;
+    }
+    if let Some(gravity) = &table.gravity {
+        let meaning = "gravity above 0 and below 100 m/s^2";
+        plan.gravity = at.bounded("gravity", gravity, Dimension::Acceleration, (f64::MIN_POSITIVE, 100.0), meaning)?;
+    }
+    let rests = plan.levels.contains(&0.0) && !plan.rest_angles.is_empty();
+    if !rests && plan.levels.iter().all(|m| *m == 0.0) {
+        return Err(at.unexpected("levels", "no plateau at all", "a level above 0, or 0 with an angle at rest"));
+    }
+    Ok(plan)
+}
+
+/// A list of numbers within bounds, not empty and not longer than makes sense.
+fn list(at: &TomlPath, key: &str, values: &[f64], (low, high): (f64, f64), meaning: &str) -> Result<Vec<f64>, Error> {
+    if values.is_empty() || values.len() > LONGEST_LIST {
+        return Err(at.unexpected(key, format!("{} of them", values.len()), format!("1 to {LONGEST_LIST} {meaning}")));
+    }
+    match values.iter().find(|v| !(low..=high).contains(*v)) {
+        Some(wrong) => Err(at.unexpected(key, wrong.to_string(), meaning)),
+        None => Ok(values.to_vec()),
+    }
+}
+
+pub(crate) fn noise(
+    file: &Path,
+    density: Option<&Quantity>,
+    floor: Option<&Quantity>,
+    per_plateau: Option<&Quantity>,
+) -> Result<Noise, Error> {
+    let at = TomlPath::table(file, "plan");
+    let mut noise = Noise::default();
+    if let Some(density) = density {
+        let meaning = "a spectral density above 0 and below 1 m/s^2/sqrt(Hz)";
+        noise.density = at.bounded("noise", density, Dimension::NoiseDensity, (1e-15, 1.0), meaning)?;
+    }
+    if let Some(floor) = floor {
+        let meaning = "an acceleration from 0 to 10 m/s^2";
+        noise.floor = at.bounded("floor", floor, Dimension::Acceleration, (0.0, 10.0), meaning)?;
+    }
+    noise.duration = schedule::duration(&at, "duration", per_plateau)?.unwrap_or(noise.duration);
+    Ok(noise)
+}
+
+/// The covariances of the means, the same on all axes.
+fn weights(noise: &Noise, durations: Vec<f64>) -> Vec<Weight> {
+    let variance = |duration: f64| noise.density * noise.density / (2.0 * duration) + noise.floor * noise.floor;
+    let weight = |(set_point, duration)| Weight { set_point, covariance: Matrix3::identity() * variance(duration) };
+    durations.into_iter().enumerate().map(weight).collect()
+}

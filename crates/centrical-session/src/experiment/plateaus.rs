@@ -1,0 +1,195 @@
+//! Tables of plateaus already averaged: `plateaus.csv`, one row per plateau.
+//!
+//! | column | what |
+//! |---|---|
+//! | `mounting` | number of the mounting in the experiment file, from 1 |
+//! | `speed` | set speed without sign [rad/s], 0 at rest |
+//! | `angle` | carousel angle [rad] at rest; empty while spinning |
+//! | `mean_1` .. `mean_3` | mean readings [m/s^2] |
+//! | `cov_11`, `cov_12`, `cov_13`, `cov_22`, `cov_23`, `cov_33` | covariance of the means [m^2/s^4] |
+//! | `samples` | how many samples were averaged |
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use centrical::SetPoint;
+use nalgebra::{Matrix3, Vector3};
+
+use super::schedule::FASTEST;
+use crate::error::{Error, Place};
+use crate::parquet_table::{Layout, ParquetTable};
+use crate::table::{self, ColumnName, Field, Rule};
+use crate::write::write_whole;
+
+/// The mean readings of one plateau.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlateauMean {
+    /// Index of its mounting, from 0.
+    pub mounting: usize,
+    /// Set speed without sign [rad/s]; 0 at rest.
+    pub speed: f64,
+    /// Carousel angle at rest [rad]; 0 while spinning, where it has no meaning.
+    pub angle: f64,
+    /// Mean readings of newtonometers 1, 2, 3 [m/s^2].
+    pub mean: Vector3<f64>,
+    /// Covariance of the means [m^2/s^4].
+    pub covariance: Matrix3<f64>,
+    /// How many samples were averaged.
+    pub samples: u64,
+}
+
+/// Plateaus already averaged.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlateauTable {
+    /// The file.
+    pub file: PathBuf,
+    /// One row for each of the experiment's set points, in the same order.
+    pub rows: Vec<PlateauMean>,
+}
+
+impl PlateauTable {
+    /// Reads the table and sorts it by mounting, keeping the order within each.
+    pub(crate) fn read(file: PathBuf, mountings: usize) -> Result<Self, Error> {
+        let mut rows = read_plateaus(&file, mountings)?;
+        rows.sort_by_key(|row| row.mounting);
+        Ok(Self { file, rows })
+    }
+
+    pub(crate) fn set_points(&self, sign: f64) -> Vec<SetPoint> {
+        let set_point =
+            |p: &PlateauMean| SetPoint { mounting: p.mounting, omega: sign * p.speed + 0.0, angle: p.angle };
+        self.rows.iter().map(set_point).collect()
+    }
+}
+
+/// The columns and what each holds.
+const COLUMNS: [(&str, &str); 13] = [
+    ("mounting", "the number of a mounting"),
+    ("speed", "a speed in rad/s without sign"),
+    ("angle", "an angle in rad"),
+    ("mean_1", "a mean in m/s^2"),
+    ("mean_2", "a mean in m/s^2"),
+    ("mean_3", "a mean in m/s^2"),
+    ("cov_11", "a covariance in m^2/s^4"),
+    ("cov_12", "a covariance in m^2/s^4"),
+    ("cov_13", "a covariance in m^2/s^4"),
+    ("cov_22", "a covariance in m^2/s^4"),
+    ("cov_23", "a covariance in m^2/s^4"),
+    ("cov_33", "a covariance in m^2/s^4"),
+    ("samples", "how many samples were averaged"),
+];
+
+/// Place of `angle` among the columns.
+const ANGLE: usize = 2;
+
+/// Reads the table of `file` for a session of that many mountings.
+///
+/// # Errors
+/// If the file can not be read or lacks a column; if a row names no mounting, rests without an angle, or has a
+/// covariance that is not positive definite.
+pub fn read_plateaus(file: &Path, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
+    let field = |(k, (name, expected)): (usize, &(&str, &str))| Field {
+        name: ColumnName::Name((*name).to_owned()),
+        expected: (*expected).to_owned(),
+        rule: if k == ANGLE { Rule::OrMissing } else { Rule::Any },
+    };
+    let fields: Vec<Field> = COLUMNS.iter().enumerate().map(field).collect();
+    let mut rows: Vec<[f64; COLUMNS.len()]> = Vec::new();
+    table::read(file, &fields, "a table of plateaus", &mut |block| {
+        for r in 0..block[0].len() {
+            rows.push(std::array::from_fn(|k| block[k][r]));
+        }
+    })?;
+    (1..).zip(&rows).map(|(number, row)| plateau(file, number, row, mountings)).collect()
+}
+
+/// One row, checked.
+fn plateau(file: &Path, number: u64, row: &[f64; COLUMNS.len()], mountings: usize) -> Result<PlateauMean, Error> {
+    let wrong = |k: usize, expected: String| {
+        let found = if row[k].is_nan() { "an empty field".to_owned() } else { row[k].to_string() };
+        Error::content(file, Place::Row { row: number, column: COLUMNS[k].0.to_owned() }, found, expected)
+    };
+    let [mounting, speed, angle, m1, m2, m3, c11, c12, c13, c22, c23, c33, samples] = *row;
+    if mounting.fract() != 0.0 || !(1.0..=mountings as f64).contains(&mounting) {
+        return Err(wrong(0, format!("the number of a mounting, 1 to {mountings}")));
+    }
+    if !(0.0..=FASTEST).contains(&speed) {
+        return Err(wrong(1, "a speed in rad/s from 0 to 1e6 rpm, without sign".to_owned()));
+    }
+    if (speed == 0.0) == angle.is_nan() {
+        let expected = if speed == 0.0 { "the carousel angle of a plateau at rest" } else { "no angle while spinning" };
+        return Err(wrong(ANGLE, expected.to_owned()));
+    }
+    let covariance = Matrix3::new(c11, c12, c13, c12, c22, c23, c13, c23, c33);
+    if covariance.cholesky().is_none() {
+        return Err(wrong(6, "a positive definite covariance".to_owned()));
+    }
+    // 2^53: up to here every count is a number of its own.
+    if samples.fract() != 0.0 || !(1.0..=9_007_199_254_740_992.0).contains(&samples) {
+        return Err(wrong(12, "how many samples were averaged".to_owned()));
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole numbers in range, by the checks above"
+    )]
+    let (mounting, samples) = (mounting as usize - 1, samples as u64);
+    let angle = if speed == 0.0 { angle } else { 0.0 };
+    Ok(PlateauMean { mounting, speed, angle, mean: Vector3::new(m1, m2, m3), covariance, samples })
+}
+
+/// Writes a table of plateaus, every number to its last digit; the file appears whole or not at all.
+///
+/// # Errors
+/// If the file can not be written.
+pub fn write_plateaus(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error> {
+    let mut text = COLUMNS.map(|(name, _)| name).join(",");
+    text.push('\n');
+    for p in plateaus {
+        let angle = if p.speed == 0.0 { p.angle.to_string() } else { String::new() };
+        let c = &p.covariance;
+        let [m1, m2, m3] = p.mean.into();
+        let upper = [c.m11, c.m12, c.m13, c.m22, c.m23, c.m33].map(|v| format!("{v:e}")).join(",");
+        // Writing to a String does not fail.
+        let _ = writeln!(text, "{},{},{angle},{m1},{m2},{m3},{upper},{}", p.mounting + 1, p.speed, p.samples);
+    }
+    write_whole(file, text.as_bytes())
+}
+
+/// As [`write_plateaus`], in Parquet.
+pub(crate) fn write_plateaus_parquet(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error> {
+    let row = |p: &PlateauMean| {
+        let angle = if p.speed == 0.0 { p.angle } else { f64::NAN };
+        let (c, [m1, m2, m3]) = (&p.covariance, p.mean.into());
+        let number = (p.mounting + 1) as f64;
+        [number, p.speed, angle, m1, m2, m3, c.m11, c.m12, c.m13, c.m22, c.m23, c.m33, p.samples as f64]
+    };
+    let rows: Vec<[f64; COLUMNS.len()]> = plateaus.iter().map(row).collect();
+    let columns: Vec<Vec<f64>> = (0..COLUMNS.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
+    let table = ParquetTable::new(Vec::new(), Layout::PACKED, &COLUMNS.map(|(name, _)| name));
+    let bytes = table.and_then(|mut table| {
+        table.write(&columns)?;
+        table.finish()
+    });
+    write_whole(file, &bytes.map_err(|error| Error::writing(file, error))?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn written_and_read_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("plateaus.csv");
+        let covariance = Matrix3::new(2e-9, 1e-10, -3e-10, 1e-10, 3e-9, 0.1e-10, -3e-10, 0.1e-10, 1.0 / 3.0 * 1e-8);
+        let mean = Vector3::new(0.1 + 0.2, -1.0 / 3.0, 9.806_65);
+        let rest =
+            PlateauMean { mounting: 1, speed: 0.0, angle: std::f64::consts::PI, mean, covariance, samples: 1020 };
+        let spin = PlateauMean { mounting: 0, speed: 14.0 / 3.0, angle: 0.0, ..rest };
+        write_plateaus(&file, &[rest, spin]).unwrap();
+        assert_eq!(read_plateaus(&file, 2).unwrap(), [rest, spin]);
+        let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
+        assert_eq!(left.len(), 1, "nothing is left beside the table");
+    }
+}

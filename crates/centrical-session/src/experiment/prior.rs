@@ -1,0 +1,116 @@
+//! Priors: standard uncertainties of parameters and groups, with their units.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use centrical::{MeasurementModel, PriorError, STANDARD_GRAVITY};
+
+use super::toml_path::TomlPath;
+use crate::error::Error;
+use crate::quantity::{Dimension, Quantity};
+
+/// A prior as written.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PriorEntry {
+    name: String,
+    standard_uncertainty: Quantity,
+}
+
+/// The entries of the table `[prior]`, by name.
+pub(crate) fn entries(table: &BTreeMap<String, Quantity>) -> Vec<PriorEntry> {
+    let entry = |(name, quantity): (&String, &Quantity)| PriorEntry {
+        name: name.clone(),
+        standard_uncertainty: quantity.clone(),
+    };
+    table.iter().map(entry).collect()
+}
+
+/// The model with the priors.
+pub(crate) fn with_priors(
+    file: &Path,
+    mut model: MeasurementModel,
+    entries: &[PriorEntry],
+) -> Result<MeasurementModel, Error> {
+    let at = TomlPath::table(file, "prior");
+    for entry in entries {
+        let sigma = in_si(&at, &model, entry)?;
+        model = model.with_prior(&entry.name, sigma).map_err(|error| refusal(&at, entry, error))?;
+    }
+    Ok(model)
+}
+
+/// A standard uncertainty of what `name` selects, in the unit of its parameters.
+pub(crate) fn uncertainty_of(
+    at: &TomlPath,
+    model: &MeasurementModel,
+    name: &str,
+    quantity: &Quantity,
+) -> Result<f64, Error> {
+    let entry = PriorEntry { name: name.to_owned(), standard_uncertainty: quantity.clone() };
+    let value = in_si(at, model, &entry)?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(at.unexpected(name, quantity.to_string(), "a standard uncertainty above 0"))
+    }
+}
+
+/// The uncertainty in the unit of the parameters that are meant.
+fn in_si(at: &TomlPath, model: &MeasurementModel, entry: &PriorEntry) -> Result<f64, Error> {
+    let Some(first) = model.parameters().select(&entry.name).first().map(|&j| &model.parameters()[j]) else {
+        let unknown = PriorError::Unknown { name: entry.name.clone(), example: model.parameters()[0].name.clone() };
+        return Err(refusal(at, entry, unknown));
+    };
+    let dimension = match first.unit.as_str() {
+        "rad" => Dimension::Angle,
+        "m" => Dimension::Length,
+        "m/s^2" => Dimension::Acceleration,
+        "1" if first.group == "misalignment" => {
+            return at.finite(&entry.name, &entry.standard_uncertainty, Dimension::Ratio).or_else(|error| {
+                at.finite(&entry.name, &entry.standard_uncertainty, Dimension::Angle).map_err(|_| error)
+            });
+        }
+        "1" => Dimension::Ratio,
+        unit => return in_derived_unit(at, entry, unit),
+    };
+    at.finite(&entry.name, &entry.standard_uncertainty, dimension)
+}
+
+/// A coefficient in its SI unit or the unit in which people are shown it.
+fn in_derived_unit(at: &TomlPath, entry: &PriorEntry, unit: &str) -> Result<f64, Error> {
+    let customary: &[(&str, f64)] = match unit {
+        "s^2/m" => &[("ug/g^2", 1e-6 / STANDARD_GRAVITY)],
+        "s^4/m^2" => &[("ug/g^3", 1e-6 / (STANDARD_GRAVITY * STANDARD_GRAVITY))],
+        _ => &[],
+    };
+    let units: Vec<&str> = std::iter::once(unit).chain(customary.iter().map(|(name, _)| *name)).collect();
+    let factor = |written: &str| {
+        let known = customary.iter().copied().chain([(unit, 1.0), ("", 1.0)]);
+        known.into_iter().find(|(name, _)| *name == written).map(|(_, factor)| factor)
+    };
+    let value = match &entry.standard_uncertainty {
+        Quantity::Number(number) => Some(*number),
+        Quantity::Text(text) => {
+            let (number, written) = text.trim().split_once(char::is_whitespace).unwrap_or((text.trim(), ""));
+            number.parse::<f64>().ok().and_then(|number| Some(number * factor(written.trim())?))
+        }
+    };
+    let expected = || format!("a number in {unit} or with a unit (units: {})", units.join(", "));
+    value.ok_or_else(|| at.unexpected(&entry.name, entry.standard_uncertainty.to_string(), expected()))
+}
+
+fn refusal(at: &TomlPath, entry: &PriorEntry, error: PriorError) -> Error {
+    let (found, expected) = match error {
+        PriorError::Unknown { example, .. } => {
+            ("no such parameter or group".to_owned(), format!("a name such as {example}, or the stem of several, dR"))
+        }
+        PriorError::MixedUnits { units, .. } => {
+            (format!("parameters in {} and in {}", units[0], units[1]), "parameters of one unit".to_owned())
+        }
+        PriorError::NotPositive { found, .. } => {
+            (format!("a standard uncertainty of {found}"), "a positive number".to_owned())
+        }
+        PriorError::Twice { parameter, .. } => (format!("a second prior on {parameter}"), "one".to_owned()),
+    };
+    at.unexpected(&entry.name, found, expected)
+}

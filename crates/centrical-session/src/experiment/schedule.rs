@@ -1,0 +1,99 @@
+//! Mountings and what was set on them.
+
+use std::path::Path;
+
+use centrical::{Mounting, Position, SetPoint};
+use nalgebra::Vector3;
+
+use super::form::{MountingTable, PlateauEntry};
+use super::toml_path::TomlPath;
+use crate::error::{Error, quoted};
+use crate::quantity::{Dimension, Quantity};
+
+/// Speeds above this [rad/s], a million revolutions a minute, are a mistaken unit.
+pub(crate) const FASTEST: f64 = 1.1e5;
+
+/// Shortest and longest plateau [s].
+const DURATIONS: (f64, f64) = (1e-3, 1e7);
+
+/// The mountings in the order of the file. Every position must be mounted, or its parameters are nowhere.
+pub(crate) fn mountings(file: &Path, tables: &[MountingTable], positions: &[Position]) -> Result<Vec<Mounting>, Error> {
+    let mut mountings = Vec::with_capacity(tables.len());
+    for (m, table) in tables.iter().enumerate() {
+        let at = TomlPath::entry(file, "mounting", m);
+        let position = positions.iter().position(|p| p.id == table.position).ok_or_else(|| {
+            let known: Vec<&str> = positions.iter().map(|p| p.id.as_str()).collect();
+            let found = format!("unknown position {}", quoted(table.position.as_bytes()));
+            at.unexpected("position", found, format!("one of {}", known.join(", ")))
+        })?;
+        let arm = at.point("arm", &table.arm)?;
+        if arm[0] < 0.0 {
+            let expected = "a radius arm[0] of zero or more (turn the unit with another position instead)";
+            return Err(at.unexpected("arm", format!("{arm:?}"), expected));
+        }
+        mountings.push(Mounting { position, arm_y: Vector3::from(arm) });
+    }
+    for (k, position) in positions.iter().enumerate() {
+        if !mountings.iter().any(|m| m.position == k) {
+            let found = format!("position {:?} without a mounting", position.id);
+            return Err(TomlPath::entry(file, "position", k).unexpected(
+                "id",
+                found,
+                "a [[mounting]] for every position",
+            ));
+        }
+    }
+    Ok(mountings)
+}
+
+/// The set points of all mountings; `sign` is the sign of the rotation about the third arm axis.
+pub(crate) fn set_points(file: &Path, tables: &[MountingTable], sign: f64) -> Result<Vec<SetPoint>, Error> {
+    let mut set_points = Vec::new();
+    for (mounting, table) in tables.iter().enumerate() {
+        let at = TomlPath::entry(file, "mounting", mounting);
+        if table.plateaus.is_empty() {
+            return Err(at.unexpected("plateaus", "an empty schedule", "at least one plateau"));
+        }
+        for (index, entry) in table.plateaus.iter().enumerate() {
+            let (speed, angle) = plateau(&at, index, entry)?;
+            // The sum makes -0 a 0.
+            set_points.push(SetPoint { mounting, omega: sign * speed + 0.0, angle });
+        }
+    }
+    Ok(set_points)
+}
+
+/// Speed [rad/s] and angle [rad] of plateau number `index`, from 0.
+fn plateau(at: &TomlPath, index: usize, entry: &PlateauEntry) -> Result<(f64, f64), Error> {
+    let key = |name: &str| format!("plateaus {} {name}", index + 1);
+    let meaning = "a speed from 0 to 1e6 rpm (the direction is given by `rotation` in [centrifuge])";
+    let speed = at.bounded(&key("speed"), &entry.speed, Dimension::Speed, (0.0, FASTEST), meaning)?;
+    match (&entry.angle, speed == 0.0) {
+        (Some(angle), true) => Ok((0.0, at.finite(&key("angle"), angle, Dimension::Angle)?)),
+        (None, true) => Err(at.unexpected(&key("angle"), "no angle", "the carousel angle of a plateau at rest")),
+        (None, false) => Ok((speed, 0.0)),
+        (Some(angle), false) => {
+            let expected = "no angle while spinning: the readings do not depend on it";
+            Err(at.unexpected(&key("angle"), angle.to_string(), expected))
+        }
+    }
+}
+
+/// Duration stated for each plateau [s], in the order of the set points.
+pub(crate) fn durations(file: &Path, mountings: &[MountingTable]) -> Result<Vec<Option<f64>>, Error> {
+    let mut durations = Vec::new();
+    for (m, mounting) in mountings.iter().enumerate() {
+        let at = TomlPath::entry(file, "mounting", m);
+        for (index, plateau) in mounting.plateaus.iter().enumerate() {
+            let key = format!("plateaus {} duration", index + 1);
+            durations.push(duration(&at, &key, plateau.duration.as_ref())?);
+        }
+    }
+    Ok(durations)
+}
+
+/// A duration of a plateau [s].
+pub(crate) fn duration(at: &TomlPath, key: &str, quantity: Option<&Quantity>) -> Result<Option<f64>, Error> {
+    let bounded = |q| at.bounded(key, q, Dimension::Time, DURATIONS, "a duration from 1 ms to 1e7 s");
+    quantity.map(bounded).transpose()
+}

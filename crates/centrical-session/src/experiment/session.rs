@@ -1,0 +1,276 @@
+//! A session: what `experiment.toml` says and the files that it names.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+use centrical::uncertainty::TypeB;
+use centrical::{ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, SetPoint, Site};
+
+use super::form::{self, Form, ModelTable, SiteTable};
+use super::plateaus::PlateauTable;
+use super::prior::{self, PriorEntry};
+use super::toml_path::TomlPath;
+use super::{attitude, columns, schedule, terms, uncertainty, unit};
+use crate::error::{Error, Place, quoted};
+use crate::quantity::Dimension;
+use crate::record::{Columns, read_record, read_telemetry, scan_record};
+
+/// Name of the experiment file in a session folder.
+pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
+
+/// Longest experiment file [bytes]: thousands of mountings fit; more is another kind of file.
+const LONGEST_FORM: u64 = 16 << 20;
+
+/// A session: everything that is known before the records are read, and where they are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Session {
+    /// The experiment file.
+    pub file: PathBuf,
+    /// Title, for the report.
+    pub title: String,
+    /// Date, as written.
+    pub date: String,
+    /// Free text, for the report.
+    pub text: String,
+    /// Model of the unit.
+    pub unit_model: String,
+    /// Serial number of the unit.
+    pub unit_serial: String,
+    /// Unit of the raw output, as written: "m/s^2", "g", "counts".
+    pub output_unit: String,
+    /// The experiment. Its set points are those of the plateau table where the session brings one.
+    pub experiment: Experiment,
+    /// The error model of the unit.
+    pub error_model: ErrorModel,
+    /// Unknowns beyond those of the source.
+    pub extensions: Vec<Extension>,
+    /// Relative standard uncertainty of the speed of a plateau.
+    pub speed_uncertainty: f64,
+    /// Standard uncertainties that the data cannot show, as stated in `[uncertainty]`.
+    pub type_b: TypeB,
+    /// Columns of the records and the telemetry.
+    pub columns: Columns,
+    /// Files of every mounting, in the order of [`Experiment::mountings`].
+    pub mountings: Vec<MountingFiles>,
+    /// Plateaus already averaged, if the session brings them instead of records.
+    pub plateaus: Option<PlateauTable>,
+    /// Duration that the schedule states for each set point, if it does [s].
+    pub durations: Vec<Option<f64>>,
+    priors: Vec<PriorEntry>,
+}
+
+/// The files of one mounting.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct MountingFiles {
+    /// The record.
+    pub record: Option<PathBuf>,
+    /// The telemetry.
+    pub telemetry: Option<PathBuf>,
+}
+
+impl Session {
+    /// Reads the session in a folder, or of an experiment file. The records themselves are not touched.
+    ///
+    /// # Errors
+    /// If the experiment file can not be read or does not follow the form, or makes no sense: every key is
+    /// known, every quantity finite and of its dimension, every position a rotation and mounted.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let file = if path.is_dir() { path.join(EXPERIMENT_FILE) } else { path.to_owned() };
+        let form: Form = form::parse(&file, &read_text(&file)?)?;
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let mut session = Self::without_plateaus(&file, &form)?;
+        let sign = rotation(&file, &form.centrifuge.rotation)?;
+        if let Some(table) = &form.plateaus {
+            let table = PlateauTable::read(folder.join(table), form.mounting.len())?;
+            session.experiment.set_points = table.set_points(sign);
+            session.plateaus = Some(table);
+        } else {
+            session.experiment.set_points = schedule::set_points(&file, &form.mounting, sign)?;
+            session.durations = schedule::durations(&file, &form.mounting)?;
+        }
+        if session.experiment.set_points.iter().all(SetPoint::is_rest) {
+            let at = TomlPath::entry(&file, "mounting", 0);
+            return Err(at.unexpected("plateaus", "all plateaus at rest", "at least one plateau with a speed"));
+        }
+        // Whatever is wrong with the priors is said before any record is read.
+        session.model()?;
+        Ok(session)
+    }
+
+    /// The measurement model of the session: its experiment, error model, extensions and priors.
+    ///
+    /// # Errors
+    /// If a prior names no parameter, or is none: only for a session changed since it was read.
+    pub fn model(&self) -> Result<MeasurementModel, Error> {
+        let model = MeasurementModel::new(self.experiment.clone(), self.error_model.clone(), &self.extensions);
+        prior::with_priors(&self.file, model, &self.priors)
+    }
+
+    /// Everything but the set points.
+    pub(crate) fn without_plateaus(file: &Path, form: &Form) -> Result<Self, Error> {
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let pair_relation = pair_relation(file, &form.model.pair_relation)?;
+        let positions = attitude::positions(file, &form.position, pair_relation)?;
+        let mountings = schedule::mountings(file, &form.mounting, &positions)?;
+        let experiment = Experiment {
+            site: site(file, &form.site)?,
+            unit: unit::geometry(file, &form.unit)?,
+            positions,
+            pair_relation,
+            mountings,
+            set_points: Vec::new(),
+        };
+        let at = TomlPath::table(file, "centrifuge");
+        let meaning = "a relative standard uncertainty, zero or more and below 1";
+        let uncertainty = &form.centrifuge.speed_uncertainty;
+        let speed_uncertainty = at.bounded("speed_uncertainty", uncertainty, Dimension::Ratio, (0.0, 1.0), meaning)?;
+        let path = |name: &Option<String>| name.as_ref().map(|name| folder.join(name));
+        Ok(Self {
+            file: file.to_owned(),
+            title: form.session.title.clone(),
+            date: form.session.date.clone(),
+            text: form.session.text.clone(),
+            unit_model: form.unit.model.clone(),
+            unit_serial: form.unit.serial.clone(),
+            output_unit: form.unit.output_unit.clone(),
+            experiment,
+            error_model: terms::error_model(file, &form.model.error_model)?,
+            extensions: extensions(file, &form.model)?,
+            speed_uncertainty,
+            type_b: uncertainty::type_b(file, &form.uncertainty, speed_uncertainty)?,
+            columns: columns::columns(file, &form.columns, &form.unit)?,
+            mountings: (form.mounting.iter())
+                .map(|m| MountingFiles { record: path(&m.record), telemetry: path(&m.telemetry) })
+                .collect(),
+            plateaus: None,
+            durations: Vec::new(),
+            priors: prior::entries(&form.prior),
+        })
+    }
+
+    /// Reads the whole record of a mounting, by its index.
+    ///
+    /// # Errors
+    /// If the mounting has no record, or as [`scan_record`].
+    pub fn record(&self, mounting: usize) -> Result<Record, Error> {
+        read_record(self.record_file(mounting)?, &self.columns)
+    }
+
+    /// Hands the record of a mounting to `visit` block by block, in memory that does not grow with the record.
+    ///
+    /// # Errors
+    /// If the mounting has no record, or as [`scan_record`].
+    pub fn scan_record(&self, mounting: usize, visit: &mut dyn FnMut(RecordSlice)) -> Result<(), Error> {
+        scan_record(self.record_file(mounting)?, &self.columns, visit)
+    }
+
+    /// Reads the telemetry of a mounting, if it has any.
+    ///
+    /// # Errors
+    /// As [`scan_record`].
+    pub fn telemetry(&self, mounting: usize) -> Result<Option<SpeedTrace>, Error> {
+        let file = self.mountings.get(mounting).and_then(|m| m.telemetry.as_ref());
+        file.map(|file| read_telemetry(file, &self.columns)).transpose()
+    }
+
+    /// Size of the records [bytes]; zero for a session that comes already averaged, and of records that are not there.
+    pub fn record_bytes(&self) -> u64 {
+        let files = self.mountings.iter().filter(|_| self.plateaus.is_none()).filter_map(|m| m.record.as_ref());
+        files.filter_map(|file| fs::metadata(file).ok()).map(|metadata| metadata.len()).sum()
+    }
+
+    /// All files of the session in the order they are named: the experiment file first.
+    pub fn files(&self) -> Vec<&Path> {
+        let of_mountings = self.mountings.iter().flat_map(|m| m.record.iter().chain(&m.telemetry));
+        let table = self.plateaus.iter().map(|table| &table.file);
+        std::iter::once(&self.file).chain(table).chain(of_mountings).map(PathBuf::as_path).collect()
+    }
+
+    /// The file of a mounting's record.
+    pub(crate) fn record_file(&self, mounting: usize) -> Result<&Path, Error> {
+        let record = self.mountings.get(mounting).and_then(|m| m.record.as_deref());
+        record.ok_or_else(|| {
+            TomlPath::entry(&self.file, "mounting", mounting).unexpected("record", "no record", "the path of one")
+        })
+    }
+}
+
+/// The text of the experiment file.
+pub(crate) fn read_text(file: &Path) -> Result<String, Error> {
+    let expected = "an experiment file, or the folder with its experiment.toml";
+    let failed = |e| Error::reading(file, e, expected);
+    let metadata = fs::metadata(file).map_err(failed)?;
+    if !metadata.is_file() || metadata.len() > LONGEST_FORM {
+        let found = format!("{} bytes that are no such text", metadata.len());
+        return Err(Error::content(file, Place::Whole, found, expected));
+    }
+    let bytes = fs::read(file).map_err(failed)?;
+    String::from_utf8(bytes).map_err(|error| {
+        let bad = error.utf8_error().valid_up_to();
+        let line = 1 + memchr::memchr_iter(b'\n', &error.as_bytes()[..bad]).count() as u64;
+        let found = format!("byte 0x{:02x}", error.as_bytes()[bad]);
+        Error::content(file, Place::Line { line, column: None }, found, "text in UTF-8")
+    })
+}
+
+fn site(file: &Path, table: &SiteTable) -> Result<Site, Error> {
+    use std::f64::consts::FRAC_PI_2;
+    let at = TomlPath::table(file, "site");
+    // Ten times the Earth's: anything above is a mistaken unit.
+    let gravity = at.bounded(
+        "gravity",
+        &table.gravity,
+        Dimension::Acceleration,
+        (f64::MIN_POSITIVE, 100.0),
+        "gravity above 0 and below 100 m/s^2",
+    )?;
+    let latitude =
+        |l| at.bounded("latitude", l, Dimension::Angle, (-FRAC_PI_2, FRAC_PI_2), "a latitude from -90 deg to 90 deg");
+    Ok(Site { gravity, latitude: table.latitude.as_ref().map(latitude).transpose()? })
+}
+
+/// Sign of the rotation about the third arm axis.
+pub(crate) fn rotation(file: &Path, text: &str) -> Result<f64, Error> {
+    match text {
+        "+3" => Ok(1.0),
+        "-3" => Ok(-1.0),
+        _ => {
+            Err(TomlPath::table(file, "centrifuge").unexpected("rotation", quoted(text.as_bytes()), "\"+3\" or \"-3\""))
+        }
+    }
+}
+
+pub(crate) fn extensions(file: &Path, table: &ModelTable) -> Result<Vec<Extension>, Error> {
+    named_extensions(&TomlPath::table(file, "model"), &table.extensions)
+}
+
+pub(crate) fn named_extensions(at: &TomlPath, names: &[String]) -> Result<Vec<Extension>, Error> {
+    let mut extensions = Vec::new();
+    for name in names {
+        let found = quoted(name.as_bytes());
+        let Some(extension) = Extension::named(name) else {
+            let known: Vec<&str> = Extension::NAMED.iter().map(|(name, _)| *name).collect();
+            let expected = format!("one of {}", known.join(", "));
+            return Err(at.unexpected("extensions", found, expected));
+        };
+        if extensions.contains(&extension) {
+            let expected = "every extension once";
+            return Err(at.unexpected("extensions", format!("{found} a second time"), expected));
+        }
+        extensions.push(extension);
+    }
+    Ok(extensions)
+}
+
+pub(crate) fn pair_relation(file: &Path, text: &str) -> Result<PairRelation, Error> {
+    match text {
+        "common" => Ok(PairRelation::Common),
+        "opposite" => Ok(PairRelation::Opposite),
+        "free" => Ok(PairRelation::Free),
+        _ => {
+            let expected = "\"common\", \"opposite\" or \"free\"";
+            Err(TomlPath::table(file, "model").unexpected("pair_relation", quoted(text.as_bytes()), expected))
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! The error model: a preset, or a list of monomial terms written as `f1*f2`, `f2*|f2|`, `f1^3`.
+
+use std::path::Path;
+
+use centrical::{ErrorModel, Extra, Monomial, Term};
+
+use super::form::{TermEntry, TermList, TermTable};
+use super::toml_path::TomlPath;
+use crate::error::{Error, quoted};
+
+/// Highest degree of a term: the ninth power of 2000 m/s^2 is still far from the end of `f64`.
+const HIGHEST_DEGREE: u32 = 9;
+
+/// The terms in the order of the list.
+pub(crate) fn error_model(file: &Path, list: &TermList) -> Result<ErrorModel, Error> {
+    let at = TomlPath::table(file, "model");
+    let mut terms: Vec<Term> = Vec::new();
+    for entry in &list.0 {
+        for term in expand(&at, entry)? {
+            if terms.iter().any(|t| t.axis == term.axis && t.monomial == term.monomial) {
+                return Err(at.unexpected("error_model", format!("{} a second time", term.name), "every term once"));
+            }
+            terms.push(term);
+        }
+    }
+    Ok(ErrorModel { terms })
+}
+
+/// The terms one entry stands for.
+fn expand(at: &TomlPath, entry: &TermEntry) -> Result<Vec<Term>, Error> {
+    let preset = ErrorModel::kozlov_2017().terms;
+    match entry {
+        TermEntry::Named(name) if name == "kozlov-2017" => Ok(preset),
+        TermEntry::Named(name) => {
+            let term = || preset.into_iter().find(|t| t.name == *name).map(|t| vec![t]);
+            Extra::named(name).map(Extra::terms).or_else(term).ok_or_else(|| {
+            let expected = "\"kozlov-2017\", one of its terms such as \"G0_11\", \"cross-products\", \"odd-quadratic\", \
+                            or { axis = 1, term = \"f1*f2\" }";
+            at.unexpected("error_model", quoted(name.as_bytes()), expected)
+        })
+        }
+        TermEntry::Written(table) => Ok(vec![written(at, table, &preset)?]),
+    }
+}
+
+/// A term in full, under the preset's name where the preset has it.
+fn written(at: &TomlPath, table: &TermTable, preset: &[Term]) -> Result<Term, Error> {
+    let TermTable { axis, term } = table;
+    if !(1..=3).contains(axis) {
+        return Err(at.unexpected("error_model", format!("axis = {axis}"), "axis = 1, 2 or 3"));
+    }
+    let axis = axis - 1;
+    let monomial = monomial(term).ok_or_else(|| {
+        let expected = format!(
+            "a product of powers of f1, f2, f3 and at most one of |f1|, |f2|, |f3|, \
+            of degree {HIGHEST_DEGREE} at most, such as f1*f2, f2*|f2|, f1^3 or 1"
+        );
+        at.unexpected("error_model", format!("term = {}", quoted(term.as_bytes())), expected)
+    })?;
+    if let Some(known) = preset.iter().find(|t| t.axis == axis && t.monomial == monomial) {
+        return Ok(known.clone());
+    }
+    Ok(Term::new(axis, monomial))
+}
+
+/// `f1*f2`, `f2*|f2|`, `f1^3`, `1`. An absolute value is the factor with its own sign: `|f| = sign(f) f`.
+fn monomial(text: &str) -> Option<Monomial> {
+    let mut monomial = Monomial::ONE;
+    if text.trim() == "1" {
+        return Some(monomial);
+    }
+    let mut absolute = [false; 3];
+    for factor in text.split('*') {
+        let (base, power) = factor.split_once('^').unwrap_or((factor, "1"));
+        let power: u8 = power.trim().parse().ok().filter(|p| *p > 0)?;
+        let base = base.trim();
+        let inner = base.strip_prefix('|').and_then(|b| b.strip_suffix('|'));
+        let axis = ["f1", "f2", "f3"].iter().position(|name| *name == inner.unwrap_or(base).trim())?;
+        monomial.powers[axis] = monomial.powers[axis].checked_add(power)?;
+        absolute[axis] ^= inner.is_some() && power % 2 == 1;
+    }
+    let mut signs = (0..3).filter(|j| absolute[*j]);
+    monomial.sign_of = signs.next();
+    let degree: u32 = monomial.powers.iter().map(|p| u32::from(*p)).sum();
+    (signs.next().is_none() && degree <= HIGHEST_DEGREE).then_some(monomial)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn terms_are_read_and_written_in_one_way() {
+        let cases = [
+            ("1", "1"),
+            ("f1", "f1"),
+            (" f2 * f1 ", "f1*f2"),
+            ("|f2|*f2", "f2*|f2|"),
+            ("f3^2*f3", "f3^3"),
+            ("|f1|^2", "f1^2"),
+            ("|f1|^3", "f1^2*|f1|"),
+            ("|f3|", "|f3|"),
+            ("f1*f1*f2^2*|f3|", "f1^2*f2^2*|f3|"),
+        ];
+        for (text, expected) in cases {
+            let read = monomial(text).unwrap();
+            assert_eq!(read.to_string(), expected);
+            assert_eq!(monomial(expected), Some(read), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_term_is_refused() {
+        for text in ["", "f4", "f1*", "f1^0", "f1^-1", "f1^10", "f1^255*f1^255", "|f1|*|f2|", "f1+f2", "2*f1", "|f1"] {
+            assert_eq!(monomial(text), None, "{text}");
+        }
+    }
+}

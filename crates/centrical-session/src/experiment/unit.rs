@@ -1,0 +1,85 @@
+//! The unit: places of the proof masses, and what its raw output is.
+
+use std::path::Path;
+
+use centrical::{ReferencePoint, Unit};
+use nalgebra::Matrix3;
+
+use super::form::{CountsTable, UnitTable};
+use super::toml_path::TomlPath;
+use crate::error::{Error, quoted};
+use crate::quantity::Dimension;
+use crate::record::Scale;
+
+/// Proof masses and the reference point.
+pub(crate) fn geometry(file: &Path, table: &UnitTable) -> Result<Unit, Error> {
+    let at = TomlPath::table(file, "unit");
+    let mut rho_z = Matrix3::zeros();
+    for (j, point) in table.proof_masses.iter().enumerate() {
+        rho_z.set_column(j, &at.point("proof_masses", point)?.into());
+    }
+    let reference = match table.reference.as_deref() {
+        None | Some("first-proof-mass") => ReferencePoint::FirstProofMass,
+        Some("own-axes") => ReferencePoint::OwnAxes,
+        Some(other) => {
+            return Err(at.unexpected("reference", quoted(other.as_bytes()), "\"first-proof-mass\" or \"own-axes\""));
+        }
+    };
+    let (agrees, expected) = match reference {
+        ReferencePoint::FirstProofMass => (
+            rho_z.column(0).iter().all(|c| *c == 0.0),
+            "the first point at zero (reference = \"first-proof-mass\"), or reference = \"own-axes\"",
+        ),
+        ReferencePoint::OwnAxes => (
+            rho_z.diagonal().iter().all(|c| *c == 0.0),
+            "coordinate j of point j at zero (reference = \"own-axes\"), or reference = \"first-proof-mass\"",
+        ),
+    };
+    if agrees {
+        Ok(Unit { rho_z, reference })
+    } else {
+        let found: Vec<Vec<f64>> = rho_z.column_iter().map(|c| c.iter().copied().collect()).collect();
+        Err(at.unexpected("proof_masses", format!("{found:?}"), expected))
+    }
+}
+
+/// What takes the raw output of each newtonometer to m/s^2.
+pub(crate) fn output(file: &Path, table: &UnitTable) -> Result<[Scale; 3], Error> {
+    let at = TomlPath::table(file, "unit");
+    match (table.output_unit.as_str(), &table.counts) {
+        ("counts", Some(counts)) => from_counts(file, counts),
+        ("counts", None) => {
+            let expected = "counts = { scale = [...], bias = [...] }: counts per m/s^2 and counts at none";
+            Err(at.unexpected("counts", "no such key", expected))
+        }
+        (unit, counts) => {
+            let factor = Dimension::Acceleration.factor(unit).ok_or_else(|| {
+                let expected = format!("\"counts\" or one of {}", Dimension::Acceleration.unit_list());
+                at.unexpected("output_unit", quoted(unit.as_bytes()), expected)
+            })?;
+            if counts.is_some() {
+                let expected = "no counts, or output_unit = \"counts\"";
+                return Err(at.unexpected("counts", format!("counts and output_unit = {unit:?}"), expected));
+            }
+            Ok([Scale::factor(factor); 3])
+        }
+    }
+}
+
+/// `f = (counts - bias) / scale`.
+fn from_counts(file: &Path, table: &CountsTable) -> Result<[Scale; 3], Error> {
+    let at = TomlPath::table(file, "unit.counts");
+    let mut scales = [Scale::factor(1.0); 3];
+    for (j, scale) in scales.iter_mut().enumerate() {
+        let (bias, per_unit) = (table.bias[j], table.scale[j]);
+        if !bias.is_finite() {
+            return Err(at.unexpected("bias", format!("{bias:?}"), "finite counts"));
+        }
+        // A converter of 64 bits over a thousandth of a g makes 2e21 counts per m/s^2.
+        if !(1e-24..=1e24).contains(&per_unit.abs()) {
+            return Err(at.unexpected("scale", format!("{per_unit:?}"), "counts per m/s^2, not zero"));
+        }
+        *scale = Scale { offset: bias, factor: 1.0 / per_unit };
+    }
+    Ok(scales)
+}

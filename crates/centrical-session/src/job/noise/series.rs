@@ -1,0 +1,99 @@
+//! Columns of readings over a stretch of time.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Place};
+use crate::experiment::{PlateauName, Session};
+use crate::job::reduce::reduce;
+use crate::quantity::Dimension;
+use crate::record::{Column, Scale};
+use crate::table::{self, ColumnName, Field, Rule};
+
+/// Columns of readings, and their time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// The file.
+    pub file: PathBuf,
+    /// Time [s].
+    pub t: Vec<f64>,
+    /// Name, unit and values of each column; accelerations are in m/s^2.
+    pub columns: Vec<(String, String, Vec<f64>)>,
+}
+
+impl Series {
+    /// Reads the columns `readings` of a file from `window[0]` to `window[1]` on its clock [s].
+    ///
+    /// # Errors
+    /// As of a record; and if nothing is in the window.
+    pub fn read(file: &Path, time: &Column, readings: &[Column], window: [f64; 2]) -> Result<Self, Error> {
+        // A row's number is not in the file.
+        let counted = time.name == ColumnName::Row;
+        let mut fields: Vec<Field> =
+            if counted { Vec::new() } else { vec![field(time, Rule::Ascending { stamps: true })] };
+        fields.extend(readings.iter().map(|column| field(column, Rule::OrMissing)));
+        let (mut t, mut values) = (Vec::new(), vec![Vec::new(); readings.len()]);
+        let (mut rows, mut ends) = (0_u64, [f64::INFINITY, f64::NEG_INFINITY]);
+        table::read(file, &fields, "a record", &mut |block| {
+            let first = rows;
+            rows += block[0].len() as u64;
+            let times: Vec<f64> = if counted {
+                (first..rows).map(|row| si(time, row as f64)).collect()
+            } else {
+                block[0].iter().map(|raw| si(time, *raw)).collect()
+            };
+            ends = [ends[0].min(times[0]), ends[1].max(times[times.len() - 1])];
+            let inside = times.partition_point(|t| *t < window[0])..times.partition_point(|t| *t <= window[1]);
+            for ((kept, raw), column) in values.iter_mut().zip(&block[usize::from(!counted)..]).zip(readings) {
+                kept.extend(raw[inside.clone()].iter().map(|raw| si(column, *raw)));
+            }
+            t.extend_from_slice(&times[inside]);
+        })?;
+        if t.is_empty() {
+            let found = format!("nothing from {} s to {} s", window[0], window[1]);
+            let expected = format!("a stretch of the record, which runs from {} s to {} s", ends[0], ends[1]);
+            return Err(Error::content(file, Place::Whole, found, expected));
+        }
+        let named = |(column, values): (&Column, Vec<f64>)| (column.name.to_string(), si_unit(column), values);
+        Ok(Self { file: file.to_owned(), t, columns: readings.iter().zip(values).map(named).collect() })
+    }
+
+    /// The readings of one plateau of a session, in the window that a calibration would use; without a name those of
+    /// the longest plateau at rest. Its name as well.
+    ///
+    /// # Errors
+    /// As of a calibration; and if the session has no such plateau, or came already averaged.
+    pub fn of_plateau(session: &Session, name: Option<PlateauName>) -> Result<(Self, PlateauName), Error> {
+        let reduced = reduce(session, &|_| ())?;
+        let set_points = &session.experiment.set_points;
+        let length = |k: &usize| reduced.plateaus[*k].window.map_or(0.0, |[from, to]| to - from);
+        let longest = || {
+            (0..set_points.len()).filter(|k| set_points[*k].is_rest()).max_by(|a, b| length(a).total_cmp(&length(b)))
+        };
+        let set_point = name.map_or_else(|| Ok(longest()), |name| name.set_point(session).map(Some))?;
+        let none = |found: &str| Error::content(&session.file, Place::Whole, found, "a plateau at rest in a record");
+        let set_point = set_point.ok_or_else(|| none("no plateau at rest"))?;
+        let files = &session.mountings[set_points[set_point].mounting];
+        let (Some(window), Some(record)) = (reduced.plateaus[set_point].window, &files.record) else {
+            return Err(none("plateaus already averaged"));
+        };
+        let columns = &session.columns;
+        let series = Self::read(record, &columns.time, &columns.f, window)?;
+        Ok((series, PlateauName::of(session, set_point)))
+    }
+}
+
+/// A column as a field of a table.
+fn field(column: &Column, rule: Rule) -> Field {
+    Field { name: column.name.clone(), expected: format!("a number in {}", column.unit), rule }
+}
+
+/// A number of a column in SI.
+fn si(column: &Column, raw: f64) -> f64 {
+    (raw - column.scale.offset) * column.scale.factor
+}
+
+/// Unit of the values of a column as read: m/s^2, or the file's own unit where nothing takes its numbers to SI.
+fn si_unit(column: &Column) -> String {
+    let is_raw = column.scale == Scale::factor(1.0) && Dimension::Acceleration.factor(&column.unit).is_none();
+    if is_raw { column.unit.clone() } else { "m/s^2".to_owned() }
+}

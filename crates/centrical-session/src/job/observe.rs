@@ -1,0 +1,38 @@
+//! What an experiment is studied with: a plan, or a session and the noise of its records.
+
+use std::path::Path;
+
+use centrical::Weight;
+
+use super::plan::read_plan;
+use super::reduce::reduce;
+use crate::document::Subject;
+use crate::error::Error;
+use crate::experiment::Session;
+
+/// Reads a plan, or a session and the noise of its records. `progress` is told of bytes of records as
+/// they are read, from any thread, twice of nearly each.
+///
+/// # Errors
+/// [`Error`] naming the file, the place, what was found and what was expected.
+pub fn subject(path: &Path, progress: &(dyn Fn(u64) + Sync)) -> Result<Subject, Error> {
+    match read_plan(path)? {
+        Some(plan) => Ok(plan.into()),
+        None => of_session(&Session::read(path)?, progress),
+    }
+}
+
+fn of_session(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Subject, Error> {
+    let reduced = reduce(session, progress)?;
+    let model = session.model()?;
+    Ok(Subject {
+        file: session.file.clone(),
+        title: session.title.clone(),
+        weighted_by: "the noise of its data".to_owned(),
+        nominal: vec![0.0; model.parameters().len()],
+        model,
+        weights: reduced.observations().iter().map(Weight::from).collect(),
+        speed_uncertainty: session.speed_uncertainty,
+        type_b: session.type_b,
+    })
+}

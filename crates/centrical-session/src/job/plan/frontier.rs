@@ -1,0 +1,86 @@
+//! Time against uncertainty, with the plans that one would make without a search beside the best.
+
+use centrical::plan::{Candidates, Effort, frontier};
+use centrical::{Experiment, SetPoint};
+
+use super::request::PlanRequest;
+use crate::document::FrontierRow;
+use crate::error::Error;
+use crate::experiment::Planning;
+
+/// Speeds of a uniform plan at most, in each mounting.
+const UNIFORM_SPEEDS: usize = 8;
+
+impl Planning {
+    /// The frontier about `time`, with the uniform plan and [K5.5] beside it.
+    pub(crate) fn frontier(&self, time: f64, request: &PlanRequest) -> Result<Vec<FrontierRow>, Error> {
+        if request.frontier.is_empty() {
+            return Ok(Vec::new());
+        }
+        let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
+        let effort = Effort::usual(self.candidates.len());
+        let points = frontier(&self.candidates, &self.criterion, &times, effort);
+        let points = points.map_err(|source| self.failed(source))?;
+        let uniform = with_set_points(&self.candidates, &uniform_set_points(self.candidates.experiment()));
+        let normalised =
+            with_set_points(&self.candidates, &normalised_set_points(self.candidates.experiment(), &request.levels));
+        let of = |candidates: &Candidates, time: f64| {
+            let found = candidates.uniform(&self.criterion, time).map_err(|source| self.failed(source))?;
+            Ok::<_, Error>(found.map(|(_, value)| value.sqrt()))
+        };
+        points
+            .into_iter()
+            .map(|point| {
+                Ok(FrontierRow {
+                    time: point.time,
+                    best: point.plan.criterion.sqrt(),
+                    bound: point.plan.bound.sqrt(),
+                    uniform: of(&uniform, point.time)?,
+                    normalised: of(&normalised, point.time)?,
+                })
+            })
+            .collect()
+    }
+}
+
+/// The candidates with other plateaus in the same mountings.
+fn with_set_points(candidates: &Candidates, set_points: &[SetPoint]) -> Candidates {
+    let mut other = candidates.clone();
+    for scenario in &mut other.scenarios {
+        let experiment = Experiment { set_points: set_points.to_vec(), ..scenario.model.experiment().clone() };
+        // The same positions and mountings have the same unknowns.
+        scenario.model = scenario.model.in_experiment(experiment);
+    }
+    other
+}
+
+/// All rests, and of each mounting's speeds some at equal distances.
+fn uniform_set_points(experiment: &Experiment) -> Vec<SetPoint> {
+    let mut chosen = Vec::new();
+    for m in 0..experiment.mountings.len() {
+        let (rests, spins): (Vec<SetPoint>, Vec<SetPoint>) =
+            experiment.set_points.iter().filter(|s| s.mounting == m).partition(|s| s.is_rest());
+        chosen.extend(rests);
+        let count = spins.len().min(UNIFORM_SPEEDS);
+        chosen.extend((1..=count).map(|n| spins[n * spins.len() / count - 1]));
+    }
+    chosen
+}
+
+/// [K5.5] on the same mountings: `Omega^2 = 10 g m / R*`, `R*` the largest radius; rest at 0 and pi.
+fn normalised_set_points(experiment: &Experiment, levels: &[f64]) -> Vec<SetPoint> {
+    let largest = experiment.mountings.iter().map(|m| m.arm_y.x).fold(0.0, f64::max);
+    let unit = (10.0 * experiment.site.gravity / largest).sqrt();
+    let sign = if experiment.set_points.iter().any(|s| s.omega < 0.0) { -1.0 } else { 1.0 };
+    let mut chosen = Vec::new();
+    for mounting in 0..experiment.mountings.len() {
+        for &m in levels {
+            if m == 0.0 {
+                chosen.extend([0.0, std::f64::consts::PI].map(|angle| SetPoint { mounting, omega: 0.0, angle }));
+            } else {
+                chosen.push(SetPoint { mounting, omega: sign * unit * m.sqrt(), angle: 0.0 });
+            }
+        }
+    }
+    chosen
+}

@@ -1,0 +1,15 @@
+//! What of a plan is asked for.
+
+/// Levels `m` of [K5.5] on the frontier unless others are given.
+pub const USUAL_LEVELS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
+
+/// What of a plan is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanRequest {
+    /// Times of the frontier over that of the plan; none for no frontier.
+    pub frontier: Vec<f64>,
+    /// Levels `m` of [K5.5] to compare with.
+    pub levels: Vec<f64>,
+    /// Probability that expanded uncertainties are to cover.
+    pub coverage: f64,
+}

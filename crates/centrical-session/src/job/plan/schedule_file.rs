@@ -1,0 +1,58 @@
+//! A plan as the plan file of a session.
+
+use std::path::Path;
+
+use crate::document::{PlanReport, PlannedMounting, PlannedPlateau};
+use crate::error::{Error, Place};
+
+impl PlanReport {
+    /// The plan as the plan file of a session: the text that it was planned from, with mountings in place of candidates.
+    ///
+    /// # Errors
+    /// [`Error`] when the file cannot be read any more.
+    pub fn session_text(&self, file: &Path) -> Result<String, Error> {
+        let text = std::fs::read_to_string(file).map_err(|source| Error::reading(file, source, "a plan"))?;
+        let form = |error: toml_edit::TomlError| Error::Form {
+            file: file.to_owned(),
+            place: Place::Whole,
+            message: error.message().to_owned(),
+        };
+        let mut document: toml_edit::DocumentMut = text.parse().map_err(form)?;
+        for key in ["candidates", "cost", "target", "robust"] {
+            document.remove(key);
+        }
+        // The plan may be written to another folder than the one it was read from.
+        let nominal = document.get_mut("plan").and_then(|plan| plan.get_mut("nominal"));
+        if let Some(nominal) = nominal.filter(|item| item.is_str()) {
+            let from = file.parent().unwrap_or(Path::new("")).join(nominal.as_str().unwrap_or_default());
+            let whole = std::path::absolute(&from).unwrap_or(from);
+            *nominal = toml_edit::value(whole.to_string_lossy().into_owned());
+        }
+        // A position that is not used has no mounting, and no parameters.
+        if let Some(toml_edit::Item::ArrayOfTables(positions)) = document.get_mut("position") {
+            positions.retain(|table| {
+                let id = table.get("id").map(|id| id.as_str().map_or_else(|| id.to_string(), str::to_owned));
+                id.is_some_and(|id| self.mountings.iter().any(|m| m.position == id.trim()))
+            });
+        }
+        let mut text = document.to_string();
+        text.truncate(text.trim_end().len());
+        text.push('\n');
+        for mounting in &self.mountings {
+            text.push_str(&mounting.text());
+        }
+        Ok(text)
+    }
+}
+
+impl PlannedMounting {
+    fn text(&self) -> String {
+        let plateau = |p: &PlannedPlateau| {
+            let angle = if p.speed == 0.0 { format!(", angle = {:?}", p.angle) } else { String::new() };
+            format!("  {{ speed = {:?}{angle}, duration = {:?} }},\n", p.speed, p.duration)
+        };
+        let plateaus: String = self.plateaus.iter().map(plateau).collect();
+        let (position, radius) = (&self.position, self.radius);
+        format!("\n[[mounting]]\nposition = {position:?}\narm = [{radius:?}, 0, 0]\nplateaus = [\n{plateaus}]\n")
+    }
+}

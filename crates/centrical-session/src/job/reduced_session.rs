@@ -1,0 +1,64 @@
+//! A session reduced to its plateau means: an experiment file that names a table of plateaus instead of records.
+
+use std::path::Path;
+
+use toml_edit::{DocumentMut, Item, TableLike, Value, value};
+
+use super::simulate::TableFormat;
+use crate::error::{Error, Place};
+use crate::experiment::{EXPERIMENT_FILE, PlateauMean, Session, read_text, write_plateaus, write_plateaus_parquet};
+use crate::reduced::Reduced;
+use crate::write::{create_folder, write_whole};
+
+/// Keys of a mounting that say what the table of plateaus says now.
+const REPLACED: [&str; 3] = ["record", "telemetry", "plateaus"];
+
+/// Writes the reduced session into `folder`: the table of plateaus first, and `experiment.toml`, which names it, last.
+/// Calibrating it gives the numbers that calibrating the records gives.
+///
+/// # Errors
+/// [`Error`] if the folder is the session's own, or does not take the files.
+pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, folder: &Path) -> Result<(), Error> {
+    create_folder(folder)?;
+    let experiment_file = folder.join(EXPERIMENT_FILE);
+    if is_same(&session.file, &experiment_file) {
+        let expected = "another folder than the session's own";
+        return Err(Error::content(&experiment_file, Place::Whole, "the session itself", expected));
+    }
+    let (name, write): (_, fn(&Path, &[PlateauMean]) -> _) = match format {
+        TableFormat::Csv => ("plateaus.csv", write_plateaus),
+        TableFormat::Parquet => ("plateaus.parquet", write_plateaus_parquet),
+    };
+    let text = experiment(&session.file, name)?;
+    write(&folder.join(name), &reduced.table(session))?;
+    write_whole(&experiment_file, text.as_bytes())
+}
+
+/// The experiment file with the table instead of records, and all else, comments too, as it was.
+fn experiment(file: &Path, table: &str) -> Result<String, Error> {
+    let text = read_text(file)?;
+    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| Error::Form {
+        file: file.to_owned(),
+        place: error.span().map_or(Place::Whole, |span| Place::of_byte(&text, span.start)),
+        message: error.message().to_owned(),
+    })?;
+    match document.get_mut("mounting") {
+        Some(Item::ArrayOfTables(mountings)) => mountings.iter_mut().for_each(|mounting| strip(mounting)),
+        Some(Item::Value(Value::Array(mountings))) => {
+            mountings.iter_mut().filter_map(Value::as_inline_table_mut).for_each(|mounting| strip(mounting));
+        }
+        _ => {}
+    }
+    document.insert("plateaus", value(table));
+    Ok(document.to_string())
+}
+
+fn strip(mounting: &mut dyn TableLike) {
+    for key in REPLACED {
+        mounting.remove(key);
+    }
+}
+
+fn is_same(a: &Path, b: &Path) -> bool {
+    a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b)
+}

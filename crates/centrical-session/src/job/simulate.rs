@@ -1,0 +1,8 @@
+//! A session as a laboratory would deliver it, of a unit whose truth is known.
+
+mod files;
+mod session;
+mod session_text;
+
+pub use self::files::TableFormat;
+pub use self::session::simulate_session;

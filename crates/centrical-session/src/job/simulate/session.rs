@@ -1,0 +1,148 @@
+//! A whole session as a laboratory would deliver it: experiment.toml, records, telemetry; and truth.json, which no
+//! laboratory has.
+
+use std::path::Path;
+
+use centrical::simulate::{SimulatedMounting, Simulation};
+use rayon::prelude::*;
+
+use super::files::{TableFormat, record_path, telemetry_path};
+use super::session_text::with_files;
+use crate::csv_table::CsvTable;
+use crate::document::{Written, truth_json};
+use crate::error::{Error, Place};
+use crate::experiment::{EXPERIMENT_FILE, Session};
+use crate::parquet_table::{Layout, ParquetTable};
+use crate::record::Column;
+use crate::table::ColumnName;
+use crate::truth::Truth;
+use crate::write::{create_folder, write_stream, write_whole};
+
+/// Simulates the session that `plan` describes and writes it to `folder`. `done` is told the index of each mounting as
+/// it is written, from any thread; the files do not depend on the number of threads.
+///
+/// # Errors
+/// [`Error`] when the folder holds a session already, the plan brings plateaus already averaged or columns without
+/// names, or a file cannot be written.
+pub fn simulate_session(
+    plan: &Session,
+    truth: &Truth,
+    seed: u64,
+    format: TableFormat,
+    folder: &Path,
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<(), Error> {
+    let experiment_file = folder.join(EXPERIMENT_FILE);
+    if experiment_file.exists() {
+        return Err(Error::content(&experiment_file, Place::Whole, "a session", "a folder without one"));
+    }
+    let columns = Headers::of(plan)?;
+    let text = with_files(plan, format)?;
+    // Plateaus last as long as the plan says, or as the machine makes them.
+    let stated = plan.durations.iter().map(|duration| duration.unwrap_or(truth.settings.machine.plateau));
+    let durations: Vec<f64> = stated.collect();
+    let simulation = Simulation::new(&truth.model, &truth.values, &truth.settings, seed)
+        .and_then(|simulation| simulation.with_durations(&durations))
+        .map_err(|source| Error::Simulation { file: truth.file.clone(), source })?;
+    create_folder(&folder.join("records"))?;
+    create_folder(&folder.join("telemetry"))?;
+    let mountings = (0..plan.experiment.mountings.len()).into_par_iter().map(|m| {
+        let written = write_mounting(plan, &columns, &simulation.mounting(m), format, folder, m);
+        done(m);
+        written
+    });
+    let mountings = mountings.collect::<Result<Vec<Written>, Error>>()?;
+    write_whole(&folder.join("truth.json"), truth_json(plan, truth, seed, &mountings).as_bytes())?;
+    // Last, so that a folder with an experiment file is a whole session.
+    write_whole(&experiment_file, text.as_bytes())
+}
+
+/// The record and the telemetry of one mounting.
+fn write_mounting(
+    plan: &Session,
+    headers: &Headers,
+    mounting: &SimulatedMounting,
+    format: TableFormat,
+    folder: &Path,
+    m: usize,
+) -> Result<Written, Error> {
+    let [f1, f2, f3] = &plan.columns.f;
+    let columns = [&plan.columns.time, f1, f2, f3];
+    let counts = plan.output_unit == "counts";
+    let record = mounting.records().map(|stretch| {
+        let [f1, f2, f3] = stretch.f_z;
+        let mut rows = raw([stretch.t, f1, f2, f3], columns);
+        if counts {
+            rows[1..].iter_mut().flatten().for_each(|value| *value = value.round());
+        }
+        rows
+    });
+    write_table(&folder.join(record_path(m, format)), format, &headers.record, record)?;
+
+    let telemetry = mounting.telemetry();
+    let sense = if plan.experiment.set_points.iter().any(|s| s.omega < 0.0) { -1.0 } else { 1.0 };
+    let speed = telemetry.omega.iter().map(|omega| sense * omega + 0.0).collect();
+    let rows = raw([telemetry.t, speed], [&plan.columns.time, &plan.columns.speed]);
+    write_table(&folder.join(telemetry_path(m, format)), format, &headers.telemetry, std::iter::once(rows))?;
+    Ok(Written {
+        plateaus: mounting.plateaus(),
+        clock_offset: telemetry.clock_offset,
+        clock_drift: telemetry.clock_drift,
+    })
+}
+
+/// From SI to the numbers of the file.
+fn raw<const N: usize>(mut values: [Vec<f64>; N], columns: [&Column; N]) -> [Vec<f64>; N] {
+    for (values, column) in values.iter_mut().zip(columns) {
+        for value in values {
+            *value = column.scale.raw(*value);
+        }
+    }
+    values
+}
+
+/// Writes stretches of columns as one table.
+fn write_table<const N: usize>(
+    file: &Path,
+    format: TableFormat,
+    names: &[String; N],
+    stretches: impl Iterator<Item = [Vec<f64>; N]>,
+) -> Result<(), Error> {
+    write_stream(file, |output| match format {
+        TableFormat::Csv => {
+            let mut table = CsvTable::new(output, names)?;
+            stretches.into_iter().try_for_each(|rows| table.write(&rows))
+        }
+        TableFormat::Parquet => {
+            let mut table = ParquetTable::new(output, Layout::PACKED, names)?;
+            stretches.into_iter().try_for_each(|rows| table.write(&rows))?;
+            table.finish().map(|_| ())
+        }
+    })
+}
+
+/// Names of the columns of records and telemetry.
+#[derive(Debug)]
+struct Headers {
+    record: [String; 4],
+    telemetry: [String; 2],
+}
+
+impl Headers {
+    fn of(plan: &Session) -> Result<Self, Error> {
+        let name = |column: &Column| match &column.name {
+            ColumnName::Name(name) => Ok(name.clone()),
+            other => {
+                let place = Place::Key { table: "[columns]".to_owned(), key: other.to_string() };
+                let expected = "a column by name: simulated tables have a header";
+                Err(Error::content(&plan.file, place, "a column without a name", expected))
+            }
+        };
+        let time = name(&plan.columns.time)?;
+        let [f1, f2, f3] = &plan.columns.f;
+        Ok(Self {
+            record: [time.clone(), name(f1)?, name(f2)?, name(f3)?],
+            telemetry: [time, name(&plan.columns.speed)?],
+        })
+    }
+}

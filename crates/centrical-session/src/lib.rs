@@ -1,0 +1,69 @@
+//! Session folders and records in, calibration results out.
+//!
+//! Inputs are of any make: nothing in a file can make this crate panic, hang or fill the memory. What is
+//! wrong with a file is an [`Error`] with the file, the place, what was found and what was expected.
+//!
+//! # Formats of records and telemetry
+//! | format | columns |
+//! |---|---|
+//! | text, also in gzip or Zstandard: any delimiter, decimal commas, comments | by name, or by number without a header |
+//! | Parquet (uncompressed, snappy, gzip, lz4, zstd) | by name or number |
+//! | Arrow IPC: files (Feather) and streams, plain, lz4 or zstd | by name or number |
+//! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number |
+//! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
+//! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
+//!
+//! The format is told by the first bytes. Time is a number in a unit, a count of samples at a rate, or (text and
+//! Parquet) a stamp. It never decreases; it may stand still.
+
+mod csv_table;
+mod document;
+mod error;
+mod experiment;
+mod job;
+mod laboratory;
+mod parquet_table;
+mod quantity;
+mod record;
+mod record_writer;
+mod reduced;
+mod table;
+mod text_lines;
+mod truth;
+mod write;
+
+pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+pub use document::{
+    BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
+    DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry, HistoryEstimate,
+    InnovationSummary, LeftOutSummary, LostCombination, ModelSummary, MountingPrediction, MountingSummary,
+    NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary, ObservedParameter,
+    OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting, PlannedPlateau,
+    PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise,
+    ReasonReport, RemedyReport, RepeatedPlateau, SCHEMA, SessionSummary, SessionTrend, SightReport, StabilityCurve,
+    StepReport, Subject, TermSummary, TiltSummary, ValiditySummary, WatchState, WatchedPlateau, append_history,
+    keep_history, read_history,
+};
+pub use error::{Error, NoErrorModel, Place};
+pub use experiment::{
+    ExpectedValues, MountingFiles, Noise, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
+    earlier_result, read_plateaus, write_plateaus,
+};
+pub use job::{
+    Compensated, FirstOutside, Method, PlanRequest, Problem, Series, TableFormat, USUAL_LEVELS, Watch, analyse_noise,
+    calibrate, calibrate_without, compensate_record, read_plan, read_planning, reduce, reduce_without_inputs,
+    simulate_session, subject, write_reduced,
+};
+pub use laboratory::{
+    Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
+    LaboratoryTable, Limit, MethodTable, Person, Standard,
+};
+pub use quantity::{Dimension, NotThatQuantity, Quantity};
+pub use record::{
+    Column, Columns, Input, RecordOverview, Scale, read_growing_record, read_record, read_telemetry, scan_record,
+};
+pub use record_writer::RecordWriter;
+pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
+pub use table::ColumnName;
+pub use truth::Truth;
+pub use write::{create_folder, write_whole};

@@ -1,0 +1,153 @@
+//! The plateau means of a session, wherever they come from.
+
+use centrical::reduction::{ClockOffset, LeftOut, PlateauMean};
+use centrical::{Observation, SetPoint};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::experiment::{PlateauMean as TabledPlateau, Session};
+use crate::record::{Input, RecordOverview};
+
+/// A session's plateau means, and the files they come from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reduced {
+    /// One for each of the experiment's set points, in the same order.
+    pub plateaus: Vec<ReducedPlateau>,
+    /// What each mounting's record tells beside; empty for a session that came already averaged.
+    pub mountings: Vec<MountingFindings>,
+    /// Indices of plateaus that are not to be fitted.
+    pub held_out: Vec<usize>,
+    /// What each mounting's record looks like; empty for a session that came already averaged.
+    pub records: Vec<RecordOverview>,
+    /// The session's files.
+    pub inputs: Vec<Input>,
+}
+
+/// What a mounting's record tells beside its means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MountingFindings {
+    /// Time constant of the settling after a ramp [s]; none if no settling was seen.
+    pub settling_time: Option<f64>,
+    /// The centrifuge's clock against the unit's; none without telemetry, or if no ramp is in both.
+    pub clock_offset: Option<ClockOffset>,
+}
+
+/// The mean reading of a plateau and what it was made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReducedPlateau {
+    /// First and last instant used, the record's clock [s]; none for a plateau that came already averaged.
+    pub window: Option<[f64; 2]>,
+    /// Samples used.
+    pub samples: u64,
+    /// Samples of the window left out.
+    pub rejected: u64,
+    /// Mean reading [m/s^2].
+    pub mean: Vector3<f64>,
+    /// Its covariance [m^2/s^4].
+    pub covariance: Matrix3<f64>,
+    /// Amplitude of the once-per-revolution term [m/s^2]; none at rest and for a plateau that came already averaged.
+    pub once_per_revolution: Option<Vector3<f64>>,
+    /// Median speed by the telemetry [rad/s].
+    pub measured_speed: Option<f64>,
+    /// What it shows beside its mean; none for a plateau that came already averaged.
+    pub steadiness: Option<Steadiness>,
+}
+
+/// What a plateau shows beside its mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steadiness {
+    /// Slope of the readings over the window [m/s^3].
+    pub drift: Vector3<f64>,
+    /// Its standard uncertainty [m/s^3].
+    pub drift_uncertainty: Vector3<f64>,
+    /// `c`, `s` of the once-per-revolution term `c cos(Omega t) + s sin(Omega t)`, `t` from the start of the window
+    /// [m/s^2]; zero at rest.
+    pub quadratures: [Vector3<f64>; 2],
+    /// Covariance of either [m^2/s^4].
+    pub quadrature_covariance: Matrix3<f64>,
+    /// Samples that are not used, by kind.
+    pub left_out: LeftOut,
+}
+
+impl From<&PlateauMean> for Steadiness {
+    fn from(plateau: &PlateauMean) -> Self {
+        Self {
+            drift: plateau.drift,
+            drift_uncertainty: plateau.drift_uncertainty,
+            quadratures: plateau.once_per_revolution,
+            quadrature_covariance: plateau.once_per_revolution_covariance,
+            left_out: plateau.left_out,
+        }
+    }
+}
+
+impl Reduced {
+    /// The plateaus as a table, from which the session is calibrated to the same numbers.
+    pub fn table(&self, session: &Session) -> Vec<TabledPlateau> {
+        let row = |(plateau, set_point): (&ReducedPlateau, &SetPoint)| TabledPlateau {
+            mounting: set_point.mounting,
+            speed: set_point.omega.abs(),
+            angle: set_point.angle,
+            mean: plateau.mean,
+            covariance: plateau.covariance,
+            samples: plateau.samples,
+        };
+        self.plateaus.iter().zip(&session.experiment.set_points).map(row).collect()
+    }
+
+    /// Plateaus that came already averaged.
+    pub(crate) fn of_table(rows: &[TabledPlateau]) -> Self {
+        Self {
+            plateaus: rows.iter().map(ReducedPlateau::from).collect(),
+            mountings: Vec::new(),
+            records: Vec::new(),
+            held_out: Vec::new(),
+            inputs: Vec::new(),
+        }
+    }
+
+    /// The means as data of a fit, those held out left out.
+    pub fn observations(&self) -> Vec<Observation> {
+        let observation = |(set_point, plateau): (usize, &ReducedPlateau)| Observation {
+            set_point,
+            mean: plateau.mean,
+            covariance: plateau.covariance,
+        };
+        let fitted = self.plateaus.iter().enumerate().filter(|(set_point, _)| !self.held_out.contains(set_point));
+        fitted.map(observation).collect()
+    }
+}
+
+impl From<PlateauMean> for ReducedPlateau {
+    fn from(plateau: PlateauMean) -> Self {
+        Self {
+            window: Some(plateau.window),
+            samples: plateau.samples as u64,
+            rejected: plateau.rejected as u64,
+            mean: plateau.mean,
+            covariance: plateau.covariance,
+            once_per_revolution: amplitude(&plateau.once_per_revolution),
+            measured_speed: plateau.measured_speed,
+            steadiness: Some(Steadiness::from(&plateau)),
+        }
+    }
+}
+
+/// Amplitude of a harmonic from its two quadratures; none where there is no harmonic.
+fn amplitude([cosine, sine]: &[Vector3<f64>; 2]) -> Option<Vector3<f64>> {
+    Some(cosine.zip_map(sine, f64::hypot)).filter(|amplitude| *amplitude != Vector3::zeros())
+}
+
+impl From<&TabledPlateau> for ReducedPlateau {
+    fn from(row: &TabledPlateau) -> Self {
+        Self {
+            window: None,
+            samples: row.samples,
+            rejected: 0,
+            mean: row.mean,
+            covariance: row.covariance,
+            once_per_revolution: None,
+            measured_speed: None,
+            steadiness: None,
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! The tables of a truth file that say what the equipment is like. What is not given is perfect.
+
+use std::path::Path;
+
+use centrical::simulate::{Coloured, Gaps, Machine, Recorder, Sensor, Settings, Spikes, Tachometer};
+use serde::Deserialize;
+
+use crate::error::Error;
+use crate::experiment::TomlPath;
+use crate::quantity::Dimension::{Acceleration, Frequency, Ratio, Speed, Time};
+use crate::quantity::{Dimension, Quantity};
+
+/// A quantity that may be left out.
+#[derive(Debug, Default, Deserialize)]
+struct Given(Option<Quantity>);
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct MachineTable {
+    plateau: Given,
+    plateau_spread: Given,
+    ramp: Given,
+    speed_error: Given,
+    settling: Given,
+    settling_time: Given,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct SensorTable {
+    white: Given,
+    coloured: ColouredTable,
+    bias_instability: Given,
+    /// Per square root of a second.
+    random_walk: Given,
+    /// Per second.
+    drift: Given,
+    quantum: Given,
+    range: Option<Quantity>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct ColouredTable {
+    deviation: Given,
+    time: Given,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct RecorderTable {
+    rate: Given,
+    spikes: SpikesTable,
+    gaps: GapsTable,
+    repeats: Given,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct SpikesTable {
+    probability: Given,
+    size: Given,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct GapsTable {
+    probability: Given,
+    /// Samples.
+    length: Given,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct TachometerTable {
+    rate: Given,
+    clock_offset: Given,
+    clock_drift: Given,
+    noise: Given,
+    quantum: Given,
+}
+
+impl Given {
+    /// In SI, or `otherwise`.
+    fn or(&self, otherwise: f64, at: &TomlPath, key: &str, dimension: Dimension) -> Result<f64, Error> {
+        self.0.as_ref().map_or(Ok(otherwise), |quantity| at.finite(key, quantity, dimension))
+    }
+}
+
+/// The equipment as the tables of `file` give it; plateaus' speeds err by `speed_error` unless it is given.
+pub(crate) fn settings(
+    file: &Path,
+    (machine, sensor, recorder, tachometer): (&MachineTable, &SensorTable, &RecorderTable, &TachometerTable),
+    speed_error: f64,
+) -> Result<Settings, Error> {
+    let settings = Settings {
+        machine: machine.read(&TomlPath::table(file, "machine"), &Machine { speed_error, ..Machine::default() })?,
+        sensor: sensor.read(&TomlPath::table(file, "sensor"), &Sensor::default())?,
+        recorder: recorder.read(&TomlPath::table(file, "recorder"), &Recorder::default())?,
+        tachometer: tachometer.read(&TomlPath::table(file, "tachometer"), &Tachometer::default())?,
+    };
+    settings.check().map_err(|source| Error::Simulation { file: file.to_owned(), source })?;
+    Ok(settings)
+}
+
+impl MachineTable {
+    fn read(&self, at: &TomlPath, usual: &Machine) -> Result<Machine, Error> {
+        Ok(Machine {
+            plateau: self.plateau.or(usual.plateau, at, "plateau", Time)?,
+            plateau_spread: self.plateau_spread.or(usual.plateau_spread, at, "plateau_spread", Time)?,
+            ramp: self.ramp.or(usual.ramp, at, "ramp", Time)?,
+            speed_error: self.speed_error.or(usual.speed_error, at, "speed_error", Ratio)?,
+            settling: self.settling.or(usual.settling, at, "settling", Ratio)?,
+            settling_time: self.settling_time.or(usual.settling_time, at, "settling_time", Time)?,
+        })
+    }
+}
+
+impl SensorTable {
+    fn read(&self, at: &TomlPath, usual: &Sensor) -> Result<Sensor, Error> {
+        let Coloured { deviation, time } = usual.coloured;
+        Ok(Sensor {
+            white: self.white.or(usual.white, at, "white", Acceleration)?,
+            coloured: Coloured {
+                deviation: self.coloured.deviation.or(deviation, at, "coloured.deviation", Acceleration)?,
+                time: self.coloured.time.or(time, at, "coloured.time", Time)?,
+            },
+            bias_instability: self.bias_instability.or(usual.bias_instability, at, "bias_instability", Acceleration)?,
+            random_walk: self.random_walk.or(usual.random_walk, at, "random_walk", Acceleration)?,
+            drift: self.drift.or(usual.drift, at, "drift", Acceleration)?,
+            quantum: self.quantum.or(usual.quantum, at, "quantum", Acceleration)?,
+            range: self.range.as_ref().map(|range| at.finite("range", range, Acceleration)).transpose()?,
+        })
+    }
+}
+
+impl RecorderTable {
+    fn read(&self, at: &TomlPath, usual: &Recorder) -> Result<Recorder, Error> {
+        let Recorder { spikes, gaps, .. } = usual;
+        Ok(Recorder {
+            rate: self.rate.or(usual.rate, at, "rate", Frequency)?,
+            spikes: Spikes {
+                probability: self.spikes.probability.or(spikes.probability, at, "spikes.probability", Ratio)?,
+                size: self.spikes.size.or(spikes.size, at, "spikes.size", Acceleration)?,
+            },
+            gaps: Gaps {
+                probability: self.gaps.probability.or(gaps.probability, at, "gaps.probability", Ratio)?,
+                length: self.gaps.length.or(gaps.length, at, "gaps.length", Ratio)?,
+            },
+            repeats: self.repeats.or(usual.repeats, at, "repeats", Ratio)?,
+        })
+    }
+}
+
+impl TachometerTable {
+    fn read(&self, at: &TomlPath, usual: &Tachometer) -> Result<Tachometer, Error> {
+        Ok(Tachometer {
+            rate: self.rate.or(usual.rate, at, "rate", Frequency)?,
+            clock_offset: self.clock_offset.or(usual.clock_offset, at, "clock_offset", Time)?,
+            clock_drift: self.clock_drift.or(usual.clock_drift, at, "clock_drift", Ratio)?,
+            noise: self.noise.or(usual.noise, at, "noise", Speed)?,
+            quantum: self.quantum.or(usual.quantum, at, "quantum", Speed)?,
+        })
+    }
+}

@@ -1,0 +1,108 @@
+//! The truth file: the unit as it is, and the laboratory's equipment as it errs.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use centrical::simulate::{Settings, draw_truth};
+use centrical::{Extension, MeasurementModel, Parameter};
+use serde::Deserialize;
+
+use super::equipment::{MachineTable, RecorderTable, SensorTable, TachometerTable, settings};
+use crate::error::Error;
+use crate::experiment::{Session, TomlPath, parse_form};
+use crate::quantity::{Dimension, Quantity};
+
+/// What is simulated: the model with its unknowns, their true values, and the equipment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Truth {
+    /// The truth file.
+    pub file: PathBuf,
+    /// The measurement model, with the extensions whose parameters the file names.
+    pub model: MeasurementModel,
+    /// True values in the order of the model's parameters, SI.
+    pub values: Vec<f64>,
+    /// The equipment.
+    pub settings: Settings,
+}
+
+/// The whole file. Every key is known here: one that is not is an error.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Form {
+    typical: Option<TypicalTable>,
+    #[serde(default)]
+    parameters: BTreeMap<String, Quantity>,
+    #[serde(default)]
+    machine: MachineTable,
+    #[serde(default)]
+    sensor: SensorTable,
+    #[serde(default)]
+    recorder: RecorderTable,
+    #[serde(default)]
+    tachometer: TachometerTable,
+}
+
+/// Parameters that are not named are drawn from a normal law about zero.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TypicalTable {
+    /// Its standard deviation in typical magnitudes.
+    size: f64,
+    /// The session's own seed if there is none.
+    seed: Option<u64>,
+}
+
+impl Truth {
+    /// Reads the truth of a session that follows `plan`. `seed` is the session's.
+    ///
+    /// # Errors
+    /// If the file can not be read or does not follow the form, a quantity is not of its dimension, a setting makes no
+    /// sense, or a parameter is not one of the plan's nor of an extension.
+    pub fn read(file: &Path, plan: &Session, seed: u64) -> Result<Self, Error> {
+        let text = fs::read_to_string(file).map_err(|source| Error::reading(file, source, "a truth file"))?;
+        let form: Form = parse_form(file, &text)?;
+        let (model, sources) = model(plan, &form);
+        let values = values(file, &form, &model, sources, seed)?;
+        let tables = (&form.machine, &form.sensor, &form.recorder, &form.tachometer);
+        let settings = settings(file, tables, plan.speed_uncertainty)?;
+        Ok(Self { file: file.to_owned(), model, values, settings })
+    }
+}
+
+/// The model with those extensions of which the form names a parameter, and the number of parameters without them.
+fn model(plan: &Session, form: &Form) -> (MeasurementModel, usize) {
+    let with =
+        |extensions: &[Extension]| MeasurementModel::new(plan.experiment.clone(), plan.error_model.clone(), extensions);
+    let source = with(&[]);
+    let is_named = |p: &Parameter| source.parameters().find(&p.name).is_none() && form.parameters.contains_key(&p.name);
+    let extensions: Vec<Extension> =
+        Extension::NAMED.iter().map(|(_, e)| *e).filter(|e| with(&[*e]).parameters().iter().any(is_named)).collect();
+    (with(&extensions), source.parameters().len())
+}
+
+/// True values: as named; drawn if not named and among the source's, the first `sources` of them; zero otherwise.
+fn values(file: &Path, form: &Form, model: &MeasurementModel, sources: usize, seed: u64) -> Result<Vec<f64>, Error> {
+    let at = TomlPath::table(file, "parameters");
+    let parameters = model.parameters();
+    let (size, seed) =
+        form.typical.as_ref().map_or((0.0, seed), |typical| (typical.size, typical.seed.unwrap_or(seed)));
+    let mut values = draw_truth(parameters, size, seed);
+    values[sources..].fill(0.0);
+    for (name, quantity) in &form.parameters {
+        let Some(j) = parameters.find(name) else {
+            let known: Vec<&str> = parameters.iter().map(|p| p.name.as_str()).collect();
+            let expected = format!("one of {}, or of an extension such as elastic_speed_1[..]", known.join(", "));
+            return Err(at.unexpected(name, "an unknown parameter", expected));
+        };
+        let dimension = match parameters[j].unit.as_str() {
+            "rad" => Dimension::Angle,
+            "m" => Dimension::Length,
+            "m/s^2" => Dimension::Acceleration,
+            // Plain numbers in the parameter's own SI unit.
+            _ => Dimension::Ratio,
+        };
+        values[j] = at.finite(name, quantity, dimension)?;
+    }
+    Ok(values)
+}
