@@ -2,6 +2,7 @@
 
 mod combination;
 mod conformity;
+mod criterion;
 pub(crate) mod drift;
 mod equation;
 mod expanded;
@@ -12,9 +13,10 @@ mod verdict;
 
 pub(crate) use self::combination::combination;
 pub(crate) use self::conformity::conformity;
+pub(crate) use self::criterion::criterion_unit;
 pub(crate) use self::equation::{equation, equations, monomial};
-pub(crate) use self::expanded::{Expanded, expanded};
+pub(crate) use self::expanded::{COVERAGE_FACTOR, Expanded, expanded};
 pub(crate) use self::group::by_group;
 pub(crate) use self::noise::Shown;
-pub(crate) use self::reading_error::{COVERAGE, MICRO_G, ReadingError, error_model, reading_errors};
+pub(crate) use self::reading_error::{ReadingError, error_model, reading_errors};
 pub use self::verdict::{Objection, objections};

@@ -16,7 +16,6 @@ use nalgebra::Matrix3;
 
 pub use self::drawing::Figure;
 pub use self::frontier::frontier_plot;
-pub(crate) use self::frontier::scale;
 pub use self::history::history_figure;
 pub use self::noise::noise_plots;
 use self::positions::position_drawings;
@@ -37,7 +36,7 @@ pub fn figures(result: &CalibrationResult, language: Language) -> Vec<Figure> {
         .collect()
 }
 
-/// The drawing of the mounting positions; none if the result does not have them.
+/// The drawing of the mounting positions; `None` if the result does not have them.
 pub(crate) fn positions(result: &CalibrationResult, language: Language) -> Option<Figure> {
     let messages = language.messages();
     let positions: Vec<Position> = result

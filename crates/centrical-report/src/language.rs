@@ -4,12 +4,12 @@ mod english;
 mod messages;
 mod russian;
 
-use centrical_session::Date;
+use centrical_session::{Date, Symbol};
 
 use self::english::ENGLISH;
 pub(crate) use self::messages::Messages;
 use self::russian::RUSSIAN;
-use crate::number::{power_of_ten, scientific, shortest, significant, with_uncertainty};
+use crate::number::{power_of_ten, scientific, shortest, significant, superscript, with_uncertainty};
 
 /// A language of the documents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -52,7 +52,7 @@ impl Language {
         }
     }
 
-    /// A number to so many decimal places.
+    /// A number to `places` decimal places.
     pub(crate) fn fixed(self, value: f64, places: usize) -> String {
         self.number(&format!("{value:.places$}"))
     }
@@ -95,38 +95,19 @@ impl Language {
         format!("({})·{}", self.plus_minus(value * scale, uncertainty * scale), power_of_ten(power))
     }
 
-    /// A unit as the result names it.
+    /// A unit as results and tables for the terminal name it.
     pub(crate) fn unit(self, plain: &str) -> String {
-        const SYMBOLS: [(&str, &str, &str); 10] = [
-            ("ppm", "ppm", "млн⁻¹"),
-            ("urad", "µrad", "мкрад"),
-            ("rad", "rad", "рад"),
-            ("um", "µm", "мкм"),
-            ("ug", "µg", "мкg"),
-            ("mg", "mg", "мg"),
-            ("min", "min", "мин"),
-            ("s", "s", "с"),
-            ("m", "m", "м"),
-            ("1", "1", "1"),
-        ];
-        let symbol = |name: &str| {
+        let part = |name: &str| {
             let (stem, power) = name.split_once('^').unwrap_or((name, ""));
-            let known = SYMBOLS.iter().find(|(plain, _, _)| *plain == stem);
-            let stem = match (known, self) {
-                (Some((_, english, _)), Self::English) => english,
-                (Some((_, _, russian)), Self::Russian) => russian,
-                (None, _) => stem,
-            };
-            let raised = power.chars().map(|digit| match digit {
-                '2' => '²',
-                '3' => '³',
-                '4' => '⁴',
-                '6' => '⁶',
-                other => other,
+            let symbol = Symbol::of(stem).map(|symbol| match self {
+                Self::English => symbol.english,
+                Self::Russian => symbol.russian,
             });
-            format!("{stem}{}", raised.collect::<String>())
+            let raised = power.parse().map_or(String::new(), superscript);
+            format!("{}{raised}", symbol.unwrap_or(stem))
         };
-        plain.split('/').map(symbol).collect::<Vec<_>>().join("/")
+        let words = |text: &str| text.split(' ').map(part).collect::<Vec<_>>().join(" ");
+        plain.split('/').map(words).collect::<Vec<_>>().join("/")
     }
 
     /// A day.
@@ -153,6 +134,7 @@ mod tests {
         assert_eq!(English.significant(1234.5, 3), "1234");
         assert_eq!(Russian.significant(0.012_345, 3), "0,0123");
         assert_eq!((English.unit("ug/g^2"), Russian.unit("ug/g^2")), ("µg/g²".to_owned(), "мкg/g²".to_owned()));
+        assert_eq!(Russian.unit("urad at 10 rev/s"), "мкрад при 10 об/с");
         assert_eq!((English.unit("s^4/m^2"), Russian.unit("s^4/m^2")), ("s⁴/m²".to_owned(), "с⁴/м²".to_owned()));
     }
 }

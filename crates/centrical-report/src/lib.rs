@@ -13,7 +13,6 @@ mod number;
 pub mod plot;
 mod render;
 mod terminal;
-mod units;
 
 pub use dcc::digital_certificate;
 pub use document::{
@@ -29,4 +28,3 @@ pub use terminal::{
     noise_warnings, observation_text, outliers_text, plan_text, prediction_table, selection_table, states_text,
     terminal_table, validity_text, verdict_text, watch_table,
 };
-pub use units::customary;

@@ -10,7 +10,7 @@ mod reduced_session;
 mod simulate;
 mod watch;
 
-pub use self::calibrate::{Method, Problem, calibrate, calibrate_without};
+pub use self::calibrate::{Problem, calibrate, calibrate_without};
 pub use self::compensate::{Compensated, FirstOutside, compensate_record};
 pub use self::noise::{Series, analyse_noise};
 pub use self::observe::subject;

@@ -30,19 +30,20 @@ mod reduced;
 mod table;
 mod text_lines;
 mod truth;
+mod units;
 mod write;
 
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
-    DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry, HistoryEstimate,
-    InnovationSummary, LeftOutSummary, LostCombination, ModelSummary, MountingPrediction, MountingSummary,
-    NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary, ObservedParameter,
-    OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting, PlannedPlateau,
-    PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise,
-    ReasonReport, RemedyReport, RepeatedPlateau, SCHEMA, SessionSummary, SessionTrend, SightReport, StabilityCurve,
-    StepReport, Subject, TermSummary, TiltSummary, ValiditySummary, WatchState, WatchedPlateau, append_history,
-    keep_history, read_history,
+    CriterionName, DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry,
+    HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method, ModelSummary, MountingPrediction,
+    MountingSummary, NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary,
+    ObservedParameter, OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting,
+    PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program,
+    ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, SCHEMA, SessionSummary, SessionTrend, SightReport,
+    StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, ValiditySummary, WatchState, WatchedPlateau,
+    append_history, keep_history, read_history,
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{
@@ -50,7 +51,7 @@ pub use experiment::{
     earlier_result, read_plateaus, write_plateaus,
 };
 pub use job::{
-    Compensated, FirstOutside, Method, PlanRequest, Problem, Series, TableFormat, USUAL_LEVELS, Watch, analyse_noise,
+    Compensated, FirstOutside, PlanRequest, Problem, Series, TableFormat, USUAL_LEVELS, Watch, analyse_noise,
     calibrate, calibrate_without, compensate_record, read_plan, read_planning, reduce, reduce_without_inputs,
     simulate_session, subject, write_reduced,
 };
@@ -66,4 +67,5 @@ pub use record_writer::RecordWriter;
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use table::ColumnName;
 pub use truth::Truth;
+pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary};
 pub use write::{create_folder, write_whole};

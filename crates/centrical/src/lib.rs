@@ -18,6 +18,7 @@ mod experiment;
 /// Estimation from plateau means.
 pub mod fit;
 mod frame;
+mod group;
 mod least_squares;
 mod measurement;
 /// Noise of a record: stability deviations, spectrum, noise terms.
@@ -47,6 +48,7 @@ pub use experiment::{
 };
 pub use fit::{Fit, Termination};
 pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
+pub use group::Group;
 pub use least_squares::LeastSquares;
 pub use measurement::{ArmMotion, Linearisation, MeasurementModel, linear};
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};

@@ -4,6 +4,7 @@ use std::ops::Index;
 
 use crate::error_model::{ErrorModel, Monomial};
 use crate::experiment::{Experiment, PairRelation, ReferencePoint, STANDARD_GRAVITY};
+use crate::group::Group;
 
 /// One unknown.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,8 +13,8 @@ pub struct Parameter {
     pub name: String,
     /// Unit of its value, SI.
     pub unit: String,
-    /// Name of the group it belongs to: tilt, turn, shift, bias, scale, ...
-    pub group: &'static str,
+    /// The group it belongs to.
+    pub group: Group,
     /// What it is.
     pub kind: Kind,
     /// Power of acceleration in its unit, which people are shown in g to that power: -1 for s^2/m.
@@ -182,7 +183,7 @@ impl Parameters {
     pub fn new(experiment: &Experiment, error_model: &ErrorModel, extensions: &[Extension]) -> Self {
         let mut list = Vec::new();
         for axis in 0..2 {
-            list.push(parameter(format!("alpha_{}", axis + 1), "rad", "tilt", Kind::Tilt(axis), 1e-3));
+            list.push(parameter(format!("alpha_{}", axis + 1), "rad", Group::Tilt, Kind::Tilt(axis), 1e-3));
         }
         let turn = turns(experiment, &mut list);
         let shift = shifts(experiment, &mut list);
@@ -190,7 +191,7 @@ impl Parameters {
             let first = list.len();
             for axis in 1..3 {
                 let name = format!("drho_{0}{0}", axis + 1);
-                list.push(parameter(name, "m", "proof mass", Kind::ProofMass(axis), 5e-4));
+                list.push(parameter(name, "m", Group::ProofMass, Kind::ProofMass(axis), 5e-4));
             }
             first
         });
@@ -243,7 +244,7 @@ impl Parameters {
         }
         let has_stem = |p: &Parameter| p.name.strip_prefix(name).is_some_and(|rest| rest.starts_with(['_', '[']));
         let columns = self.iter().enumerate();
-        columns.filter(|(_, p)| p.group == name || has_stem(p)).map(|(column, _)| column).collect()
+        columns.filter(|(_, p)| p.group.name() == name || has_stem(p)).map(|(column, _)| column).collect()
     }
 
     /// Coefficients of the error model's terms within `x`.
@@ -294,7 +295,7 @@ impl Index<usize> for Parameters {
     }
 }
 
-fn parameter(name: String, unit: &str, group: &'static str, kind: Kind, typical: f64) -> Parameter {
+fn parameter(name: String, unit: &str, group: Group, kind: Kind, typical: f64) -> Parameter {
     Parameter { name, unit: unit.to_owned(), group, kind, power_of_acceleration: 0, typical }
 }
 
@@ -304,7 +305,7 @@ fn turns(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<usize> {
         first_columns.push(list.len());
         for axis in 0..3 {
             let name = format!("delta_{}[{}]", axis + 1, position.id);
-            list.push(parameter(name, "rad", "turn", Kind::Turn { axis, position: k }, 1e-3));
+            list.push(parameter(name, "rad", Group::Turn, Kind::Turn { axis, position: k }, 1e-3));
         }
     }
     first_columns
@@ -327,7 +328,7 @@ fn shifts(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<Shared> {
         let id = if experiment.pair_relation == PairRelation::Free { &position.id } else { &position.pair };
         for axis in 0..2 {
             let name = format!("dR_{}[{id}]", axis + 1);
-            list.push(parameter(name, "m", "shift", Kind::Shift { axis, position: k }, 5e-4));
+            list.push(parameter(name, "m", Group::Shift, Kind::Shift { axis, position: k }, 5e-4));
         }
     }
     shared
@@ -348,7 +349,7 @@ fn extend(experiment: &Experiment, extension: Extension, list: &mut Vec<Paramete
                 for axis in 0..3 {
                     let name = format!("elastic_{}_{}[{}]", law.name(), axis + 1, position.id);
                     let kind = Kind::ElasticTurn { law, axis, position: k };
-                    list.push(per_law(name, "elastic turn", law, kind));
+                    list.push(per_law(name, Group::ElasticTurn, law, kind));
                 }
             }
         }
@@ -362,21 +363,21 @@ fn extend(experiment: &Experiment, extension: Extension, list: &mut Vec<Paramete
             }
         }
         Extension::RadiusScale => {
-            list.push(parameter("radius_scale".to_owned(), "1", "scale of radii", Kind::RadiusScale, 1e-3));
+            list.push(parameter("radius_scale".to_owned(), "1", Group::RadiusScale, Kind::RadiusScale, 1e-3));
         }
         Extension::SpeedScale => {
-            list.push(parameter("speed_scale".to_owned(), "1", "scale of speed", Kind::SpeedScale, 1e-3));
+            list.push(parameter("speed_scale".to_owned(), "1", Group::SpeedScale, Kind::SpeedScale, 1e-3));
         }
     }
 }
 
 fn stretch(name: String, law: Law, seat: Option<usize>) -> Parameter {
     let kind = Kind::ArmStretch { law, seat };
-    per_law(name, "arm stretch", law, kind)
+    per_law(name, Group::ArmStretch, law, kind)
 }
 
 /// A deformation per unit of its law.
-fn per_law(name: String, group: &'static str, law: Law, kind: Kind) -> Parameter {
+fn per_law(name: String, group: Group, law: Law, kind: Kind) -> Parameter {
     let power_of_acceleration = if law == Law::Load { -1 } else { 0 };
     let deformation = parameter(name, law.unit_of_inverse(), group, kind, 1e-3 / law.full_scale());
     Parameter { power_of_acceleration, ..deformation }

@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical::uncertainty;
-use centrical_report::{comparison_table, customary};
-use centrical_session::{CalibrationResult, Error};
+use centrical_report::comparison_table;
+use centrical_session::{CalibrationResult, Error, customary};
 
 use crate::Outcome;
 
@@ -31,7 +31,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let customary_of = |name: &str| {
         let parameter = first.parameter(name);
         parameter.map_or((1.0, String::new()), |p| {
-            let (factor, unit) = customary(&p.unit, &p.group);
+            let (factor, unit) = customary(&p.unit, p.group);
             (factor, unit.to_owned())
         })
     };

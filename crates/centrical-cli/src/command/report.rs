@@ -6,7 +6,9 @@ use centrical_report::codegen::{NamedTerm, compensation_source, heading};
 use centrical_report::{
     Language, certificate, digital_certificate, figures, history_figure, html, objections, pdf, report, verdict_text,
 };
-use centrical_session::{CalibrationResult, Error, Laboratory, Place, create_folder, read_history, write_whole};
+use centrical_session::{
+    CalibrationResult, Error, Laboratory, Place, UnknownUnit, create_folder, read_history, write_whole,
+};
 use clap::ValueEnum;
 
 use crate::Outcome;
@@ -75,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let language = arguments.documents.language.into();
     if let Some(file) = &arguments.html {
         let history = arguments.history.as_deref().map(read_history).transpose()?.unwrap_or_default();
-        let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group.as_str());
+        let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group);
         let further = history_figure(&history, &group_of, language);
         write_whole(file, html(&report(&result, further.as_slice(), language)).as_bytes())?;
     }
@@ -85,7 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             write_whole(file, &pdf(&certificate(&result, before.as_ref(), &laboratory, language)))?;
         }
         if let Some(file) = &arguments.dcc {
-            write_whole(file, digital_certificate(&result, &laboratory, language).as_bytes())?;
+            write_whole(file, dcc(&result, &laboratory, language, &arguments.result)?.as_bytes())?;
         }
     }
     if let Some(folder) = &arguments.code {
@@ -114,6 +116,17 @@ fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Re
         return refuse("a result before an adjustment".to_owned(), expected.to_owned());
     }
     Ok(before)
+}
+
+/// The digital certificate of the result in `file`.
+fn dcc(result: &CalibrationResult, laboratory: &Laboratory, language: Language, file: &Path) -> Result<String, Error> {
+    let refused = |unknown: UnknownUnit| Error::Content {
+        file: file.to_owned(),
+        place: Place::Whole,
+        found: format!("a parameter in {:?}", unknown.found),
+        expected: "a fraction of powers of m, s and rad such as s^2/m, or 1".to_owned(),
+    };
+    digital_certificate(result, laboratory, language).map_err(refused)
 }
 
 /// Writes the compensation as source code.
@@ -145,7 +158,7 @@ impl Documents {
         write_whole(&folder.join("report.html"), html(&report(result, &[], language)).as_bytes())?;
         if let Some(laboratory) = laboratory {
             write_whole(&folder.join("certificate.pdf"), &pdf(&certificate(result, None, &laboratory, language)))?;
-            let dcc = digital_certificate(result, &laboratory, language);
+            let dcc = dcc(result, &laboratory, language, &folder.join("result.json"))?;
             write_whole(&folder.join("certificate.xml"), dcc.as_bytes())?;
         }
         let plots = folder.join("plots");

@@ -271,7 +271,7 @@ impl<'a> Following<'a> {
 
 /// Refuses a target for a group that there is not.
 fn check_targets(arguments: &Arguments, session: &Session, model: &MeasurementModel) -> Result<(), Error> {
-    let mut groups: Vec<&str> = model.parameters().iter().map(|parameter| parameter.group).collect();
+    let mut groups: Vec<&str> = model.parameters().iter().map(|parameter| parameter.group.name()).collect();
     groups.dedup();
     let Some((unknown, _)) = arguments.target.iter().find(|(group, _)| !groups.contains(&group.as_str())) else {
         return Ok(());

@@ -67,7 +67,7 @@ fn kozlov_terms(u: &[f64; 21]) -> Vec<Term> {
 pub fn core_model(terms: &[Term]) -> (centrical::ErrorModel, Vec<f64>) {
     let term = |t: &Term| centrical::Term {
         name: String::new(),
-        group: "",
+        group: centrical::Group::HigherOrder,
         axis: t.axis,
         monomial: centrical::Monomial { powers: t.powers, sign_of: t.sign_of },
     };

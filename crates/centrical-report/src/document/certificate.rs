@@ -1,6 +1,8 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
-use centrical_session::{Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory};
+use centrical_session::{
+    Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory, customary,
+};
 
 use super::content::{Align, Block, Document, Margins, Opening, Section, Table, Tone};
 use super::drift::drift_facts;
@@ -8,7 +10,6 @@ use super::objection::objection;
 use super::reading_error::error_table;
 use crate::evaluation::{by_group, conformity, equations, expanded, objections};
 use crate::language::Language;
-use crate::units::customary;
 
 /// The certificate, with the results `before` an adjustment beside those after it if the unit was adjusted.
 pub fn certificate(
@@ -137,15 +138,11 @@ fn conditions(result: &CalibrationResult, laboratory: &Laboratory, language: Lan
         let [value, range] = [condition.value, condition.range].map(|value| language.number(&value.to_string()));
         format!("{value} ± {range} {unit}")
     };
-    let pascal = match language {
-        Language::English => "kPa",
-        Language::Russian => "кПа",
-    };
     let gravity = format!("{} {}", language.number(&result.model.gravity.to_string()), language.unit("m/s^2"));
     let facts = Block::facts([
         (messages.temperature, shown(environment.temperature, "°C")),
         (messages.humidity, environment.humidity.map(|c| shown(c, "%")).unwrap_or_default()),
-        (messages.pressure, environment.pressure.map(|c| shown(c, pascal)).unwrap_or_default()),
+        (messages.pressure, environment.pressure.map(|c| shown(c, &language.unit("kPa"))).unwrap_or_default()),
         (messages.gravity, gravity),
         (messages.speed_uncertainty, language.scientific(result.model.speed_uncertainty)),
     ]);
@@ -190,7 +187,7 @@ fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let messages = language.messages();
     let terms: Vec<_> = result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect();
     let rows = by_group(&terms).into_iter().map(|parameter| {
-        let (factor, unit) = customary(&parameter.unit, &parameter.group);
+        let (factor, unit) = customary(&parameter.unit, parameter.group);
         let [shown, si] = match (parameter.value, expanded(result, parameter)) {
             (Some(value), Some(expanded)) => {
                 let expanded = expanded.uncertainty;
@@ -199,7 +196,7 @@ fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
             }
             _ => [messages.not_determined.to_owned(), String::new()],
         };
-        let group = messages.word(&parameter.group).to_owned();
+        let group = (messages.words.group)(parameter.group).to_owned();
         vec![parameter.name.clone(), group, shown, language.unit(unit), si, language.unit(&parameter.unit)]
     });
     let columns = [
@@ -250,7 +247,7 @@ fn results_before(result: &CalibrationResult, before: &CalibrationResult, langua
         estimate.map_or_else(|| messages.not_determined.to_owned(), known)
     };
     let rows = by_group(&terms).into_iter().map(|after| {
-        let (factor, unit) = customary(&after.unit, &after.group);
+        let (factor, unit) = customary(&after.unit, after.group);
         let [was, is] = [before, result].map(|result| shown(result, &after.name, factor));
         vec![after.name.clone(), was, is, language.unit(unit)]
     });
@@ -273,7 +270,7 @@ fn conformity_statement(result: &CalibrationResult, decision: &Decision, languag
     let rows = conformity(result, decision).into_iter().map(|judged| {
         let limit = judged.limit;
         let parameter = result.parameter(&limit.parameter);
-        let (factor, unit) = parameter.map_or((1.0, ""), |p| customary(&p.unit, &p.group));
+        let (factor, unit) = parameter.map_or((1.0, ""), |p| customary(&p.unit, p.group));
         let [low, high] = [limit.low, limit.high].map(|end| language.significant(end * factor, 4));
         let value = judged.value.map_or_else(
             || messages.not_determined.to_owned(),

@@ -149,7 +149,7 @@ pub enum Row {
 }
 
 impl Block {
-    /// The facts of which something is known.
+    /// The facts whose value is not empty.
     pub(super) fn facts<'n>(facts: impl IntoIterator<Item = (&'n str, String)>) -> Self {
         let known = facts.into_iter().filter(|(_, value)| !value.is_empty());
         Self::Facts(known.map(|(name, value)| (name.to_owned(), value)).collect())

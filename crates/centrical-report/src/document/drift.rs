@@ -1,10 +1,8 @@
 //! What the documents say of drift and tilt, a name and a text each.
 
-use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, TiltSummary};
+use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, TiltSummary};
 
-use crate::evaluation::drift::{
-    MICRO_G, MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter,
-};
+use crate::evaluation::drift::{MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter};
 use crate::language::Language;
 
 /// A name and what it stands for.
@@ -27,7 +25,7 @@ pub(super) fn drift_facts(result: &CalibrationResult, language: Language) -> Vec
 
 fn drifts(facts: &mut Vec<Fact>, drift: &DriftSummary, language: Language) {
     let messages = language.messages();
-    let per_minute = MICRO_G * MINUTE;
+    let per_minute = MINUTE / MICRO_G;
     let slopes = drift.slope.iter().zip(&drift.slope_uncertainty).enumerate();
     let slopes = slopes.map(|(i, (slope, u))| axis(i + 1, &language.plus_minus(per_minute * slope, per_minute * u)));
     let said = [
@@ -38,7 +36,7 @@ fn drifts(facts: &mut Vec<Fact>, drift: &DriftSummary, language: Language) {
     facts.push((messages.drift_over_plateau, said.join("; ")));
     if !drift.over_session.is_empty() {
         let changes = drift.over_session.iter().map(|trend| {
-            axis(trend.axis, &language.plus_minus(MICRO_G * trend.change, MICRO_G * trend.standard_uncertainty))
+            axis(trend.axis, &language.plus_minus(trend.change / MICRO_G, trend.standard_uncertainty / MICRO_G))
         });
         let verdict = match SessionDrift::of(drift) {
             SessionDrift::NotSeen => messages.no_drift,

@@ -1,8 +1,8 @@
 //! Objections and patterns as sentences.
 
-use centrical_session::{Follows, PatternSummary};
+use centrical_session::{Follows, MICRO_G, PatternSummary};
 
-use crate::evaluation::{MICRO_G, Objection};
+use crate::evaluation::Objection;
 use crate::language::Language;
 
 /// An objection to a result.
@@ -10,7 +10,7 @@ pub(crate) fn objection(objection: &Objection, language: Language) -> String {
     let messages = language.messages();
     match objection {
         Objection::NotConverged { termination, iterations } => {
-            format!("{} ({}, {iterations})", messages.not_converged, messages.word(termination))
+            format!("{} ({}, {iterations})", messages.not_converged, (messages.words.termination)(*termination))
         }
         Objection::Residuals { chi_squared, degrees_of_freedom, chance } => {
             let (chi_squared, chance) = (language.fixed(*chi_squared, 1), language.probability(*chance));
@@ -34,27 +34,22 @@ pub(crate) fn objection(objection: &Objection, language: Language) -> String {
 /// A pattern in the residuals: newtonometer, what it follows, amplitude.
 pub(super) fn pattern(pattern: &PatternSummary, language: Language) -> String {
     let messages = language.messages();
-    let (follows, place) = match &pattern.follows {
-        Follows::Position { position } => ("step in position", position.clone()),
-        Follows::SpeedInPosition { position } => ("square of the speed in position", position.clone()),
-        Follows::SpeedOnSeat { radius } => (
-            "square of the speed at radius",
-            format!("{} {}", language.number(&radius.to_string()), language.unit("m")),
-        ),
-        Follows::Speed => ("square of the speed", String::new()),
-        Follows::Load => ("load", String::new()),
-        Follows::Mounting { mounting } => ("step in mounting", mounting.to_string()),
-        Follows::Time => ("drift", String::new()),
+    let place = match &pattern.follows {
+        Follows::Position { position } | Follows::SpeedInPosition { position } => format!(" {position}"),
+        Follows::SpeedOnSeat { radius } => {
+            format!(" {} {}", language.number(&radius.to_string()), language.unit("m"))
+        }
+        Follows::Mounting { mounting } => format!(" {mounting}"),
+        Follows::Speed | Follows::Load | Follows::Time => String::new(),
     };
     let [amplitude, uncertainty] =
         [pattern.amplitude, pattern.standard_uncertainty].map(|a| language.significant(a / MICRO_G, 2));
     let chance = language.probability(pattern.probability);
-    let follows = format!("{} {place}", messages.word(follows));
+    let follows = (messages.words.follows)(&pattern.follows);
     format!(
-        "{} {}, {}: {amplitude} ± {uncertainty} {}, {} {chance}",
+        "{} {}, {follows}{place}: {amplitude} ± {uncertainty} {}, {} {chance}",
         messages.axis,
         pattern.axis,
-        follows.trim_end(),
         language.unit("ug"),
         messages.chance
     )

@@ -105,6 +105,7 @@ fn capitalised(text: &str) -> String {
 /// Model, data and method.
 fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let (messages, model, fit) = (language.messages(), &result.model, &result.fit);
+    let words = &messages.words;
     let gravity = format!("{} {}", language.number(&model.gravity.to_string()), language.unit("m/s^2"));
     let latitude = model.latitude.map(|latitude| format!("{}°", language.fixed(latitude.to_degrees(), 4)));
     let mountings = result.plateaus.iter().map(|p| p.mounting).max().unwrap_or(0);
@@ -118,12 +119,13 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
         messages.samples,
         messages.rejected
     );
-    let method = format!("{} ({}, {})", messages.word(&fit.method), messages.word(&fit.termination), fit.iterations);
+    let method =
+        format!("{} ({}, {})", (words.method)(fit.method), (words.termination)(fit.termination), fit.iterations);
     let facts = Block::facts([
         (messages.gravity, gravity),
         (messages.latitude, latitude.unwrap_or_default()),
-        (messages.pair_relation, messages.word(&model.pair_relation).to_owned()),
-        (messages.reference, messages.word(&model.reference).to_owned()),
+        (messages.pair_relation, (words.pair_relation)(model.pair_relation).to_owned()),
+        (messages.reference, (words.reference)(model.reference).to_owned()),
         (messages.speed_uncertainty, language.scientific(model.speed_uncertainty)),
         (messages.data, data),
         (messages.method, method),

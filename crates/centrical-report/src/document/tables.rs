@@ -1,11 +1,10 @@
 //! Tables of the report.
 
-use centrical_session::{BudgetSource, CalibrationResult, ParameterEstimate};
+use centrical_session::{BudgetSource, CalibrationResult, ParameterEstimate, customary};
 
 use super::content::{Align, Column, Row, Table, TableKind};
 use crate::evaluation::expanded;
 use crate::language::Language;
-use crate::units::customary;
 
 /// What a source leaves is not shown below this part of the combined uncertainty.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -21,11 +20,11 @@ pub(super) fn parameters(result: &CalibrationResult, shown: &[&ParameterEstimate
         (messages.unit, 0.12, Align::Left),
     ];
     let mut table = Table { kind: TableKind::Parameters, ..Table::numbers(columns, []) };
-    let mut group = "";
+    let mut group = None;
     for parameter in shown {
-        if parameter.group != group {
-            group = &parameter.group;
-            table.rows.push(Row::Group(messages.word(group).to_owned()));
+        if group != Some(parameter.group) {
+            group = Some(parameter.group);
+            table.rows.push(Row::Group((messages.words.group)(parameter.group).to_owned()));
         }
         table.rows.push(Row::Cells(cells(result, parameter, language)));
     }
@@ -33,7 +32,7 @@ pub(super) fn parameters(result: &CalibrationResult, shown: &[&ParameterEstimate
 }
 
 fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) -> Vec<String> {
-    let (factor, unit) = customary(&parameter.unit, &parameter.group);
+    let (factor, unit) = customary(&parameter.unit, parameter.group);
     let [shown, si] = match (parameter.value, expanded(result, parameter)) {
         (Some(value), Some(expanded)) => [
             language.plus_minus(value * factor, expanded.uncertainty * factor),
@@ -44,12 +43,12 @@ fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: La
     vec![parameter.name.clone(), shown, language.unit(unit), si, language.unit(&parameter.unit)]
 }
 
-/// Standard uncertainty by source; none if no budget was made.
+/// Standard uncertainty by source; `None` if no budget was made.
 pub(super) fn budget(result: &CalibrationResult, language: Language) -> Option<Table> {
     let messages = language.messages();
     let budget = result.budget.as_ref()?;
     let mut titles = vec![messages.parameter, messages.unit];
-    titles.extend(budget.sources.iter().map(|source| messages.word(&source.name)));
+    titles.extend(budget.sources.iter().map(|source| (messages.words.source)(source.name)));
     titles.extend([messages.combined, messages.degrees_word]);
     let share = 1.0 / titles.len() as f32;
     let column = |(n, title): (usize, &str)| {
@@ -58,7 +57,7 @@ pub(super) fn budget(result: &CalibrationResult, language: Language) -> Option<T
     };
     let columns = titles.into_iter().enumerate().map(column).collect();
     let row = |(j, parameter): (usize, &ParameterEstimate)| {
-        let (factor, unit) = customary(&parameter.unit, &parameter.group);
+        let (factor, unit) = customary(&parameter.unit, parameter.group);
         let shown = |value: Option<f64>| value.map_or(String::new(), |value| language.significant(value * factor, 2));
         let combined = budget.combined.get(j).copied().flatten();
         let negligible = NEGLIGIBLE * combined.unwrap_or(0.0);

@@ -10,7 +10,7 @@ use super::verdict::objections;
 pub(crate) struct Judged<'d> {
     /// The limit.
     pub limit: &'d Limit,
-    /// Estimate and expanded uncertainty, SI; none if the data do not determine it.
+    /// Estimate and expanded uncertainty, SI; `None` if the data do not determine it.
     pub value: Option<(f64, f64)>,
     /// Whether it conforms; nothing can be stated of what the data do not determine, or from a result that is not
     /// acceptable.

@@ -1,14 +1,10 @@
 //! How steady the readings were: what of drift and tilt is no chance, and the samples left out.
 
-use centrical::STANDARD_GRAVITY;
 use centrical::uncertainty::chi_squared_tail;
 use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, TiltSummary};
 
-/// What comes by chance less often than this is said to be there.
+/// An effect less probable than this by chance is reported as real.
 const CHANCE: f64 = 1e-3;
-
-/// ug per m/s^2.
-pub(crate) const MICRO_G: f64 = 1e6 / STANDARD_GRAVITY;
 
 /// Seconds in a minute.
 pub(crate) const MINUTE: f64 = 60.0;

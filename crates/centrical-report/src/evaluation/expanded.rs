@@ -4,10 +4,10 @@ use centrical::uncertainty::{Degrees, coverage_factor};
 use centrical_session::{CalibrationResult, ParameterEstimate};
 
 /// Coverage factor where the degrees of freedom are infinite.
-const NORMAL: f64 = 2.0;
+pub(crate) const COVERAGE_FACTOR: f64 = 2.0;
 
-/// Probability that two standard deviations of a normal distribution cover.
-const PROBABILITY: f64 = 0.954_499_736_103_642;
+/// Probability that it covers in a normal distribution.
+const COVERAGE_PROBABILITY: f64 = 0.954_499_736_103_642;
 
 /// An expanded uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,10 +19,12 @@ pub(crate) struct Expanded {
     pub uncertainty: f64,
 }
 
-/// Expanded uncertainty of a parameter of the result; none if it is not determined.
+/// Expanded uncertainty of a parameter of the result; `None` if it is not determined.
 pub(crate) fn expanded(result: &CalibrationResult, parameter: &ParameterEstimate) -> Option<Expanded> {
     let place = result.parameters.iter().position(|other| other.name == parameter.name);
     let degrees = |j: usize| result.budget.as_ref()?.degrees_of_freedom.get(j).copied().flatten();
-    let factor = place.and_then(degrees).map_or(NORMAL, |nu| coverage_factor(PROBABILITY, Degrees::Finite(nu)));
+    let factor = place
+        .and_then(degrees)
+        .map_or(COVERAGE_FACTOR, |nu| coverage_factor(COVERAGE_PROBABILITY, Degrees::Finite(nu)));
     Some(Expanded { factor, uncertainty: factor * parameter.standard_uncertainty? })
 }

@@ -1,8 +1,7 @@
 //! The units in which a noise analysis is shown.
 
-use centrical::STANDARD_GRAVITY;
 use centrical::noise::{Estimator, NoiseTerm};
-use centrical_session::ReadingNoise;
+use centrical_session::{MICRO_G, ReadingNoise, Unit};
 
 /// How the numbers of one column are shown.
 pub(crate) struct Shown {
@@ -15,8 +14,8 @@ pub(crate) struct Shown {
 impl Shown {
     /// Readings: accelerations in ug.
     pub fn reading(reading: &ReadingNoise) -> Self {
-        if reading.unit == "m/s^2" {
-            Self { factor: 1e6 / STANDARD_GRAVITY, unit: "ug".to_owned() }
+        if is_acceleration(reading) {
+            Self { factor: 1.0 / MICRO_G, unit: "ug".to_owned() }
         } else {
             Self { factor: 1.0, unit: reading.unit.clone() }
         }
@@ -24,7 +23,7 @@ impl Shown {
 
     /// Their integral over time.
     fn phase(reading: &ReadingNoise) -> Self {
-        if reading.unit == "m/s^2" {
+        if is_acceleration(reading) {
             Self { factor: 1e6, unit: "um/s".to_owned() }
         } else {
             Self { factor: 1.0, unit: format!("{} s", reading.unit) }
@@ -46,4 +45,8 @@ impl Shown {
             NoiseTerm::Ramp => per("/s"),
         }
     }
+}
+
+fn is_acceleration(reading: &ReadingNoise) -> bool {
+    Unit::parse(&reading.unit) == Ok(Unit::ACCELERATION)
 }

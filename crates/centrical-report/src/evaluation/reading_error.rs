@@ -1,15 +1,9 @@
 //! Errors of the unit's readings on the plateaus, before and after compensation.
 
 use centrical::uncertainty::Compensated;
-use centrical::{ErrorModel, Monomial, STANDARD_GRAVITY, Term};
+use centrical::{ErrorModel, Monomial, Term};
 use centrical_session::{CalibrationResult, PlateauSummary};
 use nalgebra::{DMatrix, Matrix3, Vector3};
-
-/// One microgram in m/s^2.
-pub(crate) const MICRO_G: f64 = 1e-6 * STANDARD_GRAVITY;
-
-/// Coverage factor of the uncertainty of compensation.
-pub(crate) const COVERAGE: f64 = 2.0;
 
 /// Errors of the reading on one plateau, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +22,7 @@ pub(crate) struct ReadingError {
     pub prediction: Vector3<f64>,
 }
 
-/// Errors on every plateau; none if the unit cannot be compensated because a parameter of it is not determined.
+/// Errors on every plateau; `None` if a coefficient of the error model is not determined.
 pub(crate) fn reading_errors(result: &CalibrationResult) -> Option<Vec<ReadingError>> {
     let (model, coefficients) = error_model(result)?;
     let covariance = covariance(result)?;
@@ -67,15 +61,16 @@ fn of_speed(plateau: &PlateauSummary, residual: &Vector3<f64>) -> Vector3<f64> {
     total.cholesky().map_or_else(Vector3::zeros, |factor| speed * factor.solve(residual))
 }
 
-/// The unit's error model with its coefficients; none if one is not determined.
+/// The unit's error model with its coefficients; `None` if one is not determined.
 pub(crate) fn error_model(result: &CalibrationResult) -> Option<(ErrorModel, Vec<f64>)> {
     let mut terms = Vec::new();
     let mut coefficients = Vec::new();
     for term in &result.model.error_model {
-        coefficients.push(result.parameter(&term.name)?.value?);
+        let parameter = result.parameter(&term.name)?;
+        coefficients.push(parameter.value?);
         let monomial = Monomial { powers: term.powers, sign_of: term.sign_of.and_then(|axis| axis.checked_sub(1)) };
         let axis = term.axis.checked_sub(1).filter(|axis| *axis < 3)?;
-        terms.push(Term { name: term.name.clone(), group: "", axis, monomial });
+        terms.push(Term { name: term.name.clone(), group: parameter.group, axis, monomial });
     }
     Some((ErrorModel { terms }, coefficients))
 }

@@ -1,18 +1,19 @@
 //! Whether a result can be accepted as it stands, and why not.
 
+use centrical::Termination;
 use centrical::uncertainty::chi_squared_tail;
 use centrical_session::{CalibrationResult, PatternSummary, ValiditySummary};
 
-/// Residuals as large as these come by chance once in ten thousand sessions.
+/// Residuals as large as these arise by chance once in ten thousand sessions.
 const CHANCE: f64 = 1e-4;
 
-/// What speaks against a result.
+/// An objection to a result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Objection {
     /// The fit did not converge.
     NotConverged {
         /// How it ended, as the result says it.
-        termination: String,
+        termination: Termination,
         /// Linearisations made.
         iterations: usize,
     },
@@ -33,12 +34,12 @@ pub enum Objection {
     NotDetermined(Vec<String>),
 }
 
-/// What speaks against the result; nothing if it is acceptable.
+/// The objections to the result; empty if it is acceptable.
 pub fn objections(result: &CalibrationResult) -> Vec<Objection> {
     let fit = &result.fit;
     let mut objections = Vec::new();
-    if fit.termination == "stalled" || fit.termination == "iteration limit" {
-        objections.push(Objection::NotConverged { termination: fit.termination.clone(), iterations: fit.iterations });
+    if matches!(fit.termination, Termination::Stalled | Termination::IterationLimit) {
+        objections.push(Objection::NotConverged { termination: fit.termination, iterations: fit.iterations });
     }
     let (chi_squared, degrees_of_freedom) = (fit.chi_squared, fit.degrees_of_freedom);
     let chance = chi_squared_tail(chi_squared, degrees_of_freedom);
@@ -54,7 +55,7 @@ pub fn objections(result: &CalibrationResult) -> Vec<Objection> {
     objections
 }
 
-/// Plateaus and patterns that come by chance less than once in ten thousand sessions.
+/// Plateaus and patterns that arise by chance less than once in ten thousand sessions.
 fn of_validity(validity: &ValiditySummary) -> Vec<Objection> {
     let outlying: Vec<_> = validity.outlying.iter().filter(|plateau| plateau.probability < CHANCE).collect();
     let patterns: Vec<_> = validity.patterns.iter().filter(|p| p.probability < CHANCE).cloned().collect();

@@ -21,7 +21,7 @@ const STYLE: &str = "\
 @media(prefers-color-scheme:dark){.map text{fill:#e8e8e8}.map .ground{fill:#161616}\
 .map .p{fill:#56b4e9}.map .n{fill:#ff8a3c}.map .frame{stroke:#e8e8e8}}";
 
-/// The lower triangle of the correlation matrix of the estimable parameters; none if there are fewer than two.
+/// The lower triangle of the correlation matrix of the estimable parameters; `None` if there are fewer than two.
 pub(super) fn figure(result: &CalibrationResult, language: Language) -> Option<Figure> {
     let messages = language.messages();
     let shown: Vec<usize> = (0..result.parameters.len()).filter(|&j| result.parameters[j].estimable).collect();
@@ -48,7 +48,7 @@ fn draw(result: &CalibrationResult, shown: &[usize], language: Language) -> Stri
         Px(height),
         Px(height)
     );
-    // Names no smaller than their row is high, and no more than there is room for.
+    // Names as high as their rows, as many as fit.
     let every = (9.0 / cell).ceil().max(1.0);
     for (row, &i) in shown.iter().enumerate() {
         let name = &result.parameters[i].name;

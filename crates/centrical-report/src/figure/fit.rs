@@ -1,16 +1,13 @@
 //! Plots of the fit: reading errors, residuals, singular values, convergence, stability.
 
-use centrical::STANDARD_GRAVITY;
-use centrical_session::{CalibrationResult, PlateauSummary};
+use centrical::{Group, STANDARD_GRAVITY};
+use centrical_session::{CalibrationResult, MICRO_G, PlateauSummary};
 use nalgebra::{Matrix3, Vector3};
 
 use super::drawing::{Figure, drawn, of_plot};
-use crate::evaluation::{MICRO_G, ReadingError, combination, reading_errors};
+use crate::evaluation::{COVERAGE_FACTOR, ReadingError, combination, reading_errors};
 use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
-
-/// Coverage factor of all bars.
-const COVERAGE: f64 = 2.0;
 
 /// Reading errors before and after compensation, residuals and normalised residuals.
 pub(super) fn figures(result: &CalibrationResult, language: Language) -> Vec<Figure> {
@@ -37,7 +34,7 @@ fn after(errors: &[ReadingError], language: Language) -> Figure {
     let messages = language.messages();
     let drawings = panels(errors, messages.error_after_axis, language, |error, axis, load| {
         let value = error.speed_free[axis] / MICRO_G;
-        let bar = COVERAGE * error.uncertainty[axis] / MICRO_G;
+        let bar = COVERAGE_FACTOR * error.uncertainty[axis] / MICRO_G;
         Point::new(load / STANDARD_GRAVITY, value).with_interval(value - bar, value + bar)
     });
     Figure::new("after", messages.after, messages.after_caption, drawings)
@@ -70,7 +67,7 @@ fn residuals(plateaus: &[PlateauSummary], language: Language) -> Figure {
     let numbered: Vec<(usize, &PlateauSummary)> = (1..).zip(plateaus).collect();
     let point = |(n, plateau): &(usize, &PlateauSummary), axis: usize| {
         let value = plateau.residual[axis] / MICRO_G;
-        let bar = COVERAGE * plateau.fit_covariance[axis][axis].sqrt() / MICRO_G;
+        let bar = COVERAGE_FACTOR * plateau.fit_covariance[axis][axis].sqrt() / MICRO_G;
         Point::new(*n as f64, value).with_interval(value - bar, value + bar)
     };
     let axes = (Axis::linear(messages.plateau_axis), Axis::linear(messages.residual_axis));
@@ -137,10 +134,10 @@ pub(super) fn convergence(result: &CalibrationResult, language: Language) -> Opt
     let last = history.standard_uncertainty.last()?;
     let axes = (Axis::linear(messages.plateaus_used_axis), Axis::log(messages.convergence_axis));
     let mut plot = Plot::new(messages.convergence_title, axes.0, axes.1);
-    let mut groups: Vec<&str> = Vec::new();
+    let mut groups: Vec<Group> = Vec::new();
     for parameter in result.parameters.iter().filter(|p| p.estimable) {
-        if !groups.contains(&parameter.group.as_str()) {
-            groups.push(&parameter.group);
+        if !groups.contains(&parameter.group) {
+            groups.push(parameter.group);
         }
     }
     for group in groups {
@@ -151,7 +148,7 @@ pub(super) fn convergence(result: &CalibrationResult, language: Language) -> Opt
             history.plateaus.iter().zip(&history.standard_uncertainty).map(|(n, sigma)| {
                 Point::new(*n as f64, members.iter().map(|&j| sigma[j] / last[j]).fold(0.0, f64::max))
             });
-        plot = plot.with(Series::line(messages.word(group), points.collect()));
+        plot = plot.with(Series::line((messages.words.group)(group), points.collect()));
     }
     Some(of_plot("convergence", messages.convergence_caption, plot, language))
 }

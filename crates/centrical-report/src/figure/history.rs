@@ -1,5 +1,6 @@
 //! The history of a session that was watched: what was known after each plateau as it came.
 
+use centrical::Group;
 use centrical_session::HistoryEntry;
 
 use super::drawing::{Figure, of_plot};
@@ -9,16 +10,16 @@ use crate::plot::{Axis, Plot, Point, Series};
 /// Largest standard uncertainty of each group, over that after the last plateau, from the plateau on at which all
 /// that the group will determine is determined. `group_of` gives the group of a parameter by name; none if nothing has
 /// been determined yet.
-pub fn history_figure<'a>(
+pub fn history_figure(
     history: &[HistoryEntry],
-    group_of: &dyn Fn(&str) -> Option<&'a str>,
+    group_of: &dyn Fn(&str) -> Option<Group>,
     language: Language,
 ) -> Option<Figure> {
     let messages = language.messages();
     let last = history.last()?;
     let axes = (Axis::linear(messages.plateaus_used_axis), Axis::log(messages.convergence_axis));
     let mut plot = Plot::new(messages.history_title, axes.0, axes.1);
-    let mut groups: Vec<(&str, Vec<(usize, f64)>)> = Vec::new();
+    let mut groups: Vec<(Group, Vec<(usize, f64)>)> = Vec::new();
     for (j, estimate) in last.estimates.iter().enumerate() {
         if let Some((group, final_u)) = group_of(&estimate.name).zip(estimate.standard_uncertainty) {
             match groups.iter_mut().find(|(name, _)| *name == group) {
@@ -36,7 +37,7 @@ pub fn history_figure<'a>(
             let ratios: Vec<f64> = members.iter().map(ratio).collect::<Option<_>>()?;
             Some(Point::new(entry.plateau as f64, ratios.into_iter().fold(0.0, f64::max)))
         };
-        plot = plot.with(Series::line(messages.word(group), history.iter().filter_map(point).collect()));
+        plot = plot.with(Series::line((messages.words.group)(*group), history.iter().filter_map(point).collect()));
     }
     Some(of_plot("watch-history", messages.history_caption, plot, language))
 }

@@ -55,7 +55,7 @@ fn deviation_axis(unit: &str, factor: f64, deviations: &[Deviation]) -> Axis {
     if low < high { axis.with_range(factor * low / 2.0, factor * high * 2.0) } else { axis }
 }
 
-/// Root of the power spectral density over frequency, of all columns of one unit, in bands too narrow to be told apart.
+/// Root of the power spectral density over frequency, of all columns of one unit, in narrow bands.
 fn spectra(analysis: &NoiseAnalysis) -> Plot {
     const BANDS_PER_OCTAVE: f64 = 24.0;
     let unit = analysis.readings.first().map_or(String::new(), |reading| Shown::reading(reading).unit);

@@ -2,11 +2,11 @@
 
 use centrical::STANDARD_GRAVITY;
 use centrical::uncertainty::Compensated;
-use centrical_session::CalibrationResult;
+use centrical_session::{CalibrationResult, MICRO_G};
 use nalgebra::{DMatrix, Vector3};
 
 use super::drawing::{Figure, of_plot};
-use crate::evaluation::{MICRO_G, error_model};
+use crate::evaluation::error_model;
 use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
 
@@ -14,7 +14,7 @@ use crate::plot::{Axis, Plot, Point, Series};
 const POINTS: usize = 201;
 
 /// Standard uncertainty of a compensated reading against the specific force along each axis, to the highest of the
-/// session; none if a parameter of the instrument is not determined.
+/// session; `None` if a parameter of the instrument is not determined.
 pub(super) fn figure(result: &CalibrationResult, language: Language) -> Option<Figure> {
     let messages = language.messages();
     let (model, coefficients) = error_model(result)?;

@@ -25,7 +25,7 @@ const STYLE: &str = "\
 @media(prefers-color-scheme:dark){.strip text{fill:#e8e8e8}.strip .ground{fill:#161616}.strip .zero{stroke:#484848}\
 .strip .a1{fill:#56b4e9;stroke:#56b4e9}.strip .a2{fill:#ff8a3c;stroke:#ff8a3c}.strip .a3{fill:#2fd0a0;stroke:#2fd0a0}}";
 
-/// One drawing for each record; none for a session that came already averaged.
+/// One drawing for each record; `None` for a session of plateau means.
 pub(super) fn figure(result: &CalibrationResult, language: Language) -> Option<Figure> {
     let messages = language.messages();
     (!result.records.is_empty()).then(|| {

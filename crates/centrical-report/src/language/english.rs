@@ -1,6 +1,10 @@
 //! English.
 
-use super::messages::Messages;
+use centrical::uncertainty::Source;
+use centrical::{Group, PairRelation, ReferencePoint, Termination};
+use centrical_session::{Follows, Method};
+
+use super::messages::{Messages, Words};
 
 /// English.
 pub(crate) const ENGLISH: Messages = Messages {
@@ -221,46 +225,92 @@ pub(crate) const ENGLISH: Messages = Messages {
     uncertainty: "Expanded uncertainty",
     covariance: "Covariance matrix of the parameters",
     specific_force: "Specific force",
-    words: &[
-        ("common", "common"),
-        ("opposite", "opposite"),
-        ("free", "free"),
-        ("first-proof-mass", "proof mass 1"),
-        ("own-axes", "no displacement along own axes"),
-        ("bias", "Bias"),
-        ("scale", "Scale error"),
-        ("misalignment", "Misalignment"),
-        ("quadratic", "Quadratic"),
-        ("cubic", "Cubic"),
-        ("tilt", "Tilt of the rotation axis"),
-        ("turn", "Turn of the unit"),
-        ("shift", "Shift of the unit"),
-        ("proof mass", "Place of a proof mass"),
-        ("noise", "Noise"),
-        ("speed of each plateau", "Speed of each plateau"),
-        ("priors", "Priors"),
-        ("gravity", "Gravity"),
-        ("latitude", "Latitude"),
-        ("radius", "Radius"),
-        ("difference of radii", "Difference of radii"),
-        ("scale of the speed", "Scale of the speed"),
-        ("angle at rest", "Angle at rest"),
-        ("proof masses", "Proof masses"),
-        ("attitudes", "Attitudes"),
-        ("resolution", "Resolution"),
-        ("step in position", "step in position"),
-        ("square of the speed in position", "square of the speed in position"),
-        ("square of the speed at radius", "square of the speed at radius"),
-        ("square of the speed", "square of the speed"),
-        ("load", "load"),
-        ("step in mounting", "step in mounting"),
-        ("drift", "drift over the session"),
-        ("elastic turn", "Elastic turn"),
-        ("arm stretch", "Stretch of the arm"),
-    ],
+    words: Words { group, source, method, termination, pair_relation, reference, follows },
     not_converged: "the fit did not converge",
     residuals_too_large: "residuals are larger than the stated uncertainties explain",
     degrees_of_freedom: "degrees of freedom",
     chance: "chance",
     lost_parameters: "parameters of the instrument are not determined",
 };
+
+fn group(group: Group) -> &'static str {
+    match group {
+        Group::Bias => "Bias",
+        Group::Scale => "Scale error",
+        Group::Misalignment => "Misalignment",
+        Group::Quadratic => "Quadratic",
+        Group::Cubic => "Cubic",
+        Group::CrossCoupling => "Cross-coupling",
+        Group::Asymmetry => "Asymmetry of the scale",
+        Group::HigherOrder => "Higher order",
+        Group::Tilt => "Tilt of the rotation axis",
+        Group::Turn => "Turn of the unit",
+        Group::Shift => "Shift of the unit",
+        Group::ProofMass => "Place of a proof mass",
+        Group::ElasticTurn => "Elastic turn",
+        Group::ArmStretch => "Stretch of the arm",
+        Group::RadiusScale => "Scale of the radii",
+        Group::SpeedScale => "Scale of the speed",
+    }
+}
+
+fn source(source: Source) -> &'static str {
+    match source {
+        Source::Noise => "Noise",
+        Source::PlateauSpeed => "Speed of each plateau",
+        Source::Priors => "Priors",
+        Source::Gravity => "Gravity",
+        Source::Latitude => "Latitude",
+        Source::Radius => "Radius",
+        Source::RadiusDifference => "Difference of radii",
+        Source::SpeedScale => "Scale of the speed",
+        Source::RestAngle => "Angle at rest",
+        Source::ProofMasses => "Proof masses",
+        Source::Attitude => "Attitudes",
+        Source::Resolution => "Resolution",
+    }
+}
+
+fn method(method: Method) -> &'static str {
+    match method {
+        Method::Exact => "exact, Gauss-Newton",
+        Method::Recursive => "exact, recursive filter",
+        Method::Linear => "linear [K5.3]",
+    }
+}
+
+fn termination(termination: Termination) -> &'static str {
+    match termination {
+        Termination::Linear => "linear",
+        Termination::Converged => "converged",
+        Termination::Stalled => "stalled",
+        Termination::IterationLimit => "iteration limit",
+    }
+}
+
+fn pair_relation(pair_relation: PairRelation) -> &'static str {
+    match pair_relation {
+        PairRelation::Common => "common",
+        PairRelation::Opposite => "opposite",
+        PairRelation::Free => "free",
+    }
+}
+
+fn reference(reference: ReferencePoint) -> &'static str {
+    match reference {
+        ReferencePoint::FirstProofMass => "proof mass 1",
+        ReferencePoint::OwnAxes => "no displacement along own axes",
+    }
+}
+
+fn follows(follows: &Follows) -> &'static str {
+    match follows {
+        Follows::Position { .. } => "step in position",
+        Follows::SpeedInPosition { .. } => "square of the speed in position",
+        Follows::SpeedOnSeat { .. } => "square of the speed at radius",
+        Follows::Speed => "square of the speed",
+        Follows::Load => "load",
+        Follows::Mounting { .. } => "step in mounting",
+        Follows::Time => "drift over the session",
+    }
+}

@@ -1,6 +1,10 @@
 //! The message catalogue: everything the documents say, in each language.
 //!
-//! One field a message, so that a language that lacks one does not compile.
+//! One field a message and one function a set of words, so that a language that lacks one does not compile.
+
+use centrical::uncertainty::Source;
+use centrical::{Group, PairRelation, ReferencePoint, Termination};
+use centrical_session::{Follows, Method};
 
 /// What the documents say, in one language.
 #[allow(missing_docs)]
@@ -187,8 +191,8 @@ pub(crate) struct Messages {
     pub uncertainty: &'static str,
     pub covariance: &'static str,
     pub specific_force: &'static str,
-    /// Words of the result, groups of parameters among them, as people are shown them.
-    pub words: &'static [(&'static str, &'static str)],
+    /// Words for what is one of several.
+    pub words: Words,
     pub not_converged: &'static str,
     pub residuals_too_large: &'static str,
     pub degrees_of_freedom: &'static str,
@@ -196,9 +200,14 @@ pub(crate) struct Messages {
     pub lost_parameters: &'static str,
 }
 
-impl Messages {
-    /// A word of the result as people are shown it; itself if it is not known.
-    pub fn word<'a>(&self, word: &'a str) -> &'a str {
-        self.words.iter().find(|(name, _)| *name == word).map_or(word, |(_, shown)| shown)
-    }
+/// Words for what is one of several, in one language; each function names all of them.
+pub(crate) struct Words {
+    pub group: fn(Group) -> &'static str,
+    pub source: fn(Source) -> &'static str,
+    pub method: fn(Method) -> &'static str,
+    pub termination: fn(Termination) -> &'static str,
+    pub pair_relation: fn(PairRelation) -> &'static str,
+    pub reference: fn(ReferencePoint) -> &'static str,
+    /// What a pattern follows, without its place.
+    pub follows: fn(&Follows) -> &'static str,
 }

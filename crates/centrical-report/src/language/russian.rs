@@ -1,6 +1,10 @@
 //! Russian.
 
-use super::messages::Messages;
+use centrical::uncertainty::Source;
+use centrical::{Group, PairRelation, ReferencePoint, Termination};
+use centrical_session::{Follows, Method};
+
+use super::messages::{Messages, Words};
 
 /// Russian.
 pub(crate) const RUSSIAN: Messages = Messages {
@@ -219,52 +223,92 @@ pub(crate) const RUSSIAN: Messages = Messages {
     uncertainty: "Расширенная неопределённость",
     covariance: "Ковариационная матрица параметров",
     specific_force: "Удельная сила",
-    words: &[
-        ("common", "общая"),
-        ("opposite", "противоположная"),
-        ("free", "независимая"),
-        ("first-proof-mass", "чувствительная масса 1"),
-        ("own-axes", "без смещений вдоль собственных осей"),
-        ("exact, Gauss-Newton", "точная модель, метод Гаусса — Ньютона"),
-        ("linear [K5.3]", "линейная модель [K5.3]"),
-        ("converged", "сошлось"),
-        ("stalled", "остановилось"),
-        ("iteration limit", "предел итераций"),
-        ("linear", "линейная модель"),
-        ("bias", "Смещение нуля"),
-        ("scale", "Погрешность масштаба"),
-        ("misalignment", "Перекос оси"),
-        ("quadratic", "Квадратичный член"),
-        ("cubic", "Кубичный член"),
-        ("tilt", "Наклон оси вращения"),
-        ("turn", "Поворот прибора"),
-        ("shift", "Смещение прибора"),
-        ("proof mass", "Положение чувствительной массы"),
-        ("noise", "Шум"),
-        ("speed of each plateau", "Скорость каждой площадки"),
-        ("priors", "Априорные данные"),
-        ("gravity", "Ускорение силы тяжести"),
-        ("latitude", "Широта"),
-        ("radius", "Радиус"),
-        ("difference of radii", "Разность радиусов"),
-        ("scale of the speed", "Масштаб скорости"),
-        ("angle at rest", "Угол в покое"),
-        ("proof masses", "Чувствительные массы"),
-        ("attitudes", "Ориентация"),
-        ("resolution", "Разрешение"),
-        ("step in position", "скачок в положении"),
-        ("square of the speed in position", "квадрат скорости в положении"),
-        ("square of the speed at radius", "квадрат скорости на радиусе"),
-        ("square of the speed", "квадрат скорости"),
-        ("load", "нагрузка"),
-        ("step in mounting", "скачок в установке"),
-        ("drift", "уход"),
-        ("elastic turn", "Упругий поворот"),
-        ("arm stretch", "Растяжение плеча"),
-    ],
+    words: Words { group, source, method, termination, pair_relation, reference, follows },
     not_converged: "оценивание не сошлось",
     residuals_too_large: "остатки больше, чем допускают заявленные неопределённости",
     degrees_of_freedom: "степеней свободы",
     chance: "вероятность",
     lost_parameters: "не определены параметры прибора",
 };
+
+fn group(group: Group) -> &'static str {
+    match group {
+        Group::Bias => "Смещение нуля",
+        Group::Scale => "Погрешность масштаба",
+        Group::Misalignment => "Перекос оси",
+        Group::Quadratic => "Квадратичный член",
+        Group::Cubic => "Кубичный член",
+        Group::CrossCoupling => "Перекрёстная связь",
+        Group::Asymmetry => "Асимметрия масштаба",
+        Group::HigherOrder => "Член высшего порядка",
+        Group::Tilt => "Наклон оси вращения",
+        Group::Turn => "Поворот прибора",
+        Group::Shift => "Смещение прибора",
+        Group::ProofMass => "Положение чувствительной массы",
+        Group::ElasticTurn => "Упругий поворот",
+        Group::ArmStretch => "Растяжение плеча",
+        Group::RadiusScale => "Масштаб радиусов",
+        Group::SpeedScale => "Масштаб скорости",
+    }
+}
+
+fn source(source: Source) -> &'static str {
+    match source {
+        Source::Noise => "Шум",
+        Source::PlateauSpeed => "Скорость каждой площадки",
+        Source::Priors => "Априорные данные",
+        Source::Gravity => "Ускорение силы тяжести",
+        Source::Latitude => "Широта",
+        Source::Radius => "Радиус",
+        Source::RadiusDifference => "Разность радиусов",
+        Source::SpeedScale => "Масштаб скорости",
+        Source::RestAngle => "Угол в покое",
+        Source::ProofMasses => "Чувствительные массы",
+        Source::Attitude => "Ориентация",
+        Source::Resolution => "Разрешение",
+    }
+}
+
+fn method(method: Method) -> &'static str {
+    match method {
+        Method::Exact => "точная модель, метод Гаусса — Ньютона",
+        Method::Recursive => "точная модель, рекуррентный фильтр",
+        Method::Linear => "линейная модель [K5.3]",
+    }
+}
+
+fn termination(termination: Termination) -> &'static str {
+    match termination {
+        Termination::Linear => "линейная модель",
+        Termination::Converged => "сошлось",
+        Termination::Stalled => "остановилось",
+        Termination::IterationLimit => "предел итераций",
+    }
+}
+
+fn pair_relation(pair_relation: PairRelation) -> &'static str {
+    match pair_relation {
+        PairRelation::Common => "общая",
+        PairRelation::Opposite => "противоположная",
+        PairRelation::Free => "независимая",
+    }
+}
+
+fn reference(reference: ReferencePoint) -> &'static str {
+    match reference {
+        ReferencePoint::FirstProofMass => "чувствительная масса 1",
+        ReferencePoint::OwnAxes => "без смещений вдоль собственных осей",
+    }
+}
+
+fn follows(follows: &Follows) -> &'static str {
+    match follows {
+        Follows::Position { .. } => "скачок в положении",
+        Follows::SpeedInPosition { .. } => "квадрат скорости в положении",
+        Follows::SpeedOnSeat { .. } => "квадрат скорости на радиусе",
+        Follows::Speed => "квадрат скорости",
+        Follows::Load => "нагрузка",
+        Follows::Mounting { .. } => "скачок в установке",
+        Follows::Time => "уход",
+    }
+}

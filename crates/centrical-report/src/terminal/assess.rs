@@ -4,14 +4,13 @@ use std::fmt::Write;
 
 use centrical::uncertainty::{Budget, Cleaned, CurvePoint, Degrees, Pattern, Validity, coverage_factor};
 use centrical::{Experiment, Fit, MeasurementModel, Parameters, STANDARD_GRAVITY};
-use centrical_session::PatternSummary;
+use centrical_session::{MICRO_G, PatternSummary, customary};
 
 use super::pattern::pattern_in_words;
 use crate::number::short;
-use crate::units::customary;
 
-/// A pattern with a family-wise probability below this is told.
-const TOLD: f64 = 0.05;
+/// A plateau or a pattern with a family-wise probability below this is reported.
+const REPORTED: f64 = 0.05;
 
 /// The budget: parameter by source, in customary units, with combined and expanded uncertainty for a probability of
 /// `coverage`; then what to improve first.
@@ -111,7 +110,7 @@ pub fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[P
             r.y,
             r.z,
             check.leverage,
-            if family_wise < TOLD { "  OUTLYING" } else { "" }
+            if family_wise < REPORTED { "  OUTLYING" } else { "" }
         );
     }
     text.push_str("  each mounting predicted from all others (chi^2 / degrees of freedom, probability):\n");
@@ -126,15 +125,15 @@ pub fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[P
             p.probability
         );
     }
-    let told: Vec<&Pattern> = patterns.iter().filter(|p| p.family_wise < TOLD).collect();
-    if told.is_empty() {
+    let found: Vec<&Pattern> = patterns.iter().filter(|p| p.family_wise < REPORTED).collect();
+    if found.is_empty() {
         let _ = writeln!(
             text,
             "  residuals show none of {} patterns against speed, position, radius, time",
             patterns.len()
         );
     }
-    for pattern in told {
+    for pattern in found {
         let _ = writeln!(text, "  {}", pattern_in_words(&PatternSummary::new(experiment, pattern)));
     }
     text
@@ -183,7 +182,7 @@ pub fn prediction_table(curves: &[Vec<CurvePoint>; 3]) -> String {
         let _ = write!(text, "  {:>12.1} g", curves[0][n].force / STANDARD_GRAVITY);
         for curve in curves {
             let u = curve.get(n).map_or(f64::NAN, |p| p.along);
-            let _ = write!(text, "{:>14}", short(u / STANDARD_GRAVITY * 1e6));
+            let _ = write!(text, "{:>14}", short(u / MICRO_G));
         }
         text.push('\n');
     }

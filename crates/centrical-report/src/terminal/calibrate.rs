@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_session::{CalibrationResult, ParameterEstimate, TermSummary};
+use centrical_session::{CalibrationResult, ParameterEstimate, TermSummary, customary};
 
 use super::drift::drift;
 use super::pattern::pattern_in_words;
@@ -10,7 +10,6 @@ use crate::document::objection;
 use crate::evaluation::{Objection, combination, monomial};
 use crate::language::Language;
 use crate::number::with_uncertainty;
-use crate::units::customary;
 
 /// Width of a column "value ± uncertainty".
 const CELL: usize = 24;
@@ -61,7 +60,7 @@ fn error_model(text: &mut String, result: &CalibrationResult) {
         let mut cells: [String; 3] = Default::default();
         for term in result.model.error_model.iter().filter(|term| row_of(result, term) == key) {
             if let Some(parameter) = result.parameter(&term.name) {
-                unit = customary(&parameter.unit, &parameter.group).1;
+                unit = customary(&parameter.unit, parameter.group).1;
                 cells[term.axis - 1] = cell(parameter);
             }
         }
@@ -71,7 +70,7 @@ fn error_model(text: &mut String, result: &CalibrationResult) {
 
 /// Terms that share a row: the same monomial in the same customary unit.
 fn row_of<'r>(result: &'r CalibrationResult, term: &TermSummary) -> ([u8; 3], Option<usize>, &'r str) {
-    let unit = result.parameter(&term.name).map_or("", |p| customary(&p.unit, &p.group).1);
+    let unit = result.parameter(&term.name).map_or("", |p| customary(&p.unit, p.group).1);
     (term.powers, term.sign_of, unit)
 }
 
@@ -80,9 +79,9 @@ fn mounting(text: &mut String, result: &CalibrationResult) {
     text.push_str("\nMOUNTING\n");
     row(text, "", "unit", &["axis 1", "axis 2", "axis 3"].map(str::to_owned));
     let mut rows: Vec<(String, &str, [String; 3])> = Vec::new();
-    for parameter in result.parameters.iter().filter(|p| is_mounting(&p.group)) {
+    for parameter in result.parameters.iter().filter(|p| p.group.is_of_mounting()) {
         let Some((label, axis)) = label_and_axis(&parameter.name) else { continue };
-        let unit = customary(&parameter.unit, &parameter.group).1;
+        let unit = customary(&parameter.unit, parameter.group).1;
         if rows.last().is_none_or(|(last, _, _)| *last != label) {
             rows.push((label, unit, Default::default()));
         }
@@ -93,10 +92,6 @@ fn mounting(text: &mut String, result: &CalibrationResult) {
     for (label, unit, cells) in rows {
         row(text, &label, unit, &cells);
     }
-}
-
-fn is_mounting(group: &str) -> bool {
-    ["tilt", "turn", "shift", "proof mass"].contains(&group)
 }
 
 /// `delta_2[4]` is axis 1 of the row `delta[4]`; `drho_33` axis 2 of `drho`.
@@ -110,19 +105,19 @@ fn label_and_axis(name: &str) -> Option<(String, usize)> {
 /// What fits neither table: extensions of the model.
 fn others(text: &mut String, result: &CalibrationResult) {
     let in_model = |p: &ParameterEstimate| result.model.error_model.iter().any(|term| term.name == p.name);
-    let others: Vec<_> = result.parameters.iter().filter(|p| !is_mounting(&p.group) && !in_model(p)).collect();
+    let others: Vec<_> = result.parameters.iter().filter(|p| !p.group.is_of_mounting() && !in_model(p)).collect();
     if others.is_empty() {
         return;
     }
     text.push_str("\nEXTENSIONS\n");
     for parameter in others {
-        let unit = customary(&parameter.unit, &parameter.group).1;
+        let unit = customary(&parameter.unit, parameter.group).1;
         let _ = writeln!(text, "  {:<22}{:<18}{}", parameter.name, unit, cell(parameter).trim_start());
     }
 }
 
 fn cell(parameter: &ParameterEstimate) -> String {
-    let factor = customary(&parameter.unit, &parameter.group).0;
+    let factor = customary(&parameter.unit, parameter.group).0;
     match (parameter.value, parameter.standard_uncertainty) {
         (Some(value), Some(uncertainty)) => {
             let (value, uncertainty) = with_uncertainty(value * factor, uncertainty * factor);
@@ -193,7 +188,14 @@ fn plateaus(text: &mut String, result: &CalibrationResult) {
 
 fn fit(text: &mut String, result: &CalibrationResult) {
     let fit = &result.fit;
-    let _ = write!(text, "FIT   {}, {} after {} iterations; ", fit.method, fit.termination, fit.iterations);
+    let words = &Language::English.messages().words;
+    let _ = write!(
+        text,
+        "FIT   {}, {} after {} iterations; ",
+        (words.method)(fit.method),
+        (words.termination)(fit.termination),
+        fit.iterations
+    );
     if fit.degrees_of_freedom == 0 {
         text.push_str("no redundancy, so nothing checks the stated uncertainties\n");
         return;
@@ -211,7 +213,7 @@ fn fit(text: &mut String, result: &CalibrationResult) {
 /// What the uncertainties hold, and what they take as exact.
 fn uncertainties(text: &mut String, result: &CalibrationResult) {
     let Some(budget) = &result.budget else { return };
-    let names: Vec<&str> = budget.sources.iter().map(|source| source.name.as_str()).collect();
+    let names: Vec<&str> = budget.sources.iter().map(|source| source.name.name()).collect();
     let _ = writeln!(text, "FROM  {}", names.join(", "));
     if result.stated_sources().is_empty() {
         text.push_str(
@@ -267,7 +269,7 @@ fn validity(text: &mut String, result: &CalibrationResult) {
 /// The verdict in a line, or one for each objection.
 pub fn verdict_text(objections: &[Objection]) -> String {
     if objections.is_empty() {
-        return "ACCEPTABLE  nothing speaks against this result\n".to_owned();
+        return "ACCEPTABLE  no check raised an objection\n".to_owned();
     }
     let said = |reason| objection(reason, Language::English);
     let lines: Vec<String> =

@@ -2,11 +2,9 @@
 
 use std::fmt::Write;
 
-use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, TiltSummary};
+use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, TiltSummary};
 
-use crate::evaluation::drift::{
-    MICRO_G, MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter,
-};
+use crate::evaluation::drift::{MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter};
 use crate::number::with_uncertainty;
 
 /// The section of the terminal's table; empty for a session that came already averaged.
@@ -35,7 +33,7 @@ fn left_out(text: &mut String, result: &CalibrationResult) {
 
 fn over_plateaus(text: &mut String, drift: &DriftSummary) {
     let shown: Vec<String> = (drift.slope.iter().zip(&drift.slope_uncertainty))
-        .map(|(slope, u)| with_uncertainty(MICRO_G * MINUTE * slope, MICRO_G * MINUTE * u))
+        .map(|(slope, u)| with_uncertainty(MINUTE * slope / MICRO_G, MINUTE * u / MICRO_G))
         .map(|(slope, u)| format!("{slope} ± {u}"))
         .collect();
     let verdict = if plateaus_drift(drift) { "plateaus drift" } else { "no drift seen" };
@@ -53,7 +51,7 @@ fn over_session(text: &mut String, drift: &DriftSummary) {
         return;
     }
     let trends = drift.over_session.iter().map(|trend| {
-        let (change, u) = with_uncertainty(MICRO_G * trend.change, MICRO_G * trend.standard_uncertainty);
+        let (change, u) = with_uncertainty(trend.change / MICRO_G, trend.standard_uncertainty / MICRO_G);
         format!("f{} {change} ± {u}", trend.axis)
     });
     let trends: Vec<String> = trends.collect();

@@ -6,8 +6,9 @@ use centrical::Parameters;
 use centrical::uncertainty::MonteCarlo;
 
 use super::prediction::LEANING;
+use centrical_session::customary;
+
 use crate::number::short;
-use crate::units::customary;
 
 /// What the runs show beside what was stated; `coverage` is the probability that the intervals are to cover.
 pub fn monte_carlo_table(parameters: &Parameters, monte_carlo: &MonteCarlo, coverage: f64) -> String {

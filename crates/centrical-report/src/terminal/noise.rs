@@ -122,7 +122,7 @@ fn terms(text: &mut String, reading: &ReadingNoise) {
     }
 }
 
-/// Why coefficients are not quoted, one sentence for each column of which they are not; empty if all are.
+/// Why the coefficients of a column are not quoted, a sentence for each such column.
 pub fn noise_warnings(analysis: &NoiseAnalysis) -> Vec<String> {
     let warning = |reading: &ReadingNoise| match &reading.terms {
         Ok(terms) if terms.is_consistent() => None,

@@ -2,11 +2,10 @@
 
 use std::fmt::Write;
 
-use centrical_session::{ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport};
+use centrical_session::{ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport, customary};
 
 use super::prediction::prediction_text;
 use crate::number::trimmed;
-use crate::units::customary;
 
 /// Remedies beyond these only raise the rank, and the list is long enough.
 const MOST_REMEDIES: usize = 8;

@@ -1,7 +1,6 @@
 //! A pattern in the residuals and what may cause it, in words.
 
-use centrical::STANDARD_GRAVITY;
-use centrical_session::{Follows, PatternSummary};
+use centrical_session::{Follows, MICRO_G, PatternSummary};
 
 use crate::number::short;
 
@@ -28,8 +27,8 @@ pub(super) fn pattern_in_words(pattern: &PatternSummary) -> String {
     format!(
         "residuals of newtonometer {} {what} ({} ± {} ug, probability {:.1e}): {cause}",
         pattern.axis,
-        short(pattern.amplitude / STANDARD_GRAVITY * 1e6),
-        short(pattern.standard_uncertainty / STANDARD_GRAVITY * 1e6),
+        short(pattern.amplitude / MICRO_G),
+        short(pattern.standard_uncertainty / MICRO_G),
         pattern.probability
     )
 }

@@ -1,15 +1,15 @@
-//! A plan as text for the terminal: the schedule, why each plateau is there, what will be known, time against uncertainty.
+//! A plan as text for the terminal: the schedule, the reason for each plateau, the uncertainties to be expected, time against uncertainty.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use centrical::STANDARD_GRAVITY;
-use centrical_session::{PlanReport, PlannedMounting, PlannedPlateau, ReasonReport};
+use centrical_session::{
+    CriterionName, GoalReport, MICRO_G, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport, customary,
+};
 
 use super::prediction::prediction_text;
-use crate::figure::scale;
+use crate::evaluation::criterion_unit;
 use crate::number::{digits, short};
-use crate::units::customary;
 
 /// The plan as text.
 pub fn plan_text(report: &PlanReport) -> String {
@@ -28,6 +28,8 @@ pub fn plan_text(report: &PlanReport) -> String {
     text.push('\n');
     text.push_str(&prediction_text(&report.prediction));
     frontier(&mut text, report);
+    scenarios(&mut text, report);
+    floors(&mut text, report);
     text
 }
 
@@ -81,18 +83,18 @@ fn heading(text: &mut String, report: &PlanReport) {
 
 fn criterion(report: &PlanReport) -> &'static str {
     match report.criterion {
-        "I" => "mean uncertainty of the compensated reading over the range (I)",
-        "A" => "mean uncertainty of the instrument's parameters in typical magnitudes (A)",
-        "D" => "geometric mean of the axes of the joint uncertainty in typical magnitudes (D)",
-        _ => "worst uncertainty over its goal",
+        CriterionName::I => "mean uncertainty of the compensated reading over the range (I)",
+        CriterionName::A => "mean uncertainty of the instrument's parameters in typical magnitudes (A)",
+        CriterionName::D => "geometric mean of the axes of the joint uncertainty in typical magnitudes (D)",
+        CriterionName::Worst => "worst uncertainty over its goal",
     }
 }
 
 fn value(report: &PlanReport, value: f64) -> String {
     match report.criterion {
-        "I" => format!("{} ug", digits(value / STANDARD_GRAVITY * 1e6)),
-        "worst" => format!("{value:.4}"),
-        _ => format!("{value:.4e}"),
+        CriterionName::I => format!("{} ug", digits(value / MICRO_G)),
+        CriterionName::Worst => format!("{value:.4}"),
+        CriterionName::A | CriterionName::D => format!("{value:.4e}"),
     }
 }
 
@@ -165,7 +167,8 @@ fn frontier(text: &mut String, report: &PlanReport) {
     if report.frontier.is_empty() {
         return;
     }
-    let unit = if report.criterion == "I" { ", ug" } else { "" };
+    let (size, unit) = criterion_unit(report);
+    let unit = unit.map_or(String::new(), |unit| format!(", {unit}"));
     let _ = writeln!(
         text,
         "\nFRONTIER  {}{unit}\n  {:>10}{:>12}{:>12}{:>12}{:>12}",
@@ -177,7 +180,7 @@ fn frontier(text: &mut String, report: &PlanReport) {
         "[K5.5]"
     );
     for row in &report.frontier {
-        let shown = |value: Option<f64>| value.map_or("-".to_owned(), |v| digits(v * scale(report)));
+        let shown = |value: Option<f64>| value.map_or("-".to_owned(), |v| digits(v / size));
         let _ = writeln!(
             text,
             "  {:>10}{:>12}{:>12}{:>12}{:>12}",
@@ -187,6 +190,37 @@ fn frontier(text: &mut String, report: &PlanReport) {
             shown(row.uniform),
             shown(row.normalised)
         );
+    }
+}
+
+/// What the plan reaches in each scenario, and how they count.
+fn scenarios(text: &mut String, report: &PlanReport) {
+    if report.by_scenario.is_empty() {
+        return;
+    }
+    let (size, unit) = criterion_unit(report);
+    let values: Vec<String> = report.by_scenario.iter().map(|value| format!("{:.4}", value / size)).collect();
+    let _ = writeln!(
+        text,
+        "\nSCENARIOS  the expected one first, then those of [robust]; the {} counts\n  {}{}",
+        report.against,
+        values.join(", "),
+        unit.map_or(String::new(), |unit| format!(" {unit}"))
+    );
+}
+
+/// What the stated type B alone leaves of each goal.
+fn floors(text: &mut String, report: &PlanReport) {
+    let of_goal = |goal: &GoalReport| {
+        let type_b = goal.type_b.filter(|b| *b > 0.0)?;
+        Some(format!("  {}: {:.1} % of its goal\n", goal.name, 100.0 * type_b / goal.wanted))
+    };
+    let lines: String = report.goals.iter().filter_map(of_goal).collect();
+    if !lines.is_empty() {
+        text.push_str(
+            "\nTYPE B  what is stated under [uncertainty] leaves this much, and no plan lowers it by much; noise and speeds have the rest\n",
+        );
+        text.push_str(&lines);
     }
 }
 

@@ -3,10 +3,9 @@
 use std::fmt::Write;
 
 use centrical::STANDARD_GRAVITY;
-use centrical_session::PredictionReport;
+use centrical_session::{MICRO_G, PredictionReport, customary};
 
 use crate::number::digits;
-use crate::units::customary;
 
 /// Said of a parameter in which lost combinations leave doubt that no number beside it holds.
 pub(super) const LEANING: &str = "  leans on what is lost";
@@ -37,7 +36,7 @@ pub fn prediction_text(prediction: &PredictionReport) -> String {
         };
     }
     let _ = writeln!(text, "  expanded for {:.2} %", 100.0 * prediction.coverage);
-    let ug = |u: f64| digits(u / STANDARD_GRAVITY * 1e6);
+    let ug = |u: f64| digits(u / MICRO_G);
     let range = prediction.range / STANDARD_GRAVITY;
     match prediction.reading {
         Some([a, all]) => {

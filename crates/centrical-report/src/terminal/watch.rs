@@ -3,10 +3,8 @@
 use std::fmt::Write;
 
 use centrical::fit::recursive::{Lives, Progress};
-use centrical::{MeasurementModel, Parameter};
-use centrical_session::InnovationSummary;
-
-use crate::units::customary;
+use centrical::{Group, MeasurementModel, Parameter};
+use centrical_session::{InnovationSummary, customary};
 
 /// What is shown after a plateau.
 #[derive(Debug)]
@@ -15,7 +13,7 @@ pub struct WatchView<'a> {
     pub title: &'a str,
     /// The unknowns.
     pub model: &'a MeasurementModel,
-    /// Plateaus that have come, and those of the whole schedule.
+    /// Plateaus measured, and those of the whole schedule.
     pub plateaus: (usize, usize),
     /// The last one, and those that do not fit.
     pub tests: &'a [WatchedTest],
@@ -57,13 +55,16 @@ pub fn watch_table(view: &WatchView) -> String {
     row(&mut text, ["group", "unit", "determined", "largest u", "target", &heading]);
     let groups = groups(view.model);
     for group in &groups {
-        group_row(&mut text, view, group);
+        group_row(&mut text, view, *group);
     }
     if !view.best.is_empty() {
         let shown: Vec<String> = view.best.iter().map(|(name, factor)| format!("{name} (x {factor:.3})")).collect();
         let _ = writeln!(text, "BEST NEXT for the compensated reading's mean uncertainty: {}", shown.join("; "));
     }
-    if !view.targets.is_empty() && view.targets.iter().all(|(group, target)| is_met(view, group, *target)) {
+    let is_kept = |(name, target): &(String, f64)| {
+        groups.iter().any(|group| group.name() == name && is_met(view, *group, *target))
+    };
+    if !view.targets.is_empty() && view.targets.iter().all(is_kept) {
         text.push_str("Every target is met.\n");
     }
     text
@@ -86,8 +87,8 @@ pub fn states_text(model: &MeasurementModel, order: &[usize]) -> String {
 }
 
 /// The groups of the unknowns in the order of results.
-fn groups(model: &MeasurementModel) -> Vec<&'static str> {
-    let mut groups: Vec<&'static str> = Vec::new();
+fn groups(model: &MeasurementModel) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
     for parameter in model.parameters() {
         if !groups.contains(&parameter.group) {
             groups.push(parameter.group);
@@ -111,29 +112,29 @@ fn outcome(text: &mut String, test: &WatchedTest) {
     text.push_str(if *held_out { ", held out\n" } else { "\n" });
 }
 
-fn group_row(text: &mut String, view: &WatchView, group: &str) {
+fn group_row(text: &mut String, view: &WatchView, group: Group) {
     let of_group: Vec<&Parameter> = view.model.parameters().iter().filter(|p| p.group == group).collect();
     let unit = of_group.first().map_or("", |p| customary(&p.unit, group).1);
     let (determined, now) = largest(view.model, view.now, group);
     let next = view.next.as_ref().and_then(|(_, next)| largest(view.model, next, group).1);
-    let target = view.targets.iter().find(|(name, _)| name == group);
+    let target = view.targets.iter().find(|(name, _)| name == group.name());
     let met = target.map_or(String::new(), |(_, target)| {
         format!("{target} {}", if is_met(view, group, *target) { "met" } else { "-" })
     });
     let shown = |u: Option<f64>| u.map_or("-".to_owned(), |u| format!("{u:.3e}"));
     let determined = format!("{determined} of {}", of_group.len());
-    row(text, [group, unit, &determined, &shown(now), &met, &shown(next)]);
+    row(text, [group.name(), unit, &determined, &shown(now), &met, &shown(next)]);
 }
 
 /// How many of a group are determined, and the largest standard uncertainty of those in the customary unit.
-fn largest(model: &MeasurementModel, progress: &Progress, group: &str) -> (usize, Option<f64>) {
+fn largest(model: &MeasurementModel, progress: &Progress, group: Group) -> (usize, Option<f64>) {
     let of_group = model.parameters().iter().zip(&progress.estimates).filter(|(p, _)| p.group == group);
     let uncertainties = of_group.filter_map(|(p, known)| Some(customary(&p.unit, group).0 * (*known)?.1));
     uncertainties.fold((0, None), |(count, most), u| (count + 1, Some(u.max(most.unwrap_or(0.0)))))
 }
 
 /// Whether all of a group are determined, and to its target.
-fn is_met(view: &WatchView, group: &str, target: f64) -> bool {
+fn is_met(view: &WatchView, group: Group, target: f64) -> bool {
     let (determined, largest) = largest(view.model, view.now, group);
     let all = view.model.parameters().iter().filter(|p| p.group == group).count();
     determined == all && largest.is_some_and(|u| u <= target)

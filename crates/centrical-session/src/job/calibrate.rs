@@ -3,22 +3,10 @@
 use centrical::{MeasurementModel, fit};
 
 use super::reduce::reduce;
-use crate::document::CalibrationResult;
+use crate::document::{CalibrationResult, Method};
 use crate::error::Error;
 use crate::experiment::{PlateauName, Session};
 use crate::reduced::Reduced;
-
-/// How the unknowns are estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Method {
-    /// Gauss-Newton on the exact model.
-    #[default]
-    Exact,
-    /// The same estimates by the recursive filter, iterated.
-    Recursive,
-    /// The linear fit of [K5.3] alone, with its second-order error.
-    Linear,
-}
 
 /// What is fitted: the plateau means of a session and the model of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,10 +63,6 @@ pub fn calibrate_without(
     let observations = reduced.observations();
     let failed = |source| Error::Fit { file: session.file.clone(), source };
     let fit = estimate(&model, &observations, session.speed_uncertainty).map_err(failed)?;
-    let result = CalibrationResult::new(session, &model, &reduced, &fit);
-    let mut result = result.with_trust(session, &model, &observations, &fit).map_err(failed)?;
-    if method == Method::Recursive {
-        "exact, recursive filter".clone_into(&mut result.fit.method);
-    }
-    Ok(result)
+    let result = CalibrationResult::new(session, &model, &reduced, &fit, method);
+    result.with_trust(session, &model, &observations, &fit).map_err(failed)
 }

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use centrical::fit::recursive::{self, Filter, Follower, Lives, Readings, ResumeError};
 use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::{
-    ErrorModel, Experiment, Extension, Extra, Fit, FitError, Law, MeasurementModel, Observation, PairRelation,
+    ErrorModel, Experiment, Extension, Extra, Fit, FitError, Group, Law, MeasurementModel, Observation, PairRelation,
     STANDARD_GRAVITY, Termination, fit, rotation,
 };
 use nalgebra::{Matrix3, Vector3};
@@ -52,8 +52,8 @@ fn random_design(random: &mut Random) -> (MeasurementModel, Vec<Observation>) {
             error_model = error_model.with(extra);
         }
     }
-    let gone = ["cubic", "quadratic", "misalignment", "none"][random.below(4)];
-    error_model.terms.retain(|term| term.group != gone);
+    let gone = [Some(Group::Cubic), Some(Group::Quadratic), Some(Group::Misalignment), None][random.below(4)];
+    error_model.terms.retain(|term| Some(term.group) != gone);
     let extensions = [
         Extension::ElasticTurn(Law::Speed),
         Extension::ElasticTurn(Law::Load),

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition::{self, AxisOneDown, AxisOneUp};
-use centrical::{ErrorModel, Extension, Law, MeasurementModel, Observability, PairRelation, Study, Weight};
+use centrical::{ErrorModel, Extension, Group, Law, MeasurementModel, Observability, PairRelation, Study, Weight};
 use nalgebra::Matrix3;
 
 use crate::common::spread;
@@ -135,7 +135,7 @@ fn instrument_is_estimable_with_two_radii_rest_and_two_speeds() {
             for rho in [spread(), Matrix3::zeros()] {
                 let study = study(&plan(row, AxisOneUp, relation, rho), &[]);
                 for (j, parameter) in study.model().parameters().iter().enumerate() {
-                    let may_be_lost = ["shift", "proof mass"].contains(&parameter.group);
+                    let may_be_lost = matches!(parameter.group, Group::Shift | Group::ProofMass);
                     assert!(may_be_lost || study.observability().is_estimable(j), "{}: {}", row.case, parameter.name);
                 }
                 assert!(study.lost_of_instrument().is_empty());

@@ -40,7 +40,7 @@ impl Weight {
 
 /// A font that is ready to set text.
 pub(super) struct Font {
-    /// The parsed file; none only if the shipped file were damaged, and then text has no glyphs.
+    /// The parsed file; `None` only if the shipped file were damaged, and then text has no glyphs.
     pub face: Option<Face<'static>>,
 }
 

@@ -1,12 +1,12 @@
 //! From a fit to the result's form.
 
 use centrical::uncertainty::{Budget, Validity, patterns};
-use centrical::{Fit, FitError, MeasurementModel, Mounting, Observation, Position, PriorUse, SetPoint, Termination};
+use centrical::{Fit, FitError, MeasurementModel, Mounting, Observation, Position, PriorUse, SetPoint};
 use nalgebra::{Matrix3, Vector3};
 
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
 use super::schema::{
-    CalibrationResult, ConvergenceSummary, FitSummary, ModelSummary, MountingSummary, ObservabilitySummary,
+    CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
     ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, TermSummary,
 };
 use crate::document::steadiness;
@@ -15,7 +15,7 @@ use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
 
 impl CalibrationResult {
     /// Puts a fit, the model it was made with and the plateaus it rests on into the form of the file.
-    pub fn new(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Self {
+    pub fn new(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit: &Fit, method: Method) -> Self {
         let program = Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
         let count = model.parameters().len();
         Self {
@@ -27,7 +27,7 @@ impl CalibrationResult {
             parameters: (0..count).map(|j| ParameterEstimate::new(model, fit, j)).collect(),
             covariance: (0..count).map(|i| (0..count).map(|j| fit.covariance(i, j)).collect()).collect(),
             observability: ObservabilitySummary::new(model, fit),
-            fit: FitSummary::new(fit),
+            fit: FitSummary::new(fit, method),
             mountings: mountings(model, reduced),
             plateaus: plateaus(session, model, reduced, fit),
             convergence: Some(ConvergenceSummary::new(model, reduced, fit)),
@@ -101,8 +101,8 @@ impl ModelSummary {
         });
         Self {
             error_model: terms.collect(),
-            pair_relation: experiment.pair_relation.name().to_owned(),
-            reference: experiment.unit.reference.name().to_owned(),
+            pair_relation: experiment.pair_relation,
+            reference: experiment.unit.reference,
             gravity: experiment.site.gravity,
             latitude: experiment.site.latitude,
             speed_uncertainty: session.speed_uncertainty,
@@ -138,7 +138,7 @@ impl ParameterEstimate {
             value: fit.value(j),
             standard_uncertainty: fit.standard_uncertainty(j),
             unit: parameter.unit.clone(),
-            group: parameter.group.to_owned(),
+            group: parameter.group,
             estimable: fit.value(j).is_some(),
             prior: fit.prior_uses().iter().find(|used| used.prior.parameter == j).map(PriorSummary::from),
             prior_share: if model.priors().is_empty() { None } else { fit.prior_share(j) },
@@ -163,16 +163,10 @@ impl ObservabilitySummary {
 }
 
 impl FitSummary {
-    fn new(fit: &Fit) -> Self {
-        let (method, termination) = match fit.termination {
-            Termination::Linear => ("linear [K5.3]", "linear"),
-            Termination::Converged => ("exact, Gauss-Newton", "converged"),
-            Termination::Stalled => ("exact, Gauss-Newton", "stalled"),
-            Termination::IterationLimit => ("exact, Gauss-Newton", "iteration limit"),
-        };
+    fn new(fit: &Fit, method: Method) -> Self {
         Self {
-            method: method.to_owned(),
-            termination: termination.to_owned(),
+            method,
+            termination: fit.termination,
             iterations: fit.iterations,
             chi_squared: fit.chi_squared,
             degrees_of_freedom: fit.degrees_of_freedom,
