@@ -18,5 +18,5 @@ pub(crate) use self::equation::{equation, equations, monomial};
 pub(crate) use self::expanded::{COVERAGE_FACTOR, Expanded, expanded};
 pub(crate) use self::group::by_group;
 pub(crate) use self::noise::Shown;
-pub(crate) use self::reading_error::{ReadingError, error_model, reading_errors};
+pub(crate) use self::reading_error::{ReadingError, compensated, reading_errors};
 pub use self::verdict::{Objection, objections};

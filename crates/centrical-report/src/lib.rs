@@ -1,4 +1,5 @@
-//! What a calibration leaves on paper and screen. Pure functions from data to text; no files, no network.
+//! What a calibration leaves on paper and screen. Pure functions from data to text, and the
+//! files that a command writes of it.
 //!
 //! [`report`] and [`certificate`] say what a document holds, as data; [`html`] and [`pdf`] draw any of them. The same
 //! data give the same bytes.
@@ -8,6 +9,7 @@ mod dcc;
 mod document;
 mod evaluation;
 mod figure;
+mod files;
 mod language;
 mod number;
 pub mod plot;
@@ -20,11 +22,11 @@ pub use document::{
 };
 pub use evaluation::{Objection, objections};
 pub use figure::{Figure, figures, frontier_plot, history_figure, noise_plots, positions_figure};
+pub use files::{DocumentRequest, write_all_documents, write_documents, write_history_plot, write_noise};
 pub use language::Language;
 pub use number::with_uncertainty;
 pub use render::{html, pdf};
 pub use terminal::{
-    WatchView, WatchedTest, budget_table, comparison_table, correlation_table, monte_carlo_table, noise_table,
-    noise_warnings, observation_text, outliers_text, plan_text, prediction_table, selection_table, states_text,
-    terminal_table, validity_text, verdict_text, watch_table,
+    assessment_text, comparison_table, compensation_text, monte_carlo_text, noise_table, noise_warnings,
+    observation_text, plan_text, selection_table, states_text, terminal_table, verdict_text, watch_table,
 };

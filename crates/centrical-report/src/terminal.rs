@@ -3,6 +3,7 @@
 mod assess;
 mod calibrate;
 mod compare;
+mod compensate;
 mod drift;
 mod models;
 mod montecarlo;
@@ -13,12 +14,13 @@ mod plan;
 mod prediction;
 mod watch;
 
-pub use self::assess::{budget_table, correlation_table, outliers_text, prediction_table, validity_text};
+pub use self::assess::assessment_text;
 pub use self::calibrate::{terminal_table, verdict_text};
 pub use self::compare::comparison_table;
+pub use self::compensate::compensation_text;
 pub use self::models::selection_table;
-pub use self::montecarlo::monte_carlo_table;
+pub use self::montecarlo::monte_carlo_text;
 pub use self::noise::{noise_table, noise_warnings};
 pub use self::observe::observation_text;
 pub use self::plan::plan_text;
-pub use self::watch::{WatchView, WatchedTest, states_text, watch_table};
+pub use self::watch::{states_text, watch_table};

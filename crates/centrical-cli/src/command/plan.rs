@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical_report::{frontier_plot, plan_text};
-use centrical_session::{Error, PlanRequest, USUAL_LEVELS, read_planning, write_whole};
+use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, read_planning, write_whole};
 
 use super::assess::probability;
 use crate::Outcome;
@@ -38,15 +38,12 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Times of the frontier over that of the plan.
-const FACTORS: [f64; 8] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0];
-
 /// Runs the command. Not acceptable: a parameter of the instrument is not determined, or a goal is missed.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let mut planning = read_planning(&arguments.plan)?;
     let plan = planning.plan(arguments.certify)?;
     let request = PlanRequest {
-        frontier: if arguments.frontier { FACTORS.to_vec() } else { Vec::new() },
+        frontier: if arguments.frontier { USUAL_TIMES.to_vec() } else { Vec::new() },
         levels: arguments.levels.clone(),
         coverage: arguments.coverage,
     };
@@ -57,11 +54,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if let Some(file) = &arguments.svg {
         write_whole(file, frontier_plot(&report).as_bytes())?;
     }
-    let text = if arguments.json { report.to_json() } else { plan_text(&report) };
+    let text = if arguments.json { report.to_json()? } else { plan_text(&report) };
     // A reader that has seen enough (`| head`) is no failure.
     let _ = io::stdout().write_all(text.as_bytes());
-    let is_missed = report.goals.iter().any(|goal| goal.combined.is_none_or(|u| u > goal.wanted * (1.0 + 1e-6)));
-    Ok(if is_missed || report.prediction.reading.is_none() { Outcome::NotAcceptable } else { Outcome::Done })
+    Ok(if report.is_acceptable() { Outcome::Done } else { Outcome::NotAcceptable })
 }
 
 fn level(text: &str) -> Result<f64, String> {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical_session::CalibrationResult;
+use centrical_session::{CalibrationResult, TermSummary};
 
 /// `f1' = f1 + df_1 + G0_11 f1 + ...` for the three newtonometers, separated by semicolons.
 pub(crate) fn equation(result: &CalibrationResult) -> String {
@@ -14,7 +14,7 @@ pub(crate) fn equations(result: &CalibrationResult) -> [String; 3] {
     [1, 2, 3].map(|axis| {
         let mut text = format!("f{axis}\u{2032} = f{axis}");
         for term in result.model.error_model.iter().filter(|term| term.axis == axis) {
-            let monomial = monomial(term.powers, term.sign_of);
+            let monomial = monomial(term).replace('*', " ");
             let _ = if monomial == "1" {
                 write!(text, " + {}", term.name)
             } else {
@@ -25,11 +25,7 @@ pub(crate) fn equations(result: &CalibrationResult) -> [String; 3] {
     })
 }
 
-/// `f1^2 f3`, or `1`; an odd term with its sign, `sgn(f1) f1^2`.
-pub(crate) fn monomial(powers: [u8; 3], sign_of: Option<usize>) -> String {
-    let mut factors: Vec<String> = sign_of.map(|axis| format!("sgn(f{axis})")).into_iter().collect();
-    for (axis, power) in (1..).zip(powers).filter(|(_, power)| *power > 0) {
-        factors.push(if power == 1 { format!("f{axis}") } else { format!("f{axis}^{power}") });
-    }
-    if factors.is_empty() { "1".to_owned() } else { factors.join(" ") }
+/// `f1^2*f3`, `f2*|f2|` or `1`, as sessions write it; a question mark if it takes the sign of an axis that does not exist.
+pub(crate) fn monomial(term: &TermSummary) -> String {
+    term.monomial().map_or_else(|_| "?".to_owned(), |monomial| monomial.to_string())
 }

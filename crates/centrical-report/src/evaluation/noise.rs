@@ -1,6 +1,6 @@
 //! The units in which a noise analysis is shown.
 
-use centrical::noise::{Estimator, NoiseTerm};
+use centrical::stability::{Estimator, NoiseTerm};
 use centrical_session::{MICRO_G, ReadingNoise, Unit};
 
 /// How the numbers of one column are shown.

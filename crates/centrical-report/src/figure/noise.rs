@@ -1,6 +1,6 @@
 //! Plots of a noise analysis.
 
-use centrical::noise::{Coefficient, Deviation, NoiseTerm, NoiseTerms};
+use centrical::stability::{Coefficient, Deviation, NoiseTerm, NoiseTerms};
 use centrical_session::NoiseAnalysis;
 
 use crate::evaluation::Shown;
@@ -10,9 +10,9 @@ use crate::plot::{Axis, Plot, Point, Series};
 /// and the spectra.
 pub fn noise_plots(analysis: &NoiseAnalysis) -> Vec<(String, Plot)> {
     let of_each = analysis.readings.iter().filter_map(|reading| {
-        let (estimator, family) = reading.deviations.first()?;
+        let (estimator, family) = reading.noise.deviations.first()?;
         let shown = Shown::deviation(reading, *estimator);
-        let terms = reading.quotable().filter(|_| !estimator.is_of_phase());
+        let terms = reading.noise.quotable().filter(|_| !estimator.is_of_phase());
         let title = format!("Stability of {}, {}", reading.name, analysis.file_name());
         let plot = deviation_plot(title, estimator.name(), &shown, family, terms);
         Some((format!("deviation-{}.svg", file_part(&reading.name)), plot))
@@ -62,7 +62,7 @@ fn spectra(analysis: &NoiseAnalysis) -> Plot {
     let title = format!("Spectrum of the reading, {}", analysis.file_name());
     let mut plot = Plot::new(title, Axis::log("frequency, Hz"), Axis::log(format!("root of the density, {unit}/√Hz")));
     for reading in &analysis.readings {
-        let Ok(spectrum) = &reading.spectrum else { continue };
+        let Ok(spectrum) = &reading.noise.spectrum else { continue };
         let factor = Shown::reading(reading).factor;
         let points =
             spectrum.bands(BANDS_PER_OCTAVE).into_iter().map(|b| Point::new(b.frequency, factor * b.density.sqrt()));

@@ -48,7 +48,7 @@ fn heading(text: &mut String, result: &CalibrationResult) {
 fn error_model(text: &mut String, result: &CalibrationResult) {
     text.push_str("\nERROR MODEL  reading = f + sum of term x coefficient\n");
     row(text, "term", "unit", &["newtonometer 1", "newtonometer 2", "newtonometer 3"].map(str::to_owned));
-    let mut rows: Vec<([u8; 3], Option<usize>, &str)> = Vec::new();
+    let mut rows: Vec<(String, &str)> = Vec::new();
     for term in &result.model.error_model {
         let key = row_of(result, term);
         if !rows.contains(&key) {
@@ -64,14 +64,14 @@ fn error_model(text: &mut String, result: &CalibrationResult) {
                 cells[term.axis - 1] = cell(parameter);
             }
         }
-        row(text, &monomial(key.0, key.1), unit, &cells);
+        row(text, &key.0, unit, &cells);
     }
 }
 
 /// Terms that share a row: the same monomial in the same customary unit.
-fn row_of<'r>(result: &'r CalibrationResult, term: &TermSummary) -> ([u8; 3], Option<usize>, &'r str) {
+fn row_of<'r>(result: &'r CalibrationResult, term: &TermSummary) -> (String, &'r str) {
     let unit = result.parameter(&term.name).map_or("", |p| customary(&p.unit, p.group).1);
-    (term.powers, term.sign_of, unit)
+    (monomial(term), unit)
 }
 
 /// Turns by position, shifts by pair, tilt and proof masses.

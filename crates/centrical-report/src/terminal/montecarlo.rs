@@ -6,14 +6,16 @@ use centrical::Parameters;
 use centrical::uncertainty::MonteCarlo;
 
 use super::prediction::LEANING;
-use centrical_session::customary;
+use centrical_session::{MonteCarloCase, customary};
 
 use crate::number::short;
 
-/// What the runs show beside what was stated; `coverage` is the probability that the intervals are to cover.
-pub fn monte_carlo_table(parameters: &Parameters, monte_carlo: &MonteCarlo, coverage: f64) -> String {
-    let mut text =
-        format!("MONTE CARLO  {} calibrations, {} did not converge\n", monte_carlo.runs, monte_carlo.failures);
+/// For which unit the readings were drawn where that is not the one of the data, and what the runs show beside what was
+/// stated; `coverage` is the probability that the intervals are to cover.
+pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverage: f64) -> String {
+    let parameters = case.model.parameters();
+    let mut text = drawn_unit(parameters, &case.truth).to_owned();
+    let _ = writeln!(text, "MONTE CARLO  {} calibrations, {} did not converge", monte_carlo.runs, monte_carlo.failures);
     let percent = 100.0 * coverage;
     let _ = writeln!(
         text,
@@ -59,4 +61,14 @@ pub fn monte_carlo_table(parameters: &Parameters, monte_carlo: &MonteCarlo, cove
         );
     }
     text
+}
+
+fn drawn_unit(parameters: &Parameters, truth: &[f64]) -> &'static str {
+    if truth.iter().all(|value| *value == 0.0) {
+        "A unit without errors, as it is predicted; --typical draws for one of typical errors\n"
+    } else if truth == parameters.typical_in_turn() {
+        "A unit of typical errors, signs in turn\n"
+    } else {
+        ""
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical::noise::{Coefficient, Deviation, Estimator, NoiseTerm};
+use centrical::stability::{Analysis, Coefficient, Deviation, Estimator, NoiseTerm};
 use centrical_session::{NoiseAnalysis, ReadingNoise};
 
 use crate::evaluation::Shown;
@@ -27,7 +27,7 @@ pub fn noise_table(analysis: &NoiseAnalysis) -> String {
 }
 
 fn heading(text: &mut String, reading: &ReadingNoise) {
-    let ReadingNoise { name, samples, interval, spikes, repeated, gaps, .. } = reading;
+    let ReadingNoise { name, noise: Analysis { samples, interval, spikes, repeated, gaps, .. }, .. } = reading;
     let _ = write!(text, "\n{}  {samples} readings every {interval:.6} s", name.to_uppercase());
     if gaps.missing > 0 {
         let _ = write!(text, "; missing: {}, the longest run {}", gaps.missing, gaps.longest);
@@ -46,17 +46,17 @@ fn stability(text: &mut String, reading: &ReadingNoise) {
     const CELL: usize = 34;
     let title = |e: Estimator| format!("{}, {}", e.name(), Shown::deviation(reading, e).unit);
     let mut line = format!("  {:<12}", "tau, s");
-    line.extend(reading.deviations.iter().map(|(e, _)| format!("{:<CELL$}", title(*e))));
+    line.extend(reading.noise.deviations.iter().map(|(e, _)| format!("{:<CELL$}", title(*e))));
     let _ = writeln!(text, "{}", line.trim_end());
     let mut factors: Vec<(usize, f64)> = Vec::new();
-    for deviation in reading.deviations.iter().flat_map(|(_, family)| family) {
+    for deviation in reading.noise.deviations.iter().flat_map(|(_, family)| family) {
         if let Err(place) = factors.binary_search_by_key(&deviation.factor, |f| f.0) {
             factors.insert(place, (deviation.factor, deviation.tau));
         }
     }
     for (factor, tau) in factors {
         let mut line = format!("  {:<12}", significant(tau, 4));
-        for (estimator, family) in &reading.deviations {
+        for (estimator, family) in &reading.noise.deviations {
             let shown = Shown::deviation(reading, *estimator);
             let cell = family.iter().find(|d| d.factor == factor).map_or(String::new(), |d| interval(d, shown.factor));
             let _ = write!(line, "{cell:<CELL$}");
@@ -73,7 +73,7 @@ fn interval(d: &Deviation, factor: f64) -> String {
 /// The spectrum in a line an octave, and the lines in it.
 fn spectrum(text: &mut String, reading: &ReadingNoise) {
     let Shown { factor, unit } = Shown::reading(reading);
-    let spectrum = match &reading.spectrum {
+    let spectrum = match &reading.noise.spectrum {
         Ok(spectrum) => spectrum,
         Err(error) => {
             let _ = writeln!(text, "  no spectrum: {error}");
@@ -100,7 +100,7 @@ fn spectrum(text: &mut String, reading: &ReadingNoise) {
 }
 
 fn terms(text: &mut String, reading: &ReadingNoise) {
-    let Some(terms) = reading.quotable() else { return };
+    let Some(terms) = reading.noise.quotable() else { return };
     let _ = writeln!(
         text,
         "  noise terms (IEEE Std 952); chi^2 {:.1} with {} degrees of freedom",
@@ -124,7 +124,7 @@ fn terms(text: &mut String, reading: &ReadingNoise) {
 
 /// Why the coefficients of a column are not quoted, a sentence for each such column.
 pub fn noise_warnings(analysis: &NoiseAnalysis) -> Vec<String> {
-    let warning = |reading: &ReadingNoise| match &reading.terms {
+    let warning = |reading: &ReadingNoise| match &reading.noise.terms {
         Ok(terms) if terms.is_consistent() => None,
         Ok(terms) => Some(format!(
             "{}: no sum of quantisation, white noise, bias instability, random walk and ramp describes the deviations \

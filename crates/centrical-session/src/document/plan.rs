@@ -3,8 +3,10 @@
 use centrical::Group;
 use serde::Serialize;
 
+use crate::document::json;
 use crate::document::prediction::PredictionReport;
 use crate::document::result::Program;
+use crate::error::Error;
 
 /// Name of the schema's present version.
 pub(crate) const SCHEMA: &str = "centrical-plan/1";
@@ -151,11 +153,17 @@ pub struct FrontierRow {
 }
 
 impl PlanReport {
+    /// Whether all coefficients of the instrument are determined and every goal is met.
+    pub fn is_acceptable(&self) -> bool {
+        let is_missed = |goal: &GoalReport| goal.combined.is_none_or(|u| u > goal.wanted * (1.0 + 1e-6));
+        self.prediction.reading.is_some() && !self.goals.iter().any(is_missed)
+    }
+
     /// The text of the document.
-    pub fn to_json(&self) -> String {
-        // Plain structs with text keys: serialisation has nothing to fail on.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(SCHEMA, self)
     }
 }

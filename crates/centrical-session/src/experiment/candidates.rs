@@ -10,7 +10,7 @@ use super::form::{self, CandidatesTable, Form, MountingTable, Steps};
 use super::plan::{ExpectedValues, expected_of, noise};
 use super::prior;
 use super::schedule::{FASTEST, duration};
-use super::session::{Session, named_extensions, read_text, rotation};
+use super::session::{Session, named_extensions, read_text};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
@@ -59,8 +59,7 @@ impl Planning {
         }
         form.mounting = mountings(&at, &table, &form)?;
         let mut session = Session::without_plateaus(path, &form)?;
-        let sign = rotation(path, &form.centrifuge.rotation)?;
-        session.experiment.set_points = set_points(&at, &table, &session.experiment, sign)?;
+        session.experiment.set_points = set_points(&at, &table, &session.experiment)?;
         let scenarios = scenarios(path, &form, &session, expected)?;
         let candidates = Candidates {
             scenarios,
@@ -105,12 +104,7 @@ fn mountings(at: &TomlPath, table: &CandidatesTable, form: &Form) -> Result<Vec<
 }
 
 /// Every speed that the machine and the unit bear, and every angle at rest, in every mounting.
-fn set_points(
-    at: &TomlPath,
-    table: &CandidatesTable,
-    experiment: &Experiment,
-    sign: f64,
-) -> Result<Vec<SetPoint>, Error> {
+fn set_points(at: &TomlPath, table: &CandidatesTable, experiment: &Experiment) -> Result<Vec<SetPoint>, Error> {
     let largest = experiment.mountings.iter().map(|m| m.arm_y.x).fold(0.0, f64::max);
     let mut speeds = Vec::new();
     if let Some(steps) = &table.speeds {
@@ -135,7 +129,11 @@ fn set_points(
     for (mounting, place) in experiment.mountings.iter().enumerate() {
         set_points.extend(angles.iter().map(|&angle| SetPoint { mounting, omega: 0.0, angle }));
         let borne = speeds.iter().filter(|omega| **omega <= fastest && **omega * **omega * place.arm_y.x <= most);
-        set_points.extend(borne.map(|omega| SetPoint { mounting, omega: sign * omega, angle: 0.0 }));
+        set_points.extend(borne.map(|omega| SetPoint {
+            mounting,
+            omega: experiment.centrifuge.rotation.sign() * omega,
+            angle: 0.0,
+        }));
     }
     if set_points.is_empty() || set_points.len() > MOST_PLATEAUS {
         let expected =
@@ -212,13 +210,8 @@ fn scenarios(file: &Path, form: &Form, session: &Session, values: &ExpectedValue
     let given = |key: fn(&form::PlanTable) -> &Option<Quantity>| plan.and_then(|table| key(table).as_ref());
     let expected = noise(file, given(|t| &t.noise), given(|t| &t.floor), given(|t| &t.duration))?;
     let expected = centrical::plan::Noise { density: expected.density, floor: expected.floor };
-    let scenario = |model: MeasurementModel, noise| Scenario {
-        nominal: expected_of(&model, values),
-        model,
-        noise,
-        speed_uncertainty: session.speed_uncertainty,
-        weight: 1.0,
-    };
+    let scenario =
+        |model: MeasurementModel, noise| Scenario { nominal: expected_of(&model, values), model, noise, weight: 1.0 };
     let model = session.model()?;
     let mut scenarios = vec![scenario(model.clone(), expected)];
     let at = TomlPath::table(file, "robust");

@@ -11,7 +11,7 @@ use nalgebra::Matrix3;
 use serde::Deserialize;
 
 use super::form::{self, Form, PlanTable, PresetForm, PresetTable};
-use super::session::{Session, extensions, pair_relation, read_text, rotation};
+use super::session::{Session, extensions, pair_relation, read_text, speed_uncertainty};
 use super::toml_path::TomlPath;
 use super::{prior, schedule, terms};
 use crate::error::{Error, quoted};
@@ -36,8 +36,6 @@ pub struct Plan {
     pub nominal: Vec<f64>,
     /// How well the mean of each set point will be known.
     pub weights: Vec<Weight>,
-    /// Relative standard uncertainty of the speed of a plateau.
-    pub speed_uncertainty: f64,
     /// The noise that is reckoned with.
     pub noise: Noise,
     /// Standard uncertainties that the data will not show, as stated in `[uncertainty]`.
@@ -106,8 +104,8 @@ impl Plan {
 
     fn of_form(file: &Path, form: &Form, expected: &ExpectedValues) -> Result<Self, Error> {
         let mut session = Session::without_plateaus(file, form)?;
-        let sign = rotation(file, &form.centrifuge.rotation)?;
-        session.experiment.set_points = schedule::set_points(file, &form.mounting, sign)?;
+        session.experiment.set_points =
+            schedule::set_points(file, &form.mounting, session.experiment.centrifuge.rotation)?;
         let table = form.plan.as_ref();
         let of_table = |key: fn(&PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
         let noise = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;
@@ -122,7 +120,6 @@ impl Plan {
             nominal: expected_of(&model, expected),
             model,
             weights: weights(&noise, durations),
-            speed_uncertainty: session.speed_uncertainty,
             noise,
             type_b: session.type_b,
         })
@@ -139,12 +136,10 @@ impl Plan {
             table,
             Normalised { pair_relation: pair_relation(file, &form.model.pair_relation)?, ..Normalised::default() },
         )?;
-        let experiment = plan.experiment();
+        let mut experiment = plan.experiment();
         let noise = noise(file, table.noise.as_ref(), table.floor.as_ref(), table.duration.as_ref())?;
-        let at = TomlPath::table(file, "centrifuge");
-        let meaning = "a relative standard uncertainty, zero or more and below 1";
-        let bounded = |q| at.bounded("speed_uncertainty", q, Dimension::Ratio, (0.0, 1.0), meaning);
-        let speed_uncertainty = form.centrifuge.speed_uncertainty.as_ref().map(bounded).transpose()?.unwrap_or(0.0);
+        let stated = form.centrifuge.speed_uncertainty.as_ref().map(|q| speed_uncertainty(file, q)).transpose()?;
+        experiment.centrifuge.speed_uncertainty = stated.unwrap_or(0.0);
         let weights = weights(&noise, vec![noise.duration; experiment.set_points.len()]);
         let error_model = terms::error_model(file, &form.model.error_model)?;
         let model = MeasurementModel::new(experiment, error_model, &extensions(file, &form.model)?);
@@ -154,7 +149,6 @@ impl Plan {
             nominal: vec![0.0; model.parameters().len()],
             model: prior::with_priors(file, model, &prior::entries(&form.prior))?,
             weights,
-            speed_uncertainty,
             noise,
             type_b: TypeB::default(),
         })

@@ -8,4 +8,4 @@ mod schedule_file;
 mod search;
 
 pub use self::read::{read_plan, read_planning};
-pub use self::request::{PlanRequest, USUAL_LEVELS};
+pub use self::request::{PlanRequest, USUAL_LEVELS, USUAL_TIMES};

@@ -39,8 +39,6 @@ pub struct Scenario {
     pub nominal: Vec<f64>,
     /// The noise that is reckoned with.
     pub noise: Noise,
-    /// Relative standard uncertainty of the speed of a plateau.
-    pub speed_uncertainty: f64,
     /// Its weight among the scenarios; they are divided by their sum.
     pub weight: f64,
 }

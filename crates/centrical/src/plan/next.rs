@@ -24,18 +24,17 @@ pub struct Gain {
 /// [`PlanError`] when a weight cannot be one, or a goal names no parameter.
 pub fn next_best(
     model: &MeasurementModel,
-    speed_uncertainty: f64,
     criterion: &Criterion,
     taken: &[Weight],
     candidates: &[Weight],
 ) -> Result<Vec<Gain>, PlanError> {
     let none = vec![0.0; model.parameters().len()];
     let scene = Scene::of(model, &none, criterion)?;
-    let factor = factor_of(&scene, (model, &none), speed_uncertainty, taken)?;
+    let factor = factor_of(&scene, (model, &none), taken)?;
     let before = Scene::value(&factor);
     let mut gains = Vec::with_capacity(candidates.len());
     for candidate in candidates {
-        let dn = precision(model, &none, candidate, speed_uncertainty)?;
+        let dn = precision(model, &none, candidate)?;
         let after = scene.value_after(&factor, &scene.insight(&factor, candidate.set_point), &dn);
         gains.push(Gain { set_point: candidate.set_point, factor: (0.5 * (after - before)).exp() });
     }
@@ -43,13 +42,7 @@ pub fn next_best(
     Ok(gains)
 }
 
-fn factor_of(
-    scene: &Scene,
-    (model, none): (&MeasurementModel, &[f64]),
-    speed_uncertainty: f64,
-    taken: &[Weight],
-) -> Result<Factor, PlanError> {
-    let information =
-        taken.iter().map(|weight| Ok((weight.set_point, precision(model, none, weight, speed_uncertainty)?)));
+fn factor_of(scene: &Scene, (model, none): (&MeasurementModel, &[f64]), taken: &[Weight]) -> Result<Factor, PlanError> {
+    let information = taken.iter().map(|weight| Ok((weight.set_point, precision(model, none, weight)?)));
     Ok(scene.factor(&information.collect::<Result<Vec<(usize, Matrix3<f64>)>, PlanError>>()?))
 }

@@ -17,10 +17,9 @@
 mod curvature;
 mod model;
 mod polytope;
-mod program;
 
 use self::model::Model;
-pub(super) use self::polytope::{Polytope, Total, visits_in};
+pub(super) use self::polytope::Polytope;
 use super::information::{Factor, Scene, Smooth, sum_of, trace_of_product};
 use super::robustness::Scenes;
 
@@ -35,9 +34,6 @@ const FAR: f64 = 1.0;
 
 /// Quadratic models made at most, for each exponent.
 const MODELS: usize = 25;
-
-/// After so many models a design that does not keep its totals is left: there is hardly any that does.
-const UNKEPT: usize = 4;
 
 /// How well an optimum has to be known, in the logarithm of the criterion.
 #[derive(Debug, Clone, Copy)]
@@ -87,21 +83,11 @@ struct Point {
     value: f64,
     /// By atom.
     sensitivity: Vec<f64>,
-    /// The same less what the totals charge.
-    charged: Vec<f64>,
 }
 
 /// Seeks the optimum of `polytope` from `start` until it is known as well as `precision` asks.
 pub(super) fn relax(scenes: &Scenes, polytope: &Polytope, start: Option<&[f64]>, precision: Precision) -> Relaxed {
-    let mut search = Search {
-        scenes,
-        polytope,
-        best: f64::NEG_INFINITY,
-        models: 0,
-        exponent: 1.0,
-        precision,
-        charges: vec![0.0; polytope.totals.len()],
-    };
+    let mut search = Search { scenes, polytope, best: f64::NEG_INFINITY, models: 0, exponent: 1.0, precision };
     let has_norm = scenes.has_norm();
     let mut w = polytope.within(&start.map_or_else(|| search.spread(), <[f64]>::to_vec));
     search.exponent = if has_norm { 4.0 } else { 1.0 };
@@ -115,8 +101,7 @@ pub(super) fn relax(scenes: &Scenes, polytope: &Polytope, start: Option<&[f64]>,
         w = search.refine(w);
     }
     let value = search.true_value(&w);
-    let bound = if polytope.keeps_totals(&w) { search.best.min(value) } else { search.best };
-    Relaxed { visits: w, value, bound, models: search.models }
+    Relaxed { visits: w, value, bound: search.best.min(value), models: search.models }
 }
 
 struct Search<'a> {
@@ -127,8 +112,6 @@ struct Search<'a> {
     models: usize,
     exponent: f64,
     precision: Precision,
-    /// What a visit is charged for each total that it counts in, in the logarithm of the criterion.
-    charges: Vec<f64>,
 }
 
 impl Search<'_> {
@@ -184,10 +167,9 @@ impl Search<'_> {
             support += part * here.support;
             of_priors += part * scene.prior_part(factor, &here.columns);
         }
-        let charged = self.polytope.charged(&sensitivity, &self.charges);
-        let (most, lambda) = self.polytope.most_charged(&charged, &self.charges);
+        let (most, lambda) = self.polytope.most(&sensitivity);
         self.best = self.best.max(support - (of_priors + most).ln());
-        (Point { factors, smooth, parts, value, sensitivity, charged }, lambda)
+        (Point { factors, smooth, parts, value, sensitivity }, lambda)
     }
 
     fn is_open(&self, plateau: usize) -> bool {
@@ -246,23 +228,12 @@ impl Search<'_> {
         let mut factors = self.factors(&w);
         for _ in 0..MODELS {
             let (point, lambda) = self.look(factors);
-            let is_kept = self.polytope.keeps_totals(&w);
-            let is_lost = !is_kept && self.models >= UNKEPT;
-            if self.best >= self.precision.enough || is_kept && self.is_done(point.value) || is_lost {
+            if self.is_done(point.value) {
                 break;
             }
             self.models += 1;
-            let model = Model::new(self, &point, lambda, &w);
-            let target = if self.polytope.totals.is_empty() {
-                model.optimum()
-            } else {
-                let Some((target, charges)) = model.optimum_under_totals() else { break };
-                self.charges = charges;
-                target
-            };
-            // A start that does not keep the totals is no value to fall from.
-            let value = if is_kept { point.value } else { f64::INFINITY };
-            match self.descend(&w, &target, value) {
+            let target = Model::new(self, &point, lambda, &w).optimum();
+            match self.descend(&w, &target, point.value) {
                 Some((next, at)) => (w, factors) = (next, at),
                 None => break,
             }

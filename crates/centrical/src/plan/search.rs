@@ -5,7 +5,6 @@ mod problem;
 mod seek;
 mod shortest;
 mod tree;
-mod visits;
 
 pub(super) use self::problem::Problem;
 use self::tree::Tree;
@@ -19,34 +18,21 @@ use super::relaxation::Relaxed;
 pub struct Effort {
     /// Nodes that decide on mountings.
     pub mounting_nodes: usize,
-    /// Nodes that decide on visits.
-    pub visit_nodes: usize,
-    /// Part of the criterion that is left open without deciding on visits.
-    pub visits_open: f64,
     /// Exchanges tried in each schedule.
     pub trials: usize,
-    /// Whether nothing that is any better is left: for small problems.
-    pub is_exact: bool,
 }
 
 impl Effort {
-    /// Some seconds' worth: fewer nodes where there are more plateaus to choose from. Visits are decided on where more than
-    /// 0.75 % of the uncertainty is open.
+    /// Some seconds' worth: fewer nodes where there are more plateaus to choose from.
     pub fn usual(plateaus: usize) -> Self {
-        let mounting_nodes = (300_000 / plateaus.max(1)).clamp(20, 1000);
-        Self { mounting_nodes, visit_nodes: mounting_nodes / 4, visits_open: 0.015, ..Self::CERTIFIED }
+        Self { mounting_nodes: (300_000 / plateaus.max(1)).clamp(20, 1000), ..Self::CERTIFIED }
     }
 
-    /// Until no other set of mountings can hold a plan that is better by more than 0.25 % of the uncertainty, and so with visits
-    /// as far as some minutes go.
-    pub const CERTIFIED: Self =
-        Self { mounting_nodes: 1 << 20, visit_nodes: 2000, visits_open: 0.0, trials: 120, is_exact: false };
-
-    /// Until nothing is left to find: for small problems.
-    pub const EXHAUSTIVE: Self = Self { visit_nodes: 1 << 20, trials: 200, is_exact: true, ..Self::CERTIFIED };
+    /// Until no node over mountings is open: what the bound then leaves is a matter of whole visits.
+    pub const CERTIFIED: Self = Self { mounting_nodes: 1 << 20, trials: 120 };
 
     /// One schedule, with no exchange of mountings and no bound over sets of them.
-    pub const QUICK: Self = Self { mounting_nodes: 1, visit_nodes: 0, trials: 60, ..Self::CERTIFIED };
+    pub const QUICK: Self = Self { mounting_nodes: 1, trials: 60 };
 
     /// Mountings exchanged, and the bound of the first continuous design.
     pub const FAIR: Self = Self { mounting_nodes: 2, ..Self::QUICK };

@@ -3,12 +3,12 @@ use centrical::plan::{
     Schedule, Visit, best_for_time, next_best, predict, shortest_for_goals,
 };
 use centrical::position::{ThirdPosition, kozlov_2017};
-use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, reduce};
+use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, plateau_means, reduce};
 use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
 use centrical::uncertainty::{Compensated, Method, Settings, TypeB, monte_carlo};
 use centrical::{
-    ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, Observation, PairRelation,
-    ReferencePoint, SetPoint, Site, Term, Unit, Weight, fit, linear,
+    Centrifuge, ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, NULL_HOLD, Observation,
+    PairRelation, ReferencePoint, SetPoint, Site, Term, Unit, Weight, fit, linear,
 };
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
@@ -16,9 +16,9 @@ use crate::common::{Random, spread, truth};
 use crate::uncertainty::STATED;
 
 /// One that expects a unit without errors.
-pub fn scenario(model: MeasurementModel, noise: Noise, speed_uncertainty: f64) -> Scenario {
+pub fn scenario(model: MeasurementModel, noise: Noise) -> Scenario {
     let nominal = vec![0.0; model.parameters().len()];
-    Scenario { model, nominal, noise, speed_uncertainty, weight: 1.0 }
+    Scenario { model, nominal, noise, weight: 1.0 }
 }
 
 /// A few plateaus of one to three mountings, a unit of four to six coefficients, costs and durations by chance.
@@ -36,9 +36,10 @@ fn small(random: &mut Random) -> Candidates {
             _ => SetPoint { mounting, omega: 10.0 + 40.0 * random.uniform(), angle: 0.0 },
         })
         .collect();
-    let experiment = Experiment {
+    let mut experiment = Experiment {
         site: Site { gravity: 9.81, latitude: None },
         unit: Unit { rho_z: spread() * 0.5, reference: ReferencePoint::FirstProofMass },
+        centrifuge: Centrifuge::default(),
         positions: positions[..used].to_vec(),
         pair_relation: PairRelation::Common,
         mountings,
@@ -50,11 +51,12 @@ fn small(random: &mut Random) -> Candidates {
             .push(Term::new(random.below(3), Monomial::power(random.below(3), u8::try_from(random.below(4)).unwrap())));
     }
     terms.dedup();
-    let model = MeasurementModel::new(experiment, ErrorModel { terms }, &[]);
     let noise = Noise { density: 1e-4 * (1.0 + random.uniform()), floor: 1e-5 * random.uniform() };
     let position = 300.0 * random.uniform();
+    experiment.centrifuge.speed_uncertainty = 1e-5 * random.uniform();
+    let model = MeasurementModel::new(experiment, ErrorModel { terms }, &[]);
     Candidates {
-        scenarios: vec![scenario(model, noise, 1e-5 * random.uniform())],
+        scenarios: vec![scenario(model, noise)],
         robustness: Robustness::Mean,
         durations: vec![20.0 + 40.0 * random.uniform(), 100.0 + 100.0 * random.uniform()],
         repeats: 1,
@@ -73,11 +75,11 @@ fn covariance(scenario: &Scenario, visits: &[Visit]) -> DMatrix<f64> {
     let model = &scenario.model;
     let p = model.parameters().len();
     let mut rows = DMatrix::zeros(p + 3 * visits.len(), p);
-    rows.fill_diagonal(1.0 / fit::NULL_HOLD);
+    rows.fill_diagonal(1.0 / NULL_HOLD);
     for (n, visit) in visits.iter().enumerate() {
         let l = model.linearise(&model.experiment().set_points[visit.plateau], &scenario.nominal);
-        let shift = l.speed * scenario.speed_uncertainty;
-        let sigma = Matrix3::identity() * scenario.noise.variance(visit.duration) + shift * shift.transpose();
+        let sigma =
+            Matrix3::identity() * scenario.noise.variance(visit.duration) + l.speed_error * l.speed_error.transpose();
         let whitener = sigma.cholesky().unwrap().l().try_inverse().unwrap();
         for (j, column) in &l.columns {
             let typical = model.parameters()[*j].typical;
@@ -177,7 +179,7 @@ fn small_plans_are_the_best_in_the_worst_case() {
     let proven = compared_with_all(12, 48, &mut |mut candidates, random| {
         let first = candidates.scenarios[0].clone();
         let noise = Noise { density: 0.2 * first.noise.density, floor: (2.0 + 3.0 * random.uniform()) * 1e-5 };
-        let coloured = scenario(first.model.clone(), noise, first.speed_uncertainty);
+        let coloured = scenario(first.model.clone(), noise);
         let elastic = MeasurementModel::new(
             first.model.experiment().clone(),
             first.model.error_model().clone(),
@@ -186,7 +188,7 @@ fn small_plans_are_the_best_in_the_worst_case() {
         let quiet = Noise { density: 0.3 * first.noise.density, ..first.noise };
         let mut with_errors = first.clone();
         with_errors.nominal = truth(&first.model, 1.0, random);
-        candidates.scenarios = vec![first, coloured, scenario(elastic, quiet, 0.0), with_errors];
+        candidates.scenarios = vec![first, coloured, scenario(elastic, quiet), with_errors];
         candidates.robustness = if random.below(4) == 0 { Robustness::Mean } else { Robustness::Worst };
         candidates
     });
@@ -284,7 +286,7 @@ pub fn large(speeds: usize, durations: &[f64]) -> Candidates {
     let model = MeasurementModel::new(experiment, ErrorModel::kozlov_2017(), &[]);
     let noise = Noise { density: 20e-6 * 9.80665, floor: 1e-6 * 9.80665 };
     Candidates {
-        scenarios: vec![scenario(model, noise, 1e-5)],
+        scenarios: vec![scenario(model, noise)],
         robustness: Robustness::Mean,
         durations: durations.to_vec(),
         repeats: 2,
@@ -326,7 +328,7 @@ fn predictions_are_what_monte_carlo_shows() {
     let scenario = &candidates.scenarios[0];
     let model = scenario.model.in_experiment(experiment);
     let zero = vec![0.0; model.parameters().len()];
-    let prediction = predict(&model, &weights, scenario.speed_uncertainty, &STATED, &zero).unwrap();
+    let prediction = predict(&model, &weights, &STATED, &zero).unwrap();
     let observations: Vec<Observation> = weights
         .iter()
         .map(|w| Observation {
@@ -336,7 +338,7 @@ fn predictions_are_what_monte_carlo_shows() {
         })
         .collect();
     let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact, stated: STATED };
-    let shown = monte_carlo(&model, &zero, &observations, scenario.speed_uncertainty, &settings, &|_| {}).unwrap();
+    let shown = monte_carlo(&model, &zero, &observations, &settings, &|_| {}).unwrap();
     let mut ratios = Vec::new();
     for (j, statistics) in shown.parameters.iter().enumerate() {
         let (Some(statistics), Some(u)) = (statistics, prediction.budget().standard_uncertainty(j)) else { continue };
@@ -366,7 +368,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let model = candidates.scenarios[0].model.in_experiment(experiment);
     // Noise of 20 ug/sqrt(Hz) at this rate.
     let white = 20e-6 * 9.80665 * (0.5 * RATE).sqrt();
-    let settings = centrical::simulate::Settings {
+    let settings = centrical::simulate::Equipment {
         machine: Machine { plateau: 40.0, speed_error: 1e-5, ..Machine::default() },
         sensor: Sensor { white, ..Sensor::default() },
         recorder: Recorder { rate: RATE, ..Recorder::default() },
@@ -375,7 +377,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let noise = Noise { density: 20e-6 * 9.80665, floor: 0.0 };
     let weights: Vec<Weight> = (0..model.experiment().set_points.len()).map(|n| noise.weight(n, 40.0)).collect();
     let truth = truth(&model, 1.0, &mut Random::new(100));
-    let prediction = predict(&model, &weights, 1e-5, &TypeB::default(), &truth).unwrap();
+    let prediction = predict(&model, &weights, &TypeB::default(), &truth).unwrap();
     let p = model.parameters().len();
     let scale = nalgebra::DVector::from_fn(p, |j, _| prediction.budget().standard_uncertainty(j).unwrap());
     let correlation = DMatrix::from_fn(p, p, |i, j| prediction.budget().correlation(i, j).unwrap());
@@ -384,7 +386,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let mut weighted = 0.0;
     for seed in 0..SESSIONS {
         let observations = calibration_means(&model, &truth, &settings, seed);
-        let fit = fit::exact(&model, &observations, 1e-5).unwrap();
+        let fit = fit::exact(&model, &observations).unwrap();
         let error = nalgebra::DVector::from_fn(p, |j, _| (fit.value(j).unwrap() - truth[j]) / scale[j]);
         squares += error.component_mul(&error) / SESSIONS as f64;
         weighted += factor.solve(&error).dot(&error);
@@ -408,7 +410,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
 fn calibration_means(
     model: &MeasurementModel,
     truth: &[f64],
-    settings: &centrical::simulate::Settings,
+    settings: &centrical::simulate::Equipment,
     seed: u64,
 ) -> Vec<Observation> {
     let simulation = Simulation::new(model, truth, settings, seed).unwrap();
@@ -427,7 +429,7 @@ fn calibration_means(
         })
         .collect();
     let pooled = NoiseModel::pool(&reduced);
-    let means = reduced.iter().flat_map(|mounting| mounting.means(&pooled));
+    let means = reduced.iter().flat_map(|mounting| plateau_means(mounting, &pooled));
     let observation = |(set_point, mean): (usize, centrical::reduction::PlateauMean)| Observation {
         set_point,
         mean: mean.mean,
@@ -443,11 +445,11 @@ fn reading_criterion_is_the_mean_over_forces() {
     let (experiment, weights) = candidates.experiment_of(&schedule);
     let model = candidates.scenarios[0].model.in_experiment(experiment);
     let zero = vec![0.0; model.parameters().len()];
-    let prediction = predict(&model, &weights, 1e-5, &TypeB::default(), &zero).unwrap();
+    let prediction = predict(&model, &weights, &TypeB::default(), &zero).unwrap();
     let [_, cubature] = prediction.reading(RANGE).unwrap();
     let first = model.parameters().find("df_1").unwrap();
     let covariance = DMatrix::from_fn(21, 21, |i, j| prediction.budget().covariance(first + i, first + j).unwrap());
-    let compensated = Compensated::new(ErrorModel::kozlov_2017(), vec![0.0; 21], covariance).unwrap();
+    let compensated = Compensated::new(ErrorModel::kozlov_2017().with_coefficients(&[0.0; 21]), covariance).unwrap();
     let mut random = Random::new(9);
     let draws = 40_000;
     let mut squares = Vec::with_capacity(draws);
@@ -541,12 +543,11 @@ fn next_best_is_the_best() {
     let all: Vec<Weight> = (0..candidates.len()).map(|n| noise.weight(n, 60.0)).collect();
     let (taken, rest) = all.split_at(candidates.len() - 6);
     let criterion = Criterion::Reading(RANGE);
-    let gains = next_best(model, 1e-5, &criterion, taken, rest).unwrap();
+    let gains = next_best(model, &criterion, taken, rest).unwrap();
     assert_eq!(gains.len(), 6);
     let zero = vec![0.0; model.parameters().len()];
-    let reading = |weights: &[Weight]| {
-        predict(model, weights, 1e-5, &TypeB::default(), &zero).unwrap().reading(RANGE).unwrap()[1]
-    };
+    let reading =
+        |weights: &[Weight]| predict(model, weights, &TypeB::default(), &zero).unwrap().reading(RANGE).unwrap()[1];
     let before = reading(taken);
     for pair in gains.windows(2) {
         assert!(pair[0].factor <= pair[1].factor);

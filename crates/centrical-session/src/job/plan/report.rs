@@ -70,7 +70,7 @@ impl Planning {
         let expected =
             |p: &centrical::Parameter| scenario.model.parameters().find(&p.name).map_or(0.0, |j| scenario.nominal[j]);
         let nominal: Vec<f64> = model.parameters().iter().map(expected).collect();
-        predict(&model, &weights, scenario.speed_uncertainty, &self.type_b, &nominal)
+        predict(&model, &weights, &self.type_b, &nominal)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })
     }
 

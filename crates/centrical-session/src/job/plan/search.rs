@@ -42,11 +42,10 @@ impl Planning {
     fn effort(&self, certify: bool) -> Effort {
         let usual = Effort::usual(self.candidates.len());
         match (certify, self.time) {
-            (true, Some(_)) => Effort::CERTIFIED,
-            (true, None) => Effort { visit_nodes: 0, ..Effort::CERTIFIED },
+            (true, _) => Effort::CERTIFIED,
             (false, Some(_)) => usual,
             // The shortest plan is sought by a search for each of some times.
-            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 6, visit_nodes: 0, ..usual },
+            (false, None) => Effort { mounting_nodes: 2 + usual.mounting_nodes / 6, ..usual },
         }
     }
 

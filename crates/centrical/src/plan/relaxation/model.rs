@@ -1,11 +1,10 @@
 //! A quadratic model of the smooth criterion in the atoms that matter, and its optimum by exchange of time between pairs of
 //! plateaus.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::curvature::{SceneThere, add_curvature, add_norm, slope};
-use super::polytope::{Polytope, Total};
-use super::program::{Optimum, Program, Row};
+use super::polytope::Polytope;
 use super::{NOTHING, Point, Search};
 
 /// Atoms in a quadratic model: those that are farthest from where they should be, and those nearest to their price.
@@ -14,15 +13,6 @@ const NEAREST: usize = 60;
 
 /// An inner problem is solved when no exchange gains this part of the distance to the bound any more.
 const INNER: f64 = 0.03;
-
-/// Under totals, where an inner problem is dearer: atoms in a model of each kind, and of each total.
-const FARTHEST_UNDER_TOTALS: usize = 60;
-const NEAREST_UNDER_TOTALS: usize = 20;
-const INSIDE_UNDER_TOTALS: usize = 60;
-const OF_TOTAL: usize = 6;
-
-/// Visits as near as this to a bound are at it.
-const NEAR: f64 = 1e-6;
 
 /// A quadratic model of the smooth criterion in the atoms that matter.
 pub(super) struct Model<'a> {
@@ -38,15 +28,13 @@ pub(super) struct Model<'a> {
     spent: f64,
     /// Least gain of an exchange for a second of time.
     least: f64,
-    /// Distance of the design from its bound.
-    gap: f64,
 }
 
 impl<'a> Model<'a> {
     pub fn new(search: &Search<'a>, point: &Point, lambda: f64, w: &[f64]) -> Self {
         let polytope = search.polytope;
         let options = polytope.options;
-        let worth = Worth { polytope, sensitivity: &point.charged, lambda, w };
+        let worth = Worth { polytope, sensitivity: &point.sensitivity, lambda, w };
         let active = worth.chosen();
         let mut groups = Vec::new();
         let mut plateaus = Vec::new();
@@ -76,7 +64,7 @@ impl<'a> Model<'a> {
         let benefit = active.iter().map(|&x| point.sensitivity[x]).collect();
         let gap = (point.value - search.best).max(0.0);
         let least = (INNER * gap / polytope.time).max(1e-9 * lambda);
-        Self { polytope, active, groups, hessian, benefit, spent: polytope.spent(w), w: w.to_vec(), least, gap }
+        Self { polytope, active, groups, hessian, benefit, spent: polytope.spent(w), w: w.to_vec(), least }
     }
 
     /// The optimum of the model by exchange of time between the plateau that gains most by more of it and the one that loses
@@ -100,59 +88,6 @@ impl<'a> Model<'a> {
             }
         }
         self.w
-    }
-
-    /// The optimum of the model under the totals of the polytope, and what they charge.
-    pub fn optimum_under_totals(mut self) -> Option<(Vec<f64>, Vec<f64>)> {
-        let polytope = self.polytope;
-        let of = |value: &dyn Fn(usize) -> f64| {
-            DVector::from_iterator(self.active.len(), self.active.iter().map(|&x| value(x)))
-        };
-        let mut place = vec![None; self.w.len()];
-        self.active.iter().enumerate().for_each(|(i, &x)| place[x] = Some(i));
-        // A sum over atoms, of which those that the model leaves alone are a constant.
-        let row = |atoms: &mut dyn Iterator<Item = (usize, f64)>, most: f64| {
-            let mut row = Row { terms: Vec::new(), most };
-            for (x, a) in atoms {
-                match place[x] {
-                    Some(i) => row.terms.push((i, a)),
-                    None => row.most -= a * self.w[x],
-                }
-            }
-            row
-        };
-        let by_time = &mut (0..self.w.len()).map(|x| (x, polytope.price[x] / polytope.time));
-        let mut rows = vec![row(by_time, 1.0)];
-        for group in self.groups.iter().filter(|group| group.len() > 1) {
-            let atoms = polytope.atoms_of(self.active[group.start] / polytope.options);
-            rows.push(row(&mut atoms.map(|x| (x, 1.0)), polytope.repeats));
-        }
-        let first = rows.len();
-        for Total { atoms, low, high } in &polytope.totals {
-            rows.push(row(&mut atoms.iter().map(|&x| (x, 1.0)), *high));
-            rows.push(row(&mut atoms.iter().map(|&x| (x, -1.0)), -low));
-        }
-        let program = Program {
-            benefit: DVector::from_column_slice(&self.benefit),
-            start: of(&|x| self.w[x]),
-            low: of(&|x| polytope.low[x]),
-            high: of(&|x| polytope.high[x].min(polytope.repeats)),
-            rows,
-            hessian: self.hessian,
-        };
-        let Optimum { x, multipliers } = program.solve((INNER * self.gap).max(1e-9))?;
-        for (i, &atom) in self.active.iter().enumerate() {
-            let (low, high) = (program.low[i], program.high[i]);
-            self.w[atom] = if x[i] < low + NEAR {
-                low
-            } else if x[i] > high - NEAR {
-                high
-            } else {
-                x[i]
-            };
-        }
-        let charges = multipliers[first..].chunks_exact(2).map(|both| both[0] - both[1]).collect();
-        Some((self.w, charges))
     }
 
     /// The conversions of part of a visit that gain most for a second more, and lose least for a second less.
@@ -283,28 +218,12 @@ impl Worth<'_> {
         let free = (0..self.w.len()).filter(|&x| self.polytope.high[x] > self.polytope.low[x]);
         let mut far: Vec<(f64, usize)> = free.map(|x| (self.distance(x), x)).collect();
         far.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let totals = &self.polytope.totals;
-        let (farthest, nearest) =
-            if totals.is_empty() { (FARTHEST, NEAREST) } else { (FARTHEST_UNDER_TOTALS, NEAREST_UNDER_TOTALS) };
-        let mut near = far.split_off(far.len().min(farthest));
+        let mut near = far.split_off(far.len().min(FARTHEST));
         for (order, x) in &mut near {
             *order = self.net(*x).abs() / self.price(*x);
         }
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let is_inside =
-            |&x: &usize| self.polytope.low[x] + NEAR < self.w[x] && self.w[x] < self.polytope.high[x] - NEAR;
-        let mut besides: Vec<usize> = if totals.is_empty() {
-            Vec::new()
-        } else {
-            near.iter().map(|(_, x)| *x).filter(is_inside).take(INSIDE_UNDER_TOTALS).collect()
-        };
-        near.truncate(nearest);
-        for total in totals {
-            let mut atoms: Vec<usize> =
-                total.atoms.iter().copied().filter(|&x| self.polytope.high[x] > self.polytope.low[x]).collect();
-            atoms.sort_by(|&a, &b| self.net(b).total_cmp(&self.net(a)).then(a.cmp(&b)));
-            besides.extend(atoms.into_iter().take(OF_TOTAL));
-        }
+        near.truncate(NEAREST);
         // Visits of another duration that an atom would displace have to be free to go.
         let with_displaced = |x: usize| {
             let plateau = x / self.polytope.options;
@@ -312,8 +231,7 @@ impl Worth<'_> {
             let is_displaced = move |y: usize| is_full && self.w[y] > self.polytope.low[y] + NOTHING;
             self.polytope.atoms_of(plateau).filter(move |y| *y == x || is_displaced(*y))
         };
-        let mut chosen: Vec<usize> =
-            far.into_iter().chain(near).map(|(_, x)| x).chain(besides).flat_map(with_displaced).collect();
+        let mut chosen: Vec<usize> = far.into_iter().chain(near).flat_map(|(_, x)| with_displaced(x)).collect();
         chosen.sort_unstable();
         chosen.dedup();
         chosen

@@ -177,19 +177,6 @@ impl Tree<'_> {
         used
     }
 
-    /// Takes the node's continuous design for the best schedule if its visits are whole and nothing better is known.
-    pub fn take_whole(&mut self, node: &Node) {
-        if node.relaxed.visits.iter().any(|w| (w - w.round()).abs() > 1e-6) {
-            return;
-        }
-        let open: Vec<bool> = node.mountings.iter().map(|m| *m != Some(false)).collect();
-        let exchange = self.problem.exchange(self.time, &open, self.effort.trials);
-        let whole = exchange.round(&node.relaxed.visits);
-        if whole.value < self.incumbent() {
-            self.best = Some(whole);
-        }
-    }
-
     /// The mountings that the continuous design uses, the least used left out until their set-ups leave time to measure.
     fn affordable(&self, node: &Node) -> Option<Vec<bool>> {
         let times = self.times(node);

@@ -19,10 +19,9 @@ use rayon::prelude::*;
 
 use super::needs::Needs;
 use super::problem::Problem;
-use super::visits::{Alike, Experience};
 use super::{Effort, Plan};
 use crate::plan::exchange::Whole;
-use crate::plan::relaxation::{Polytope, Precision, Relaxed, Total, relax};
+use crate::plan::relaxation::{Polytope, Precision, Relaxed, relax};
 
 /// What is decided.
 #[derive(Debug, Clone)]
@@ -31,8 +30,6 @@ pub(super) struct Node {
     pub mountings: Vec<Option<bool>>,
     pub low: Vec<f64>,
     pub high: Vec<f64>,
-    /// Bounds of visits of sets of atoms together.
-    pub totals: Vec<Total>,
     /// Least set-up time of its schedules that are better than what is known [s].
     pub set_up: f64,
     pub relaxed: Relaxed,
@@ -52,12 +49,6 @@ pub(super) struct Tree<'a> {
     /// Lowest bound of the nodes that are not divided any further.
     pub bound: f64,
     pub nodes: usize,
-    /// Of them those that decide on visits.
-    pub visit_nodes: usize,
-    /// Sets of visits whose totals are decided on.
-    pub alike: Vec<Alike>,
-    /// What divisions by these have shown.
-    pub experience: Experience,
     /// What is known of sets of mountings.
     pub needs: Needs,
 }
@@ -65,15 +56,13 @@ pub(super) struct Tree<'a> {
 /// A node that no bound can cut off is known this well before it is divided (3 % of an uncertainty).
 const LOOSE: f64 = 0.06;
 
-/// Known to this part of the criterion, nodes are not divided: where the best of all is sought; where a plan that is nearly
-/// as good will do (0.25 % of an uncertainty); and where goals are to be met, that a plan of less time may just miss.
-const SAME: f64 = 1e-7;
+/// Known to this part of the criterion, nodes are not divided: where a plan that is nearly as good will do (0.25 % of an
+/// uncertainty); and where goals are to be met, that a plan of less time may just miss.
 const NEARLY: f64 = 5e-3;
 const NEARLY_MET: f64 = 2e-3;
 
 impl<'a> Tree<'a> {
     pub fn new(problem: &'a Problem<'a>, time: f64, effort: Effort) -> Self {
-        let alike = if effort.visit_nodes > 0 { Alike::all(problem) } else { Vec::new() };
         Self {
             problem,
             time,
@@ -84,9 +73,6 @@ impl<'a> Tree<'a> {
             wanted: None,
             bound: f64::INFINITY,
             nodes: 0,
-            visit_nodes: 0,
-            experience: Experience::of(&alike),
-            alike,
             needs: Needs::default(),
         }
     }
@@ -131,7 +117,6 @@ impl<'a> Tree<'a> {
             mountings,
             low: vec![0.0; atoms],
             high: vec![high; atoms],
-            totals: Vec::new(),
             set_up: 0.0,
             relaxed: Relaxed { visits: Vec::new(), value: f64::INFINITY, bound: f64::NEG_INFINITY, models: 0 },
         }
@@ -140,7 +125,6 @@ impl<'a> Tree<'a> {
     /// How near to the best schedule a bound is as good as the same.
     pub fn same(&self) -> f64 {
         match self.wanted {
-            _ if self.effort.is_exact => SAME,
             Some(_) => NEARLY_MET,
             None => NEARLY,
         }
@@ -212,7 +196,7 @@ impl<'a> Tree<'a> {
         Some(node)
     }
 
-    /// Two nodes that decide on a mounting more, or none at the end of a branch, where visits are decided on.
+    /// Two nodes that decide on a mounting more, or none at the end of a branch.
     fn children(&mut self, mut node: Node) -> Vec<Node> {
         let is_end = |of_mountings: Option<usize>| of_mountings.is_none() || self.is_out_of_nodes();
         let is_loose = node.mountings.contains(&None) && node.relaxed.bound < self.bound;
@@ -221,7 +205,6 @@ impl<'a> Tree<'a> {
             self.relax_to(self.tolerance(), &mut node, Some(&start));
         }
         let node = &node;
-        let mut is_divided = false;
         let decided = match self.undecided(node) {
             Some(m) if !self.is_out_of_nodes() => {
                 let with = |set_up| {
@@ -233,21 +216,18 @@ impl<'a> Tree<'a> {
             }
             None => {
                 self.seek(node, true);
-                self.take_whole(node);
-                is_divided = self.divide_by_visits(node);
                 vec![]
             }
             Some(_) => vec![],
         };
-        // The parts of a node that is divided by visits are open or counted already.
-        if decided.is_empty() && !is_divided {
+        if decided.is_empty() {
             self.bound = self.bound.min(node.relaxed.bound);
         }
         decided
     }
 
     fn is_out_of_nodes(&self) -> bool {
-        self.nodes - self.visit_nodes >= self.effort.mounting_nodes
+        self.nodes >= self.effort.mounting_nodes
     }
 
     /// The undecided mounting that the continuous design uses most.
@@ -305,7 +285,6 @@ impl<'a> Tree<'a> {
             high: (0..atoms).map(high).collect(),
             options: self.problem.candidates.durations.len(),
             repeats: self.problem.candidates.repeats as f64,
-            totals: node.totals.clone(),
         }
     }
 
