@@ -15,6 +15,23 @@
 //! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
 //!
 //! The format is told by the first bytes. Written are CSV and Parquet.
+//!
+//! # The mean of a column
+//! ```
+//! use std::path::Path;
+//!
+//! use centrical_table::{ColumnName, Field, Rule, read};
+//!
+//! let name = ColumnName::Name("f1".into());
+//! let fields = [Field { name, expected: "a number in m/s^2".into(), rule: Rule::Any }];
+//! let (mut sum, mut count) = (0.0, 0);
+//! read(Path::new("../../examples/ta-200/records/m01.csv"), &fields, "a record", &mut |rows| {
+//!     sum += rows[0].iter().sum::<f64>();
+//!     count += rows[0].len();
+//! })?;
+//! assert!(count > 1000 && (sum / count as f64).abs() < 2000.0);
+//! # Ok::<(), centrical_table::Error>(())
+//! ```
 
 mod binary;
 mod column;

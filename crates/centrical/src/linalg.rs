@@ -1,3 +1,4 @@
 //! Least squares by orthogonal factorisation, never by normal equations.
 
-pub mod least_squares;
+pub(crate) mod factor;
+pub(crate) mod least_squares;

@@ -7,8 +7,9 @@ use centrical::reduction::{Record, RecordSlice, Survey};
 use centrical_table::{Block, Extent, Index};
 use rayon::prelude::*;
 
+use super::columns::Columns;
 use super::kept::Kept;
-use super::{Columns, Wanted, stretch};
+use super::read::{Wanted, stretch};
 use crate::error::Error;
 
 /// Samples of the windows that are averaged at a time, however many threads there are: their times are written out, 8 bytes each, and
@@ -44,7 +45,7 @@ pub(crate) struct RecordFile<'a> {
 
 impl<'a> RecordFile<'a> {
     pub fn new(file: &'a Path, columns: &'a Columns, progress: &'a (dyn Fn(u64) + Sync)) -> Self {
-        Self { file, wanted: columns.of_record(), progress }
+        Self { file, wanted: Wanted::of_record(columns), progress }
     }
 
     pub fn file(&self) -> &'a Path {

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, SVD};
 
 use super::TAKES_PART;
 use super::combination::sum_text;
-use crate::parameter::Parameters;
+use crate::model::Parameters;
 
 /// Largest whole number that a ratio of the geometry is taken for.
 const LARGEST_WHOLE: f64 = 12.0;

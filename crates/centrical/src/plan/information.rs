@@ -12,10 +12,8 @@ use nalgebra::{Cholesky, DMatrix, Matrix3, MatrixXx3, Vector3};
 use super::candidates::{Candidates, Scenario};
 use super::criterion::{Columns, Criterion};
 use super::error::PlanError;
-use crate::design::{Weight, total_covariance};
-use crate::experiment::SetPoint;
-use crate::measurement::{Linearisation, MeasurementModel};
-use crate::parameter::NULL_HOLD;
+use crate::model::whitening::total_covariance;
+use crate::model::{Linearisation, MeasurementModel, NULL_HOLD, SetPoint, Weight};
 
 /// Plateaus whose rows are folded in at once: as many as stay in the nearest cache with the triangle.
 const AT_ONCE: usize = 16;

@@ -5,8 +5,7 @@ use nalgebra::Matrix3;
 use super::criterion::Criterion;
 use super::error::PlanError;
 use super::information::{Factor, Scene, precision};
-use crate::design::Weight;
-use crate::measurement::MeasurementModel;
+use crate::model::{MeasurementModel, Weight};
 
 /// What a plateau would bring.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -34,7 +34,7 @@ impl Planning {
             }
         }
         for scenario in &mut self.candidates.scenarios {
-            scenario.nominal = scenario.model.parameters().typical_in_turn();
+            scenario.nominal = scenario.model.parameters().typical_alternating();
         }
         self.search(effort)
     }

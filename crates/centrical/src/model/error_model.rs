@@ -3,7 +3,7 @@
 use centrical_compensate::Monomial;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::group::Group;
+use super::group::Group;
 
 /// `f' = f + sum_t c_t m_t(f) e_axis(t)`: a list of terms; their coefficients `c_t` are parameters.
 #[derive(Debug, Clone, PartialEq)]
