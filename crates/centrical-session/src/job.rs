@@ -15,7 +15,7 @@ mod simulate;
 mod watch;
 
 pub use self::assess::{Assessment, AssessmentRequest, assess};
-pub use self::calibrate::{Method, Problem, calibrate, calibrate_without};
+pub use self::calibrate::{Problem, calibrate, calibrate_without};
 pub use self::compare::{ComparedResults, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
 pub use self::models::select_model;

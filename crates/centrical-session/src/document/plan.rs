@@ -1,5 +1,6 @@
 //! A plan as a document: schema `centrical-plan/1`. The same input gives the same bytes.
 
+use centrical::Group;
 use serde::Serialize;
 
 use crate::document::json;
@@ -19,8 +20,8 @@ pub struct PlanReport {
     pub program: Program,
     /// Title.
     pub title: String,
-    /// "I", "A", "D" or "worst".
-    pub criterion: &'static str,
+    /// What the plan is to make small.
+    pub criterion: CriterionName,
     /// Value of the criterion as an uncertainty: square root of the variance it is [m/s^2 for I, else 1].
     pub value: f64,
     /// The value in each scenario, if there are several: the expected one first.
@@ -54,6 +55,20 @@ pub struct PlanReport {
     pub goals: Vec<GoalReport>,
     /// Time against uncertainty.
     pub frontier: Vec<FrontierRow>,
+}
+
+/// What a plan is to make small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum CriterionName {
+    /// Mean uncertainty of the compensated reading.
+    I,
+    /// Mean uncertainty of the parameters.
+    A,
+    /// Volume of their joint uncertainty.
+    D,
+    /// Worst uncertainty over its goal.
+    #[serde(rename = "worst")]
+    Worst,
 }
 
 /// One mounting of a plan.
@@ -103,7 +118,8 @@ pub struct GoalReport {
     /// SI unit.
     pub unit: String,
     /// Group of the parameter.
-    pub group: &'static str,
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub group: Group,
     /// Wanted standard uncertainty.
     pub wanted: f64,
     /// Predicted by noise, speeds and priors.

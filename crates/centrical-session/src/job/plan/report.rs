@@ -1,11 +1,12 @@
 //! What there is to say of a plan.
 
 use centrical::plan::{Account, Criterion, Goal, Plan, PlanError, Prediction, Reason, Robustness, Schedule, predict};
-use centrical::{MeasurementModel, SetPoint};
+use centrical::{Group, MeasurementModel, SetPoint};
 
 use super::request::PlanRequest;
 use crate::document::{
-    GoalReport, PLAN_SCHEMA, PlanReport, PlannedMounting, PlannedPlateau, PredictionReport, Program, ReasonReport,
+    CriterionName, GoalReport, PLAN_SCHEMA, PlanReport, PlannedMounting, PlannedPlateau, PredictionReport, Program,
+    ReasonReport,
 };
 use crate::error::Error;
 use crate::experiment::Planning;
@@ -27,10 +28,10 @@ impl Planning {
             program: Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
             title: self.title.clone(),
             criterion: match self.criterion {
-                Criterion::Determinant => "D",
-                Criterion::Average => "A",
-                Criterion::Reading(_) => "I",
-                Criterion::Worst(_) => "worst",
+                Criterion::Determinant => CriterionName::D,
+                Criterion::Average => CriterionName::A,
+                Criterion::Reading(_) => CriterionName::I,
+                Criterion::Worst(_) => CriterionName::Worst,
             },
             value: plan.criterion.sqrt(),
             by_scenario: if plan.by_scenario.len() > 1 {
@@ -114,36 +115,38 @@ impl Planning {
 
     pub(crate) fn goals_of(&self, prediction: &Prediction) -> Vec<GoalReport> {
         let Criterion::Worst(goals) = &self.criterion else { return Vec::new() };
-        let report = |goal: &Goal| match goal {
-            Goal::Parameter { name, uncertainty } => {
-                let parameters = prediction.model().parameters();
-                let j = parameters.find(name);
-                GoalReport {
-                    name: name.clone(),
-                    unit: j.map_or(String::new(), |j| parameters[j].unit.clone()),
-                    group: j.map_or("", |j| parameters[j].group),
-                    wanted: *uncertainty,
-                    type_a: j.and_then(|j| prediction.type_a(j)),
-                    type_b: None,
-                    combined: j.and_then(|j| prediction.standard_uncertainty(j)),
+        let report = |goal: &Goal| {
+            let report = match goal {
+                Goal::Parameter { name, uncertainty } => {
+                    let parameters = prediction.model().parameters();
+                    // The goals were made from the names of these parameters.
+                    let j = parameters.find(name)?;
+                    GoalReport {
+                        name: name.clone(),
+                        unit: parameters[j].unit.clone(),
+                        group: parameters[j].group,
+                        wanted: *uncertainty,
+                        type_a: prediction.type_a(j),
+                        type_b: None,
+                        combined: prediction.standard_uncertainty(j),
+                    }
                 }
-                .with_type_b()
-            }
-            Goal::Reading { range, uncertainty } => {
-                let reading = prediction.reading(*range);
-                GoalReport {
-                    name: "reading".to_owned(),
-                    unit: "m/s^2".to_owned(),
-                    group: "bias",
-                    wanted: *uncertainty,
-                    type_a: reading.map(|[a, _]| a),
-                    type_b: None,
-                    combined: reading.map(|[_, all]| all),
+                Goal::Reading { range, uncertainty } => {
+                    let reading = prediction.reading(*range);
+                    GoalReport {
+                        name: "reading".to_owned(),
+                        unit: "m/s^2".to_owned(),
+                        group: Group::Bias,
+                        wanted: *uncertainty,
+                        type_a: reading.map(|[a, _]| a),
+                        type_b: None,
+                        combined: reading.map(|[_, all]| all),
+                    }
                 }
-                .with_type_b()
-            }
+            };
+            Some(report.with_type_b())
         };
-        goals.iter().map(report).collect()
+        goals.iter().filter_map(report).collect()
     }
 
     pub(crate) fn failed(&self, source: PlanError) -> Error {

@@ -11,11 +11,11 @@ use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linea
 
 use super::arrivals::Watch;
 use crate::document::{
-    CalibrationResult, HistoryEntry, HistoryEstimate, WatchState, WatchedPlateau, append_history, keep_history,
+    CalibrationResult, HistoryEntry, HistoryEstimate, Method, WatchState, WatchedPlateau, append_history, keep_history,
 };
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
-use crate::job::calibrate::{Method, calibrate_without};
+use crate::job::calibrate::calibrate_without;
 
 /// How a session is watched.
 #[derive(Debug, Clone, PartialEq)]
@@ -228,7 +228,7 @@ impl<'a> Following<'a> {
 
 /// Refuses a group that the model does not have.
 fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) -> Result<(), Error> {
-    let mut groups: Vec<&str> = model.parameters().iter().map(|parameter| parameter.group).collect();
+    let mut groups: Vec<&str> = model.parameters().iter().map(|parameter| parameter.group.name()).collect();
     groups.dedup();
     match wanted.iter().find(|group| !groups.contains(&group.as_str())) {
         None => Ok(()),
