@@ -7,5 +7,7 @@ mod columnar;
 pub(crate) mod hdf5;
 pub(crate) mod mat;
 pub(crate) mod npy;
+mod npy_literal;
 mod panics;
 pub(crate) mod parquet;
+mod parquet_pages;

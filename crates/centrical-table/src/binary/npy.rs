@@ -3,14 +3,12 @@
 //! A `.npy` file opens with the magic bytes, a version, the length of the header and the header: a Python
 //! dictionary of `descr` (type of the numbers), `fortran_order` and `shape`.
 
-mod literal;
-
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use self::literal::Literal;
 use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
+use super::npy_literal::Literal;
 use super::{arrays, columnar};
 use crate::error::{Error, Place, quoted};
 use crate::rows::Rows;
