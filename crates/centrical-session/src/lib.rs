@@ -62,7 +62,8 @@ pub use laboratory::{
 };
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
 pub use record::{
-    Column, Columns, Input, RecordOverview, Scale, read_growing_record, read_record, read_telemetry, scan_record,
+    Column, Columns, Input, RecordOverview, RecordReader, Scale, read_growing_record, read_record, read_telemetry,
+    stretch,
 };
 pub use record_writer::RecordWriter;
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};

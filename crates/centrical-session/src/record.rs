@@ -2,16 +2,15 @@
 
 mod columns;
 mod input;
-mod kept;
 mod overview;
 mod passes;
-mod read;
+mod reader;
+mod sample_cache;
 mod times;
 
 pub use self::columns::{Column, Columns, Scale};
 pub use self::input::Input;
-pub(crate) use self::kept::{Kept, Room};
 pub use self::overview::RecordOverview;
-pub(crate) use self::passes::{RecordFile, Windows};
-pub use self::read::{read_growing_record, read_record, read_telemetry, scan_record};
-pub(crate) use self::read::{scan_blocks, stretch};
+pub(crate) use self::passes::RecordFile;
+pub use self::reader::{RecordReader, read_growing_record, read_record, read_telemetry, stretch};
+pub(crate) use self::sample_cache::{MemoryBudget, SampleCache};

@@ -64,13 +64,22 @@ impl Default for Columns {
     }
 }
 
+impl Columns {
+    /// Those of a record, time first.
+    pub(super) fn of_record(&self) -> [&Column; 4] {
+        let [f1, f2, f3] = &self.f;
+        [&self.time, f1, f2, f3]
+    }
+}
+
 impl Column {
     /// A column whose numbers are in SI.
     pub fn si(name: &str, unit: &str) -> Self {
         Self { name: ColumnName::Name(name.to_owned()), unit: unit.to_owned(), scale: Scale::factor(1.0) }
     }
 
-    pub(super) fn field(&self, rule: Rule) -> Field {
+    /// The column as a field of a table.
+    pub(crate) fn field(&self, rule: Rule) -> Field {
         Field { name: self.name.clone(), expected: format!("a number in {}", self.unit), rule }
     }
 }

@@ -81,7 +81,8 @@ impl Case {
             |w: &Weight| Observation { set_point: w.set_point, mean: Vector3::zeros(), covariance: w.covariance };
         let observations: Vec<Observation> = self.weights.iter().map(observation).collect();
         let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact, stated };
-        let shown = monte_carlo(&Data::new(&self.model, observations).unwrap(), truth, &settings, &|_| {}).unwrap();
+        let data = Data::new(&self.model, observations).unwrap();
+        let shown = monte_carlo(&data, truth, &settings, &|_| {}).unwrap();
         let mut compared = Vec::new();
         for (j, statistics) in shown.parameters.iter().enumerate() {
             let parameter = &self.model.parameters()[j].name;
@@ -170,7 +171,8 @@ fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
         .collect();
     let settings = Settings { runs: 4000, seed: 3, coverage: 0.95, method: Method::Exact, stated: TypeB::default() };
     let zero = quiet.truth(0.0);
-    let shown = monte_carlo(&Data::new(model, observations).unwrap(), &zero, &settings, &|_| {}).unwrap();
+    let data = Data::new(model, observations).unwrap();
+    let shown = monte_carlo(&data, &zero, &settings, &|_| {}).unwrap();
     let statistics = shown.parameters[j].unwrap();
     let ratio = statistics.standard_deviation / statistics.stated;
     println!("[K5.5] as printed, at zero, a hundredth of the noise: delta_2[3] {ratio:.4}");

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::Study;
+use super::study::Study;
 use crate::model::{Experiment, FitError, Mounting, PairRelation, Position, SetPoint, Weight};
 
 /// One addition to an experiment.

@@ -6,8 +6,9 @@
 
 use nalgebra::Matrix3;
 
+use super::addition::Addition;
 use super::remedy::{axis_attitudes, new_angle, new_id, new_radius, new_speed};
-use super::{Addition, Study};
+use super::study::Study;
 use crate::model::{Kind, Position, SetPoint};
 
 /// "An order of magnitude or more" above gravity.

@@ -4,7 +4,8 @@ use crate::model::prior;
 use crate::model::whitening::whitened_rows;
 use crate::model::{FitError, Linearisation, MeasurementModel, PriorUse, Weight};
 
-use super::{Combination, Observability};
+use super::combination::Combination;
+use super::rank::Observability;
 
 /// What a design can see, with all that is needed to say why, and what would help.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,13 +5,12 @@
 //! is never formed. A change `dN` at plateau `c` changes it by `-C J^T Q J C`, `Q = dN (E + A dN)^-1`, `A = J C J^T`, so a
 //! goal `r = sum |P^T k|^2` changes by `-tr(Q G)`, `G = sum (J C k)(J C k)^T`: all in 3x3.
 
-mod triangle;
-
 use nalgebra::{Cholesky, DMatrix, Matrix3, MatrixXx3, Vector3};
 
 use super::candidates::{Candidates, Scenario};
 use super::criterion::{Columns, Criterion};
 use super::error::PlanError;
+use crate::linalg::fold::fold;
 use crate::model::whitening::total_covariance;
 use crate::model::{Linearisation, MeasurementModel, NULL_HOLD, SetPoint, Weight};
 
@@ -124,7 +123,7 @@ impl Scene {
                     rows.fixed_view_mut::<3, 1>(3 * n, *column).copy_from(&(half * derivative));
                 }
             }
-            triangle::fold(&mut triangle, &mut rows);
+            fold(&mut triangle, &mut rows);
         }
         let mut root = DMatrix::identity(p, p);
         // The hold leaves no zero on the diagonal.
