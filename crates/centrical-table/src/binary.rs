@@ -7,8 +7,10 @@ mod columnar;
 mod hdf5;
 mod mat;
 mod npy;
+mod npy_literal;
 mod panics;
 mod parquet;
+mod parquet_pages;
 
 use std::fs::File;
 use std::path::Path;

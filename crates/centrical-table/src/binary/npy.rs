@@ -3,16 +3,14 @@
 //! A `.npy` file opens with the magic bytes, a version, the length of the header and the header: a Python
 //! dictionary of `descr` (type of the numbers), `fortran_order` and `shape`.
 
-mod literal;
-
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use self::literal::Literal;
 use super::arrays;
 use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
 use super::columnar::Column;
+use super::npy_literal::Literal;
 use crate::column::Field;
 use crate::error::{Error, Place, quoted};
 

@@ -1,7 +1,5 @@
 //! Tables in Parquet files, some rows at a time.
 
-mod pages;
-
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
@@ -13,9 +11,9 @@ use parquet::errors::{ParquetError, Result as ParquetResult};
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 use parquet::schema::types::ColumnDescPtr;
 
-use self::pages::{Checked, Source};
 use super::columnar::{Column, MISSING, Parts};
 use super::panics::caught;
+use super::parquet_pages::{Checked, Source};
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
