@@ -34,7 +34,6 @@ pub struct TypeB {
 
 /// A source of uncertainty: one column of the budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Source {
     /// Noise of the plateau means (type A).
     Noise,
