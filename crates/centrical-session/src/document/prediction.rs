@@ -45,6 +45,7 @@ pub struct PredictedParameter {
     /// Effective degrees of freedom; null when infinite.
     pub degrees_of_freedom: Option<f64>,
     /// Whether lost combinations of unknowns leave doubt in it that is not in its uncertainties.
+    #[serde(rename = "leans_on_lost")]
     pub is_affected_by_null_space: bool,
 }
 
