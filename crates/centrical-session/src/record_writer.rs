@@ -1,4 +1,4 @@
-//! Records out, block by block: CSV, or Parquet where the file's name ends in `.parquet`.
+//! Records out, stretch by stretch: CSV, or Parquet where the file's name ends in `.parquet`.
 
 use std::path::Path;
 
@@ -24,8 +24,8 @@ impl RecordWriter {
         Self::begin(file, None)
     }
 
-    /// Begins a record of specific forces within `range` [m/s^2]. As text they have so many decimals that half of the last
-    /// one is at most `10^-12` of the range; they are shorter so, and sooner made.
+    /// Begins a record of specific forces within `range` [m/s^2]. As text they have the fewest decimals whose last half
+    /// unit is at most `10^-12` of the range, which is shorter and faster.
     ///
     /// # Errors
     /// As [`RecordWriter::create`].

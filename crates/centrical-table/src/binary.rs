@@ -2,13 +2,13 @@
 
 mod arrays;
 mod arrow;
+mod catch_panic;
 mod columnar;
 #[cfg(feature = "hdf5")]
 mod hdf5;
 mod mat;
 mod npy;
 mod npy_literal;
-mod panics;
 mod parquet;
 mod parquet_pages;
 
@@ -19,7 +19,7 @@ pub(crate) use self::columnar::ColumnReader;
 use crate::column::Field;
 use crate::error::{Error, Place};
 
-/// The binary formats, told by their first bytes.
+/// The binary formats, recognised by their first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum BinaryFormat {
     Parquet,

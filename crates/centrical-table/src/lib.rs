@@ -14,7 +14,7 @@
 //! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
 //! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
 //!
-//! The format is told by the first bytes. Written are CSV and Parquet.
+//! The first bytes of a file show its format. CSV and Parquet can be written.
 //!
 //! # The mean of a column
 //! ```

@@ -21,7 +21,7 @@ const ROWS_PER_BYTE: u64 = 8;
 /// Rows that may be packed into nothing: 32 MB of four columns.
 const ROWS_ALLOWANCE: u64 = 1_000_000;
 
-/// How much of a file there is to read.
+/// How much of a file is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
     /// All of it.
@@ -160,7 +160,7 @@ pub fn estimate_rows(file: &Path) -> Option<u64> {
     (format == Format::Text && lines > 0).then(|| bytes.div_ceil(sample.len() as u64) * lines)
 }
 
-/// The formats, told by their first bytes.
+/// The formats, recognised by their first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Format {
     Text,

@@ -34,7 +34,7 @@ pub(crate) struct TextReader {
     fields: Vec<Field>,
     lines: Lines,
     prologue: Prologue,
-    /// What the first line tells, and the pieces read so far.
+    /// What the first line shows, and the pieces read so far.
     table: Option<(Layout, Vec<IndexedPiece>)>,
     workplace: Workplace,
     /// Number of the next piece, and of its first line.
@@ -65,7 +65,7 @@ impl TextReader {
         let Self { file, fields, lines, prologue, table, workplace: Workplace { pieces, rows }, number, line, before } =
             self;
         loop {
-            // The first piece alone: it tells how the others are to be read.
+            // The first piece alone: its first line shows how the others are to be read.
             let is_first = table.is_none();
             let most = if is_first { 1 } else { PIECES };
             let count = match lines {
@@ -180,7 +180,7 @@ struct IndexedPiece {
     number: u64,
     /// Number of its first row, from 0.
     first_row: u64,
-    /// The first field in its first and last row, or the numbers of these rows where it is no time.
+    /// The first field in its first and last row, or the numbers of these rows where it is not the time.
     range: [f64; 2],
 }
 

@@ -63,7 +63,7 @@ fn with_thread_limit<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let few = (rayon::current_num_threads() > LIMIT).then(|| ThreadPoolBuilder::new().num_threads(LIMIT).build());
     match few {
         Some(Ok(few)) => few.install(work),
-        // Without more threads there is still this one.
+        // If no pool can be made, this thread remains.
         _ => work(),
     }
 }

@@ -108,7 +108,7 @@ impl<'a> RecordFile<'a> {
                 for (plateau, samples) in plateaus.iter_mut().zip(&mut gathered) {
                     while let Some(part) = plateau.next_part() {
                         samples.extend(stretch.between(part));
-                        // A part is full once a later sample has come.
+                        // A part is complete once a later sample has been read.
                         if stretch.t.last().is_none_or(|last| *last <= part[1]) {
                             break;
                         }

@@ -45,8 +45,8 @@ pub fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Erro
 pub struct RecordReader {
     table: TableReader,
     scales: Scales,
-    /// Bytes that [`RecordReader::newly_read`] has told.
-    told: u64,
+    /// Bytes that [`RecordReader::newly_read`] has returned.
+    reported: u64,
 }
 
 impl RecordReader {
@@ -60,7 +60,7 @@ impl RecordReader {
 
     fn with(file: &Path, extent: Extent, columns: &[&Column], expected: &str) -> Result<Self, Error> {
         let table = TableReader::open(file, extent, &fields(columns), expected)?;
-        Ok(Self { table, scales: Scales::of(columns), told: 0 })
+        Ok(Self { table, scales: Scales::of(columns), reported: 0 })
     }
 
     /// The next rows: columns of time [s] and of readings [m/s^2] ([`stretch`]), several sets of them, to be worked on where they
@@ -69,7 +69,7 @@ impl RecordReader {
     /// Time never decreases from row to row; it may stand still, as real streams repeat samples.
     ///
     /// # Errors
-    /// If the file cannot be read, has no rows, lacks a column, or a value is no finite number; if time runs
+    /// If the file cannot be read, has no rows, lacks a column, or a value is not finite; if time runs
     /// backwards.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
         let batch = self.table.next_batch()?;
@@ -78,8 +78,8 @@ impl RecordReader {
 
     /// Bytes of the file that were read since this was last asked.
     pub(crate) fn newly_read(&mut self) -> u64 {
-        let before = std::mem::replace(&mut self.told, self.table.bytes());
-        self.told - before
+        let before = std::mem::replace(&mut self.reported, self.table.bytes());
+        self.reported - before
     }
 
     /// After the end: where the samples are, if any part can be read again.
@@ -108,7 +108,7 @@ pub(super) struct RecordIndex {
     scales: Scales,
 }
 
-/// A record of which parts are read again.
+/// Reads parts of a record again.
 pub(super) struct PartReader<'a> {
     index: &'a RecordIndex,
     table: Reread<'a>,

@@ -1,4 +1,4 @@
-//! The times of neighbouring samples, kept in less room than they come in.
+//! The times of neighbouring samples, kept in a byte each where they are equally spaced.
 
 #![allow(
     clippy::inline_always,
@@ -54,7 +54,7 @@ impl Times {
     }
 }
 
-/// Times to be told by how far they are off equal steps; none if one is too far.
+/// Packs times as their distances from equal steps; none if one is too far.
 struct Off<'a> {
     span: [f64; 2],
     t: &'a [f64],

@@ -18,7 +18,7 @@ const LONGEST_ROW: u64 = 1 << 16;
 /// An array of a file: rows of numbers in columns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Array {
-    /// Its name in the file; empty where there is only one.
+    /// Its name in the file; empty for a file of one array.
     pub name: String,
     /// Where its bytes are.
     pub bytes: Bytes,
@@ -113,7 +113,7 @@ fn find<'a>(file: &Path, arrays: &'a [Array], field: &Field) -> Result<(&'a Arra
     }
 }
 
-/// What there is, for messages.
+/// The contents of the file, for messages.
 fn contents(arrays: &[Array]) -> String {
     let named = |array: &Array| match array.columns.as_slice() {
         [] => format!("{} (no numbers)", array.name),

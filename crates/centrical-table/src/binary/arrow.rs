@@ -17,8 +17,8 @@ pub(super) use self::messages::CONTINUATION;
 use self::messages::{Message, Messages, contradiction, damaged};
 use self::schema::{ArrowColumn, find, in_seconds};
 use super::arrays::{self, Array, Packing};
+use super::catch_panic::catch_panic;
 use super::columnar::{Column, Parts};
-use super::panics::caught;
 use crate::column::Field;
 use crate::error::{Error, Place};
 
@@ -94,7 +94,8 @@ fn batch_columns(
     fields: &[Field],
 ) -> Result<Vec<Column>, Error> {
     let file = message.file;
-    let arrays = caught(|| arrays(message, batch, columns)).map_err(|e| e.unwrap_or_else(|| contradiction(file)))?;
+    let arrays =
+        catch_panic(|| arrays(message, batch, columns)).map_err(|e| e.unwrap_or_else(|| contradiction(file)))?;
     let numbers = |((array, column), field): ((&Array, &ArrowColumn), &Field)| {
         Ok(in_seconds(arrays::column(file, (array, &array.columns[0]), field)?, column.unit))
     };

@@ -114,7 +114,7 @@ fn check(file: &Path, fields: &[Field], rows: &Rows, before: &mut Before) -> Res
     Ok(())
 }
 
-/// Whether there is nothing to say of any of the values, the last one before them being that.
+/// Whether all values are numbers in order; `last` is the one before them.
 fn is_plain(values: &[f64], last: f64, rule: Rule) -> bool {
     let wrong = values.iter().map(|value| usize::from(value.is_nan() || value.abs() > LARGEST)).sum::<usize>();
     let ascends = || values.first().is_none_or(|first| *first >= last) && !runs_backwards(values);

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use hdf5_pure::{ChunkIndex, Dataset, Error as HdfError, File, FormatError};
 
+use super::catch_panic::catch_panic;
 use super::columnar::Column;
-use super::panics::caught;
 use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
@@ -19,7 +19,7 @@ const LARGEST_NUMBER: u64 = 16;
 
 /// The columns of an HDF5 file that can hold `most` rows. MATLAB keeps its matrices there by columns.
 pub(super) fn columns(file: &Path, by_columns: bool, fields: &[Field], most: u64) -> Result<Vec<Column>, Error> {
-    let hdf = caught(|| File::open_streaming(file)).map_err(|e| damaged(file, Place::Whole, e.as_ref()))?;
+    let hdf = catch_panic(|| File::open_streaming(file)).map_err(|e| damaged(file, Place::Whole, e.as_ref()))?;
     fields.iter().map(|field| column(file, &hdf, field, by_columns, most)).collect()
 }
 
@@ -35,15 +35,15 @@ fn column(file: &Path, hdf: &File, field: &Field, by_columns: bool, most: u64) -
     let (path, name) = (file.to_owned(), place());
     let damaged = move |e: Option<HdfError>| damaged(&path, name.clone(), e.as_ref());
     let wrong = |found: String, expected: &str| Err(Error::content(file, place(), found, expected));
-    let names = caught(|| hdf.root().datasets()).map_err(&damaged)?;
+    let names = catch_panic(|| hdf.root().datasets()).map_err(&damaged)?;
     let found = || format!("datasets {}", quoted(names.join(", ").as_bytes()));
     let (name, number) = match (&field.name, names.as_slice()) {
         (ColumnName::Name(name), _) => (name, 1),
         (ColumnName::Number(number), [only]) => (only, *number),
         _ => return wrong(found(), "one dataset, or [columns] by name"),
     };
-    let Ok(dataset) = caught(|| hdf.dataset(name)) else { return wrong(found(), "a dataset of this name") };
-    let shape = caught(|| dataset.shape()).map_err(&damaged)?;
+    let Ok(dataset) = catch_panic(|| hdf.dataset(name)) else { return wrong(found(), "a dataset of this name") };
+    let shape = catch_panic(|| dataset.shape()).map_err(&damaged)?;
     let (rows, columns) = match shape.as_slice() {
         [rows] | [1, rows] | [rows, 1] => (*rows, 1),
         [columns, rows] if by_columns => (*rows, *columns),
@@ -58,7 +58,7 @@ fn column(file: &Path, hdf: &File, field: &Field, by_columns: bool, most: u64) -
     if let Some((found, expected)) = unreadable(&dataset).map_err(&damaged)? {
         return wrong(found, expected);
     }
-    let size = caught(|| dataset.element_size()).map_err(&damaged)?;
+    let size = catch_panic(|| dataset.element_size()).map_err(&damaged)?;
     if size > LARGEST_NUMBER {
         return wrong(format!("elements of {size} bytes"), "numbers");
     }
@@ -67,7 +67,7 @@ fn column(file: &Path, hdf: &File, field: &Field, by_columns: bool, most: u64) -
     }
     if by_columns || shape.first() == Some(&1) {
         // A row of the file holds the whole column.
-        let mut whole = caught(|| row(&dataset, number as u64 - 1)).map_err(&damaged)?.into_iter();
+        let mut whole = catch_panic(|| row(&dataset, number as u64 - 1)).map_err(&damaged)?.into_iter();
         return Ok(Box::new(move |values| {
             values.extend(whole.by_ref().take(ROWS));
             Ok(())
@@ -78,7 +78,7 @@ fn column(file: &Path, hdf: &File, field: &Field, by_columns: bool, most: u64) -
         let end = (start + ROWS as u64).min(rows);
         while start < end {
             let count = step.min(end - start);
-            let block = caught(|| dataset.read_f64_rows(start, count)).map_err(&damaged)?;
+            let block = catch_panic(|| dataset.read_f64_rows(start, count)).map_err(&damaged)?;
             start += count;
             values.extend(block.iter().skip(number - 1).step_by(usize::try_from(columns).unwrap_or(usize::MAX)));
         }
@@ -88,7 +88,7 @@ fn column(file: &Path, hdf: &File, field: &Field, by_columns: bool, most: u64) -
 
 /// A layout that the library does not know, and what it does.
 fn unreadable(dataset: &Dataset) -> Result<Option<(String, &'static str)>, Option<HdfError>> {
-    match caught(|| dataset.chunk_index()) {
+    match catch_panic(|| dataset.chunk_index()) {
         Ok(Some(ChunkIndex::BTreeV2)) => Ok(Some((
             "chunks indexed by a B-tree of version 2".to_owned(),
             "another index: at most one unlimited dimension, or a file for earlier versions (in h5py libver=\"earliest\")",
@@ -107,12 +107,12 @@ fn too_large_chunk(file: &Path, dataset: &Dataset, most: u64) -> Result<Option<S
     if !dataset.is_chunked() {
         return Ok(None);
     }
-    let shape = caught(|| dataset.chunk_shape())?.unwrap_or_default();
+    let shape = catch_panic(|| dataset.chunk_shape())?.unwrap_or_default();
     if shape.iter().fold(1, |numbers: u64, length| numbers.saturating_mul(*length)) > most {
         return Ok(Some(format!("chunks of shape {shape:?}")));
     }
     let bytes = fs::metadata(file).map_or(0, |metadata| metadata.len());
-    let stored = caught(|| dataset.chunks())?;
+    let stored = catch_panic(|| dataset.chunks())?;
     let size = stored.iter().map(|chunk| chunk.storage_size).find(|size| *size > bytes);
     Ok(size.map(|size| format!("a chunk of {size} bytes")))
 }

@@ -1,8 +1,8 @@
 //! MATLAB files of version 5 (`save -v6` and `-v7`): vectors and matrices of numbers, packed or not.
 //!
-//! After a header of 128 bytes come elements: a type, a size and so many bytes, padded to eight. An element is a
+//! After a header of 128 bytes come elements: a type, a size and that many bytes, padded to eight. An element is a
 //! matrix, or a matrix packed by zlib; inside, further elements hold its class, dimensions, name and numbers. What
-//! is no real matrix of numbers (text, cells, structures, complex numbers) is passed over.
+//! is not a real matrix of numbers (text, cells, structures, complex numbers) is passed over.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -134,7 +134,7 @@ impl Stream {
         Ok(Tag { kind: first, size, padded: size.next_multiple_of(8) })
     }
 
-    /// The next element, which has at most so many bytes.
+    /// The next element, of `most` bytes at most.
     fn element(&mut self, most: u64) -> io::Result<Vec<u8>> {
         let tag = self.tag()?;
         if tag.size > most.min(tag.padded) {

@@ -11,8 +11,8 @@ use parquet::errors::{ParquetError, Result as ParquetResult};
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 use parquet::schema::types::ColumnDescPtr;
 
+use super::catch_panic::catch_panic;
 use super::columnar::{Column, MISSING, Parts};
-use super::panics::caught;
 use super::parquet_pages::{Checked, Source};
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
@@ -20,7 +20,7 @@ use crate::rows::ROWS;
 
 /// The row groups of `file`.
 pub(super) fn parts(file: &Path, input: &File, fields: &[Field]) -> Result<Parts, Error> {
-    let metadata = caught(|| ParquetMetaDataReader::new().parse_and_finish(input));
+    let metadata = catch_panic(|| ParquetMetaDataReader::new().parse_and_finish(input));
     let metadata = metadata.map_err(|e| damaged(file, e.as_ref()))?;
     let columns: Vec<usize> = fields.iter().map(|field| find(file, &metadata, field)).collect::<Result<_, Error>>()?;
     // Columns are read at the same time, and a file has one place that is read next: each column opens it for itself.
@@ -102,8 +102,8 @@ fn column(
     let mut reader = get_column_reader(description, Box::new(pages));
     let file = file.to_owned();
     Ok(Box::new(move |values| {
-        let read = caught(|| match &mut reader {
-            // As they are, if there is one in every row.
+        let read = catch_panic(|| match &mut reader {
+            // As they are, if every row has one.
             ColumnReader::DoubleColumnReader(reader) if whole == 0 => {
                 reader.read_records(ROWS, None, None, values).map(|_| ())
             }

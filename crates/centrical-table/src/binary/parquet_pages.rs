@@ -14,13 +14,13 @@ use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{ChunkReader, Length};
 use parquet::file::serialized_reader::SerializedPageReader;
 
-/// Largest page that may come out of nothing [bytes]; writers make pages of 1 MiB.
+/// Largest page that needs no packed bytes to back it [bytes]; writers make pages of 1 MiB.
 const LARGEST_PAGE: i64 = 64 << 20;
 
 /// Compression that a page may claim above that: noise of a sensor compresses by less than ten.
 const LARGEST_RATIO: i64 = 256;
 
-/// A file of which only pages are read, every read starting at the header of a page.
+/// A file that is read page by page, every read starting at the header of a page.
 pub(super) struct Source(pub File);
 
 /// A file to be read on from a place, not beyond its end: what the library does not know it passes over as often as the file

@@ -1,4 +1,4 @@
-//! Where the wanted numbers stand in a line, told by the first line of the table.
+//! Where the wanted numbers stand in a line, from the first line of the table.
 
 use std::borrow::Cow;
 
@@ -26,7 +26,7 @@ pub(super) struct Prologue {
     comment: Vec<u8>,
 }
 
-/// What the first line tells.
+/// What the first line shows.
 pub(super) struct FirstLine {
     pub layout: Layout,
     /// Whether that line holds the names rather than the first row.
@@ -57,7 +57,7 @@ impl Prologue {
         }
     }
 
-    /// What the first line that is neither blank nor a comment tells of the table.
+    /// What the first line that is neither blank nor a comment shows of the table.
     pub fn first_line(&self, line: &[u8], fields: &[Field]) -> Result<FirstLine, Fault> {
         let delimiter = Delimiter::of(line);
         let names = delimiter.texts(line)?;
@@ -272,7 +272,7 @@ impl Delimiter {
         if self == Self::Blanks { line.trim_ascii() } else { line }
     }
 
-    /// The first field as it is written, and the rest of the line, if there is any.
+    /// The first field as it is written, and any rest of the line.
     fn split(self, text: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
         let start = text.len() - text.trim_ascii_start().len();
         let quote = if text[start..].first() == Some(&b'"') { end_of_quote(text, start)? } else { 0 };

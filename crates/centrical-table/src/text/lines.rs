@@ -166,7 +166,7 @@ impl Packed {
         Self { file: file.to_owned(), input: Box::new(input), rest: Vec::new(), at_end: false }
     }
 
-    /// Reads the next piece, the first one without a mark of the byte order; whether there is one.
+    /// Reads the next piece, the first one without a mark of the byte order; false at the end.
     pub(super) fn read(&mut self, first: bool, text: &mut Text) -> Result<bool, Error> {
         if self.at_end && self.rest.is_empty() {
             return Ok(false);
@@ -197,7 +197,7 @@ impl Packed {
 /// What a text is expected to be.
 pub(super) const TABLE: &str = "a table of numbers as text";
 
-/// The last line, counted from 0, if it goes on and on: what has such lines is no table.
+/// The last line, counted from 0, if it is longer than any line of a table.
 pub(super) fn endless_line(text: &[u8]) -> Option<(u64, String)> {
     let start = memrchr(b'\n', &text[..text.len().saturating_sub(1)]).map_or(0, |end| end + 1);
     let line = || memchr_iter(b'\n', &text[..start]).count() as u64;

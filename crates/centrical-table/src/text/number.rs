@@ -10,7 +10,7 @@ pub(super) const ONES: u64 = 0x0101_0101_0101_0101;
 /// Bytes that are looked at: sign, eight bytes of whole digits and point, eight of decimals, and the byte after.
 const REACH: usize = 18;
 
-pub(super) const POWERS: [f64; 8] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
+const POWERS: [f64; 8] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 const WHOLE_POWERS: [u64; 8] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000];
 
 /// The number that a text starts with, and its length; nothing if it is not of the plain kind or its end may not be in
@@ -53,7 +53,7 @@ fn eight(text: &[u8; REACH], from: usize) -> u64 {
     u64::from_le_bytes(word)
 }
 
-/// How many of eight bytes are digits before the first that is none.
+/// The number of digits at the start of eight bytes.
 #[inline]
 fn digits(word: u64) -> u32 {
     // A digit is 0 to 9 after this; anything else gets its top bit set by the sum, or has it. A carry goes to later

@@ -16,8 +16,8 @@ pub(super) struct Separators {
     is_ascii: bool,
 }
 
-/// Places in a text, in ascending order, `OFTEN` in a step at most as a rule: so many are written at once, those that are none to
-/// be written over. A loop over what is there would end where the processor does not expect it.
+/// Places in a text, in ascending order. `OFTEN` of them are written in every step, as most steps have no more; later ones
+/// overwrite the superfluous ones. A loop over the exact number would end where the processor does not expect it.
 #[derive(Default)]
 struct Places<const OFTEN: usize> {
     /// The places, and room for more.

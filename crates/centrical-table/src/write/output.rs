@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread::{self, JoinHandle};
 
-/// Bytes after which the disk is asked to take what there is: what is left at the end is soon done.
+/// Bytes after which the disk is asked to take the file so far, so that little remains at the end.
 const STEP: usize = 32 << 20;
 
 /// What takes pieces of a table and has them in a file.
@@ -17,7 +17,7 @@ pub(super) trait Sink<P>: Send + 'static {
     fn finish(self) -> io::Result<()>;
 }
 
-/// A sink on a thread of its own. What goes wrong is told by a later call, at the latest by [`Output::finish`].
+/// A sink on a thread of its own. An error is returned by a later call, at the latest by [`Output::finish`].
 pub(super) struct Output<P> {
     /// To the thread that writes; none after the last piece.
     pieces: Option<SyncSender<Message<P>>>,
@@ -33,7 +33,7 @@ enum Message<P> {
 }
 
 impl<P: Default + Send + 'static> Output<P> {
-    /// Begins; so many pieces may wait to be written that neither side waits for a hiccup of the other.
+    /// Begins; `ahead` pieces may wait to be written, enough for either side to ride out a hiccup of the other.
     pub fn new(sink: impl Sink<P>, ahead: usize) -> Self {
         let (pieces, received) = sync_channel(ahead);
         let (done, written) = channel();
@@ -67,7 +67,7 @@ impl<P: Default + Send + 'static> Output<P> {
 }
 
 impl<P> Output<P> {
-    /// Waits for what is under way and tells how it went.
+    /// Waits for the thread and returns its outcome.
     fn end(&mut self) -> io::Result<()> {
         self.pieces = None;
         let ended =
@@ -86,7 +86,7 @@ impl<P> Drop for Output<P> {
     }
 }
 
-/// Writes pieces until no more come.
+/// Writes pieces until the last one.
 fn write_behind<P>(mut sink: impl Sink<P>, pieces: &Receiver<Message<P>>, written: &Sender<P>) -> io::Result<()> {
     for message in pieces {
         match message {

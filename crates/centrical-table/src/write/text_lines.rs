@@ -16,14 +16,14 @@ use self::decimal::{Digits, ROOM};
 /// Rows that are turned into text together: some 250 KB.
 pub(super) const ROWS: usize = 4096;
 
-/// Writes the lines of rows, given by columns, to the end of `text`, which grows where it is too short, and tells where they start.
+/// Writes the lines of rows, given by columns, to the end of `text`, which grows where it is too short, and returns where they start.
 pub(super) fn write_lines<const N: usize>(text: &mut Vec<u8>, decimals: [Decimals; N], columns: [&[f64]; N]) -> usize {
     let most = (columns[0].len() * N + 1) * ROOM;
     text.resize(text.len().max(most), 0);
     Arch::new().dispatch(Fill { text, decimals, columns })
 }
 
-/// Fills a text from its end with the lines of rows, and tells where they start.
+/// Fills a text from its end with the lines of rows, and returns where they start.
 struct Fill<'a, const N: usize> {
     text: &'a mut [u8],
     decimals: [Decimals; N],
@@ -57,7 +57,7 @@ impl<const N: usize> WithSimd for Fill<'_, N> {
     }
 }
 
-/// Writes a number in the shortest form that reads back the same, and what ends it, to the end of `text`, and tells the length of both.
+/// Writes a number in the shortest form that reads back the same, and what ends it, to the end of `text`, and returns the length of both.
 #[cold]
 fn put_shortest(number: f64, ended_by: u8, text: &mut [u8; ROOM]) -> usize {
     let mut buffer = zmij::Buffer::new();

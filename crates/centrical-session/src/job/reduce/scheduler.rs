@@ -51,7 +51,7 @@ impl<'a> Scheduler<'a> {
         std::iter::from_fn(|| self.reduce_next(&mut cache)).collect()
     }
 
-    /// Reduces the next mounting, if there is one.
+    /// Reduces the next mounting; none after the last.
     fn reduce_next(&self, cache: &mut SampleCache) -> Option<Numbered> {
         let count = self.session.experiment.mountings.len();
         let number = self.next.fetch_add(1, Ordering::Relaxed);

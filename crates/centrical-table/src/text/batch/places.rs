@@ -20,7 +20,7 @@ impl Default for Places {
 }
 
 impl Places {
-    /// Begins before the first column of rows, of which the first stands from `from` on; `ends` are their ends, [`ROWS`] at most.
+    /// Begins before the first column of rows: the first row starts at `from`, and `ends` are their ends, [`ROWS`] at most.
     #[inline]
     pub fn begin(&mut self, from: u32, ends: &[u32]) {
         self.rows = ends.len();

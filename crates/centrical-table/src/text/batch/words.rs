@@ -1,4 +1,4 @@
-//! A batch on any processor: the words of many numbers side by side, as its vectors have room for them.
+//! A batch: the words of many numbers side by side, as the processor's vectors have room for them.
 
 #![allow(
     clippy::inline_always,

@@ -56,7 +56,7 @@ impl Decimals {
     /// need no search for it.
     pub const SHORTEST: Self = Self { count: 9, short: true, exact: true };
 
-    /// So many that half of the last one is at most 10^-12 of a range; none if there is no such text of it.
+    /// The fewest decimals whose last half unit is at most 10^-12 of a range; none if the range has no such text.
     pub fn for_range(range: f64) -> Option<Self> {
         let is_enough = |count: &u32| 0.5 <= 1e-12 * range * POWERS[*count as usize];
         let count = (1..=14).find(is_enough).filter(|count| range * POWERS[*count as usize] < LARGEST)?;
@@ -166,8 +166,8 @@ impl Digits {
         }
     }
 
-    /// Writes number `row` and what ends it to the end of `text`, zeros before it, and tells the length of both; none if the number has
-    /// no such text.
+    /// Writes number `row` and what ends it to the end of `text`, zeros before it, and returns the length of both; none if the number
+    /// has no such text.
     #[inline(always)]
     pub fn put(&self, row: usize, ended_by: u8, text: &mut [u8; ROOM]) -> Option<usize> {
         let length = self.length[row];

@@ -6,12 +6,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::Once;
 
 thread_local! {
-    /// Whether this thread is inside of [`caught`], where nobody needs to be told of a panic.
+    /// Whether this thread is inside of [`catch_panic`], where a panic is not printed.
     static CATCHING: Cell<bool> = const { Cell::new(false) };
 }
 
 /// Calls; a panic is `Err(None)`, and nothing is printed of it. Nothing half done is used again.
-pub(super) fn caught<T, E>(call: impl FnOnce() -> Result<T, E>) -> Result<T, Option<E>> {
+pub(super) fn catch_panic<T, E>(call: impl FnOnce() -> Result<T, E>) -> Result<T, Option<E>> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let tell = take_hook();
