@@ -1,6 +1,6 @@
 //! How long one waits for the compensation of a record in memory.
 
-use centrical_compensate::{Compensation, Term};
+use centrical_compensate::{Compensation, Monomial, Term};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use rayon::prelude::*;
@@ -29,7 +29,7 @@ fn kozlov() -> Vec<Term> {
 /// The same and a product of components: no fast form.
 fn with_products() -> Vec<Term> {
     let mut terms = kozlov();
-    terms.push(Term { axis: 0, powers: [1, 1, 0], sign_of: None, coefficient: 1e-6 });
+    terms.push(Term { axis: 0, monomial: Monomial::product(0, 1), coefficient: 1e-6 });
     terms
 }
 

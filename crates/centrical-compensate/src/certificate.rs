@@ -59,7 +59,7 @@ impl Certificate {
         let gain_change = over(UNIQUE_REGION).gain_change();
         let margin = largest_factor(|factor| over(factor * UNIQUE_REGION).is_certain(factor));
         if margin < 1.0 {
-            return Err(NotInvertible::TooNonlinear { gain_change, factor: margin });
+            return Err(NotInvertible::TooNonlinear { gain_change, limit: GAIN_CHANGE_LIMIT, factor: margin });
         }
         Ok(Self { range, gain_change, margin, start: over(1.0).shift, bounds: over(START_REGION) })
     }
@@ -133,7 +133,7 @@ impl Bounds {
         for i in 0..3 {
             let mut row = Self { shift: 0.0, gain: linear_defect(linear, i), curvature: 0.0, kink: 0.0 };
             for term in terms.iter().filter(|term| !is_affine(term)) {
-                let d = f64::from(term.degree());
+                let d = f64::from(term.monomial.degree());
                 let w = linear.inverse[i][term.axis].abs() * term.largest(s * range) / range;
                 row.shift += w;
                 row.gain += d * w / s;
@@ -188,7 +188,7 @@ fn linear_defect(linear: &Linear, i: usize) -> f64 {
 
 /// Whether the derivative of a term jumps where its sign does.
 fn has_kink(term: &Term) -> bool {
-    term.sign_of.is_some_and(|j| term.powers[j] == 1)
+    term.monomial.sign_of.is_some_and(|j| term.monomial.powers[j] == 1)
 }
 
 /// Largest factor for which `is_certain`, which holds up to some factor and not beyond.

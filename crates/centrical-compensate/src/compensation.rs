@@ -13,6 +13,7 @@ use crate::lanes::Lanes;
 use crate::linear::{Linear, corrected};
 use crate::machine::on_this_machine;
 use crate::model::Model;
+use crate::monomial::Monomial;
 use crate::separable::Shift;
 use crate::term::Term;
 
@@ -161,7 +162,8 @@ fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 fn check(terms: &[Term], range: f64) -> Result<(), NotInvertible> {
     for (index, term) in terms.iter().enumerate() {
-        for axis in [Some(term.axis), term.sign_of].into_iter().flatten() {
+        let Monomial { powers, sign_of } = term.monomial;
+        for axis in [Some(term.axis), sign_of].into_iter().flatten() {
             if axis > 2 {
                 return Err(NotInvertible::Axis { term: index, axis });
             }
@@ -169,7 +171,7 @@ fn check(terms: &[Term], range: f64) -> Result<(), NotInvertible> {
         if !term.coefficient.is_finite() {
             return Err(NotInvertible::Coefficient { term: index, coefficient: term.coefficient });
         }
-        if let Some(axis) = term.sign_of.filter(|j| term.powers[*j] == 0) {
+        if let Some(axis) = sign_of.filter(|j| powers[*j] == 0) {
             return Err(NotInvertible::Jump { term: index, axis });
         }
     }

@@ -2,8 +2,6 @@
 
 use thiserror::Error;
 
-use crate::certificate::GAIN_CHANGE_LIMIT;
-
 /// Why an error model has no certain inverse over a range.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum NotInvertible {
@@ -15,7 +13,7 @@ pub enum NotInvertible {
         /// The axis.
         axis: usize,
     },
-    /// A coefficient is no number.
+    /// A coefficient is not finite.
     #[error("term {term}: found coefficient {coefficient}, expected a finite number")]
     Coefficient {
         /// Index of the term.
@@ -34,7 +32,7 @@ pub enum NotInvertible {
         /// The component.
         axis: usize,
     },
-    /// The range is none.
+    /// The range is not positive or not finite.
     #[error("range: found {range} m/s^2, expected a positive finite number")]
     Range {
         /// The range [m/s^2].
@@ -46,11 +44,13 @@ pub enum NotInvertible {
     /// The non-linear terms are too strong for the range.
     #[error(
         "over twice the range the gain changes by up to {gain_change:.3} of the gain at zero, expected at most \
-         {GAIN_CHANGE_LIMIT:.3}: the inverse is certain over {factor:.3} of this range"
+         {limit:.3}: the inverse is certain over {factor:.3} of this range"
     )]
     TooNonlinear {
         /// Bound on the change of gain.
         gain_change: f64,
+        /// [`crate::GAIN_CHANGE_LIMIT`].
+        limit: f64,
         /// Part of the range over which the inverse is certain.
         factor: f64,
     },
@@ -69,7 +69,7 @@ pub struct OutOfRange {
     pub range: f64,
 }
 
-/// Readings of the three axes that do not belong together.
+/// Arrays of readings of unequal lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("found {}, {} and {} readings on axes 1, 2, 3, expected as many on each", lengths[0], lengths[1], lengths[2])]
 pub struct UnequalLengths {

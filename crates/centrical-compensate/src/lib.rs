@@ -37,6 +37,7 @@ mod lanes;
 mod linear;
 mod machine;
 mod model;
+mod monomial;
 mod separable;
 mod term;
 
@@ -45,4 +46,5 @@ pub use certificate::{Certificate, GAIN_CHANGE_LIMIT, START_REGION};
 pub use compensation::Compensation;
 pub use error::{NotInvertible, OutOfRange, UnequalLengths};
 pub use linear::Linear;
-pub use term::{Term, reading};
+pub use monomial::Monomial;
+pub use term::{Term, gain, reading};

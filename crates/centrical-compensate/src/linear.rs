@@ -19,10 +19,11 @@ impl Linear {
     pub(crate) fn of(terms: &[Term]) -> Option<Self> {
         let mut bias = [0.0; 3];
         let mut gain = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        for term in terms.iter().filter(|term| is_affine(term)) {
-            match term.powers.iter().position(|p| *p == 1) {
-                Some(j) => gain[term.axis][j] += term.coefficient,
-                None => bias[term.axis] += term.coefficient,
+        for term in terms {
+            match term.monomial.as_power() {
+                Some((_, 0)) => bias[term.axis] += term.coefficient,
+                Some((j, 1)) => gain[term.axis][j] += term.coefficient,
+                _ => {}
             }
         }
         let [a, b, c] = gain;
@@ -42,7 +43,7 @@ impl Linear {
 
 /// Whether a term is constant or linear, without a kink.
 pub(crate) fn is_affine(term: &Term) -> bool {
-    term.degree() <= 1 && term.sign_of.is_none()
+    term.monomial.as_power().is_some_and(|(_, power)| power <= 1)
 }
 
 /// `x + g^-1 d` by Cramer's rule, `g` given by columns. Accurate enough for a Newton step, which is small beside the error

@@ -17,12 +17,12 @@ impl Separable {
     pub fn part_of(terms: &[Term]) -> Self {
         let mut part = Self { bias: [0.0; 3], g0: [[0.0; 3]; 3], g1: [[0.0; 3]; 3], g2: [0.0; 3] };
         for term in terms.iter().filter(|term| is_separable(term)) {
-            let (i, j) = (term.axis, term.powers.iter().position(|p| *p > 0).unwrap_or(0));
-            match term.degree() {
-                0 => part.bias[i] += term.coefficient,
-                1 => part.g0[i][j] += term.coefficient,
-                2 => part.g1[i][j] += term.coefficient,
-                _ => part.g2[i] += term.coefficient,
+            let Term { axis: i, monomial, coefficient } = *term;
+            match monomial.as_power() {
+                Some((_, 0)) => part.bias[i] += coefficient,
+                Some((j, 1)) => part.g0[i][j] += coefficient,
+                Some((j, 2)) => part.g1[i][j] += coefficient,
+                _ => part.g2[i] += coefficient,
             }
         }
         part
@@ -88,7 +88,5 @@ impl Shift {
 
 /// Whether a term fits the fast form.
 pub(crate) fn is_separable(term: &Term) -> bool {
-    let components = term.powers.iter().filter(|p| **p > 0).count();
-    let is_cubic = term.powers[term.axis] == 3;
-    term.sign_of.is_none() && components <= 1 && (term.degree() <= 2 || (is_cubic && term.degree() == 3))
+    term.monomial.as_power().is_some_and(|(j, power)| power <= 2 || (j == term.axis && power == 3))
 }

@@ -16,7 +16,7 @@ pub(crate) fn equations(result: &CalibrationResult) -> [String; 3] {
     [1, 2, 3].map(|axis| {
         let mut text = format!("f{axis}\u{2032} = f{axis}");
         for term in result.model.error_model.iter().filter(|term| term.axis == axis) {
-            let monomial = monomial(term.powers, term.sign_of);
+            let monomial = monomial(term).replace('*', " ");
             let _ = if monomial == "1" {
                 write!(text, " + {}", term.name)
             } else {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use centrical::STANDARD_GRAVITY;
-use centrical::noise::{Coefficient, Deviation, Estimator, NoiseTerm, NoiseTerms};
+use centrical::stability::{Analysis, Coefficient, Deviation, Estimator, NoiseTerm, NoiseTerms};
 use centrical_session::{NoiseAnalysis, ReadingNoise};
 
 use crate::customary::with_uncertainty;
@@ -71,7 +71,7 @@ pub fn noise_table(analysis: &NoiseAnalysis) -> String {
 }
 
 fn heading(text: &mut String, reading: &ReadingNoise) {
-    let ReadingNoise { name, samples, interval, spikes, repeated, gaps, .. } = reading;
+    let ReadingNoise { name, noise: Analysis { samples, interval, spikes, repeated, gaps, .. }, .. } = reading;
     let _ = write!(text, "\n{}  {samples} readings every {interval:.6} s", name.to_uppercase());
     if gaps.missing > 0 {
         let _ = write!(text, "; missing: {}, the longest run {}", gaps.missing, gaps.longest);
@@ -90,17 +90,17 @@ fn stability(text: &mut String, reading: &ReadingNoise) {
     const CELL: usize = 34;
     let title = |e: Estimator| format!("{}, {}", e.name(), Shown::deviation(reading, e).unit);
     let mut line = format!("  {:<12}", "tau, s");
-    line.extend(reading.deviations.iter().map(|(e, _)| format!("{:<CELL$}", title(*e))));
+    line.extend(reading.noise.deviations.iter().map(|(e, _)| format!("{:<CELL$}", title(*e))));
     let _ = writeln!(text, "{}", line.trim_end());
     let mut factors: Vec<(usize, f64)> = Vec::new();
-    for deviation in reading.deviations.iter().flat_map(|(_, family)| family) {
+    for deviation in reading.noise.deviations.iter().flat_map(|(_, family)| family) {
         if let Err(place) = factors.binary_search_by_key(&deviation.factor, |f| f.0) {
             factors.insert(place, (deviation.factor, deviation.tau));
         }
     }
     for (factor, tau) in factors {
         let mut line = format!("  {:<12}", significant(tau, 4));
-        for (estimator, family) in &reading.deviations {
+        for (estimator, family) in &reading.noise.deviations {
             let shown = Shown::deviation(reading, *estimator);
             let cell = family.iter().find(|d| d.factor == factor).map_or(String::new(), |d| interval(d, shown.factor));
             let _ = write!(line, "{cell:<CELL$}");
@@ -117,7 +117,7 @@ fn interval(d: &Deviation, factor: f64) -> String {
 /// The spectrum in a line an octave, and the lines in it.
 fn spectrum(text: &mut String, reading: &ReadingNoise) {
     let Shown { factor, unit } = Shown::reading(reading);
-    let spectrum = match &reading.spectrum {
+    let spectrum = match &reading.noise.spectrum {
         Ok(spectrum) => spectrum,
         Err(error) => {
             let _ = writeln!(text, "  no spectrum: {error}");
@@ -144,7 +144,7 @@ fn spectrum(text: &mut String, reading: &ReadingNoise) {
 }
 
 fn terms(text: &mut String, reading: &ReadingNoise) {
-    let Some(terms) = reading.quotable() else { return };
+    let Some(terms) = reading.noise.quotable() else { return };
     let _ = writeln!(
         text,
         "  noise terms (IEEE Std 952); chi^2 {:.1} with {} degrees of freedom",
@@ -168,7 +168,7 @@ fn terms(text: &mut String, reading: &ReadingNoise) {
 
 /// Why coefficients are not quoted, one sentence for each column of which they are not; empty if all are.
 pub fn noise_warnings(analysis: &NoiseAnalysis) -> Vec<String> {
-    let warning = |reading: &ReadingNoise| match &reading.terms {
+    let warning = |reading: &ReadingNoise| match &reading.noise.terms {
         Ok(terms) if terms.is_consistent() => None,
         Ok(terms) => Some(format!(
             "{}: no sum of quantisation, white noise, bias instability, random walk and ramp describes the deviations \
@@ -184,9 +184,9 @@ pub fn noise_warnings(analysis: &NoiseAnalysis) -> Vec<String> {
 /// and the spectra.
 pub fn noise_plots(analysis: &NoiseAnalysis) -> Vec<(String, Plot)> {
     let of_each = analysis.readings.iter().filter_map(|reading| {
-        let (estimator, family) = reading.deviations.first()?;
+        let (estimator, family) = reading.noise.deviations.first()?;
         let shown = Shown::deviation(reading, *estimator);
-        let terms = reading.quotable().filter(|_| !estimator.is_of_phase());
+        let terms = reading.noise.quotable().filter(|_| !estimator.is_of_phase());
         let title = format!("Stability of {}, {}", reading.name, analysis.file_name());
         let plot = deviation_plot(title, estimator.name(), &shown, family, terms);
         Some((format!("deviation-{}.svg", file_part(&reading.name)), plot))
@@ -236,7 +236,7 @@ fn spectra(analysis: &NoiseAnalysis) -> Plot {
     let title = format!("Spectrum of the reading, {}", analysis.file_name());
     let mut plot = Plot::new(title, Axis::log("frequency, Hz"), Axis::log(format!("root of the density, {unit}/√Hz")));
     for reading in &analysis.readings {
-        let Ok(spectrum) = &reading.spectrum else { continue };
+        let Ok(spectrum) = &reading.noise.spectrum else { continue };
         let factor = Shown::reading(reading).factor;
         let points =
             spectrum.bands(BANDS_PER_OCTAVE).into_iter().map(|b| Point::new(b.frequency, factor * b.density.sqrt()));

@@ -1,9 +1,9 @@
 //! Errors of the unit's readings on the plateaus, before and after compensation.
 
+use centrical::STANDARD_GRAVITY;
 use centrical::uncertainty::Compensated;
-use centrical::{ErrorModel, Monomial, STANDARD_GRAVITY, Term};
 use centrical_session::{CalibrationResult, PlateauSummary};
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use crate::language::Language;
 
@@ -32,22 +32,15 @@ pub(crate) struct ReadingError {
 
 /// Errors on every plateau; none if the unit cannot be compensated because a parameter of it is not determined.
 pub(crate) fn reading_errors(result: &CalibrationResult) -> Option<Vec<ReadingError>> {
-    let (model, coefficients) = error_model(result)?;
-    let covariance = covariance(result)?;
-    let prediction = Compensated::new(model.clone(), coefficients.clone(), covariance)?;
-    result.plateaus.iter().map(|plateau| reading_error(plateau, &model, &coefficients, &prediction)).collect()
+    let compensated = compensated(result)?;
+    result.plateaus.iter().map(|plateau| reading_error(plateau, &compensated)).collect()
 }
 
-fn reading_error(
-    plateau: &PlateauSummary,
-    model: &ErrorModel,
-    coefficients: &[f64],
-    prediction: &Compensated,
-) -> Option<ReadingError> {
+fn reading_error(plateau: &PlateauSummary, compensated: &Compensated) -> Option<ReadingError> {
     let force = Vector3::from(plateau.specific_force?);
     let residual = Vector3::from(plateau.residual);
     // A residual is small, so the inverse of the error model is that of its gain.
-    let to_force = model.gain(coefficients, &force).try_inverse()?;
+    let to_force = compensated.gain(&force).try_inverse()?;
     let noise = to_force * matrix(&plateau.covariance) * to_force.transpose();
     Some(ReadingError {
         force,
@@ -55,7 +48,7 @@ fn reading_error(
         after: to_force * residual,
         speed_free: to_force * (residual - of_speed(plateau, &residual)),
         uncertainty: noise.diagonal().map(f64::sqrt),
-        prediction: prediction.covariance(&force)?.diagonal().map(|variance| variance.max(0.0).sqrt()),
+        prediction: compensated.covariance(&force)?.diagonal().map(|variance| variance.max(0.0).sqrt()),
     })
 }
 
@@ -69,26 +62,9 @@ fn of_speed(plateau: &PlateauSummary, residual: &Vector3<f64>) -> Vector3<f64> {
     total.cholesky().map_or_else(Vector3::zeros, |factor| speed * factor.solve(residual))
 }
 
-/// The unit's error model with its coefficients; none if one is not determined.
-pub(crate) fn error_model(result: &CalibrationResult) -> Option<(ErrorModel, Vec<f64>)> {
-    let mut terms = Vec::new();
-    let mut coefficients = Vec::new();
-    for term in &result.model.error_model {
-        coefficients.push(result.parameter(&term.name)?.value?);
-        let monomial = Monomial { powers: term.powers, sign_of: term.sign_of.and_then(|axis| axis.checked_sub(1)) };
-        let axis = term.axis.checked_sub(1).filter(|axis| *axis < 3)?;
-        terms.push(Term { name: term.name.clone(), group: "", axis, monomial });
-    }
-    Some((ErrorModel { terms }, coefficients))
-}
-
-/// Covariance of the coefficients, in the order of the terms.
-fn covariance(result: &CalibrationResult) -> Option<DMatrix<f64>> {
-    let place = |name: &str| result.parameters.iter().position(|parameter| parameter.name == name);
-    let places: Vec<usize> = result.model.error_model.iter().map(|t| place(&t.name)).collect::<Option<_>>()?;
-    let entry = |i: usize, j: usize| *result.covariance.get(i)?.get(j)?;
-    let entries: Option<Vec<f64>> = places.iter().flat_map(|&i| places.iter().map(move |&j| entry(i, j))).collect();
-    Some(DMatrix::from_row_slice(places.len(), places.len(), &entries?))
+/// The compensation of the unit; none if a coefficient is not determined.
+pub(crate) fn compensated(result: &CalibrationResult) -> Option<Compensated> {
+    Compensated::new(result.error_terms().ok()?, result.of_unit().covariance)
 }
 
 fn matrix(rows: &[[f64; 3]; 3]) -> Matrix3<f64> {

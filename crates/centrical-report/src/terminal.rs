@@ -46,7 +46,7 @@ fn heading(text: &mut String, result: &CalibrationResult) {
 fn error_model(text: &mut String, result: &CalibrationResult) {
     text.push_str("\nERROR MODEL  reading = f + sum of term x coefficient\n");
     row(text, "term", "unit", &["newtonometer 1", "newtonometer 2", "newtonometer 3"].map(str::to_owned));
-    let mut rows: Vec<([u8; 3], Option<usize>, &str)> = Vec::new();
+    let mut rows: Vec<(String, &str)> = Vec::new();
     for term in &result.model.error_model {
         let key = row_of(result, term);
         if !rows.contains(&key) {
@@ -62,23 +62,19 @@ fn error_model(text: &mut String, result: &CalibrationResult) {
                 cells[term.axis - 1] = cell(parameter);
             }
         }
-        row(text, &monomial(key.0, key.1), unit, &cells);
+        row(text, &key.0, unit, &cells);
     }
 }
 
 /// Terms that share a row: the same monomial in the same customary unit.
-fn row_of<'r>(result: &'r CalibrationResult, term: &TermSummary) -> ([u8; 3], Option<usize>, &'r str) {
+fn row_of<'r>(result: &'r CalibrationResult, term: &TermSummary) -> (String, &'r str) {
     let unit = result.parameter(&term.name).map_or("", |p| customary(&p.unit, &p.group).1);
-    (term.powers, term.sign_of, unit)
+    (monomial(term), unit)
 }
 
-/// `f1^2 f3`, or `1`; an odd term with its sign, `sgn(f1) f1^2`.
-pub(crate) fn monomial(powers: [u8; 3], sign_of: Option<usize>) -> String {
-    let mut factors: Vec<String> = sign_of.map(|axis| format!("sgn(f{axis})")).into_iter().collect();
-    for (axis, power) in (1..).zip(powers).filter(|(_, power)| *power > 0) {
-        factors.push(if power == 1 { format!("f{axis}") } else { format!("f{axis}^{power}") });
-    }
-    if factors.is_empty() { "1".to_owned() } else { factors.join(" ") }
+/// `f1^2*f3`, `f2*|f2|` or `1`, as sessions write it; a question mark if it takes the sign of an axis that does not exist.
+pub(crate) fn monomial(term: &TermSummary) -> String {
+    term.monomial().map_or_else(|_| "?".to_owned(), |monomial| monomial.to_string())
 }
 
 /// Turns by position, shifts by pair, tilt and proof masses.

@@ -1,5 +1,6 @@
 //! The documents that the program writes, one schema a file.
 
+mod json;
 mod noise;
 mod observability;
 mod plan;

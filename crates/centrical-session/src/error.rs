@@ -1,24 +1,19 @@
 //! What went wrong with a file, in the user's words: where, found, expected.
 
-use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
+
+pub use centrical_table::Place;
+pub(crate) use centrical_table::quoted;
+
+use centrical_table::Error as TableError;
 
 /// Why a session, a record or a table could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The content of a file is not what its place calls for.
-    #[error("{}{place}: found {found}, expected {expected}", file.display())]
-    Content {
-        /// The file.
-        file: PathBuf,
-        /// Where in the file.
-        place: Place,
-        /// What stands there.
-        found: String,
-        /// What should stand there.
-        expected: String,
-    },
+    /// A file cannot be read or written, or its content is not what its place calls for.
+    #[error(transparent)]
+    Table(#[from] TableError),
     /// The experiment file does not follow the form: syntax, type of a value, unknown or missing key.
     #[error("{}{place}: {message}", file.display())]
     Form {
@@ -79,7 +74,7 @@ pub enum Error {
         /// The column.
         reading: String,
         /// What was found and what was expected.
-        source: centrical::noise::NoiseError,
+        source: centrical::stability::NoiseError,
     },
     /// Nothing can be simulated of a truth.
     #[error("{}: {source}", file.display())]
@@ -89,118 +84,31 @@ pub enum Error {
         /// Which setting or value, and why.
         source: centrical::simulate::SimulationError,
     },
-    /// The operating system refused to read or write a file.
-    #[error("{}: cannot be {action}: {source}", file.display())]
-    Io {
-        /// The file.
-        file: PathBuf,
-        /// "read" or "written".
-        action: &'static str,
-        /// What the operating system says.
-        source: io::Error,
+    /// A document has a value that has no place in JSON.
+    #[error("{document}: cannot be written as JSON: {source}")]
+    Json {
+        /// Its schema or file name.
+        document: &'static str,
+        /// Which value, and why.
+        source: serde_json::Error,
     },
-}
-
-/// A place in a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Place {
-    /// The file as a whole.
-    Whole,
-    /// A character of a text, line and column counted from 1.
-    Character {
-        /// Line.
-        line: usize,
-        /// Character in the line.
-        column: usize,
-    },
-    /// A line of a text table, counted from 1 with the header and comments.
-    Line {
-        /// Line.
-        line: u64,
-        /// Name of the column of the table, where one is meant.
-        column: Option<String>,
-    },
-    /// A row of a binary table, counted from 1.
-    Row {
-        /// Row.
-        row: u64,
-        /// Name of the column of the table.
-        column: String,
-    },
-    /// A column of a binary table.
-    Column(String),
-    /// A key of the experiment file.
-    Key {
-        /// Its table, and which one where there are several: `[[mounting]] 3`.
-        table: String,
-        /// The key in the table.
-        key: String,
-    },
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Whole => Ok(()),
-            Self::Character { line, column } => write!(f, ", line {line}, column {column}"),
-            Self::Line { line, column: Some(column) } => write!(f, ", line {line}, {column}"),
-            Self::Line { line, column: None } => write!(f, ", line {line}"),
-            Self::Row { row, column } => write!(f, ", row {row}, {column}"),
-            Self::Column(column) => write!(f, ", {column}"),
-            Self::Key { table, key } => write!(f, ", {table}, {key}"),
-        }
-    }
-}
-
-impl Place {
-    /// Line and column of a byte of the text.
-    pub(crate) fn of_byte(text: &str, byte: usize) -> Self {
-        let before = text.get(..byte).unwrap_or(text);
-        let line = before.matches('\n').count() + 1;
-        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-        Self::Character { line, column }
-    }
 }
 
 impl Error {
     /// The content of `file` at `place` is not what was expected.
-    pub(crate) fn content(file: &Path, place: Place, found: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self::Content { file: file.to_owned(), place, found: found.into(), expected: expected.into() }
+    pub fn content(file: &Path, place: Place, found: impl Into<String>, expected: impl Into<String>) -> Self {
+        TableError::content(file, place, found, expected).into()
     }
 
     /// Reading `file`, of which `expected` says what it should be, failed with `source`.
     pub(crate) fn reading(file: &Path, source: io::Error, expected: &str) -> Self {
-        match source.kind() {
-            io::ErrorKind::NotFound => Self::content(file, Place::Whole, "no such file", expected),
-            io::ErrorKind::IsADirectory => Self::content(file, Place::Whole, "a folder", expected),
-            _ => Self::Io { file: file.to_owned(), action: "read", source },
-        }
-    }
-
-    /// Reading `file` failed with `source`, which may be the unpacking of what it holds.
-    pub(crate) fn unpacking(file: &Path, source: io::Error, expected: &str) -> Self {
-        match source.kind() {
-            io::ErrorKind::InvalidData
-            | io::ErrorKind::InvalidInput
-            | io::ErrorKind::UnexpectedEof
-            | io::ErrorKind::Other => {
-                Self::content(file, Place::Whole, format!("damaged compression ({source})"), expected)
-            }
-            _ => Self::reading(file, source, expected),
-        }
+        TableError::reading(file, source, expected).into()
     }
 
     /// Writing `file` failed with `source`.
     pub(crate) fn writing(file: &Path, source: io::Error) -> Self {
-        Self::Io { file: file.to_owned(), action: "written", source }
+        TableError::writing(file, source).into()
     }
-}
-
-/// Text as found in a file, quoted and cut to a length that can be read.
-pub(crate) fn quoted(text: &[u8]) -> String {
-    const READABLE: usize = 60;
-    let shown = String::from_utf8_lossy(&text[..text.len().min(READABLE)]);
-    if text.len() > READABLE { format!("{:?}...", shown.trim_end_matches('\u{fffd}')) } else { format!("{shown:?}") }
 }
 
 /// Why a result does not say how to compensate.

@@ -247,7 +247,7 @@ impl Laboratory {
     /// Checks that every limit of the decision is one of a parameter of `result`. `file` is the laboratory's.
     ///
     /// # Errors
-    /// [`Error::Content`] with the limit that is not.
+    /// [`Error::Table`] with the limit that is not.
     pub fn check_limits(&self, file: &Path, result: &CalibrationResult) -> Result<(), Error> {
         let mut limits = self.decision.iter().flat_map(|decision| &decision.limit);
         let Some(unknown) = limits.find(|limit| result.parameter(&limit.parameter).is_none()) else { return Ok(()) };

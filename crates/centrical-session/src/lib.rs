@@ -1,7 +1,19 @@
-//! Session folders and records in, calibration results out.
+//! What stands in the files of a session, and the whole jobs on them: session folders in, results out.
 //!
 //! Inputs are of any make: nothing in a file can make this crate panic, hang or fill the memory. What is
 //! wrong with a file is an [`Error`] with the file, the place, what was found and what was expected.
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use centrical_session::{Method, Session, calibrate};
+//!
+//! let session = Session::read(Path::new("../../examples/ta-200"))?;
+//! let result = calibrate(&session, Method::Exact, &|_| ())?;
+//! let bias = result.parameter("df_1").expect("the error model has a bias");
+//! assert!(bias.estimable && bias.standard_uncertainty.is_some_and(|u| u < 1e-3));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! # Formats of records and telemetry
 //! | format | columns |
@@ -13,26 +25,22 @@
 //! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
 //! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
 //!
-//! The format is told by the first bytes. Time is a number in a unit, a count of samples at a rate, or (text and
+//! The first bytes decide the format. Time is a number in a unit, a count of samples at a rate, or (text and
 //! Parquet) a stamp. It never decreases; it may stand still.
 
-mod csv_table;
 mod document;
 mod error;
 mod experiment;
 mod job;
 mod laboratory;
-mod parquet_table;
 mod quantity;
 mod record;
 mod record_writer;
 mod reduced;
-mod table;
-mod text_lines;
 mod truth;
-mod write;
 
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+pub use centrical_table::{ColumnName, TableFormat, create_folder, write_whole};
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
     DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry, HistoryEstimate,
@@ -46,13 +54,13 @@ pub use document::{
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, MountingFiles, Noise, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
+    ExpectedValues, MountingFiles, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
     earlier_result, read_plateaus, write_plateaus,
 };
 pub use job::{
-    Compensated, FirstOutside, Method, PlanRequest, Problem, Series, TableFormat, USUAL_LEVELS, Watch, analyse_noise,
-    calibrate, calibrate_without, compensate_record, read_plan, read_planning, reduce, reduce_without_inputs,
-    simulate_session, subject, write_reduced,
+    Compensated, FirstOutside, Method, PlanRequest, Problem, Series, USUAL_LEVELS, Watch, analyse_noise, calibrate,
+    calibrate_without, compensate_record, plan, read_plan, read_planning, reduce, reduce_without_inputs, simulate_session,
+    subject, write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
@@ -64,6 +72,4 @@ pub use record::{
 };
 pub use record_writer::RecordWriter;
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
-pub use table::ColumnName;
 pub use truth::Truth;
-pub use write::{create_folder, write_whole};

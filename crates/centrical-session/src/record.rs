@@ -9,13 +9,13 @@ mod times;
 use std::path::Path;
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+use centrical_table::{Block, ColumnName, Extent, Field, Index, Rule, Visitor};
 
 pub use self::input::Input;
 pub(crate) use self::kept::{Kept, Room};
 pub use self::overview::RecordOverview;
 pub(crate) use self::passes::{RecordFile, Windows};
 use crate::error::Error;
-use crate::table::{self, Block, ColumnName, Extent, Field, Index, Rule, Visitor};
 
 /// The columns of records and telemetry.
 #[derive(Debug, Clone, PartialEq)]
@@ -223,7 +223,7 @@ impl Wanted<'_> {
             }
         };
         let mut visitor = Visitor { visit: &mut to_si, progress };
-        table::read_batches(file, extent, &self.fields(), self.expected, &mut visitor)
+        Ok(centrical_table::read_batches(file, extent, &self.fields(), self.expected, &mut visitor)?)
     }
 
     /// Hands the stretches of a record over, one by one.

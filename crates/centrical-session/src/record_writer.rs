@@ -1,46 +1,25 @@
 //! Records out, block by block: CSV, or Parquet where the file's name ends in `.parquet`.
 
-mod output;
-mod parquet;
-mod text;
+use std::path::Path;
 
-use std::ffi::OsString;
-use std::fs::{self, File};
-use std::io;
-use std::path::{Path, PathBuf};
-
-use self::output::SteadyFile;
-use self::parquet::RowGroups;
-use self::text::TextTable;
-use crate::error::Error;
-use crate::text_lines::Decimals;
 use centrical::reduction::RecordSlice;
+use centrical_table::{Decimals, TableFormat, TableWriter};
+
+use crate::error::Error;
 
 /// Writes `t` [s], `f1`, `f2`, `f3` [m/s^2] beside the file and renames at the end: whoever looks sees the whole
 /// record or none. Numbers read back as they were unless they are rounded; NaN is written as such.
 pub struct RecordWriter {
-    file: PathBuf,
     /// Decimals of rounded specific forces.
     decimals: Option<u32>,
-    beside: OsString,
-    /// The table in the making; none once it is finished.
-    table: Option<Box<dyn Table>>,
-}
-
-/// A format.
-trait Table: Send {
-    /// Adds rows.
-    fn write(&mut self, blocks: &[RecordSlice]) -> io::Result<()>;
-
-    /// Writes what is left and sees it to the disk.
-    fn finish(self: Box<Self>) -> io::Result<()>;
+    table: TableWriter<4>,
 }
 
 impl RecordWriter {
     /// Begins a record.
     ///
     /// # Errors
-    /// [`Error::Io`] if the folder does not take the file.
+    /// [`Error::Table`] if the folder does not take the file.
     pub fn create(file: &Path) -> Result<Self, Error> {
         Self::begin(file, None)
     }
@@ -55,18 +34,11 @@ impl RecordWriter {
     }
 
     fn begin(file: &Path, decimals: Option<Decimals>) -> Result<Self, Error> {
-        let mut beside = file.as_os_str().to_owned();
-        beside.push(".tmp");
-        let failed = |error| Error::writing(file, error);
-        let output = File::create(&beside).and_then(SteadyFile::new).map_err(failed)?;
-        let is_parquet = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"));
-        let decimals = decimals.filter(|_| !is_parquet);
-        let table: Box<dyn Table> = if is_parquet {
-            Box::new(RowGroups::new(output).map_err(failed)?)
-        } else {
-            Box::new(TextTable::new(output, decimals).map_err(failed)?)
-        };
-        Ok(Self { file: file.to_owned(), decimals: decimals.map(Decimals::count), beside, table: Some(table) })
+        let decimals = decimals.filter(|_| TableFormat::of(file) == TableFormat::Csv);
+        let of_force = decimals.unwrap_or(Decimals::SHORTEST);
+        let of_columns = [Decimals::SHORTEST, of_force, of_force, of_force];
+        let table = TableWriter::create(file, &["t", "f1", "f2", "f3"], of_columns)?;
+        Ok(Self { decimals: decimals.map(Decimals::count), table })
     }
 
     /// Decimals that the specific forces have, if they are rounded.
@@ -77,39 +49,25 @@ impl RecordWriter {
     /// Adds a stretch of the record.
     ///
     /// # Errors
-    /// [`Error::Io`] if it cannot be written.
-    pub fn write(&mut self, block: RecordSlice) -> Result<(), Error> {
-        self.write_all(&[block])
+    /// [`Error::Table`] if it cannot be written.
+    pub fn write(&mut self, stretch: RecordSlice) -> Result<(), Error> {
+        self.write_all(&[stretch])
     }
 
     /// Adds several, on all threads.
     ///
     /// # Errors
     /// As [`RecordWriter::write`].
-    pub fn write_all(&mut self, blocks: &[RecordSlice]) -> Result<(), Error> {
-        let written = self.table.as_mut().map_or(Ok(()), |table| table.write(blocks));
-        written.map_err(|error| Error::writing(&self.file, error))
+    pub fn write_all(&mut self, stretches: &[RecordSlice]) -> Result<(), Error> {
+        let pieces: Vec<_> = stretches.iter().map(|RecordSlice { t, f_z: [f1, f2, f3] }| [*t, f1, f2, f3]).collect();
+        Ok(self.table.write(&pieces)?)
     }
 
     /// Ends the record; only now the file is there.
     ///
     /// # Errors
-    /// [`Error::Io`] if it cannot be written.
-    pub fn finish(mut self) -> Result<(), Error> {
-        let finished = self.table.take().map_or(Ok(()), Table::finish);
-        finished.and_then(|()| fs::rename(&self.beside, &self.file)).map_err(|error| {
-            // Best effort: the first error is the one to tell.
-            let _ = fs::remove_file(&self.beside);
-            Error::writing(&self.file, error)
-        })
-    }
-}
-
-impl Drop for RecordWriter {
-    /// Leaves nothing of a record that was not finished.
-    fn drop(&mut self) {
-        if self.table.take().is_some() {
-            let _ = fs::remove_file(&self.beside);
-        }
+    /// [`Error::Table`] if it cannot be written.
+    pub fn finish(self) -> Result<(), Error> {
+        Ok(self.table.finish()?)
     }
 }

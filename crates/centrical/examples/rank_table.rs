@@ -14,9 +14,10 @@ fn main() {
 }
 
 /// One experiment: label, levels m, radii in R*, angles at rest.
-type Case = (&'static str, std::ops::RangeInclusive<u32>, &'static [f64], &'static [f64]);
+pub type Case = (&'static str, std::ops::RangeInclusive<u32>, &'static [f64], &'static [f64]);
 
-const CASES: [Case; 7] = [
+/// The rows of the table.
+pub const CASES: [Case; 7] = [
     ("m = 0..3, radii 1 and 1/2", 0..=3, &[1.0, 0.5], &[0.0, PI]),
     ("m = 0..20", 0..=20, &[1.0, 0.5], &[0.0, PI]),
     ("m = 0, 1, 2", 0..=2, &[1.0, 0.5], &[0.0, PI]),
@@ -26,25 +27,18 @@ const CASES: [Case; 7] = [
     ("m = 1..3, no rest", 1..=3, &[1.0, 0.5], &[]),
 ];
 
+/// The columns of the table.
+pub const RELATIONS: [PairRelation; 3] = [PairRelation::Opposite, PairRelation::Common, PairRelation::Free];
+
 /// The table as Markdown: rank with proof masses apart / together, below 1e-3 with the smallest singular value that
 /// counts over the largest.
 pub fn table() -> String {
     let mut text =
         "| experiment | opposite, as printed (49) | common (49) | free (55) |\n|---|---|---|---|\n".to_owned();
-    for (label, levels, radii, rest_angles) in CASES {
-        let _ = write!(text, "| {label} |");
-        for pair_relation in [PairRelation::Opposite, PairRelation::Common, PairRelation::Free] {
-            let cells = [spread(), Matrix3::zeros()].map(|rho| {
-                let plan = Normalised {
-                    pair_relation,
-                    rho,
-                    levels: levels.clone().map(f64::from).collect(),
-                    radii: radii.to_vec(),
-                    rest_angles: rest_angles.to_vec(),
-                    ..Normalised::default()
-                };
-                cell(&plan)
-            });
+    for case in &CASES {
+        let _ = write!(text, "| {} |", case.0);
+        for relation in RELATIONS {
+            let cells = [spread(), Matrix3::zeros()].map(|rho| cell(&plan(case, relation, rho)));
             let _ = write!(text, " {} |", cells.join(" / "));
         }
         text.push('\n');
@@ -52,8 +46,20 @@ pub fn table() -> String {
     text
 }
 
-/// Proof masses apart, in units of R*.
-fn spread() -> Matrix3<f64> {
+/// The experiment of a case with P_3 at its default.
+pub fn plan((_, levels, radii, rest_angles): &Case, pair_relation: PairRelation, rho: Matrix3<f64>) -> Normalised {
+    Normalised {
+        pair_relation,
+        rho,
+        levels: levels.clone().map(f64::from).collect(),
+        radii: radii.to_vec(),
+        rest_angles: rest_angles.to_vec(),
+        ..Normalised::default()
+    }
+}
+
+/// `rho0` with the proof masses apart, in units of R*.
+pub fn spread() -> Matrix3<f64> {
     Matrix3::new(0.0, 0.05, 0.04, 0.0, 0.03, -0.02, 0.0, 0.02, -0.03)
 }
 
@@ -63,7 +69,7 @@ fn cell(plan: &Normalised) -> String {
         let experiment = Normalised { third, ..plan.clone() }.experiment();
         let model = MeasurementModel::new(experiment, ErrorModel::kozlov_2017(), &[]);
         let weights = Weight::equal(model.experiment().set_points.len(), 1.0);
-        let study = Study::at_zero(model, weights, 0.0).expect("the experiment is complete");
+        let study = Study::at_zero(model, weights).expect("the experiment is complete");
         let seen = study.observability();
         match seen.smallest_relative() {
             Some(smallest) if smallest < 1e-3 => format!("{} ({smallest:.0e})", seen.rank()),

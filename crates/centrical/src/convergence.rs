@@ -7,8 +7,9 @@
 use nalgebra::{DMatrix, Matrix3};
 
 use crate::design::Observation;
-use crate::fit::{Fit, NULL_HOLD};
+use crate::fit::Fit;
 use crate::measurement::MeasurementModel;
+use crate::parameter::NULL_HOLD;
 
 /// The uncertainties at some stage of the session.
 #[derive(Debug, Clone, PartialEq)]

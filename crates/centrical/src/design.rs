@@ -1,7 +1,7 @@
 //! From plateaus to the weighted design matrix: three whitened rows per plateau, and one per prior.
 //!
-//! A plateau's covariance is that of its mean plus the speed error's rank-one term `sigma^2 d d^T`,
-//! `d = d f' / d ln Omega` of the full model (model notes, section 8). Rows are whitened by its Cholesky factor,
+//! A plateau's covariance is that of its mean plus the speed error's rank-one term `d d^T`,
+//! `d = sigma d f' / d ln Omega` of the full model (`docs/source-and-findings.md`). Rows are whitened by its Cholesky factor,
 //! so that least squares on them is the generalised least squares of the plateaus.
 
 use nalgebra::{Cholesky, Const, DMatrix, DVector, Matrix3, Vector3};
@@ -73,14 +73,13 @@ impl Design {
     pub fn new(
         observations: &[Observation],
         linearisations: &[Linearisation],
-        speed_uncertainty: f64,
         columns: usize,
     ) -> Result<Self, FitError> {
         let mut rows = DMatrix::zeros(3 * observations.len(), columns);
         let mut misfit = DVector::zeros(3 * observations.len());
         let mut magnitude = 0.0;
         for (n, (observation, linearisation)) in observations.iter().zip(linearisations).enumerate() {
-            let whitener = Whitener::new(&observation.into(), &linearisation.speed, speed_uncertainty)?;
+            let whitener = Whitener::new(&observation.into(), &linearisation.speed_error)?;
             whitener.fill(&mut rows, n, linearisation);
             misfit.fixed_rows_mut::<3>(3 * n).copy_from(&whitener.apply(&(observation.mean - linearisation.reading)));
             magnitude += whitener.apply(&linearisation.reading).norm_squared();
@@ -97,9 +96,8 @@ impl Design {
         model: &MeasurementModel,
         observations: &[Observation],
         linearisations: &[Linearisation],
-        speed_uncertainty: f64,
     ) -> Result<Self, FitError> {
-        let data = Self::new(observations, linearisations, speed_uncertainty, x.len())?;
+        let data = Self::new(observations, linearisations, x.len())?;
         Ok(data.with_priors(model.priors(), &DVector::from_column_slice(x)))
     }
 
@@ -122,12 +120,11 @@ impl Design {
 pub(crate) fn whitened_rows(
     weights: &[Weight],
     linearisations: &[Linearisation],
-    speed_uncertainty: f64,
     columns: usize,
 ) -> Result<DMatrix<f64>, FitError> {
     let mut rows = DMatrix::zeros(3 * weights.len(), columns);
     for (n, (weight, linearisation)) in weights.iter().zip(linearisations).enumerate() {
-        Whitener::new(weight, &linearisation.speed, speed_uncertainty)?.fill(&mut rows, n, linearisation);
+        Whitener::new(weight, &linearisation.speed_error)?.fill(&mut rows, n, linearisation);
     }
     Ok(rows)
 }
@@ -138,8 +135,8 @@ pub(crate) struct Whitener(Cholesky<f64, Const<3>>);
 
 impl Whitener {
     /// From the covariance of the mean and the speed term.
-    pub fn new(weight: &Weight, speed: &Vector3<f64>, speed_uncertainty: f64) -> Result<Self, FitError> {
-        let total = total_covariance(&weight.covariance, speed, speed_uncertainty);
+    pub fn new(weight: &Weight, speed_error: &Vector3<f64>) -> Result<Self, FitError> {
+        let total = total_covariance(&weight.covariance, speed_error);
         Cholesky::new(total)
             .map(Self)
             .ok_or(FitError::Covariance { set_point: weight.set_point, diagonal: weight.covariance.diagonal().into() })
@@ -160,8 +157,7 @@ impl Whitener {
     }
 }
 
-/// `C + sigma^2 d d^T` [m^2/s^4].
-pub(crate) fn total_covariance(mean: &Matrix3<f64>, speed: &Vector3<f64>, speed_uncertainty: f64) -> Matrix3<f64> {
-    let shift = speed * speed_uncertainty;
-    mean + shift * shift.transpose()
+/// `C + d d^T` [m^2/s^4], `d` the change of the mean by one standard uncertainty of the speed.
+pub(crate) fn total_covariance(mean: &Matrix3<f64>, speed_error: &Vector3<f64>) -> Matrix3<f64> {
+    mean + speed_error * speed_error.transpose()
 }

@@ -17,6 +17,8 @@ pub struct Experiment {
     pub site: Site,
     /// The unit's geometry.
     pub unit: Unit,
+    /// The centrifuge.
+    pub centrifuge: Centrifuge,
     /// Nominal attitudes.
     pub positions: Vec<Position>,
     /// How `dR` of the positions of one pair are related.
@@ -43,6 +45,25 @@ pub struct Unit {
     pub rho_z: Matrix3<f64>,
     /// What the reference point is.
     pub reference: ReferencePoint,
+}
+
+/// The centrifuge.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Centrifuge {
+    /// Sense of its rotation.
+    pub rotation: Rotation,
+    /// Relative standard uncertainty of the speed of a plateau.
+    pub speed_uncertainty: f64,
+}
+
+/// Sense of rotation about the third arm axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Rotation {
+    /// Right-handed about Up.
+    #[default]
+    Positive,
+    /// Left-handed about Up.
+    Negative,
 }
 
 /// The two conventions of the source for the unit's reference point, which decide the form of `rho0`.
@@ -96,6 +117,16 @@ impl ReferencePoint {
     }
 }
 
+impl Rotation {
+    /// Sign of the angular speed.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Positive => 1.0,
+            Self::Negative => -1.0,
+        }
+    }
+}
+
 impl PairRelation {
     /// Its name in files.
     pub fn name(self) -> &'static str {
@@ -124,7 +155,7 @@ impl SetPoint {
 
 impl Site {
     /// `2 omega_E sin(latitude)` [rad/s]: with it `Omega^2` becomes `Omega^2 + coriolis Omega`, the constant
-    /// part of the Coriolis term in the arm frame (model notes, section 8). Zero when no latitude is given.
+    /// part of the Coriolis term in the arm frame (`docs/source-and-findings.md`). Zero when no latitude is given.
     pub fn coriolis(&self) -> f64 {
         self.latitude.map_or(0.0, |latitude| 2.0 * EARTH_RATE * latitude.sin())
     }

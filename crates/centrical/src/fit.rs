@@ -26,11 +26,8 @@ use crate::design::{Design, Observation, Whitener, total_covariance};
 use crate::error::FitError;
 use crate::measurement::{Linearisation, MeasurementModel};
 use crate::observability::Observability;
+use crate::parameter::NULL_HOLD;
 use crate::prior::{self, Prior, PriorUse};
-
-/// Standard deviation with which null directions are held about zero, in typical magnitudes of the parameters
-/// (5 mm, 10 mrad, 1e-2 of scale): ten times what any real unit shows, so that it holds and does not inform.
-pub const NULL_HOLD: f64 = 10.0;
 
 /// The hold is let go when the data keep every lost combination to this part of it: it then informs by less than 1 %.
 const LET_GO: f64 = 0.1;
@@ -135,12 +132,10 @@ impl Fit {
 
 /// Weighted least squares on the source's linear model [K5.3].
 ///
-/// `speed_uncertainty` is the relative standard uncertainty of a plateau's speed.
-///
 /// # Errors
 /// [`FitError`] when an observation cannot be one.
-pub fn linear(model: &MeasurementModel, observations: &[Observation], speed_uncertainty: f64) -> Result<Fit, FitError> {
-    linear_with(&Structure::of(model, observations, speed_uncertainty)?, model, observations, speed_uncertainty)
+pub fn linear(model: &MeasurementModel, observations: &[Observation]) -> Result<Fit, FitError> {
+    linear_with(&Structure::of(model, observations)?, model, observations)
 }
 
 /// [`linear`] with the structure of the design already known.
@@ -151,17 +146,16 @@ pub fn linear_with(
     structure: &Structure,
     model: &MeasurementModel,
     observations: &[Observation],
-    speed_uncertainty: f64,
 ) -> Result<Fit, FitError> {
-    Ok(Start::new(structure, Design::at, model, observations, speed_uncertainty)?.solve())
+    Ok(Start::new(structure, Design::at, model, observations)?.solve())
 }
 
 /// Gauss-Newton on the exact model to convergence, from the linear solution.
 ///
 /// # Errors
 /// [`FitError`] when an observation cannot be one.
-pub fn exact(model: &MeasurementModel, observations: &[Observation], speed_uncertainty: f64) -> Result<Fit, FitError> {
-    exact_with(&Structure::of(model, observations, speed_uncertainty)?, model, observations, speed_uncertainty)
+pub fn exact(model: &MeasurementModel, observations: &[Observation]) -> Result<Fit, FitError> {
+    exact_with(&Structure::of(model, observations)?, model, observations)
 }
 
 /// [`exact`] with the structure of the design already known: for many fits of one experiment.
@@ -172,14 +166,13 @@ pub fn exact_with(
     structure: &Structure,
     model: &MeasurementModel,
     observations: &[Observation],
-    speed_uncertainty: f64,
 ) -> Result<Fit, FitError> {
-    Search::from(Start::new(structure, Design::at, model, observations, speed_uncertainty)?, model).run()
+    Search::from(Start::new(structure, Design::at, model, observations)?, model).run()
 }
 
 /// How the whitened equations of all plateaus, linearised at a point, are brought together: [`Design::at`], or by
 /// way of a filter.
-type Assemble = fn(&[f64], &MeasurementModel, &[Observation], &[Linearisation], f64) -> Result<Design, FitError>;
+type Assemble = fn(&[f64], &MeasurementModel, &[Observation], &[Linearisation]) -> Result<Design, FitError>;
 
 /// What a design sees and what it loses, decided on `H` at `X = 0`. It depends on the plateaus and their weights,
 /// never on the readings, and holds for any number of fits of one experiment.
@@ -202,24 +195,15 @@ impl Structure {
     ///
     /// # Errors
     /// [`FitError`] when an observation cannot be one.
-    pub fn of(
-        model: &MeasurementModel,
-        observations: &[Observation],
-        speed_uncertainty: f64,
-    ) -> Result<Self, FitError> {
-        Self::by(Design::at, model, observations, speed_uncertainty)
+    pub fn of(model: &MeasurementModel, observations: &[Observation]) -> Result<Self, FitError> {
+        Self::by(Design::at, model, observations)
     }
 
-    fn by(
-        assemble: Assemble,
-        model: &MeasurementModel,
-        observations: &[Observation],
-        speed_uncertainty: f64,
-    ) -> Result<Self, FitError> {
+    fn by(assemble: Assemble, model: &MeasurementModel, observations: &[Observation]) -> Result<Self, FitError> {
         check(model, observations)?;
         let linearisations = linearised_at_zero(model, observations);
         let columns = model.parameters().len();
-        let design = assemble(&vec![0.0; columns], model, observations, &linearisations, speed_uncertainty)?;
+        let design = assemble(&vec![0.0; columns], model, observations, &linearisations)?;
         let rows_of_data = design.rows.nrows() - model.priors().len();
         let of_data = || Observability::of(&design.rows.rows(0, rows_of_data).into_owned());
         let of_data = (!model.priors().is_empty()).then(of_data);
@@ -257,7 +241,6 @@ struct Start<'a> {
     assemble: Assemble,
     model: &'a MeasurementModel,
     observations: &'a [Observation],
-    speed_uncertainty: f64,
     structure: &'a Structure,
     design: Design,
     zero: DVector<f64>,
@@ -269,12 +252,11 @@ impl<'a> Start<'a> {
         assemble: Assemble,
         model: &'a MeasurementModel,
         observations: &'a [Observation],
-        speed_uncertainty: f64,
     ) -> Result<Self, FitError> {
         check(model, observations)?;
         let zero = DVector::zeros(model.parameters().len());
-        let design = assemble(zero.as_slice(), model, observations, &structure.linearisations, speed_uncertainty)?;
-        Ok(Self { assemble, model, observations, speed_uncertainty, structure, design, zero })
+        let design = assemble(zero.as_slice(), model, observations, &structure.linearisations)?;
+        Ok(Self { assemble, model, observations, structure, design, zero })
     }
 
     /// The first step, from zero: every fit of one experiment has the same equations there, and its own misfit.
@@ -315,11 +297,7 @@ impl<'a> Start<'a> {
             iterations: 1,
             termination: Termination::Linear,
             residuals,
-            observation_covariances: total_covariances(
-                self.observations,
-                &self.structure.linearisations,
-                self.speed_uncertainty,
-            ),
+            observation_covariances: total_covariances(self.observations, &self.structure.linearisations),
             observability: self.structure.observability.clone(),
             of_data: self.structure.of_data.clone(),
             priors: self.model.priors().to_vec(),
@@ -381,8 +359,7 @@ impl<'a> Search<'a> {
         let ahead = self.ahead.take();
         let (start, x) = (&self.start, self.x.as_slice());
         self.linearisations = ahead.unwrap_or_else(|| linearised(self.model, start.observations, x));
-        let assembled =
-            (start.assemble)(x, self.model, start.observations, &self.linearisations, start.speed_uncertainty);
+        let assembled = (start.assemble)(x, self.model, start.observations, &self.linearisations);
         self.design = Some(assembled?);
         self.iterations += 1;
         Ok(())
@@ -445,15 +422,13 @@ impl<'a> Search<'a> {
     }
 
     fn chi_squared(&self, residuals: &[Vector3<f64>], x: &DVector<f64>) -> Result<f64, FitError> {
-        let Start { observations, speed_uncertainty, .. } = self.start;
-        chi_squared(self.model.priors(), observations, &self.linearisations, speed_uncertainty, residuals, x)
+        chi_squared(self.model.priors(), self.start.observations, &self.linearisations, residuals, x)
     }
 
     /// The residuals at the last point, with the weights and the covariance of the last linearisation: on convergence
     /// less than a millionth of a standard uncertainty away.
     fn into_fit(self) -> Result<Fit, FitError> {
         let residuals = residuals(self.model, self.start.observations, &self.x);
-        let (observations, speed_uncertainty) = (self.start.observations, self.start.speed_uncertainty);
         Ok(Fit {
             values: self.x.as_slice().to_vec(),
             chi_squared: self.chi_squared(&residuals, &self.x)?,
@@ -463,7 +438,7 @@ impl<'a> Search<'a> {
             iterations: self.iterations,
             termination: self.termination.unwrap_or(Termination::IterationLimit),
             residuals,
-            observation_covariances: total_covariances(observations, &self.linearisations, speed_uncertainty),
+            observation_covariances: total_covariances(self.start.observations, &self.linearisations),
             observability: self.start.structure.observability.clone(),
             of_data: self.start.structure.of_data.clone(),
             priors: self.model.priors().to_vec(),
@@ -564,25 +539,20 @@ fn chi_squared(
     priors: &[Prior],
     observations: &[Observation],
     linearisations: &[Linearisation],
-    speed_uncertainty: f64,
     residuals: &[Vector3<f64>],
     x: &DVector<f64>,
 ) -> Result<f64, FitError> {
     let of_prior = |p: &Prior| (x[p.parameter] / p.standard_uncertainty).powi(2);
     let mut sum: f64 = priors.iter().map(of_prior).sum();
     for ((o, l), residual) in observations.iter().zip(linearisations).zip(residuals) {
-        sum += Whitener::new(&o.into(), &l.speed, speed_uncertainty)?.apply(residual).norm_squared();
+        sum += Whitener::new(&o.into(), &l.speed_error)?.apply(residual).norm_squared();
     }
     Ok(sum)
 }
 
-fn total_covariances(
-    observations: &[Observation],
-    linearisations: &[Linearisation],
-    speed_uncertainty: f64,
-) -> Vec<Matrix3<f64>> {
+fn total_covariances(observations: &[Observation], linearisations: &[Linearisation]) -> Vec<Matrix3<f64>> {
     let pairs = observations.iter().zip(linearisations);
-    pairs.map(|(o, l)| total_covariance(&o.covariance, &l.speed, speed_uncertainty)).collect()
+    pairs.map(|(o, l)| total_covariance(&o.covariance, &l.speed_error)).collect()
 }
 
 /// Orthonormal basis of the span of the columns, which are independent.

@@ -9,6 +9,33 @@
 //!   newtonometer unit on a centrifuge", numbered as in `docs/notation.md`, which maps each of the source's
 //!   symbols to its name here.
 //! - Nothing here reads files, prints, or depends on the number of threads.
+//!
+//! # From an experiment to an estimate
+//! The source's experiment [K5.5] and a unit with a scale error of 0.1 %, whose plateau means are known to 10 ug:
+//!
+//! ```
+//! use centrical::plan::Normalised;
+//! use centrical::{ErrorModel, MeasurementModel, Observation, PairRelation, Weight, fit};
+//!
+//! let experiment = Normalised { pair_relation: PairRelation::Common, ..Normalised::default() }.experiment();
+//! let model = MeasurementModel::new(experiment, ErrorModel::kozlov_2017(), &[]);
+//! let scale = model.parameters().find("G0_11").expect("the preset has a scale error");
+//! let mut truth = vec![0.0; model.parameters().len()];
+//! truth[scale] = 1e-3;
+//!
+//! let set_points = &model.experiment().set_points;
+//! let read = |weight: Weight| Observation {
+//!     set_point: weight.set_point,
+//!     mean: model.reading(&set_points[weight.set_point], &truth),
+//!     covariance: weight.covariance,
+//! };
+//! let observations: Vec<Observation> = Weight::equal(set_points.len(), 1e-4).into_iter().map(read).collect();
+//!
+//! let fit = fit::exact(&model, &observations)?;
+//! let (value, u) = (fit.value(scale), fit.standard_uncertainty(scale));
+//! assert!(value.is_some_and(|value| (value - 1e-3).abs() < 1e-9) && u.is_some_and(|u| u < 1e-4));
+//! # Ok::<(), centrical::FitError>(())
+//! ```
 
 mod convergence;
 mod design;
@@ -18,10 +45,8 @@ mod experiment;
 /// Estimation from plateau means.
 pub mod fit;
 mod frame;
-mod least_squares;
+mod linalg;
 mod measurement;
-/// Noise of a record: stability deviations, spectrum, noise terms.
-pub mod noise;
 /// What an experiment can see, why not more, and what would help.
 pub mod observability;
 mod parameter;
@@ -33,23 +58,29 @@ mod prior;
 mod random;
 /// Reduction of continuous records to plateau means.
 pub mod reduction;
+mod simd;
 /// Simulation of records.
 pub mod simulate;
+/// Stability analysis of a record: deviations of the Allan family, spectrum, noise terms.
+pub mod stability;
+mod statistics;
 /// How far a calibration can be trusted.
 pub mod uncertainty;
 
+pub use centrical_compensate::Monomial;
 pub use convergence::{Checkpoint, convergence};
 pub use design::{Observation, Weight};
 pub use error::FitError;
-pub use error_model::{ErrorModel, Extra, Monomial, Term};
+pub use error_model::{ErrorModel, Extra, Term};
 pub use experiment::{
-    EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, STANDARD_GRAVITY, SetPoint, Site, Unit,
+    Centrifuge, EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint,
+    Site, Unit,
 };
 pub use fit::{Fit, Termination};
 pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
-pub use least_squares::LeastSquares;
+pub use linalg::least_squares::{LeastSquares, Solution};
 pub use measurement::{ArmMotion, Linearisation, MeasurementModel, linear};
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};
-pub use parameter::{Extension, Kind, Law, Parameter, Parameters};
+pub use parameter::{Extension, Kind, Law, NULL_HOLD, Parameter, Parameters};
 pub use position::Position;
 pub use prior::{Prior, PriorError, PriorUse};

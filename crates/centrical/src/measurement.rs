@@ -28,7 +28,7 @@ pub struct MeasurementModel {
     extensions: Vec<Extension>,
     parameters: Parameters,
     priors: Vec<Prior>,
-    /// Turns of the carousel over which a reading is meaned while spinning.
+    /// Turns of the carousel over which a reading is averaged while spinning.
     revolution: Vec<Matrix3<f64>>,
 }
 
@@ -37,8 +37,8 @@ pub struct MeasurementModel {
 pub struct Linearisation {
     /// Mean reading `f'` [m/s^2].
     pub reading: Vector3<f64>,
-    /// `d f' / d ln Omega` [m/s^2]: the direction in which a relative speed error acts. Zero at rest.
-    pub speed: Vector3<f64>,
+    /// Change of `f'` by one standard uncertainty of the plateau's speed [m/s^2]: `sigma d f' / d ln Omega`. Zero at rest.
+    pub speed_error: Vector3<f64>,
     /// Non-zero columns of the Jacobian: (index of the parameter, `d f' / d x`), each index once.
     pub columns: Vec<(usize, Vector3<f64>)>,
 }

@@ -2,8 +2,14 @@
 
 use std::ops::Index;
 
-use crate::error_model::{ErrorModel, Monomial};
+use centrical_compensate::Monomial;
+
+use crate::error_model::ErrorModel;
 use crate::experiment::{Experiment, PairRelation, ReferencePoint, STANDARD_GRAVITY};
+
+/// Standard deviation with which null directions are held about zero, in typical magnitudes of the parameters
+/// (5 mm, 10 mrad, 1e-2 of scale): ten times what any real unit shows, so that it holds and does not inform.
+pub const NULL_HOLD: f64 = 10.0;
 
 /// One unknown.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,10 +30,10 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Whether a standard uncertainty [its unit] tells anything of it: one of [`NULL_HOLD`](crate::fit::NULL_HOLD) typical
+    /// Whether a standard uncertainty [its unit] tells anything of it: one of [`NULL_HOLD`] typical
     /// magnitudes and more is as much as is known without any data, and so far from the estimate the model is not linear.
     pub fn is_told_by(&self, standard_uncertainty: f64) -> bool {
-        standard_uncertainty < crate::fit::NULL_HOLD * self.typical
+        standard_uncertainty < NULL_HOLD * self.typical
     }
 }
 
@@ -196,7 +202,7 @@ impl Parameters {
         });
         let terms = list.len();
         for (index, term) in error_model.terms.iter().enumerate() {
-            let unit = term.monomial.coefficient_unit();
+            let unit = term.unit();
             let typical = typical_coefficient(&term.monomial);
             let power_of_acceleration = 1 - i32::from(term.monomial.degree());
             let coefficient = parameter(term.name.clone(), &unit, term.group, Kind::Term(index), typical);

@@ -35,7 +35,7 @@ impl Random {
         if probability <= 0.0 {
             return u64::MAX;
         }
-        // A float's cast saturates, which is what is wanted of "practically never".
+        // The cast saturates: "practically never" becomes the largest number.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let failures = (self.uniform().ln() / (-probability).ln_1p()) as u64;
         failures

@@ -3,23 +3,24 @@
 //! `reading(t) = quantised( saturated( f'(angle, Omega, dOmega/dt) + noise(t) + spike ) )` with `f'` of
 //! [`MeasurementModel::reading_at`], so that the mean over whole revolutions of a perfect sensor's record is the
 //! plateau model's reading (test `mean_of_a_record_is_the_reading`). Ramps, settling, speed errors and durations are
-//! the centrifuge's ([`Machine`]), noise is the unit's ([`Sensor`]), what is lost or spoilt on the way is the
+//! the centrifuge's ([`Machine`]), noise is the unit's ([`Sensor`]), lost and spoilt samples are the
 //! recorder's ([`Recorder`]), and the telemetry has a clock of its own ([`Tachometer`]).
 //!
 //! Everything follows from the seed: each imperfection of each mounting draws from a generator of its own, so
 //! nothing depends on the number of threads, and switching one imperfection on leaves the others as they were.
-//! `Default` is perfect equipment: an imperfection that is not named is not there.
+//! `Default` is perfect equipment: every imperfection has to be named.
 
 mod draw;
+mod equipment;
 mod motion;
-mod noise;
 mod record;
 mod response;
-mod settings;
+mod sensor_noise;
 mod telemetry;
 
+pub use equipment::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, SimulationError, Spikes, Tachometer};
+pub use motion::TruePlateau;
 pub use record::Records;
-pub use settings::{Coloured, Gaps, Machine, Recorder, Sensor, Settings, SimulationError, Spikes, Tachometer};
 pub use telemetry::Telemetry;
 
 use crate::experiment::SetPoint;
@@ -27,15 +28,17 @@ use crate::measurement::MeasurementModel;
 use crate::parameter::Parameters;
 use draw::Draw;
 use motion::Motion;
+use record::Physics;
+use sensor_noise::Sampling;
 
-/// A session as it would be recorded: a pure function of model, truth, settings and seed.
+/// A session as it would be recorded: a pure function of model, truth, equipment and seed.
 #[derive(Debug, Clone, Copy)]
 pub struct Simulation<'a> {
     model: &'a MeasurementModel,
     truth: &'a [f64],
-    settings: &'a Settings,
+    equipment: &'a Equipment,
     seed: u64,
-    /// Duration of each plateau in place of the machine's [s]; empty for none.
+    /// Duration of each plateau in place of the machine's [s]; empty for the machine's.
     durations: &'a [f64],
 }
 
@@ -47,27 +50,18 @@ pub struct SimulatedMounting<'a> {
     motion: Motion,
 }
 
-/// One plateau as it truly was.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TruePlateau {
-    /// Beginning and end, between ramps, the unit's clock [s].
-    pub window: [f64; 2],
-    /// Speed once settled [rad/s].
-    pub omega: f64,
-}
-
 impl<'a> Simulation<'a> {
     /// A session of `model`'s experiment with the unknowns at `truth` (in the order of the model's parameters).
     ///
     /// # Errors
-    /// [`SimulationError`] when `truth` is not one of this model, or a setting makes no sense.
+    /// [`SimulationError`] when `truth` does not fit this model, or a setting of the equipment is out of its bounds.
     pub fn new(
         model: &'a MeasurementModel,
         truth: &'a [f64],
-        settings: &'a Settings,
+        equipment: &'a Equipment,
         seed: u64,
     ) -> Result<Self, SimulationError> {
-        settings.check()?;
+        equipment.check()?;
         let parameters = model.parameters();
         if truth.len() != parameters.len() {
             return Err(SimulationError::TruthLength { found: truth.len(), expected: parameters.len() });
@@ -75,20 +69,20 @@ impl<'a> Simulation<'a> {
         if let Some(j) = truth.iter().position(|value| !value.is_finite()) {
             return Err(SimulationError::Truth { name: parameters[j].name.clone(), found: truth[j] });
         }
-        Ok(Self { model, truth, settings, seed, durations: &[] })
+        Ok(Self { model, truth, equipment, seed, durations: &[] })
     }
 
     /// The session with a duration for every set point [s] in place of [`Machine::plateau`].
     ///
     /// # Errors
-    /// [`SimulationError`] when there is not one for each, or one of them is none.
+    /// [`SimulationError`] when their number differs from that of the set points, or one of them is not positive.
     pub fn with_durations(self, durations: &'a [f64]) -> Result<Self, SimulationError> {
         let expected = self.model.experiment().set_points.len();
         if durations.len() != expected {
             return Err(SimulationError::Durations { found: durations.len(), expected });
         }
         for &plateau in durations {
-            Settings { machine: Machine { plateau, ..self.settings.machine }, ..*self.settings }.check()?;
+            Equipment { machine: Machine { plateau, ..self.equipment.machine }, ..*self.equipment }.check()?;
         }
         Ok(Self { durations, ..self })
     }
@@ -96,11 +90,11 @@ impl<'a> Simulation<'a> {
     /// One mounting, by its index in the experiment.
     pub fn mounting(&self, mounting: usize) -> SimulatedMounting<'a> {
         let set_points = &self.model.experiment().set_points;
-        let duration = |n: usize| self.durations.get(n).copied().unwrap_or(self.settings.machine.plateau);
-        let there = set_points.iter().enumerate().filter(|(_, s)| s.mounting == mounting);
-        let schedule: Vec<(SetPoint, f64)> = there.map(|(n, s)| (*s, duration(n))).collect();
+        let duration = |n: usize| self.durations.get(n).copied().unwrap_or(self.equipment.machine.plateau);
+        let visited = set_points.iter().enumerate().filter(|(_, s)| s.mounting == mounting);
+        let schedule: Vec<(SetPoint, f64)> = visited.map(|(n, s)| (*s, duration(n))).collect();
         let random = Draw::Motion.stream(self.seed, mounting);
-        let motion = Motion::new(&schedule, &self.settings.machine, random);
+        let motion = Motion::new(&schedule, &self.equipment.machine, random);
         SimulatedMounting { simulation: *self, mounting, motion }
     }
 }
@@ -118,12 +112,15 @@ impl SimulatedMounting<'_> {
 
     /// The record, a stretch of it at a time.
     pub fn records(&self) -> Records<'_> {
-        Records::new(self)
+        let Simulation { model, truth, equipment, seed, .. } = self.simulation;
+        let (interval, duration) = (1.0 / equipment.recorder.rate, self.duration());
+        let sampling = Sampling { seed, mounting: self.mounting, interval, duration };
+        Records::new(Physics::new(model, truth, self.mounting), &self.motion, equipment, &sampling)
     }
 
     /// The centrifuge's telemetry.
     pub fn telemetry(&self) -> Telemetry {
-        Telemetry::new(&self.motion, &self.simulation.settings.tachometer, self.simulation.seed, self.mounting)
+        Telemetry::new(&self.motion, &self.simulation.equipment.tachometer, self.simulation.seed, self.mounting)
     }
 }
 

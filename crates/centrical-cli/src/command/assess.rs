@@ -52,21 +52,21 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 }
 
 fn assess(arguments: &Arguments, session: &Session, problem: &Problem) -> Result<String, FitError> {
-    let (model, speed_uncertainty) = (&problem.model, session.speed_uncertainty);
+    let model = &problem.model;
     let mut observations = problem.reduced.observations();
-    let mut fit = fit::exact(model, &observations, speed_uncertainty)?;
+    let mut fit = fit::exact(model, &observations)?;
     let mut text = String::new();
     if let Some(alpha) = arguments.without_outliers {
-        let cleaned = without_outliers(model, &observations, speed_uncertainty, alpha)?;
+        let cleaned = without_outliers(model, &observations, alpha)?;
         text.push_str(&outliers_text(model, &fit, &cleaned));
         (fit, observations) = (cleaned.fit, cleaned.observations);
     }
-    let mut budget = Budget::new(&fit, model, &observations, speed_uncertainty, &session.type_b)?;
+    let mut budget = Budget::new(&fit, model, &observations, &session.type_b)?;
     if arguments.scale_by_residuals {
         budget = budget.scaled_by_residuals(&fit);
     }
-    let validity = Validity::of(&fit, model, &observations, speed_uncertainty)?;
-    let patterns = patterns(&fit, model, &observations, speed_uncertainty)?;
+    let validity = Validity::of(&fit, model, &observations)?;
+    let patterns = patterns(&fit, model, &observations)?;
     text.push_str(&budget_table(model.parameters(), &budget, arguments.coverage));
     text.push('\n');
     if arguments.correlations {
@@ -94,7 +94,7 @@ fn prediction(model: &MeasurementModel, fit: &Fit, budget: &Budget, range: f64) 
     let values: Option<Vec<f64>> = terms.iter().map(|&j| fit.value(j)).collect();
     let covariance = |a: usize, b: usize| budget.covariance(terms[a], terms[b]).unwrap_or(f64::NAN);
     let covariance = DMatrix::from_fn(terms.len(), terms.len(), covariance);
-    let compensated = values.and_then(|v| Compensated::new(model.error_model().clone(), v, covariance));
+    let compensated = values.and_then(|v| Compensated::new(model.error_model().with_coefficients(&v), covariance));
     let Some(compensated) = compensated else {
         return "PREDICTION  none: not all parameters of the instrument are determined\n".to_owned();
     };

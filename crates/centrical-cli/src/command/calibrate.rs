@@ -71,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         arguments.documents.write_all(&result, folder)?;
     }
     let objections = objections(&result);
-    let text = if arguments.json { result.to_json() } else { report(&result, &objections, file.as_deref()) };
+    let text = if arguments.json { result.to_json()? } else { report(&result, &objections, file.as_deref()) };
     // A reader that has seen enough (`| head`) is no failure.
     let _ = io::stdout().write_all(text.as_bytes());
     Ok(if objections.is_empty() { Outcome::Done } else { Outcome::NotAcceptable })

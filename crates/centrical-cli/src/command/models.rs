@@ -22,7 +22,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let bar = progress::reading(&session);
     let problem = Problem::of(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
-    let selection = select(&rivals_of(&problem.model), &problem.reduced.observations(), session.speed_uncertainty)
+    let selection = select(&rivals_of(&problem.model), &problem.reduced.observations())
         .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
     let _ = io::stdout().write_all(selection_table(&selection).as_bytes());
     Ok(Outcome::Done)

@@ -63,7 +63,6 @@ struct Case {
     /// Their means are not used.
     observations: Vec<Observation>,
     truth: Vec<f64>,
-    speed_uncertainty: f64,
     stated: TypeB,
 }
 
@@ -74,22 +73,22 @@ impl Case {
         let Problem { model, reduced } = Problem::of(session, &|bytes| bar.inc(bytes))?;
         bar.finish_and_clear();
         let observations = reduced.observations();
-        let fit = fit::exact(&model, &observations, session.speed_uncertainty)
-            .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
-        let (truth, speed_uncertainty) = (fit.state().to_vec(), session.speed_uncertainty);
-        Ok(Self { model, observations, truth, speed_uncertainty, stated: session.type_b })
+        let fit =
+            fit::exact(&model, &observations).map_err(|source| Error::Fit { file: session.file.clone(), source })?;
+        let truth = fit.state().to_vec();
+        Ok(Self { model, observations, truth, stated: session.type_b })
     }
 
     /// A plan: the unit that it is predicted for.
     fn planned(plan: Plan, noise: Option<f64>) -> Result<Self, FitError> {
-        let Plan { model, nominal, weights, speed_uncertainty, type_b, .. } = plan;
-        let truth = unit_of(&model, &weights, speed_uncertainty, &nominal)?;
+        let Plan { model, nominal, weights, type_b, .. } = plan;
+        let truth = unit_of(&model, &weights, &nominal)?;
         let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
         let weights = noise.map_or_else(|| weights.clone(), equal);
         let observation =
             |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
         let observations = weights.into_iter().map(observation).collect();
-        Ok(Self { model, observations, truth, speed_uncertainty, stated: type_b })
+        Ok(Self { model, observations, truth, stated: type_b })
     }
 
     /// Says for which unit is drawn, where that is not what was found of it.
@@ -114,7 +113,7 @@ fn draw(arguments: &Arguments, case: &Case) -> Result<MonteCarlo, FitError> {
     };
     let bar = progress::calibrations(arguments.runs);
     let done = |count: usize| bar.inc(count as u64);
-    let outcome = monte_carlo(&case.model, &case.truth, &case.observations, case.speed_uncertainty, &settings, &done);
+    let outcome = monte_carlo(&case.model, &case.truth, &case.observations, &settings, &done);
     bar.finish_and_clear();
     outcome
 }

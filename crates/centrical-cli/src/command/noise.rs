@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use centrical::noise::Estimator;
+use centrical::stability::Estimator;
 use centrical_report::{noise_plots, noise_table, noise_warnings};
 use centrical_session::{
     Column, ColumnName, Columns, Dimension, Error, NotThatQuantity, PlateauName, Quantity, Scale, Series, Session,

@@ -25,7 +25,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let subject = subject(&arguments.design, &|_| ())?;
     let report = ObservabilityReport::of(&subject, &arguments.combination)?;
-    let text = if arguments.json { report.to_json() } else { observation_text(&report) };
+    let text = if arguments.json { report.to_json()? } else { observation_text(&report) };
     // A reader that has seen enough (`| head`) is no failure.
     let _ = io::stdout().write_all(text.as_bytes());
     let is_lost = report.parameters.iter().any(|p| p.of_instrument && !p.estimable);

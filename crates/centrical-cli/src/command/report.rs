@@ -104,9 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Result<CalibrationResult, Error> {
     let before = CalibrationResult::read(file)?;
     let unit = |result: &CalibrationResult| format!("{} {}", result.session.unit_model, result.session.unit_serial);
-    let refuse = |found: String, expected: String| {
-        Err(Error::Content { file: file.to_owned(), place: Place::Whole, found, expected })
-    };
+    let refuse = |found: String, expected: String| Err(Error::content(file, Place::Whole, found, expected));
     if unit(&before) != unit(after) {
         return refuse(format!("a result of {}", unit(&before)), format!("one of {}", unit(after)));
     }
@@ -127,7 +125,10 @@ fn write_source(result: &CalibrationResult, file: &Path, folder: &Path) -> Resul
         .and_then(|range| compensation_source(&heading(result), &terms, range))
         .map_err(|source| Error::NotInvertible { file: file(), source })?;
     create_folder(folder)?;
-    sources.iter().try_for_each(|source| write_whole(&folder.join(source.name), source.text.as_bytes()))
+    for source in sources {
+        write_whole(&folder.join(source.name), source.text.as_bytes())?;
+    }
+    Ok(())
 }
 
 impl Documents {

@@ -8,7 +8,7 @@ use std::thread;
 use std::time::Duration;
 
 use centrical::fit::recursive::{Follower, Progress};
-use centrical::plan::{Criterion, Gain, ReadingRange, next_best};
+use centrical::plan::{Benefit, Criterion, ReadingRange, next_best};
 use centrical::{MeasurementModel, Observation, SetPoint, Weight, linear};
 use centrical_report::{
     Language, WatchView, WatchedTest, history_figure, objections, states_text, terminal_table, verdict_text,
@@ -116,7 +116,7 @@ impl<'a> Following<'a> {
         keep_history(&arguments.out.join("watch-history.jsonl"), state.plateaus.len())?;
         // One that has been taken up before is held out from now on.
         state.plateaus.iter_mut().for_each(|plateau| plateau.held_out |= held_out.contains(&plateau.set_point));
-        let follower = Follower::resume(model, session.speed_uncertainty, state.taken(), &state.point)
+        let follower = Follower::resume(model, state.taken(), &state.point)
             .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
         Ok(Self { arguments, session, model, follower, state, held_out })
     }
@@ -191,13 +191,13 @@ impl<'a> Following<'a> {
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
         let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
         let criterion = Criterion::Reading(ReadingRange { force });
-        let gains = next_best(self.model, self.session.speed_uncertainty, &criterion, &taken, &remaining)
+        let benefits = next_best(self.model, &criterion, &taken, &remaining)
             .map_err(|source| Error::Planning { file: self.session.file.clone(), source })?;
         let on_the_arm = experiment.set_points[last.set_point].mounting;
-        let is_here = |gain: &Gain| experiment.set_points[gain.set_point].mounting == on_the_arm;
-        let here = gains.iter().find(|gain| is_here(gain));
-        let elsewhere = gains.iter().find(|gain| !is_here(gain));
-        Ok(here.into_iter().chain(elsewhere).map(|gain| (self.label(gain.set_point), gain.factor)).collect())
+        let is_here = |benefit: &Benefit| experiment.set_points[benefit.set_point].mounting == on_the_arm;
+        let here = benefits.iter().find(|benefit| is_here(benefit));
+        let elsewhere = benefits.iter().find(|benefit| !is_here(benefit));
+        Ok(here.into_iter().chain(elsewhere).map(|benefit| (self.label(benefit.set_point), benefit.factor)).collect())
     }
 
     fn tested(&self, plateau: &WatchedPlateau) -> WatchedTest {
@@ -232,10 +232,10 @@ impl<'a> Following<'a> {
             let parameters = self.model.parameters();
             parameters.find(name).map(|j| parameters[j].group)
         };
-        match history_figure(&read_history(&history)?, &group_of, Language::English) {
-            Some(figure) => write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes()),
-            None => Ok(()),
+        if let Some(figure) = history_figure(&read_history(&history)?, &group_of, Language::English) {
+            write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes())?;
         }
+        Ok(())
     }
 
     fn stopped(&self) -> Result<Outcome, Error> {
@@ -276,12 +276,8 @@ fn check_targets(arguments: &Arguments, session: &Session, model: &MeasurementMo
     let Some((unknown, _)) = arguments.target.iter().find(|(group, _)| !groups.contains(&group.as_str())) else {
         return Ok(());
     };
-    Err(Error::Content {
-        file: session.file.clone(),
-        place: Place::Whole,
-        found: format!("a target for {unknown:?}"),
-        expected: format!("one of the groups {}", groups.join(", ")),
-    })
+    let expected = format!("one of the groups {}", groups.join(", "));
+    Err(Error::content(&session.file, Place::Whole, format!("a target for {unknown:?}"), expected))
 }
 
 fn target(text: &str) -> Result<(String, f64), String> {

@@ -135,7 +135,7 @@ fn source_code() {
 #[test]
 fn any_format() {
     let copy = calibrated();
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../centrical-session/tests/data");
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../centrical-table/tests/data");
     let compensated = |name: &str| {
         let record = data.join(name);
         let run = copy.run(&["compensate", "result.json", record.to_str().unwrap(), "--out", "f.csv"]);

@@ -7,6 +7,8 @@ mod killed;
 mod noise;
 mod observe;
 mod plan;
+#[path = "../../../centrical/tests/common/random.rs"]
+mod random;
 mod reduce;
 mod refusal;
 mod report;

@@ -4,29 +4,20 @@ use std::fmt::Write;
 use std::fs;
 use std::process::Output;
 
+use crate::random::Random;
 use crate::session::Copy;
 
 fn text(output: &Output) -> String {
     [&output.stdout, &output.stderr].map(|part| String::from_utf8_lossy(part).into_owned()).concat()
 }
 
-/// White noise by sums of twelve uniform numbers.
-fn white(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    let mut uniform = move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-}
-
 /// A record of 20,000 samples at 100 Hz: white noise of 1e-3 m/s^2 on f1, the same with a sine on f2.
 fn record(copy: &Copy) -> String {
-    let (mut one, mut two) = (white(1), white(2));
+    let (mut one, mut two) = (Random::new(1), Random::new(2));
     let mut rows = "t,f1,f2\n".to_owned();
     for k in 0..20_000 {
         let t = f64::from(k) / 100.0;
-        let (f1, f2) = (9.8 + 1e-3 * one(), 1e-3 * two() + 3e-3 * (t * 20.0).sin());
+        let (f1, f2) = (9.8 + 1e-3 * one.normal(), 1e-3 * two.normal() + 3e-3 * (t * 20.0).sin());
         let spike = if k % 4000 == 1234 { 5.0 } else { 0.0 };
         writeln!(rows, "{t},{},{f2}", f1 + spike).unwrap();
     }

@@ -50,10 +50,10 @@ impl Clean {
     /// The calibrated error model with the covariance of its coefficients.
     fn prediction(&self) -> Compensated {
         let terms = self.instrument();
-        let values = terms.iter().map(|&j| self.result.parameters[j].value.unwrap()).collect();
+        let values: Vec<f64> = terms.iter().map(|&j| self.result.parameters[j].value.unwrap()).collect();
         let covariance = |a: usize, b: usize| self.result.covariance[terms[a]][terms[b]].unwrap();
         let covariance = DMatrix::from_fn(terms.len(), terms.len(), covariance);
-        Compensated::new(self.model.error_model().clone(), values, covariance).unwrap()
+        Compensated::new(self.model.error_model().with_coefficients(&values), covariance).unwrap()
     }
 
     /// Truth with an ideal unit: its reading is the specific force.
@@ -83,7 +83,6 @@ fn plateaus(clean: &Clean) -> Vec<Plateau> {
     let range = clean.result.compensation_range(&terms).unwrap();
     let compensation = Compensation::new(&terms, range).unwrap();
     let (prediction, geometry) = (clean.prediction(), clean.geometry());
-    let sigma = clean.result.model.speed_uncertainty;
     let set_points = clean.model.experiment().set_points.iter();
     let plateau = |(summary, set_point): (&centrical_session::PlateauSummary, &centrical::SetPoint)| {
         assert_eq!((summary.mounting, summary.speed), (set_point.mounting + 1, set_point.omega));
@@ -91,8 +90,8 @@ fn plateaus(clean: &Clean) -> Vec<Plateau> {
         let mean = Vector3::from(summary.mean);
         let noise = Matrix3::from_fn(|i, j| summary.covariance[i][j]);
         let after = Vector3::from(compensation.apply(summary.mean).unwrap()) - truth.reading;
-        let speed = truth.speed * sigma;
-        let covariance = prediction.covariance(&truth.reading).unwrap() + noise + speed * speed.transpose();
+        let covariance =
+            prediction.covariance(&truth.reading).unwrap() + noise + truth.speed_error * truth.speed_error.transpose();
         Plateau { before: mean - truth.reading, after, covariance }
     };
     clean.result.plateaus.iter().zip(set_points).map(plateau).collect()

@@ -1,6 +1,6 @@
 //! Specific forces to the bit, with `std` and without and on any machine: what rounds elsewhere shows here.
 
-use centrical_compensate::{Compensation, Term, reading};
+use centrical_compensate::{Compensation, Monomial, Term, reading};
 
 fn kozlov() -> Vec<Term> {
     let mut terms = Vec::new();
@@ -16,8 +16,9 @@ fn kozlov() -> Vec<Term> {
 /// A product of components and a kink: no fast form.
 fn others() -> Vec<Term> {
     let mut terms = kozlov();
-    terms.push(Term { axis: 0, powers: [1, 1, 0], sign_of: None, coefficient: 1e-6 });
-    terms.push(Term { sign_of: Some(1), ..Term::power(1, 1, 1, 3e-4) });
+    terms.push(Term { axis: 0, monomial: Monomial::product(0, 1), coefficient: 1e-6 });
+    let kink = Monomial { sign_of: Some(1), ..Monomial::power(1, 1) };
+    terms.push(Term { axis: 1, monomial: kink, coefficient: 3e-4 });
     terms
 }
 

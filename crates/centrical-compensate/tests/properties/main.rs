@@ -3,4 +3,5 @@
 mod bulk;
 mod certificate;
 mod models;
+mod monomial;
 mod round_trip;

@@ -1,6 +1,6 @@
 //! Random error models of the sizes that newtonometers have, and larger.
 
-use centrical_compensate::Term;
+use centrical_compensate::{Monomial, Term};
 use proptest::prelude::*;
 
 /// 1 g [m/s^2].
@@ -37,15 +37,14 @@ pub fn everything() -> impl Strategy<Value = Model> {
     (kozlov(), prop::array::uniform9(-1.0..=1.0), prop::array::uniform2(-1.0..=1.0)).prop_map(|(mut model, u, v)| {
         for i in 0..3 {
             let [j, k] = [(i + 1) % 3, (i + 2) % 3];
-            let mut product = [0; 3];
-            (product[j], product[k]) = (1, 1);
-            let term = |powers, sign_of, coefficient| Term { axis: i, powers, sign_of, coefficient };
-            model.terms.push(term(product, None, 1e-5 / G * u[3 * i]));
-            model.terms.push(Term { sign_of: Some(i), ..Term::power(i, i, 2, 1e-5 / G * u[3 * i + 1]) });
-            model.terms.push(Term { sign_of: Some(j), ..Term::power(i, j, 1, 2e-3 * u[3 * i + 2]) });
+            let mut add = |monomial, coefficient| model.terms.push(Term { axis: i, monomial, coefficient });
+            add(Monomial::product(j, k), 1e-5 / G * u[3 * i]);
+            add(Monomial::odd_square(i), 1e-5 / G * u[3 * i + 1]);
+            add(Monomial { sign_of: Some(j), ..Monomial::power(j, 1) }, 2e-3 * u[3 * i + 2]);
         }
         model.terms.push(Term::power(0, 0, 4, 1e-10 / G.powi(3) * v[0]));
-        model.terms.push(Term { axis: 1, powers: [2, 0, 3], sign_of: None, coefficient: 1e-13 / G.powi(4) * v[1] });
+        let fifth = Monomial { powers: [2, 0, 3], sign_of: None };
+        model.terms.push(Term { axis: 1, monomial: fifth, coefficient: 1e-13 / G.powi(4) * v[1] });
         model
     })
 }
@@ -61,16 +60,4 @@ fn kozlov_terms(u: &[f64; 21]) -> Vec<Term> {
         terms.push(Term::power(i, i, 3, next(3e-7 / (G * G))));
     }
     terms
-}
-
-/// The same model as the numerics have it.
-pub fn core_model(terms: &[Term]) -> (centrical::ErrorModel, Vec<f64>) {
-    let term = |t: &Term| centrical::Term {
-        name: String::new(),
-        group: "",
-        axis: t.axis,
-        monomial: centrical::Monomial { powers: t.powers, sign_of: t.sign_of },
-    };
-    let error_model = centrical::ErrorModel { terms: terms.iter().map(term).collect() };
-    (error_model, terms.iter().map(|t| t.coefficient).collect())
 }

@@ -1,5 +1,7 @@
 //! The error model as statements of a language: `error_2 += c[4] * f_1`, a line for each term and derivative.
 
+use centrical_compensate::Monomial;
+
 use super::{NamedTerm, harmless};
 
 /// How a language writes what the error model is made of. Indices count from 0.
@@ -55,25 +57,22 @@ pub(super) fn coefficients(language: &dyn Language, terms: &[NamedTerm]) -> Stri
 pub(super) fn error_and_gain(language: &dyn Language, terms: &[NamedTerm]) -> String {
     let mut statements = Vec::new();
     for (k, NamedTerm { name, term }) in terms.iter().enumerate() {
-        let value = product(language, k, None, term.powers, term.sign_of);
+        let value = product(language, k, (1.0, term.monomial));
         statements.push(language.add_to_error(term.axis, &value, &harmless(name)));
-        for j in (0..3).filter(|j| term.powers[*j] > 0) {
-            let mut lower = term.powers;
-            lower[j] -= 1;
-            let derivative = product(language, k, Some(term.powers[j]), lower, term.sign_of);
-            statements.push(language.add_to_gain(term.axis, j, &derivative));
+        for (j, derivative) in (0..3).filter_map(|j| Some((j, term.monomial.derivative(j)?))) {
+            statements.push(language.add_to_gain(term.axis, j, &product(language, k, derivative)));
         }
     }
     statements.join("\n")
 }
 
-/// `power * c_k * sign * f_1 * f_1 * f_2`.
-fn product(language: &dyn Language, k: usize, power: Option<u8>, powers: [u8; 3], sign_of: Option<usize>) -> String {
-    let mut factors: Vec<String> = power.filter(|p| *p > 1).map(|p| language.number(p.into())).into_iter().collect();
+/// `factor * c_k * sign * f_1 * f_1 * f_2`.
+fn product(language: &dyn Language, k: usize, (factor, monomial): (f64, Monomial)) -> String {
+    let mut factors = if factor == 1.0 { vec![] } else { vec![language.number(factor)] };
     factors.push(language.coefficient(k));
-    factors.extend(sign_of.map(|j| language.sign(j)));
-    for j in 0..3 {
-        factors.extend((0..powers[j]).map(|_| language.component(j)));
+    factors.extend(monomial.sign_of.map(|j| language.sign(j)));
+    for (j, power) in monomial.powers.into_iter().enumerate() {
+        factors.extend((0..power).map(|_| language.component(j)));
     }
     factors.join(language.times())
 }

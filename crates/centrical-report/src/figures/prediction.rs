@@ -1,14 +1,13 @@
 //! What the user of the unit gets: the uncertainty of a compensated reading over the range.
 
 use centrical::STANDARD_GRAVITY;
-use centrical::uncertainty::Compensated;
 use centrical_session::CalibrationResult;
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::Vector3;
 
 use super::{Figure, of_plot};
 use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
-use crate::reading_error::{MICRO_G, error_model};
+use crate::reading_error::{MICRO_G, compensated};
 
 /// Points of a curve.
 const POINTS: usize = 201;
@@ -17,12 +16,7 @@ const POINTS: usize = 201;
 /// session; none if a parameter of the instrument is not determined.
 pub(super) fn figure(result: &CalibrationResult, language: Language) -> Option<Figure> {
     let messages = language.messages();
-    let (model, coefficients) = error_model(result)?;
-    let place = |name: &str| result.parameters.iter().position(|parameter| parameter.name == name);
-    let own: Vec<usize> = model.terms.iter().map(|term| place(&term.name)).collect::<Option<_>>()?;
-    let entry = |a: usize, b: usize| result.covariance.get(own[a])?.get(own[b]).copied().flatten();
-    let covariance = DMatrix::from_fn(own.len(), own.len(), |a, b| entry(a, b).unwrap_or(f64::NAN));
-    let compensated = Compensated::new(model, coefficients, covariance)?;
+    let compensated = compensated(result)?;
     let forces = result.plateaus.iter().filter_map(|plateau| plateau.specific_force).flatten();
     let range = forces.map(f64::abs).fold(0.0, f64::max);
     let axes = (Axis::linear(messages.force_axis), Axis::log(messages.prediction_axis));

@@ -9,9 +9,11 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use centrical_compensate::{Compensation, Term, reading};
+use centrical_compensate::{Compensation, Monomial, Term, reading};
 use centrical_report::codegen::{NamedTerm, compensation_source};
 use tempfile::TempDir;
+
+use crate::random::Random;
 
 /// 1 g [m/s^2].
 const G: f64 = 9.806_65;
@@ -25,8 +27,8 @@ fn kozlov() -> Vec<NamedTerm> {
     let term = |(k, term): (usize, &centrical::Term)| {
         let size = sizes[usize::from(term.monomial.degree())];
         let coefficient = size * (1.0 + (k as f64 * 0.618).sin()) * if k % 3 == 0 { -1.0 } else { 1.0 };
-        let powers = term.monomial.powers;
-        NamedTerm { name: term.name.clone(), term: Term { axis: term.axis, powers, sign_of: None, coefficient } }
+        let term = Term { axis: term.axis, monomial: term.monomial, coefficient };
+        NamedTerm { name: model.terms[k].name.clone(), term }
     };
     model.terms.iter().enumerate().map(term).collect()
 }
@@ -34,13 +36,14 @@ fn kozlov() -> Vec<NamedTerm> {
 /// The same with a product, an odd square, a kink and a fourth power, under the names that sessions give them.
 fn with_more_terms() -> Vec<NamedTerm> {
     let mut terms = kozlov();
-    let mut add = |name: &str, axis, powers, sign_of, coefficient| {
-        terms.push(NamedTerm { name: name.to_owned(), term: Term { axis, powers, sign_of, coefficient } });
+    let mut add = |axis, monomial, coefficient| {
+        let name = centrical::Term::new(axis, monomial).name;
+        terms.push(NamedTerm { name, term: Term { axis, monomial, coefficient } });
     };
-    add("K_1[f1*f2]", 0, [1, 1, 0], None, 1e-5 / G);
-    add("K_2[f2*|f2|]", 1, [0, 2, 0], Some(1), -1e-5 / G);
-    add("K_3[|f3|]", 2, [0, 0, 1], Some(2), 1e-3);
-    add("K_3[f1^4]", 2, [4, 0, 0], None, 1e-10 / G.powi(3));
+    add(0, Monomial::product(0, 1), 1e-5 / G);
+    add(1, Monomial::odd_square(1), -1e-5 / G);
+    add(2, Monomial { sign_of: Some(2), ..Monomial::power(2, 1) }, 1e-3);
+    add(2, Monomial::power(0, 4), 1e-10 / G.powi(3));
     terms
 }
 
@@ -84,19 +87,12 @@ fn run(command: &mut Command, input: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Random readings over the range (SplitMix64), here and there one from beyond it.
+/// Random readings over the range, here and there one from beyond it.
 fn readings(terms: &[Term]) -> Vec<[f64; 3]> {
-    let mut state = 1_u64;
-    let mut uniform = || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    };
+    let mut random = Random::new(1);
     let mut one = |k: usize| {
         let scale = if k.is_multiple_of(100) { 1.2 * RANGE } else { RANGE };
-        reading(terms, [(); 3].map(|()| scale * uniform()))
+        reading(terms, [(); 3].map(|()| scale * (2.0 * random.uniform() - 1.0)))
     };
     (0..READINGS).map(&mut one).collect()
 }

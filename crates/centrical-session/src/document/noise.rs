@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical::noise::{Coefficient, Deviation, Estimator, Gaps, NoiseError, NoiseTerm, NoiseTerms, Spectrum};
+use centrical::stability::{Analysis, Coefficient, Deviation, Estimator, NoiseTerm, NoiseTerms, Spectrum};
+use centrical_table::write_whole;
 use serde_json::{Value, json};
 
 use crate::error::Error;
-use crate::write::write_whole;
 
 /// Name of the schema's present version.
 pub const NOISE_SCHEMA: &str = "centrical-noise/1";
@@ -31,24 +31,8 @@ pub struct ReadingNoise {
     pub name: String,
     /// Its unit: m/s^2 for accelerations, as in the file otherwise.
     pub unit: String,
-    /// Mean of what was used [unit].
-    pub mean: f64,
-    /// Sampling interval [s].
-    pub interval: f64,
-    /// Readings used.
-    pub samples: usize,
-    /// Readings left out as spikes.
-    pub spikes: usize,
-    /// Samples left out as repeated.
-    pub repeated: usize,
-    /// What was missing and bridged, spikes among it.
-    pub gaps: Gaps,
-    /// Deviations by estimator, at averaging factors 1, 2, 4, ...
-    pub deviations: Vec<(Estimator, Vec<Deviation>)>,
-    /// The spectrum, or why there is none.
-    pub spectrum: Result<Spectrum, NoiseError>,
-    /// The noise terms, or why there are none.
-    pub terms: Result<NoiseTerms, NoiseError>,
+    /// Its noise.
+    pub noise: Analysis,
 }
 
 impl NoiseAnalysis {
@@ -60,9 +44,9 @@ impl NoiseAnalysis {
     /// Writes the analysis as JSON; the file appears whole or not at all.
     ///
     /// # Errors
-    /// [`Error::Io`] when the folder does not take it.
+    /// [`Error::Table`] when the folder does not take it.
     pub fn write(&self, file: &Path) -> Result<(), Error> {
-        write_whole(file, self.to_json().as_bytes())
+        Ok(write_whole(file, self.to_json().as_bytes())?)
     }
 
     /// The analysis as JSON: values in the readings' unit (m/s^2) and seconds; the same input gives the same bytes.
@@ -79,31 +63,25 @@ impl NoiseAnalysis {
     }
 }
 
-impl ReadingNoise {
-    /// The noise terms, if they describe the deviations: what may be quoted.
-    pub fn quotable(&self) -> Option<&NoiseTerms> {
-        self.terms.as_ref().ok().filter(|terms| terms.is_consistent())
-    }
-}
-
 fn of_reading(reading: &ReadingNoise, confidence: f64) -> Value {
+    let noise = &reading.noise;
     json!({
         "name": reading.name,
         "unit": reading.unit,
-        "mean": reading.mean,
-        "interval": reading.interval,
-        "samples": reading.samples,
-        "spikes": reading.spikes,
-        "repeated": reading.repeated,
-        "gaps": {"runs": reading.gaps.runs, "missing": reading.gaps.missing, "longest": reading.gaps.longest},
-        "deviations": reading.deviations.iter().map(|(estimator, family)| of_family(*estimator, family)).collect::<Vec<_>>(),
-        "spectrum": reading.spectrum.as_ref().map_or_else(refused, |spectrum| of_spectrum(spectrum, confidence)),
-        "terms": reading.terms.as_ref().map_or_else(refused, of_terms),
+        "mean": noise.mean,
+        "interval": noise.interval,
+        "samples": noise.samples,
+        "spikes": noise.spikes,
+        "repeated": noise.repeated,
+        "gaps": {"runs": noise.gaps.runs, "missing": noise.gaps.missing, "longest": noise.gaps.longest},
+        "deviations": noise.deviations.iter().map(|(estimator, family)| of_family(*estimator, family)).collect::<Vec<_>>(),
+        "spectrum": noise.spectrum.as_ref().map_or_else(refused, |spectrum| of_spectrum(spectrum, confidence)),
+        "terms": noise.terms.as_ref().map_or_else(refused, of_terms),
     })
 }
 
 /// What could not be computed says why.
-fn refused(error: &centrical::noise::NoiseError) -> Value {
+fn refused(error: &centrical::stability::NoiseError) -> Value {
     json!({"refused": error.to_string()})
 }
 

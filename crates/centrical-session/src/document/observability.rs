@@ -9,6 +9,7 @@ use centrical::{Combination, MeasurementModel, SetPoint, Study, Weight, linear};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+use crate::document::json;
 use crate::document::prediction::PredictionReport;
 use crate::document::result::{PriorSummary, Program};
 use crate::error::{Error, Place};
@@ -35,8 +36,6 @@ pub struct Subject {
     pub nominal: Vec<f64>,
     /// How well each mean is known, or will be.
     pub weights: Vec<Weight>,
-    /// Relative standard uncertainty of the speed of a plateau.
-    pub speed_uncertainty: f64,
     /// Standard uncertainties that the data cannot show.
     pub type_b: TypeB,
 }
@@ -45,7 +44,7 @@ impl Subject {
     /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
     /// the experiment.
     fn prediction(&self) -> Result<PredictionReport, Error> {
-        let prediction = predict(&self.model, &self.weights, self.speed_uncertainty, &self.type_b, &self.nominal)
+        let prediction = predict(&self.model, &self.weights, &self.type_b, &self.nominal)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })?;
         let experiment = self.model.experiment();
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
@@ -58,7 +57,7 @@ impl Subject {
     /// # Errors
     /// [`Error::Fit`] when a weight or the design is beyond all measure.
     pub fn study(&self) -> Result<Study, Error> {
-        Study::at_zero(self.model.clone(), self.weights.clone(), self.speed_uncertainty)
+        Study::at_zero(self.model.clone(), self.weights.clone())
             .map_err(|source| Error::Fit { file: self.file.clone(), source })
     }
 }
@@ -73,7 +72,6 @@ impl From<Plan> for Subject {
             model: plan.model,
             nominal: plan.nominal,
             weights: plan.weights,
-            speed_uncertainty: plan.speed_uncertainty,
             type_b: plan.type_b,
         }
     }
@@ -275,11 +273,11 @@ impl ObservabilityReport {
     }
 
     /// The text of the document.
-    pub fn to_json(&self) -> String {
-        // Plain structs with text keys: serialisation has nothing to fail on.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(OBSERVABILITY_SCHEMA, self)
     }
 }
 

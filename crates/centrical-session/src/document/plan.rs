@@ -2,8 +2,10 @@
 
 use serde::Serialize;
 
+use crate::document::json;
 use crate::document::prediction::PredictionReport;
 use crate::document::result::Program;
+use crate::error::Error;
 
 /// Name of the schema's present version.
 pub(crate) const SCHEMA: &str = "centrical-plan/1";
@@ -34,9 +36,9 @@ pub struct PlanReport {
     pub continuous_gap: f64,
     /// Nodes of the branch and bound over sets of mountings.
     pub nodes: usize,
-    /// Of a plan for goals: no schedule of the candidates that is shorter keeps them, with type B as in this plan [s].
+    /// Of a plan for goals: no schedule of the candidates that is shorter meets them, with type B as in this plan [s].
     pub least_time: Option<f64>,
-    /// Whether it is for a unit of typical errors, signs in turn: see [`Planning::plan`].
+    /// Whether it is for a unit of typical errors, signs in turn: see [`centrical::plan::Task::plan`].
     pub for_typical: bool,
     /// Plateaus to choose from.
     pub candidates: usize,
@@ -112,13 +114,6 @@ pub struct GoalReport {
     pub combined: Option<f64>,
 }
 
-impl GoalReport {
-    pub(crate) fn with_type_b(self) -> Self {
-        let rest = |(all, a): (f64, f64)| (all * all - a * a).max(0.0).sqrt();
-        Self { type_b: self.combined.zip(self.type_a).map(rest), ..self }
-    }
-}
-
 /// One time of the frontier. Values are uncertainties as in [`PlanReport::value`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FrontierRow {
@@ -136,10 +131,10 @@ pub struct FrontierRow {
 
 impl PlanReport {
     /// The text of the document.
-    pub fn to_json(&self) -> String {
-        // Plain structs with text keys: serialisation has nothing to fail on.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(SCHEMA, self)
     }
 }

@@ -8,7 +8,6 @@ use centrical::{Fit, MeasurementModel, Termination};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::experiment::Session;
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
 
 /// Samples that are not used, by kind.
@@ -132,7 +131,7 @@ pub(crate) fn tilt(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Op
 }
 
 /// The drift of a session; none for one that came already averaged.
-pub(crate) fn drift(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Option<DriftSummary> {
+pub(crate) fn drift(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Option<DriftSummary> {
     let steadiness: Vec<Steadiness> =
         reduced.plateaus.iter().map(|plateau| plateau.steadiness).collect::<Option<_>>()?;
     let (mut weights, mut sums, mut chi_squared) = (Vector3::zeros(), Vector3::zeros(), 0.0);
@@ -149,17 +148,17 @@ pub(crate) fn drift(session: &Session, model: &MeasurementModel, reduced: &Reduc
         chi_squared,
         degrees_of_freedom,
         probability: chi_squared_tail(chi_squared, degrees_of_freedom),
-        over_session: over_session(session, model, reduced, fit),
-        repeats: repeats(session, model, reduced, fit),
+        over_session: over_session(model, reduced, fit),
+        repeats: repeats(model, reduced, fit),
     })
 }
 
-fn over_session(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<SessionTrend> {
+fn over_session(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<SessionTrend> {
     // A linear fit leaves its second-order terms in the residuals.
     if fit.termination == Termination::Linear {
         return Vec::new();
     }
-    let found = trends_of(fit, model, &reduced.observations(), session.speed_uncertainty, &[Trend::Time]);
+    let found = trends_of(fit, model, &reduced.observations(), &[Trend::Time]);
     let trend = |pattern: &centrical::uncertainty::Pattern| SessionTrend {
         axis: pattern.axis + 1,
         // The pattern's largest entry is half of the way from the first plateau to the last.
@@ -173,14 +172,14 @@ fn over_session(session: &Session, model: &MeasurementModel, reduced: &Reduced, 
 }
 
 /// Every plateau against the first of the same set point in the same mounting.
-fn repeats(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<RepeatedPlateau> {
+fn repeats(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<RepeatedPlateau> {
     let set_points = &model.experiment().set_points;
     let first_of = |m: usize| set_points.iter().position(|s| s.mounting == m).unwrap_or(0);
     let repeat = |second: usize| {
         let set_point = &set_points[second];
         let first = set_points[..second].iter().position(|other| other == set_point)?;
         let [one, two] = [first, second].map(|n| &reduced.plateaus[n]);
-        let along = model.linearise(set_point, fit.state()).speed * session.speed_uncertainty;
+        let along = model.linearise(set_point, fit.state()).speed_error;
         let difference = two.mean - one.mean;
         let covariance = one.covariance + two.covariance + 2.0 * along * along.transpose();
         let chi_squared = difference.dot(&covariance.cholesky()?.solve(&difference));

@@ -1,7 +1,7 @@
 //! `truth.json`: what was simulated, schema `centrical-truth/1`.
 
 use centrical::SetPoint;
-use centrical::simulate::{Settings, TruePlateau};
+use centrical::simulate::{Equipment, TruePlateau};
 use serde_json::{Value, json};
 
 use crate::experiment::Session;
@@ -34,7 +34,7 @@ pub(crate) fn truth_json(plan: &Session, truth: &Truth, seed: u64, mountings: &[
         "program": {"name": "centrical", "version": env!("CARGO_PKG_VERSION")},
         "seed": seed,
         "parameters": parameters,
-        "settings": settings(&truth.settings),
+        "settings": equipment(&truth.equipment),
         "telemetry_clocks": clocks,
         "plateaus": plateaus,
     });
@@ -52,9 +52,9 @@ fn plateaus_of(plan: &Session, m: usize, plateaus: &[TruePlateau]) -> Vec<Value>
     schedule.zip(plateaus).enumerate().map(plateau).collect()
 }
 
-/// The settings under the names that a truth file gives them, SI.
-fn settings(settings: &Settings) -> Value {
-    let Settings { machine, sensor, recorder, tachometer } = settings;
+/// The equipment under the names that a truth file gives them, SI.
+fn equipment(equipment: &Equipment) -> Value {
+    let Equipment { machine, sensor, recorder, tachometer } = equipment;
     json!({
         "machine": {
             "plateau": machine.plateau, "plateau_spread": machine.plateau_spread, "ramp": machine.ramp,

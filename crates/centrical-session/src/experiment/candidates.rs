@@ -2,15 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical::plan::{Candidates, Costs, Criterion, Goal, ReadingRange, Robustness, Scenario};
-use centrical::uncertainty::TypeB;
+use centrical::plan::{Candidates, Costs, Criterion, Goal, Noise, PlanError, ReadingRange, Robustness, Scenario, Task};
 use centrical::{Experiment, MeasurementModel, STANDARD_GRAVITY, SetPoint};
 
 use super::form::{self, CandidatesTable, Form, MountingTable, Steps};
 use super::plan::{ExpectedValues, expected_of, noise};
 use super::prior;
 use super::schedule::{FASTEST, duration};
-use super::session::{Session, named_extensions, read_text, rotation};
+use super::session::{Session, named_extensions, read_text};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
@@ -30,16 +29,10 @@ pub struct Planning {
     pub file: PathBuf,
     /// Title, as in a session.
     pub title: String,
-    /// What can be chosen.
-    pub candidates: Candidates,
-    /// What is made small within `time`, or the goals to be reached if there is none.
-    pub criterion: Criterion,
-    /// Time there is [s].
-    pub time: Option<f64>,
+    /// What can be chosen, what is made small, and within what time.
+    pub task: Task,
     /// Over what a compensated reading is judged.
     pub range: ReadingRange,
-    /// Standard uncertainties that the data will not show.
-    pub type_b: TypeB,
 }
 
 impl Planning {
@@ -59,8 +52,7 @@ impl Planning {
         }
         form.mounting = mountings(&at, &table, &form)?;
         let mut session = Session::without_plateaus(path, &form)?;
-        let sign = rotation(path, &form.centrifuge.rotation)?;
-        session.experiment.set_points = set_points(&at, &table, &session.experiment, sign)?;
+        session.experiment.set_points = set_points(&at, &table, &session.experiment)?;
         let scenarios = scenarios(path, &form, &session, expected)?;
         let candidates = Candidates {
             scenarios,
@@ -73,12 +65,13 @@ impl Planning {
         Ok(Self {
             file: path.to_owned(),
             title: session.title.clone(),
-            candidates,
-            criterion,
-            time,
+            task: Task { candidates, criterion, time, type_b: session.type_b },
             range,
-            type_b: session.type_b,
         })
+    }
+
+    pub(crate) fn failed(&self, source: PlanError) -> Error {
+        Error::Planning { file: self.file.clone(), source }
     }
 }
 
@@ -105,12 +98,7 @@ fn mountings(at: &TomlPath, table: &CandidatesTable, form: &Form) -> Result<Vec<
 }
 
 /// Every speed that the machine and the unit bear, and every angle at rest, in every mounting.
-fn set_points(
-    at: &TomlPath,
-    table: &CandidatesTable,
-    experiment: &Experiment,
-    sign: f64,
-) -> Result<Vec<SetPoint>, Error> {
+fn set_points(at: &TomlPath, table: &CandidatesTable, experiment: &Experiment) -> Result<Vec<SetPoint>, Error> {
     let largest = experiment.mountings.iter().map(|m| m.arm_y.x).fold(0.0, f64::max);
     let mut speeds = Vec::new();
     if let Some(steps) = &table.speeds {
@@ -135,7 +123,11 @@ fn set_points(
     for (mounting, place) in experiment.mountings.iter().enumerate() {
         set_points.extend(angles.iter().map(|&angle| SetPoint { mounting, omega: 0.0, angle }));
         let borne = speeds.iter().filter(|omega| **omega <= fastest && **omega * **omega * place.arm_y.x <= most);
-        set_points.extend(borne.map(|omega| SetPoint { mounting, omega: sign * omega, angle: 0.0 }));
+        set_points.extend(borne.map(|omega| SetPoint {
+            mounting,
+            omega: experiment.centrifuge.rotation.sign() * omega,
+            angle: 0.0,
+        }));
     }
     if set_points.is_empty() || set_points.len() > MOST_PLATEAUS {
         let expected =
@@ -210,26 +202,20 @@ fn costs(file: &Path, form: &Form) -> Result<Costs, Error> {
 fn scenarios(file: &Path, form: &Form, session: &Session, values: &ExpectedValues) -> Result<Vec<Scenario>, Error> {
     let plan = form.plan.as_ref();
     let given = |key: fn(&form::PlanTable) -> &Option<Quantity>| plan.and_then(|table| key(table).as_ref());
-    let expected = noise(file, given(|t| &t.noise), given(|t| &t.floor), given(|t| &t.duration))?;
-    let expected = centrical::plan::Noise { density: expected.density, floor: expected.floor };
-    let scenario = |model: MeasurementModel, noise| Scenario {
-        nominal: expected_of(&model, values),
-        model,
-        noise,
-        speed_uncertainty: session.speed_uncertainty,
-        weight: 1.0,
-    };
+    let (expected, _) = noise(file, given(|t| &t.noise), given(|t| &t.floor), given(|t| &t.duration))?;
+    let scenario =
+        |model: MeasurementModel, noise| Scenario { nominal: expected_of(&model, values), model, noise, weight: 1.0 };
     let model = session.model()?;
     let mut scenarios = vec![scenario(model.clone(), expected)];
     let at = TomlPath::table(file, "robust");
     for density in &form.robust.noise {
         let meaning = "a spectral density above 0 and below 1 m/s^2/sqrt(Hz)";
         let density = at.bounded("noise", density, Dimension::NoiseDensity, (1e-15, 1.0), meaning)?;
-        scenarios.push(scenario(model.clone(), centrical::plan::Noise { density, ..expected }));
+        scenarios.push(scenario(model.clone(), Noise { density, ..expected }));
     }
     for floor in &form.robust.floor {
         let floor = at.bounded("floor", floor, Dimension::Acceleration, (0.0, 1.0), "a floor from 0 to 1 m/s^2")?;
-        scenarios.push(scenario(model.clone(), centrical::plan::Noise { floor, ..expected }));
+        scenarios.push(scenario(model.clone(), Noise { floor, ..expected }));
     }
     if !form.robust.extensions.is_empty() {
         let mut with = session.clone();

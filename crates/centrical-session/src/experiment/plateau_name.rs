@@ -27,7 +27,7 @@ impl PlateauName {
     /// Index of its set point in the experiment.
     ///
     /// # Errors
-    /// [`Error::Content`] if the session has no such plateau.
+    /// [`Error::Table`] if the session has no such plateau.
     pub fn set_point(self, session: &Session) -> Result<usize, Error> {
         let set_points = session.experiment.set_points.iter().enumerate();
         let mut there = set_points.filter(|(_, set_point)| set_point.mounting + 1 == self.mounting);

@@ -12,14 +12,12 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use centrical::SetPoint;
+use centrical::{Rotation, SetPoint};
+use centrical_table::{ColumnName, Field, Rule, parquet_bytes, write_whole};
 use nalgebra::{Matrix3, Vector3};
 
 use super::schedule::FASTEST;
 use crate::error::{Error, Place};
-use crate::parquet_table::{Layout, ParquetTable};
-use crate::table::{self, ColumnName, Field, Rule};
-use crate::write::write_whole;
 
 /// The mean readings of one plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,9 +53,9 @@ impl PlateauTable {
         Ok(Self { file, rows })
     }
 
-    pub(crate) fn set_points(&self, sign: f64) -> Vec<SetPoint> {
+    pub(crate) fn set_points(&self, rotation: Rotation) -> Vec<SetPoint> {
         let set_point =
-            |p: &PlateauMean| SetPoint { mounting: p.mounting, omega: sign * p.speed + 0.0, angle: p.angle };
+            |p: &PlateauMean| SetPoint { mounting: p.mounting, omega: rotation.sign() * p.speed + 0.0, angle: p.angle };
         self.rows.iter().map(set_point).collect()
     }
 }
@@ -95,7 +93,7 @@ pub fn read_plateaus(file: &Path, mountings: usize) -> Result<Vec<PlateauMean>, 
     };
     let fields: Vec<Field> = COLUMNS.iter().enumerate().map(field).collect();
     let mut rows: Vec<[f64; COLUMNS.len()]> = Vec::new();
-    table::read(file, &fields, "a table of plateaus", &mut |block| {
+    centrical_table::read(file, &fields, "a table of plateaus", &mut |block| {
         for r in 0..block[0].len() {
             rows.push(std::array::from_fn(|k| block[k][r]));
         }
@@ -153,7 +151,7 @@ pub fn write_plateaus(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error
         // Writing to a String does not fail.
         let _ = writeln!(text, "{},{},{angle},{m1},{m2},{m3},{upper},{}", p.mounting + 1, p.speed, p.samples);
     }
-    write_whole(file, text.as_bytes())
+    Ok(write_whole(file, text.as_bytes())?)
 }
 
 /// As [`write_plateaus`], in Parquet.
@@ -166,12 +164,8 @@ pub(crate) fn write_plateaus_parquet(file: &Path, plateaus: &[PlateauMean]) -> R
     };
     let rows: Vec<[f64; COLUMNS.len()]> = plateaus.iter().map(row).collect();
     let columns: Vec<Vec<f64>> = (0..COLUMNS.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
-    let table = ParquetTable::new(Vec::new(), Layout::PACKED, &COLUMNS.map(|(name, _)| name));
-    let bytes = table.and_then(|mut table| {
-        table.write(&columns)?;
-        table.finish()
-    });
-    write_whole(file, &bytes.map_err(|error| Error::writing(file, error))?)
+    let bytes = parquet_bytes(&COLUMNS.map(|(name, _)| name), &columns).map_err(|error| Error::writing(file, error))?;
+    Ok(write_whole(file, &bytes)?)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical::{Mounting, Position, SetPoint};
+use centrical::{Mounting, Position, Rotation, SetPoint};
 use nalgebra::Vector3;
 
 use super::form::{MountingTable, PlateauEntry};
@@ -46,8 +46,8 @@ pub(crate) fn mountings(file: &Path, tables: &[MountingTable], positions: &[Posi
     Ok(mountings)
 }
 
-/// The set points of all mountings; `sign` is the sign of the rotation about the third arm axis.
-pub(crate) fn set_points(file: &Path, tables: &[MountingTable], sign: f64) -> Result<Vec<SetPoint>, Error> {
+/// The set points of all mountings.
+pub(crate) fn set_points(file: &Path, tables: &[MountingTable], rotation: Rotation) -> Result<Vec<SetPoint>, Error> {
     let mut set_points = Vec::new();
     for (mounting, table) in tables.iter().enumerate() {
         let at = TomlPath::entry(file, "mounting", mounting);
@@ -57,7 +57,7 @@ pub(crate) fn set_points(file: &Path, tables: &[MountingTable], sign: f64) -> Re
         for (index, entry) in table.plateaus.iter().enumerate() {
             let (speed, angle) = plateau(&at, index, entry)?;
             // The sum makes -0 a 0.
-            set_points.push(SetPoint { mounting, omega: sign * speed + 0.0, angle });
+            set_points.push(SetPoint { mounting, omega: rotation.sign() * speed + 0.0, angle });
         }
     }
     Ok(set_points)

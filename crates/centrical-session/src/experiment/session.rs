@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 use centrical::uncertainty::TypeB;
-use centrical::{ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, SetPoint, Site};
+use centrical::{
+    Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
+};
 
 use super::form::{self, Form, ModelTable, SiteTable};
 use super::plateaus::PlateauTable;
@@ -13,7 +15,7 @@ use super::prior::{self, PriorEntry};
 use super::toml_path::TomlPath;
 use super::{attitude, columns, schedule, terms, uncertainty, unit};
 use crate::error::{Error, Place, quoted};
-use crate::quantity::Dimension;
+use crate::quantity::{Dimension, Quantity};
 use crate::record::{Columns, read_record, read_telemetry, scan_record};
 
 /// Name of the experiment file in a session folder.
@@ -45,8 +47,6 @@ pub struct Session {
     pub error_model: ErrorModel,
     /// Unknowns beyond those of the source.
     pub extensions: Vec<Extension>,
-    /// Relative standard uncertainty of the speed of a plateau.
-    pub speed_uncertainty: f64,
     /// Standard uncertainties that the data cannot show, as stated in `[uncertainty]`.
     pub type_b: TypeB,
     /// Columns of the records and the telemetry.
@@ -80,13 +80,13 @@ impl Session {
         let form: Form = form::parse(&file, &read_text(&file)?)?;
         let folder = file.parent().unwrap_or(Path::new(""));
         let mut session = Self::without_plateaus(&file, &form)?;
-        let sign = rotation(&file, &form.centrifuge.rotation)?;
+        let rotation = session.experiment.centrifuge.rotation;
         if let Some(table) = &form.plateaus {
             let table = PlateauTable::read(folder.join(table), form.mounting.len())?;
-            session.experiment.set_points = table.set_points(sign);
+            session.experiment.set_points = table.set_points(rotation);
             session.plateaus = Some(table);
         } else {
-            session.experiment.set_points = schedule::set_points(&file, &form.mounting, sign)?;
+            session.experiment.set_points = schedule::set_points(&file, &form.mounting, rotation)?;
             session.durations = schedule::durations(&file, &form.mounting)?;
         }
         if session.experiment.set_points.iter().all(SetPoint::is_rest) {
@@ -116,15 +116,15 @@ impl Session {
         let experiment = Experiment {
             site: site(file, &form.site)?,
             unit: unit::geometry(file, &form.unit)?,
+            centrifuge: Centrifuge {
+                rotation: rotation(file, &form.centrifuge.rotation)?,
+                speed_uncertainty: speed_uncertainty(file, &form.centrifuge.speed_uncertainty)?,
+            },
             positions,
             pair_relation,
             mountings,
             set_points: Vec::new(),
         };
-        let at = TomlPath::table(file, "centrifuge");
-        let meaning = "a relative standard uncertainty, zero or more and below 1";
-        let uncertainty = &form.centrifuge.speed_uncertainty;
-        let speed_uncertainty = at.bounded("speed_uncertainty", uncertainty, Dimension::Ratio, (0.0, 1.0), meaning)?;
         let path = |name: &Option<String>| name.as_ref().map(|name| folder.join(name));
         Ok(Self {
             file: file.to_owned(),
@@ -134,11 +134,10 @@ impl Session {
             unit_model: form.unit.model.clone(),
             unit_serial: form.unit.serial.clone(),
             output_unit: form.unit.output_unit.clone(),
+            type_b: uncertainty::type_b(file, &form.uncertainty, experiment.centrifuge.speed_uncertainty)?,
             experiment,
             error_model: terms::error_model(file, &form.model.error_model)?,
             extensions: extensions(file, &form.model)?,
-            speed_uncertainty,
-            type_b: uncertainty::type_b(file, &form.uncertainty, speed_uncertainty)?,
             columns: columns::columns(file, &form.columns, &form.unit)?,
             mountings: (form.mounting.iter())
                 .map(|m| MountingFiles { record: path(&m.record), telemetry: path(&m.telemetry) })
@@ -230,15 +229,20 @@ fn site(file: &Path, table: &SiteTable) -> Result<Site, Error> {
     Ok(Site { gravity, latitude: table.latitude.as_ref().map(latitude).transpose()? })
 }
 
-/// Sign of the rotation about the third arm axis.
-pub(crate) fn rotation(file: &Path, text: &str) -> Result<f64, Error> {
+/// Sense of rotation about the third arm axis.
+fn rotation(file: &Path, text: &str) -> Result<Rotation, Error> {
     match text {
-        "+3" => Ok(1.0),
-        "-3" => Ok(-1.0),
+        "+3" => Ok(Rotation::Positive),
+        "-3" => Ok(Rotation::Negative),
         _ => {
             Err(TomlPath::table(file, "centrifuge").unexpected("rotation", quoted(text.as_bytes()), "\"+3\" or \"-3\""))
         }
     }
+}
+
+pub(crate) fn speed_uncertainty(file: &Path, quantity: &Quantity) -> Result<f64, Error> {
+    let meaning = "a relative standard uncertainty, zero or more and below 1";
+    TomlPath::table(file, "centrifuge").bounded("speed_uncertainty", quantity, Dimension::Ratio, (0.0, 1.0), meaning)
 }
 
 pub(crate) fn extensions(file: &Path, table: &ModelTable) -> Result<Vec<Extension>, Error> {

@@ -9,7 +9,7 @@ use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 
 /// Highest degree of a term: the ninth power of 2000 m/s^2 is still far from the end of `f64`.
-const HIGHEST_DEGREE: u32 = 9;
+const HIGHEST_DEGREE: u16 = 9;
 
 /// The terms in the order of the list.
 pub(crate) fn error_model(file: &Path, list: &TermList) -> Result<ErrorModel, Error> {
@@ -81,8 +81,7 @@ fn monomial(text: &str) -> Option<Monomial> {
     }
     let mut signs = (0..3).filter(|j| absolute[*j]);
     monomial.sign_of = signs.next();
-    let degree: u32 = monomial.powers.iter().map(|p| u32::from(*p)).sum();
-    (signs.next().is_none() && degree <= HIGHEST_DEGREE).then_some(monomial)
+    (signs.next().is_none() && monomial.degree() <= HIGHEST_DEGREE).then_some(monomial)
 }
 
 #[cfg(test)]

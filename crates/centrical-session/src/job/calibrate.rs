@@ -74,7 +74,7 @@ pub fn calibrate_without(
     };
     let observations = reduced.observations();
     let failed = |source| Error::Fit { file: session.file.clone(), source };
-    let fit = estimate(&model, &observations, session.speed_uncertainty).map_err(failed)?;
+    let fit = estimate(&model, &observations).map_err(failed)?;
     let result = CalibrationResult::new(session, &model, &reduced, &fit);
     let mut result = result.with_trust(session, &model, &observations, &fit).map_err(failed)?;
     if method == Method::Recursive {

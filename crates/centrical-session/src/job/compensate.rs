@@ -4,12 +4,12 @@ use std::path::Path;
 
 use centrical::reduction::RecordSlice;
 use centrical_compensate::Compensation;
+use centrical_table::Block;
 use rayon::prelude::*;
 
 use crate::error::{Error, Place};
 use crate::record::{Columns, scan_blocks, stretch};
 use crate::record_writer::RecordWriter;
-use crate::table::Block;
 
 /// What became of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

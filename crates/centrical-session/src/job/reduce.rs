@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical::linear;
 use centrical::reduction::{
-    Located, NoiseModel, Plateau, PlateauFit, RecordSlice, ReducedMounting, ReductionError, ScheduledPlateau, Survey,
+    Averaging, Located, NoiseModel, PlateauFit, RecordSlice, ReducedMounting, ReductionError, ScheduledPlateau, Survey,
+    locate, plateau_means,
 };
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
@@ -14,7 +15,6 @@ use crate::error::Error;
 use crate::experiment::Session;
 use crate::record::{Input, Kept, RecordFile, RecordOverview, Room, Windows};
 use crate::reduced::{MountingFindings, Reduced, ReducedPlateau};
-use crate::table;
 
 /// Reads and reduces the records of a session, or takes its plateau table. `progress` is told of bytes of records as
 /// they are read, from any thread, twice of nearly each; the outcome does not depend on the number of threads.
@@ -45,7 +45,7 @@ fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Re
     let mountings = by_few_threads(|| all_mountings(session, progress))?;
     let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) = mountings.into_iter().unzip();
     let noise = NoiseModel::pool(&reduced);
-    let means = reduced.iter().flat_map(|mounting| mounting.means(&noise));
+    let means = reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise));
     let findings =
         |m: &ReducedMounting| MountingFindings { settling_time: m.settling_time(), clock_offset: m.clock_offset() };
     Ok(Reduced {
@@ -123,7 +123,7 @@ fn all_mountings(
 /// Samples of the longest record, if all files tell at a glance.
 fn most_rows_at_a_glance(session: &Session) -> Option<u64> {
     let count = session.experiment.mountings.len();
-    let rows = (0..count).map(|number| table::rows_at_a_glance(session.record_file(number).ok()?));
+    let rows = (0..count).map(|number| centrical_table::rows_at_a_glance(session.record_file(number).ok()?));
     rows.collect::<Option<Vec<_>>>()?.into_iter().max()
 }
 
@@ -155,17 +155,17 @@ impl<'a> Mounting<'a> {
         let refused =
             |source| Error::Reduction { file: file.to_owned(), mounting: number + 1, source: Box::new(source) };
         let telemetry = session.telemetry(*number)?;
-        let located = survey.locate(telemetry.as_ref(), &schedule).map_err(refused)?;
+        let located = locate(survey, telemetry.as_ref(), &schedule).map_err(refused)?;
         let averaged = record.windows(kept, &&located)?;
         let averaged = averaged.into_iter().collect::<Result<_, _>>().map_err(refused)?;
         let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
-        Ok((located.into_mounting(averaged), overview))
+        Ok((ReducedMounting::new(located, averaged), overview))
     }
 }
 
 /// A plateau under way, or what was wrong with it.
 impl<'a> Windows for &'a Located {
-    type Window = Result<Plateau<'a>, ReductionError>;
+    type Window = Result<Averaging<'a>, ReductionError>;
     type Mean = Result<PlateauFit, ReductionError>;
 
     fn parts(&self) -> Vec<Vec<[f64; 2]>> {
@@ -173,7 +173,7 @@ impl<'a> Windows for &'a Located {
     }
 
     fn begin(&self, window: usize) -> Self::Window {
-        Ok(self.plateau(window))
+        Ok(Averaging::new(self, window))
     }
 
     fn add(&self, window: &mut Self::Window, part: [f64; 2], samples: RecordSlice, repeated: usize) {
@@ -184,6 +184,6 @@ impl<'a> Windows for &'a Located {
     }
 
     fn end(&self, window: Self::Window) -> Self::Mean {
-        window.and_then(Plateau::finish)
+        window.and_then(Averaging::finish)
     }
 }

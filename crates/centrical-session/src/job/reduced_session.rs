@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
+use centrical_table::{TableFormat, create_folder, write_whole};
 use toml_edit::{DocumentMut, Item, TableLike, Value, value};
 
-use super::simulate::TableFormat;
 use crate::error::{Error, Place};
 use crate::experiment::{EXPERIMENT_FILE, PlateauMean, Session, read_text, write_plateaus, write_plateaus_parquet};
 use crate::reduced::Reduced;
-use crate::write::{create_folder, write_whole};
 
 /// Keys of a mounting that say what the table of plateaus says now.
 const REPLACED: [&str; 3] = ["record", "telemetry", "plateaus"];
@@ -31,7 +30,7 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
     };
     let text = experiment(&session.file, name)?;
     write(&folder.join(name), &reduced.table(session))?;
-    write_whole(&experiment_file, text.as_bytes())
+    Ok(write_whole(&experiment_file, text.as_bytes())?)
 }
 
 /// The experiment file with the table instead of records, and all else, comments too, as it was.

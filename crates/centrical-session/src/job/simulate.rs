@@ -4,5 +4,4 @@ mod files;
 mod session;
 mod session_text;
 
-pub use self::files::TableFormat;
 pub use self::session::simulate_session;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-use centrical::reduction::{NoiseModel, ReducedMounting, ReductionError, ScheduledPlateau, reduce};
+use centrical::reduction::{NoiseModel, ReducedMounting, ReductionError, ScheduledPlateau, plateau_means, reduce};
 use centrical::{Observation, SetPoint, linear};
 
 use crate::error::Error;
@@ -161,7 +161,7 @@ impl<'s> Watch<'s> {
             return;
         }
         let so_far: Vec<ReducedMounting> = self.finished.iter().chain([reduced]).cloned().collect();
-        let means = reduced.means(&NoiseModel::pool(&so_far));
+        let means = plateau_means(reduced, &NoiseModel::pool(&so_far));
         let set_points = self.session.experiment.set_points.iter().enumerate();
         let there = set_points.filter(|(_, set_point)| set_point.mounting == mounting).map(|(index, _)| index);
         let fresh = there.zip(means).take(complete).skip(self.come);

@@ -4,9 +4,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use centrical::reduction::RecordSlice;
+use centrical_table::Index;
 
 use super::times::Times;
-use crate::table::Index;
 
 /// Bytes that records take at most: an hour at 1 kHz and more.
 const MOST: usize = 125_000_000;

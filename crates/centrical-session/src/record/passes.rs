@@ -4,12 +4,12 @@
 use std::path::Path;
 
 use centrical::reduction::{Record, RecordSlice, Survey};
+use centrical_table::{Block, Extent, Index};
 use rayon::prelude::*;
 
 use super::kept::Kept;
 use super::{Columns, Wanted, stretch};
 use crate::error::Error;
-use crate::table::{Block, Extent, Index};
 
 /// Samples of the windows that are averaged at a time, however many threads there are: their times are written out, 8 bytes each, and
 /// what is judged one by one is copied.
@@ -111,7 +111,7 @@ impl<'a> RecordFile<'a> {
                 self.wanted.give_back(block);
             })?;
             (self.progress)(index.bytes(raw));
-            Ok(())
+            Ok::<(), Error>(())
         };
         let steps: Vec<(usize, [f64; 2])> =
             (parts.iter().enumerate()).flat_map(|(k, parts)| parts.iter().map(move |part| (k, *part))).collect();

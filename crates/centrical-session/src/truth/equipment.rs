@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical::simulate::{Coloured, Gaps, Machine, Recorder, Sensor, Settings, Spikes, Tachometer};
+use centrical::simulate::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, Spikes, Tachometer};
 use serde::Deserialize;
 
 use crate::error::Error;
@@ -88,19 +88,19 @@ impl Given {
 }
 
 /// The equipment as the tables of `file` give it; plateaus' speeds err by `speed_error` unless it is given.
-pub(crate) fn settings(
+pub(crate) fn equipment(
     file: &Path,
     (machine, sensor, recorder, tachometer): (&MachineTable, &SensorTable, &RecorderTable, &TachometerTable),
     speed_error: f64,
-) -> Result<Settings, Error> {
-    let settings = Settings {
+) -> Result<Equipment, Error> {
+    let equipment = Equipment {
         machine: machine.read(&TomlPath::table(file, "machine"), &Machine { speed_error, ..Machine::default() })?,
         sensor: sensor.read(&TomlPath::table(file, "sensor"), &Sensor::default())?,
         recorder: recorder.read(&TomlPath::table(file, "recorder"), &Recorder::default())?,
         tachometer: tachometer.read(&TomlPath::table(file, "tachometer"), &Tachometer::default())?,
     };
-    settings.check().map_err(|source| Error::Simulation { file: file.to_owned(), source })?;
-    Ok(settings)
+    equipment.check().map_err(|source| Error::Simulation { file: file.to_owned(), source })?;
+    Ok(equipment)
 }
 
 impl MachineTable {
@@ -143,7 +143,7 @@ impl RecorderTable {
                 probability: self.spikes.probability.or(spikes.probability, at, "spikes.probability", Ratio)?,
                 size: self.spikes.size.or(spikes.size, at, "spikes.size", Acceleration)?,
             },
-            gaps: Gaps {
+            gaps: Losses {
                 probability: self.gaps.probability.or(gaps.probability, at, "gaps.probability", Ratio)?,
                 length: self.gaps.length.or(gaps.length, at, "gaps.length", Ratio)?,
             },

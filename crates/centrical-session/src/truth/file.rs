@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use centrical::simulate::{Settings, draw_truth};
+use centrical::simulate::{Equipment, draw_truth};
 use centrical::{Extension, MeasurementModel, Parameter};
 use serde::Deserialize;
 
-use super::equipment::{MachineTable, RecorderTable, SensorTable, TachometerTable, settings};
+use super::equipment::{MachineTable, RecorderTable, SensorTable, TachometerTable, equipment};
 use crate::error::Error;
 use crate::experiment::{Session, TomlPath, parse_form};
 use crate::quantity::{Dimension, Quantity};
@@ -23,7 +23,7 @@ pub struct Truth {
     /// True values in the order of the model's parameters, SI.
     pub values: Vec<f64>,
     /// The equipment.
-    pub settings: Settings,
+    pub equipment: Equipment,
 }
 
 /// The whole file. Every key is known here: one that is not is an error.
@@ -65,8 +65,8 @@ impl Truth {
         let (model, sources) = model(plan, &form);
         let values = values(file, &form, &model, sources, seed)?;
         let tables = (&form.machine, &form.sensor, &form.recorder, &form.tachometer);
-        let settings = settings(file, tables, plan.speed_uncertainty)?;
-        Ok(Self { file: file.to_owned(), model, values, settings })
+        let equipment = equipment(file, tables, plan.experiment.centrifuge.speed_uncertainty)?;
+        Ok(Self { file: file.to_owned(), model, values, equipment })
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use tempfile::TempDir;
 
 /// A right experiment file.
-pub const EXPERIMENT: &str = include_str!("../data/experiment.toml");
+pub const EXPERIMENT: &str = include_str!("../fuzz/seeds/experiment.toml");
 
 /// A session folder of its own, with this experiment file.
 pub struct Sample {

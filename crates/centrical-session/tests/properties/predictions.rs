@@ -31,7 +31,6 @@ fn example(name: &str) -> PathBuf {
 struct Case {
     model: MeasurementModel,
     weights: Vec<Weight>,
-    speed_uncertainty: f64,
 }
 
 impl Case {
@@ -46,18 +45,17 @@ impl Case {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("plan.toml");
         std::fs::write(&file, text.replace("\"opposite\"", &format!("{pair_relation:?}"))).unwrap();
-        let Plan { model, weights, speed_uncertainty, .. } = read_plan(&file).unwrap().unwrap();
-        Self { model, weights, speed_uncertainty }
+        let Plan { model, weights, .. } = read_plan(&file).unwrap().unwrap();
+        Self { model, weights }
     }
 
     /// The best plan from the candidates of the example.
     fn planned() -> (Self, TypeB) {
         let mut planning = read_planning(&example("best.toml")).unwrap();
-        let plan = planning.plan(false).unwrap();
-        let (experiment, weights) = planning.candidates.experiment_of(&plan.schedule);
-        let scenario = &planning.candidates.scenarios[0];
-        let model = scenario.model.in_experiment(experiment);
-        (Self { model, weights, speed_uncertainty: scenario.speed_uncertainty }, planning.type_b)
+        let plan = planning.task.plan(false).unwrap();
+        let (experiment, weights) = planning.task.candidates.experiment_of(&plan.schedule);
+        let model = planning.task.model().in_experiment(experiment);
+        (Self { model, weights }, planning.task.type_b)
     }
 
     /// Unknowns of so many typical magnitudes, signs in turn.
@@ -77,12 +75,12 @@ impl Case {
 
     /// Scatter over prediction of every parameter that is determined: by both alike.
     fn compared(&self, name: &str, truth: &[f64], stated: TypeB) -> Vec<Compared> {
-        let prediction = predict(&self.model, &self.weights, self.speed_uncertainty, &stated, truth).unwrap();
+        let prediction = predict(&self.model, &self.weights, &stated, truth).unwrap();
         let observation =
             |w: &Weight| Observation { set_point: w.set_point, mean: Vector3::zeros(), covariance: w.covariance };
         let observations: Vec<Observation> = self.weights.iter().map(observation).collect();
         let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact, stated };
-        let shown = monte_carlo(&self.model, truth, &observations, self.speed_uncertainty, &settings, &|_| {}).unwrap();
+        let shown = monte_carlo(&self.model, truth, &observations, &settings, &|_| {}).unwrap();
         let mut compared = Vec::new();
         for (j, statistics) in shown.parameters.iter().enumerate() {
             let parameter = &self.model.parameters()[j].name;
@@ -135,7 +133,7 @@ fn every_parameter_of_the_best_plan_scatters_as_predicted() {
 #[ignore = "some minutes; run by .ci/run predictions"]
 fn every_parameter_of_the_source_scatters_as_predicted() {
     let normalised = Case::normalised();
-    let stated = read_planning(&example("best.toml")).unwrap().type_b;
+    let stated = read_planning(&example("best.toml")).unwrap().task.type_b;
     let all = normalised.model.parameters().len();
     assert_eq!(normalised.compare("[K5.5], type A", &normalised.truth(0.0), TypeB::default()), all);
     normalised.compare("[K5.5] of a unit with errors, type A and B", &normalised.truth(0.3), stated);
@@ -148,17 +146,16 @@ fn every_parameter_of_the_source_scatters_as_predicted() {
 fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
     let printed = Case::of("normalised.toml", "opposite");
     assert_eq!(printed.compare("[K5.5] as printed, type A", &printed.truth(1.0), TypeB::default()), 43);
-    let prediction = |truth: &[f64]| {
-        predict(&printed.model, &printed.weights, printed.speed_uncertainty, &TypeB::default(), truth).unwrap()
-    };
+    let prediction = |truth: &[f64]| predict(&printed.model, &printed.weights, &TypeB::default(), truth).unwrap();
     let (of_none, of_typical) = (prediction(&printed.truth(0.0)), prediction(&printed.truth(1.0)));
     for j in 0..printed.model.parameters().len() {
         assert_eq!(of_none.standard_uncertainty(j), of_typical.standard_uncertainty(j));
     }
+    let mut experiment = printed.model.experiment().clone();
+    experiment.centrifuge.speed_uncertainty *= 1e-2;
     let quiet = Case {
+        model: printed.model.in_experiment(experiment),
         weights: printed.weights.iter().map(|w| Weight { covariance: w.covariance * 1e-4, ..*w }).collect(),
-        speed_uncertainty: 1e-2 * printed.speed_uncertainty,
-        ..printed
     };
     let model = &quiet.model;
     let j = model.parameters().find("delta_2[3]").unwrap();
@@ -169,7 +166,7 @@ fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
         .collect();
     let settings = Settings { runs: 4000, seed: 3, coverage: 0.95, method: Method::Exact, stated: TypeB::default() };
     let zero = quiet.truth(0.0);
-    let shown = monte_carlo(model, &zero, &observations, quiet.speed_uncertainty, &settings, &|_| {}).unwrap();
+    let shown = monte_carlo(model, &zero, &observations, &settings, &|_| {}).unwrap();
     let statistics = shown.parameters[j].unwrap();
     let ratio = statistics.standard_deviation / statistics.stated;
     println!("[K5.5] as printed, at zero, a hundredth of the noise: delta_2[3] {ratio:.4}");

@@ -8,7 +8,7 @@ use centrical::{ErrorModel, Experiment, Monomial, PairRelation, ReferencePoint};
 use centrical_session::{Column, ColumnName, PlateauMean, Scale, Session, write_plateaus};
 use nalgebra::{Matrix3, Vector3};
 
-const EXPERIMENT: &str = include_str!("../data/experiment.toml");
+const EXPERIMENT: &str = include_str!("../fuzz/seeds/experiment.toml");
 
 fn read(experiment: &str) -> Session {
     let folder = tempfile::tempdir().unwrap();
@@ -38,7 +38,7 @@ fn what_is_written_is_read() {
     assert_eq!(experiment.unit.rho_z, rho_z);
     assert_eq!(experiment.pair_relation, PairRelation::Common);
     assert_eq!(session.error_model, ErrorModel::kozlov_2017());
-    assert_eq!(session.speed_uncertainty, 1e-5);
+    assert_eq!(session.experiment.centrifuge.speed_uncertainty, 1e-5);
     assert_eq!(experiment.mountings[1].arm_y, Vector3::new(500.0 * 1e-3, 0.0, 0.0));
     let set: Vec<_> = experiment.set_points.iter().map(|p| (p.mounting, p.omega, p.angle)).collect();
     let spin = 133.8 * (TAU / 60.0);

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use centrical::reduction::{NoiseModel, ReducedMounting, ScheduledPlateau, reduce};
+use centrical::reduction::{NoiseModel, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
 use centrical::{SetPoint, linear};
 use centrical_session::{RecordWriter, Session, read_record, reduce_without_inputs};
 use tempfile::TempDir;
@@ -44,7 +44,7 @@ fn from_files_as_from_memory() {
     };
     let mountings: Vec<ReducedMounting> = (0..experiment.mountings.len()).map(mounting).collect();
     let noise = NoiseModel::pool(&mountings);
-    let means: Vec<_> = mountings.iter().flat_map(|mounting| mounting.means(&noise)).collect();
+    let means: Vec<_> = mountings.iter().flat_map(|mounting| plateau_means(mounting, &noise)).collect();
     let folder = TempDir::new().unwrap();
     for session in [&session, &as_parquet(folder.path())] {
         let reduced = reduce_without_inputs(session, &|_| {}).unwrap();

@@ -67,7 +67,9 @@ fn compare(name: &str, seed: u64) {
     assert_eq!(ours.len(), theirs.len());
     let mut squares = Vector3::zeros();
     for ((a, b), set_point) in ours.iter().zip(&theirs).zip(&truth.model.experiment().set_points) {
-        let speed = truth.model.linearise(set_point, &truth.values).speed * truth.settings.machine.speed_error;
+        let stated = truth.model.experiment().centrifuge.speed_uncertainty;
+        let speed = truth.model.linearise(set_point, &truth.values).speed_error
+            * (truth.equipment.machine.speed_error / stated);
         let covariance = a.covariance + b.covariance + 2.0 * speed * speed.transpose();
         let factor = Cholesky::new(covariance).unwrap();
         let whitened = factor.l_dirty().solve_lower_triangular(&(a.mean - b.mean)).unwrap();

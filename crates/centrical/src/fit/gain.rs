@@ -5,10 +5,11 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, QR};
 
-use super::{Fit, NULL_HOLD, Structure};
+use super::{Fit, Structure};
 use crate::design::{Design, Observation, Whitener};
 use crate::error::FitError;
 use crate::measurement::{Linearisation, MeasurementModel};
+use crate::parameter::NULL_HOLD;
 
 /// The factored design at the estimate of a fit.
 #[derive(Debug, Clone)]
@@ -23,24 +24,18 @@ pub struct Gain {
 }
 
 impl Gain {
-    /// Gain of `fit`, which was made of `observations` of `model` with `speed_uncertainty`.
+    /// Gain of `fit`, which was made of `observations` of `model`.
     ///
     /// # Errors
     /// [`FitError`] when an observation cannot be one.
-    pub fn of(
-        fit: &Fit,
-        model: &MeasurementModel,
-        observations: &[Observation],
-        speed_uncertainty: f64,
-    ) -> Result<Self, FitError> {
-        let structure = Structure::of(model, observations, speed_uncertainty)?;
+    pub fn of(fit: &Fit, model: &MeasurementModel, observations: &[Observation]) -> Result<Self, FitError> {
+        let structure = Structure::of(model, observations)?;
         let set_points = &model.experiment().set_points;
         let linearisations: Vec<Linearisation> =
             observations.iter().map(|o| model.linearise(&set_points[o.set_point], fit.state())).collect();
-        let design = Design::at(fit.state(), model, observations, &linearisations, speed_uncertainty)?;
+        let design = Design::at(fit.state(), model, observations, &linearisations)?;
         let pairs = observations.iter().zip(&linearisations);
-        let whiteners =
-            pairs.map(|(o, l)| Whitener::new(&o.into(), &l.speed, speed_uncertainty)).collect::<Result<_, _>>()?;
+        let whiteners = pairs.map(|(o, l)| Whitener::new(&o.into(), &l.speed_error)).collect::<Result<_, _>>()?;
         let hold = if fit.null_directions_held { 1.0 / NULL_HOLD } else { 0.0 };
         let equations = structure.equations(&design, &DVector::from_column_slice(fit.state()), hold);
         let (rows, qr) = (equations.rows.nrows(), equations.rows.qr());

@@ -32,22 +32,20 @@ use crate::measurement::{Linearisation, MeasurementModel};
 
 /// Weighted least squares on the source's linear model [K5.3], one pass of the filter in the order of `observations`.
 ///
-/// `speed_uncertainty` is the relative standard uncertainty of a plateau's speed.
-///
 /// # Errors
 /// [`FitError`] when an observation cannot be one.
-pub fn linear(model: &MeasurementModel, observations: &[Observation], speed_uncertainty: f64) -> Result<Fit, FitError> {
-    let structure = Structure::by(filtered, model, observations, speed_uncertainty)?;
-    Ok(Start::new(&structure, filtered, model, observations, speed_uncertainty)?.solve())
+pub fn linear(model: &MeasurementModel, observations: &[Observation]) -> Result<Fit, FitError> {
+    let structure = Structure::by(filtered, model, observations)?;
+    Ok(Start::new(&structure, filtered, model, observations)?.solve())
 }
 
 /// The iterated filter on the exact model, from the linear solution, in the order of `observations`.
 ///
 /// # Errors
 /// [`FitError`] when an observation cannot be one.
-pub fn exact(model: &MeasurementModel, observations: &[Observation], speed_uncertainty: f64) -> Result<Fit, FitError> {
-    let structure = Structure::by(filtered, model, observations, speed_uncertainty)?;
-    Search::from(Start::new(&structure, filtered, model, observations, speed_uncertainty)?, model).run()
+pub fn exact(model: &MeasurementModel, observations: &[Observation]) -> Result<Fit, FitError> {
+    let structure = Structure::by(filtered, model, observations)?;
+    Search::from(Start::new(&structure, filtered, model, observations)?, model).run()
 }
 
 /// One pass of the filter over all plateaus and the smoothing back; then the priors.
@@ -56,11 +54,10 @@ fn filtered(
     model: &MeasurementModel,
     observations: &[Observation],
     linearisations: &[Linearisation],
-    speed_uncertainty: f64,
 ) -> Result<Design, FitError> {
     let order: Vec<usize> = observations.iter().map(|o| o.set_point).collect();
     let lives = Lives::new(model, &order);
-    let data = pass(&lives, observations, linearisations, speed_uncertainty)?.smoothed();
+    let data = pass(&lives, observations, linearisations)?.smoothed();
     Ok(data.with_priors(model.priors(), &DVector::from_column_slice(x)))
 }
 
@@ -69,11 +66,10 @@ fn pass<'a>(
     lives: &'a Lives,
     observations: &[Observation],
     linearisations: &[Linearisation],
-    speed_uncertainty: f64,
 ) -> Result<Filter<'a>, FitError> {
     let mut filter = Filter::new(lives);
     for (place, (observation, linearisation)) in observations.iter().zip(linearisations).enumerate() {
-        filter.update(place, &Readings::new(observation, linearisation, speed_uncertainty)?)?;
+        filter.update(place, &Readings::new(observation, linearisation)?)?;
     }
     Ok(filter)
 }

@@ -79,7 +79,7 @@ impl MeasurementModel {
         };
         Linearisation {
             reading,
-            speed: self.by_log_speed(set_point, x, &partials),
+            speed_error: self.by_log_speed(set_point, x, &partials) * self.experiment.centrifuge.speed_uncertainty,
             columns: self.columns(set_point, &partials, &monomials),
         }
     }

@@ -36,8 +36,9 @@ impl MeasurementModel {
             .filter(|(_, derivative)| *derivative != Vector3::zeros())
             .collect();
         let omega = set_point.omega;
-        let speed = n.by_rate() * (omega * (2.0 * omega + experiment.site.coriolis()));
-        Linearisation { reading: f0, speed, columns }
+        let by_log_speed = n.by_rate() * (omega * (2.0 * omega + experiment.site.coriolis()));
+        let speed_error = by_log_speed * experiment.centrifuge.speed_uncertainty;
+        Linearisation { reading: f0, speed_error, columns }
     }
 
     /// Column of `g H`, by what the parameter is.
@@ -56,7 +57,7 @@ impl MeasurementModel {
             Kind::Term(index) => {
                 // df0 + Gamma(f0) f0
                 let term = &self.error_model.terms[index];
-                Vector3::ith(term.axis, term.monomial.value(f0))
+                Vector3::ith(term.axis, term.monomial.value((*f0).into()))
             }
             _ => match self.extension_share(set_point, kind) {
                 Share::None => Vector3::zeros(),

@@ -87,7 +87,7 @@ impl Addition {
         }
         let (experiment, weights) = draft.finish();
         let model = model.unwrap_or_else(|| study.model().in_experiment(experiment));
-        Study::at_zero(model, weights, study.speed_uncertainty())
+        Study::at_zero(model, weights)
     }
 
     /// Rank of its kind in the order of cost, and the number of plateaus, mountings or fixtures it takes.

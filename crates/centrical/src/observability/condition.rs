@@ -163,7 +163,7 @@ impl Study {
     fn lost_without(&self, removed: &dyn Fn(&SetPoint) -> bool) -> usize {
         let set_points = &self.model().experiment().set_points;
         let weights: Vec<_> = self.weights().iter().filter(|w| !removed(&set_points[w.set_point])).copied().collect();
-        let Ok(study) = Self::at_zero(self.model().clone(), weights, self.speed_uncertainty()) else {
+        let Ok(study) = Self::at_zero(self.model().clone(), weights) else {
             return self.observability().columns();
         };
         let unused = self.model().parameters().iter().enumerate().filter(|(j, parameter)| {

@@ -161,8 +161,7 @@ pub(super) fn new_angle(study: &Study) -> Option<Addition> {
 pub(super) fn new_speed(study: &Study) -> Option<Addition> {
     let experiment = study.model().experiment();
     let middle = widest_gap(experiment.set_points.iter().map(|s| s.omega * s.omega))?;
-    let sign = experiment.set_points.iter().map(|s| s.omega).find(|omega| *omega != 0.0)?.signum();
-    let omega = sign * middle.sqrt();
+    let omega = experiment.centrifuge.rotation.sign() * middle.sqrt();
     Some(Addition::Speed { mountings: (0..experiment.mountings.len()).collect(), omega })
 }
 

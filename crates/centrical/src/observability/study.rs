@@ -12,7 +12,6 @@ use super::{Combination, Observability};
 pub struct Study {
     model: MeasurementModel,
     weights: Vec<Weight>,
-    speed_uncertainty: f64,
     linearisations: Vec<Linearisation>,
     observability: Observability,
     of_data: Option<Observability>,
@@ -22,41 +21,29 @@ impl Study {
     /// Studies the source's design `H` [K5.3], at `X = 0`, where the structure of the experiment is exact: what is
     /// lost there is lost for good, though second-order traces of it may show elsewhere.
     ///
-    /// `speed_uncertainty` is the relative standard uncertainty of a plateau's speed. Priors are those of the model.
-    ///
     /// # Errors
     /// [`FitError`] when a weight names no plateau or is no covariance, or when numbers overflow.
-    pub fn at_zero(model: MeasurementModel, weights: Vec<Weight>, speed_uncertainty: f64) -> Result<Self, FitError> {
+    pub fn at_zero(model: MeasurementModel, weights: Vec<Weight>) -> Result<Self, FitError> {
         check(&model, &weights)?;
         let set_points = &model.experiment().set_points;
         let linearisations = weights.iter().map(|w| model.linearise_at_zero(&set_points[w.set_point])).collect();
-        Self::of(model, weights, speed_uncertainty, linearisations)
+        Self::of(model, weights, linearisations)
     }
 
     /// Studies the exact model's design at the unknowns `x`.
     ///
     /// # Errors
     /// As [`Study::at_zero`].
-    pub fn at(
-        model: MeasurementModel,
-        weights: Vec<Weight>,
-        speed_uncertainty: f64,
-        x: &[f64],
-    ) -> Result<Self, FitError> {
+    pub fn at(model: MeasurementModel, weights: Vec<Weight>, x: &[f64]) -> Result<Self, FitError> {
         check(&model, &weights)?;
         let set_points = &model.experiment().set_points;
         let linearisations = weights.iter().map(|w| model.linearise(&set_points[w.set_point], x)).collect();
-        Self::of(model, weights, speed_uncertainty, linearisations)
+        Self::of(model, weights, linearisations)
     }
 
-    fn of(
-        model: MeasurementModel,
-        weights: Vec<Weight>,
-        speed_uncertainty: f64,
-        linearisations: Vec<Linearisation>,
-    ) -> Result<Self, FitError> {
+    fn of(model: MeasurementModel, weights: Vec<Weight>, linearisations: Vec<Linearisation>) -> Result<Self, FitError> {
         let columns = model.parameters().len();
-        let mut rows = whitened_rows(&weights, &linearisations, speed_uncertainty, columns)?;
+        let mut rows = whitened_rows(&weights, &linearisations, columns)?;
         if rows.iter().any(|entry| !entry.is_finite()) {
             return Err(FitError::Overflow);
         }
@@ -68,7 +55,7 @@ impl Study {
             rows.rows_mut(n, priors.len()).copy_from(&prior::rows(priors, columns));
         }
         let observability = Observability::of(&rows);
-        Ok(Self { model, weights, speed_uncertainty, linearisations, observability, of_data })
+        Ok(Self { model, weights, linearisations, observability, of_data })
     }
 
     /// The model under study.
@@ -79,11 +66,6 @@ impl Study {
     /// What is known of its plateaus.
     pub fn weights(&self) -> &[Weight] {
         &self.weights
-    }
-
-    /// Relative standard uncertainty of a plateau's speed.
-    pub fn speed_uncertainty(&self) -> f64 {
-        self.speed_uncertainty
     }
 
     /// The plateaus' linearisations, in the order of the weights.

@@ -40,8 +40,6 @@ pub struct Scenario {
     pub nominal: Vec<f64>,
     /// The expected noise.
     pub noise: Noise,
-    /// Relative standard uncertainty of the speed of a plateau.
-    pub speed_uncertainty: f64,
     /// Its weight among the scenarios. Weights are divided by their sum.
     pub weight: f64,
 }

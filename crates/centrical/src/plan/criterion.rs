@@ -159,7 +159,7 @@ impl ReadingRange {
         let mut rows = DMatrix::zeros(3 * nodes.len(), terms.len());
         for (n, (force, weight)) in nodes.iter().enumerate() {
             for (t, term) in terms.iter().enumerate() {
-                rows[(3 * n + term.axis, t)] = term.monomial.value(force) * (weight / 3.0).sqrt();
+                rows[(3 * n + term.axis, t)] = term.monomial.value((*force).into()) * (weight / 3.0).sqrt();
             }
         }
         // The triangle has the same squares in as many rows as there are terms.

@@ -110,7 +110,7 @@ impl Task {
         let expected =
             |p: &Parameter| scenario.model.parameters().find(&p.name).map_or(0.0, |j| scenario.nominal[j]);
         let nominal: Vec<f64> = model.parameters().iter().map(expected).collect();
-        predict(&model, &weights, scenario.speed_uncertainty, &self.type_b, &nominal)
+        predict(&model, &weights, &self.type_b, &nominal)
     }
 
     /// The goals as a prediction reaches them.

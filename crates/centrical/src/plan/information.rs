@@ -15,8 +15,8 @@ use super::criterion::{Columns, Criterion};
 use super::error::PlanError;
 use crate::design::{Weight, total_covariance};
 use crate::experiment::SetPoint;
-use crate::fit::NULL_HOLD;
 use crate::measurement::{Linearisation, MeasurementModel};
+use crate::parameter::NULL_HOLD;
 
 /// Candidates whose rows are folded in at once: as many as stay in the nearest cache with the triangle.
 const AT_ONCE: usize = 16;
@@ -77,7 +77,7 @@ impl LinearisedScenario {
         for n in 0..candidates.len() {
             for &duration in &candidates.durations {
                 let weight = scenario.noise.weight(n, duration);
-                precisions.push(precision(model, &scenario.nominal, &weight, scenario.speed_uncertainty)?);
+                precisions.push(precision(model, &scenario.nominal, &weight)?);
             }
         }
         Ok(Self { weight: scenario.weight / total, precisions, ..Self::of(model, &scenario.nominal, criterion)? })
@@ -310,15 +310,10 @@ fn linearised(model: &MeasurementModel, nominal: &[f64], set_point: &SetPoint) -
 }
 
 /// `Sigma^-1` of the mean of a plateau, its speed error included.
-pub(super) fn precision(
-    model: &MeasurementModel,
-    nominal: &[f64],
-    weight: &Weight,
-    speed_uncertainty: f64,
-) -> Result<Matrix3<f64>, PlanError> {
+pub(super) fn precision(model: &MeasurementModel, nominal: &[f64], weight: &Weight) -> Result<Matrix3<f64>, PlanError> {
     let set_points = &model.experiment().set_points;
-    let speed = linearised(model, nominal, &set_points[weight.set_point]).speed;
-    let total = total_covariance(&weight.covariance, &speed, speed_uncertainty);
+    let speed_error = linearised(model, nominal, &set_points[weight.set_point]).speed_error;
+    let total = total_covariance(&weight.covariance, &speed_error);
     let precision = total.cholesky().map(|factor| factor.inverse());
     precision.filter(|p| p.iter().all(|v| v.is_finite())).ok_or(PlanError::Noise { candidate: weight.set_point })
 }

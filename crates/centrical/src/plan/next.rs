@@ -24,18 +24,17 @@ pub struct Benefit {
 /// [`PlanError`] when a weight is invalid, or a goal names an unknown parameter.
 pub fn next_best(
     model: &MeasurementModel,
-    speed_uncertainty: f64,
     criterion: &Criterion,
     taken: &[Weight],
     candidates: &[Weight],
 ) -> Result<Vec<Benefit>, PlanError> {
     let none = vec![0.0; model.parameters().len()];
     let scenario = LinearisedScenario::of(model, &none, criterion)?;
-    let factor = factor_of(&scenario, (model, &none), speed_uncertainty, taken)?;
+    let factor = factor_of(&scenario, (model, &none), taken)?;
     let before = LinearisedScenario::value(&factor);
     let mut benefits = Vec::with_capacity(candidates.len());
     for candidate in candidates {
-        let dn = precision(model, &none, candidate, speed_uncertainty)?;
+        let dn = precision(model, &none, candidate)?;
         let after = scenario.value_after(&factor, &scenario.insight(&factor, candidate.set_point), &dn);
         benefits.push(Benefit { set_point: candidate.set_point, factor: (0.5 * (after - before)).exp() });
     }
@@ -46,10 +45,8 @@ pub fn next_best(
 fn factor_of(
     scenario: &LinearisedScenario,
     (model, none): (&MeasurementModel, &[f64]),
-    speed_uncertainty: f64,
     taken: &[Weight],
 ) -> Result<Factor, PlanError> {
-    let information =
-        taken.iter().map(|weight| Ok((weight.set_point, precision(model, none, weight, speed_uncertainty)?)));
+    let information = taken.iter().map(|weight| Ok((weight.set_point, precision(model, none, weight)?)));
     Ok(scenario.factor(&information.collect::<Result<Vec<(usize, Matrix3<f64>)>, PlanError>>()?))
 }

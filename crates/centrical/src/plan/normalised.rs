@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::experiment::{Experiment, Mounting, PairRelation, ReferencePoint, SetPoint, Site, Unit};
+use crate::experiment::{Centrifuge, Experiment, Mounting, PairRelation, ReferencePoint, SetPoint, Site, Unit};
 use crate::position::{ThirdPosition, kozlov_2017};
 
 /// The normalised experiment [K5.5]: six positions, `R* Omega*^2 / g = 10`, speeds `Omega* sqrt(m)`.
@@ -65,6 +65,7 @@ impl Normalised {
         Experiment {
             site: Site { gravity: self.gravity, latitude: None },
             unit: Unit { rho_z: self.rho * self.arm, reference: ReferencePoint::FirstProofMass },
+            centrifuge: Centrifuge::default(),
             positions,
             pair_relation: self.pair_relation,
             mountings,

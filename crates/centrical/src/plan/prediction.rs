@@ -41,14 +41,13 @@ pub struct Prediction {
 pub fn predict(
     model: &MeasurementModel,
     weights: &[Weight],
-    speed_uncertainty: f64,
     stated: &TypeB,
     truth: &[f64],
 ) -> Result<Prediction, FitError> {
-    let (truth, structure) = unit_with_structure(model, weights, speed_uncertainty, truth)?;
+    let (truth, structure) = unit_with_structure(model, weights, truth)?;
     let perfect = readings(model, weights, &truth);
-    let fit = fit::exact_with(&structure, model, &perfect, speed_uncertainty)?;
-    let budget = Budget::new(&fit, model, &perfect, speed_uncertainty, stated)?;
+    let fit = fit::exact_with(&structure, model, &perfect)?;
+    let budget = Budget::new(&fit, model, &perfect, stated)?;
     let leans = (0..truth.len()).map(|j| budget.leans_on_lost(&fit, j)).collect();
     Ok(Prediction { model: model.clone(), budget, leans })
 }
@@ -58,22 +57,16 @@ pub fn predict(
 ///
 /// # Errors
 /// As [`predict`].
-pub fn unit_of(
-    model: &MeasurementModel,
-    weights: &[Weight],
-    speed_uncertainty: f64,
-    expected: &[f64],
-) -> Result<Vec<f64>, FitError> {
-    unit_with_structure(model, weights, speed_uncertainty, expected).map(|(unit, _)| unit)
+pub fn unit_of(model: &MeasurementModel, weights: &[Weight], expected: &[f64]) -> Result<Vec<f64>, FitError> {
+    unit_with_structure(model, weights, expected).map(|(unit, _)| unit)
 }
 
 fn unit_with_structure(
     model: &MeasurementModel,
     weights: &[Weight],
-    speed_uncertainty: f64,
     expected: &[f64],
 ) -> Result<(Vec<f64>, Structure), FitError> {
-    let structure = Structure::of(model, &readings(model, weights, expected), speed_uncertainty)?;
+    let structure = Structure::of(model, &readings(model, weights, expected))?;
     let is_short = structure.observability().rank() < expected.len();
     let expects_none = expected.iter().all(|value| *value == 0.0);
     let unit = if expects_none && is_short { model.parameters().typical_in_turn() } else { expected.to_vec() };
@@ -136,8 +129,8 @@ impl Prediction {
     /// coefficient is not determined.
     pub fn curves(&self, range: f64, points: usize) -> Option<[Vec<CurvePoint>; 3]> {
         let covariance = self.covariance()?;
-        let coefficients = vec![0.0; covariance.nrows()];
-        let compensated = Compensated::new(self.model.error_model().clone(), coefficients, covariance)?;
+        let nominal = self.model.error_model().with_coefficients(&vec![0.0; covariance.nrows()]);
+        let compensated = Compensated::new(nominal, covariance)?;
         Some([0, 1, 2].map(|axis| compensated.curve(&Vector3::ith(axis, 1.0), range, points)))
     }
 

@@ -1,11 +1,11 @@
-//! What can be wrong with a record, in the user's words.
+//! The reasons why a record cannot be reduced, in the user's words.
 
 use std::fmt;
 
 use nalgebra::Vector3;
 use thiserror::Error;
 
-use super::Mistake;
+use super::mistake::Mistake;
 
 /// Why a record could not be reduced.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -66,13 +66,13 @@ pub enum ReductionError {
         /// Shortest that can be averaged [s].
         least: f64,
     },
-    /// The record was taken down by mistake: it is decisively better explained otherwise than as it stands.
+    /// A recording mistake explains the record decisively better than the session's description.
     #[error(
         "readings fit {mistake}: on plateau {} at {omega:.3} rad/s found {}, expected about {}",
         index + 1, Level(found_z), Level(level_z)
     )]
     Mistaken {
-        /// What explains the readings.
+        /// The mistake that explains the readings.
         mistake: Box<Mistake>,
         /// Index of the plateau in the schedule where it shows most.
         index: usize,
@@ -89,12 +89,12 @@ pub enum ReductionError {
          expected 1; the sign of rotation is wrong, or that of the newtonometer across the arm"
     )]
     Rotation {
-        /// Ramps that tell.
+        /// Ramps that were compared.
         ramps: usize,
         /// The tangential part of the readings over the expected one.
         part: f64,
     },
-    /// A newtonometer stands still on a plateau.
+    /// A newtonometer is stuck on a plateau.
     #[error(
         "plateau {} from {:.3} s to {:.3} s: f{} reads exactly {value} m/s^2 in {stuck} of {samples} samples: \
          a stuck newtonometer, or one beyond its range; expected noise", index + 1, window[0], window[1], axis + 1
@@ -106,9 +106,9 @@ pub enum ReductionError {
         window: [f64; 2],
         /// Newtonometer, 0 to 2.
         axis: usize,
-        /// The reading at which it stands most [m/s^2].
+        /// Its most frequent reading [m/s^2].
         value: f64,
-        /// Samples there.
+        /// Samples in the window.
         samples: usize,
         /// Samples that are stuck.
         stuck: usize,
@@ -127,7 +127,7 @@ pub enum ReductionError {
         axis: usize,
         /// The end of the range [m/s^2].
         value: f64,
-        /// Samples there.
+        /// Samples in the window.
         samples: usize,
         /// Samples at the end of the range.
         piled_up: usize,
@@ -142,12 +142,12 @@ pub enum ReductionError {
         index: usize,
         /// Where it was found [s].
         window: [f64; 2],
-        /// Samples there.
+        /// Samples in the window.
         samples: usize,
         /// Samples that were not taken for spikes last.
         good: usize,
     },
-    /// Sampling and rotation in step: a constant and the once-per-revolution term look the same.
+    /// Sampling and rotation in step: a constant and the once-per-revolution term cannot be separated.
     #[error(
         "plateau {}: {omega} rad/s sampled every {interval} s shows the same phase of the revolution each time; \
          its mean cannot be told from the once-per-revolution term", index + 1
@@ -171,7 +171,7 @@ pub struct Stretch {
     pub level_z: Vector3<f64>,
     /// The scheduled plateau it was taken for.
     pub plateau: Option<usize>,
-    /// The scheduled plateaus whose level it has, in whatever order.
+    /// The scheduled plateaus whose level it has, whatever their order.
     pub resembles: Vec<usize>,
 }
 

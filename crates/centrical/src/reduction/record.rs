@@ -1,8 +1,5 @@
 //! A mounting's continuous record, whole or a stretch of it.
 
-use super::ReductionError;
-use super::blocks::SAMPLES;
-
 /// One mounting's continuous record, instrument axes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Record {
@@ -22,7 +19,7 @@ pub struct RecordSlice<'a> {
 }
 
 impl Record {
-    /// The whole of it.
+    /// All of it.
     pub fn as_slice(&self) -> RecordSlice<'_> {
         RecordSlice { t: &self.t, f_z: self.f_z.each_ref().map(Vec::as_slice) }
     }
@@ -40,27 +37,6 @@ impl Record {
         self.t.clear();
         self.f_z.iter_mut().for_each(Vec::clear);
     }
-
-    /// Refuses what is no record: columns of different lengths, hardly a sample, time that runs backwards.
-    pub(super) fn check(&self) -> Result<(), ReductionError> {
-        let times = self.t.len();
-        let readings = self.f_z.each_ref().map(Vec::len);
-        if readings != [times; 3] {
-            return Err(ReductionError::UnequalColumns { times, readings });
-        }
-        let expected = 3 * SAMPLES;
-        if times < expected {
-            return Err(ReductionError::TooShort { found: times, expected });
-        }
-        let mut before = f64::NEG_INFINITY;
-        for (i, &found) in self.t.iter().enumerate() {
-            if !found.is_finite() || found < before {
-                return Err(ReductionError::Time { sample: i + 1, found, before });
-            }
-            before = found;
-        }
-        Ok(())
-    }
 }
 
 impl<'a> RecordSlice<'a> {
@@ -68,7 +44,7 @@ impl<'a> RecordSlice<'a> {
     #[must_use]
     pub fn repeated(&self, before: f64) -> Vec<usize> {
         let next = self.t.get(1..).unwrap_or_default();
-        // All are looked at, side by side: nearly always there is none.
+        // All are compared side by side first: repeated stamps are rare.
         let count = self.t.iter().zip(next).filter(|(t, next)| next <= t).count();
         if count == 0 && self.t.first().is_none_or(|first| *first > before) {
             return Vec::new();
@@ -77,7 +53,8 @@ impl<'a> RecordSlice<'a> {
         (0..self.t.len()).filter(is_repeated).collect()
     }
 
-    /// The record without these samples, in ascending order: few as a rule, and what is between them is copied at once.
+    /// The record without these samples, given in ascending order. They are few as a rule: each stretch between them is copied
+    /// at once.
     #[must_use]
     pub fn without(&self, samples: &[usize]) -> Record {
         let room = || Vec::with_capacity(self.t.len() - samples.len());

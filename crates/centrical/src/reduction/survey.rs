@@ -1,29 +1,28 @@
-//! The two passes over a record, from stretches of any length: whoever reads a file needs to hold little of it.
+//! First pass: a record, stretch by stretch, becomes blocks. A reader of a file needs to hold little of it.
+
+mod block;
+mod blocks;
+mod grid;
 
 use nalgebra::Vector3;
 
-use super::block::Block;
-use super::blocks::{Blocks, Grid, whole};
-use super::clock::{self, ClockOffset, SpeedTrace};
-use super::plateau_fit::{Plateau, PlateauFit};
+use super::error::ReductionError;
 use super::record::{Record, RecordSlice};
-use super::window::{self, Windows};
-use super::{ReducedMounting, ReductionError, ScheduledPlateau, alignment};
+use block::Block;
+pub(super) use blocks::Blocks;
+use grid::{Grid, SAMPLES};
 
-/// Samples of a part of a window.
-const MOST: f64 = 1e6;
-
-/// First pass: a record, stretch by stretch, becomes blocks.
+/// The blocks of a record, gathered stretch by stretch.
 #[derive(Debug, Clone)]
 pub struct Survey {
     grid: Grid,
     blocks: Vec<Block>,
-    /// Samples of the block that the next stretch may go on with, and its number.
+    /// Samples of the block that the next stretch may continue, and its number.
     open: Record,
     number: usize,
 }
 
-/// A stretch condensed: its first and last block may be parts, and keep their samples.
+/// A condensed stretch: its first and last block may be incomplete, and keep their samples.
 #[derive(Debug, Clone)]
 pub struct Condensed {
     first: (usize, Record),
@@ -42,27 +41,29 @@ pub struct Extremes {
     pub high: Vector3<f64>,
 }
 
-/// Second pass: the plateaus are found, and wait for their samples.
-#[derive(Debug, Clone)]
-pub struct Located {
-    blocks: Blocks,
-    windows: Windows,
-    speeds: Vec<Option<f64>>,
-    clock_offset: Option<ClockOffset>,
-}
-
 impl Survey {
-    /// Samples that a survey wants to see before it begins, if the record has them: their times tell the sampling
-    /// interval.
+    /// Samples that a survey needs to begin, if the record has them: their times give the sampling interval.
     pub const BEGINNING: usize = 4096;
 
-    /// Begins with the first times of a record; all but [`Survey::BEGINNING`] of them are left aside.
+    /// Begins with the first times of a record; those after the first [`Survey::BEGINNING`] are ignored.
     pub fn new(times: &[f64]) -> Self {
         let grid = Grid::new(&times[..times.len().min(Self::BEGINNING)]);
         Self { grid, blocks: Vec::new(), open: Record::default(), number: 0 }
     }
 
-    /// Condenses a stretch: nearly all the work, and nothing of it depends on other stretches.
+    /// The survey of a record in memory.
+    ///
+    /// # Errors
+    /// [`ReductionError`] if the record is invalid: lengths, times.
+    pub fn of(record: &Record) -> Result<Self, ReductionError> {
+        check(record)?;
+        let mut survey = Self::new(&record.t);
+        survey.append(survey.condense(record.as_slice()));
+        survey.finish();
+        Ok(survey)
+    }
+
+    /// Condenses a stretch: nearly all the work, independent of other stretches.
     pub fn condense(&self, stretch: RecordSlice) -> Condensed {
         let mut parts = self.grid.divide(stretch);
         let of = |part: Option<(usize, RecordSlice)>| {
@@ -94,7 +95,7 @@ impl Survey {
         }
     }
 
-    /// Goes on with a block, which may be the one that is open.
+    /// Adds samples to a block, which may be the open one.
     fn go_on(&mut self, number: usize, samples: &Record) {
         if number != self.number {
             self.close();
@@ -110,7 +111,7 @@ impl Survey {
         }
     }
 
-    /// What the record looks like, block by block.
+    /// The range of the readings, block by block.
     pub fn extremes(&self) -> impl Iterator<Item = Extremes> {
         let extremes = |block: &Block| Extremes { t: self.grid.middle(block.number), low: block.low, high: block.high };
         self.blocks.iter().map(extremes)
@@ -121,64 +122,29 @@ impl Survey {
         self.close();
     }
 
-    /// Finds the scheduled plateaus, all stretches being in.
-    ///
-    /// # Errors
-    /// [`ReductionError`] if the record is too short or a scheduled plateau is not in it.
-    pub fn locate(
-        &self,
-        telemetry: Option<&SpeedTrace>,
-        schedule: &[ScheduledPlateau],
-    ) -> Result<Located, ReductionError> {
-        let blocks = Blocks::new(&self.grid, &self.blocks)?;
-        let cores = alignment::align(&blocks, schedule)?;
-        let clock_offset = telemetry.and_then(|telemetry| clock::offset(&blocks, schedule, &cores, telemetry));
-        let windows = window::refine(&blocks, schedule, &cores)?;
-        let speed = |window: &window::Window| clock::median_speed(telemetry?, clock_offset.as_ref()?, window.span);
-        let speeds = windows.plateaus.iter().map(speed).collect();
-        Ok(Located { blocks, windows, speeds, clock_offset })
+    /// The blocks of all stretches together.
+    pub(super) fn blocks(&self) -> Result<Blocks, ReductionError> {
+        Blocks::new(&self.grid, &self.blocks)
     }
 }
 
-impl Located {
-    /// The window of each plateau, from and to, the record's clock [s], in the order of the schedule.
-    pub fn windows(&self) -> Vec<[f64; 2]> {
-        self.windows.plateaus.iter().map(|window| window.span).collect()
+/// Refuses an invalid record: columns of different lengths, too few samples, time that runs backwards.
+fn check(record: &Record) -> Result<(), ReductionError> {
+    let times = record.t.len();
+    let readings = record.f_z.each_ref().map(Vec::len);
+    if readings != [times; 3] {
+        return Err(ReductionError::UnequalColumns { times, readings });
     }
-
-    /// The window of a plateau in parts, from and to [s], of so many samples that they are easily held.
-    pub fn parts(&self, plateau: usize) -> Vec<[f64; 2]> {
-        let [from, to] = self.windows.plateaus[plateau].span;
-        let count = whole(((to - from) / (MOST * self.blocks.interval)).ceil()).max(1);
-        let end = |k: usize| if k == count { to } else { from + (to - from) * (k as f64 / count as f64) };
-        (0..count).map(|k| [if k == 0 { from } else { end(k).next_up() }, end(k + 1)]).collect()
+    let expected = 3 * SAMPLES;
+    if times < expected {
+        return Err(ReductionError::TooShort { found: times, expected });
     }
-
-    /// A plateau that is to be averaged, part by part.
-    pub fn plateau(&self, plateau: usize) -> Plateau<'_> {
-        Plateau::new(plateau, &self.windows.plateaus[plateau], &self.blocks)
-    }
-
-    /// Averages a plateau from the samples of its window, so many with the stamp of the one before having been left out of them;
-    /// other samples are left aside.
-    ///
-    /// # Errors
-    /// [`ReductionError`] if the samples are not steady, or do not tell the mean from the once-per-revolution term.
-    pub fn average(&self, plateau: usize, samples: RecordSlice, repeated: usize) -> Result<PlateauFit, ReductionError> {
-        let mut of_parts = self.plateau(plateau);
-        for (k, part) in self.parts(plateau).into_iter().enumerate() {
-            of_parts.add(part, samples, if k == 0 { repeated } else { 0 })?;
+    let mut before = f64::NEG_INFINITY;
+    for (i, &found) in record.t.iter().enumerate() {
+        if !found.is_finite() || found < before {
+            return Err(ReductionError::Time { sample: i + 1, found, before });
         }
-        of_parts.finish()
+        before = found;
     }
-
-    /// The mounting, its plateaus being averaged, in the order of the schedule.
-    pub fn into_mounting(self, plateaus: Vec<PlateauFit>) -> ReducedMounting {
-        ReducedMounting {
-            plateaus,
-            speeds: self.speeds,
-            settling_time: self.windows.settling_time,
-            clock_offset: self.clock_offset,
-        }
-    }
+    Ok(())
 }

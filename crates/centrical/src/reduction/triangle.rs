@@ -1,19 +1,19 @@
-//! Least squares over many samples by strips: each strip's design is orthogonalised by itself, and the triangles that
-//! this leaves are orthogonalised together (tall and skinny QR; Demmel, Grigori, Hoemmen, Langou 2012). A strip that
-//! loses a sample is done again alone.
+//! Least squares over many samples by strips: each strip's design is orthogonalised separately, and the resulting
+//! triangles are orthogonalised together (tall and skinny QR; Demmel, Grigori, Hoemmen, Langou 2012). Only a strip that
+//! loses a sample is repeated.
 
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::lanes::{dot, product, subtract, widest};
+use crate::simd::lanes::{dot, product, subtract, widest};
 
 /// Columns of a design: two of the revolution, settling, constant.
 pub(super) const TERMS: usize = 4;
 
-/// What is left of a column of that length is rounding, for all that the coefficients are asked for.
+/// A remainder of this length, relative to the column, is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// `X = Q R` and `Z = Q^T F` of a strip or of all: what its samples say of the coefficients.
+/// `X = Q R` and `Z = Q^T F` of a strip or of all: the information of its samples about the coefficients.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Triangle {
     /// Upper triangle: `r[j][i]`, i <= j, so that `x_j = sum_i q_i r[j][i]`.
@@ -23,8 +23,8 @@ pub(super) struct Triangle {
 }
 
 impl Triangle {
-    /// The triangle of some rows: `terms` columns of a design, which become those of `Q`, and three of readings, of which
-    /// is left what the design does not reach: `F - Q Z`. For a [`widest`] work.
+    /// The triangle of some rows: the columns `terms` of a design become those of `Q`, and the three columns of readings
+    /// become their residuals `F - Q Z`. For a [`widest`] work.
     #[inline(always)]
     pub fn of<S: Simd>(simd: S, terms: &mut [&mut [f64]], readings: &mut [&mut [f64]; 3]) -> Self {
         let mut triangle = Self::default();
@@ -33,7 +33,7 @@ impl Triangle {
             let column = &mut *rest[0];
             let mut taken = 0.0;
             for (i, q) in done.iter().enumerate() {
-                // A settling that has faded: zeros.
+                // The column of a faded settling is zero.
                 if triangle.r[i][i] == 0.0 {
                     continue;
                 }
@@ -43,7 +43,7 @@ impl Triangle {
                 taken += projection * projection;
             }
             let square = dot(simd, column, column);
-            // What hangs on the columns before it within a strip adds no direction, and rounding must not make one up.
+            // A column that depends on those before it within a strip adds no direction; rounding must not make one up.
             if square.is_nan() || square <= ROUNDING * ROUNDING * taken {
                 column.fill(0.0);
                 continue;
@@ -82,7 +82,14 @@ impl Triangle {
         widest(Rows { terms: &mut columns, readings: &mut [first, second, third] })
     }
 
-    /// What coefficients, per axis, leave of the readings in the directions of `Q`: `Z - R B`.
+    /// Coefficients per axis of the readings by the columns of a design. `None` if these are dependent.
+    pub fn fit(mut columns: Vec<Vec<f64>>, mut readings: [Vec<f64>; 3]) -> Option<Vec<Vector3<f64>>> {
+        let mut terms: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
+        let readings = &mut readings.each_mut().map(Vec::as_mut_slice);
+        widest(Rows { terms: &mut terms, readings }).solve(columns.len())
+    }
+
+    /// The residuals of the readings in the directions of `Q`, for coefficients per axis: `Z - R B`.
     #[inline(always)]
     pub fn left(&self, coefficients: &[[f64; 3]]) -> [[f64; 3]; TERMS] {
         let mut left = self.z;
@@ -94,7 +101,7 @@ impl Triangle {
         left
     }
 
-    /// Coefficients per axis. `None` if a column hangs on those before it to within `1e-6` of its length.
+    /// Coefficients per axis. `None` if a column depends on those before it to within `1e-6` of its length.
     pub fn solve(&self, terms: usize) -> Option<Vec<Vector3<f64>>> {
         // Half the digits of f64: below this a column is rounding.
         const DEPENDENT: f64 = 1e-6;

@@ -1,8 +1,8 @@
-//! What is drawn: each imperfection of each mounting from a stream of its own, so that they do not disturb each other.
+//! Random draws: each imperfection of each mounting has a stream of its own, so that they do not disturb each other.
 
 use crate::random::Random;
 
-/// What is drawn. The numbers are part of what a seed means: never reuse one.
+/// A kind of draw. The numbers are part of what a seed means: never reuse one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Draw {
     /// The unknowns.
@@ -21,13 +21,13 @@ pub(super) enum Draw {
     Drift = 6,
     /// Spikes.
     Spikes = 7,
-    /// Gaps.
-    Gaps = 8,
+    /// Losses.
+    Losses = 8,
     /// Repeated samples.
     Repeats = 9,
     /// The telemetry's clock.
     Clock = 10,
-    /// Noise of the speed in the telemetry.
+    /// SensorNoise of the speed in the telemetry.
     Tachometer = 11,
 }
 
@@ -57,7 +57,7 @@ impl Arrivals {
         Self { random, probability, next }
     }
 
-    /// Whether sample `n`, asked for in ascending order, is one; then also the generator to draw its kind from.
+    /// The generator for the properties of the event if one occurs at sample `n`; `n` ascends from call to call.
     #[inline]
     pub fn at(&mut self, n: u64) -> Option<&mut Random> {
         if n < self.next {

@@ -4,8 +4,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::TruePlateau;
-use super::settings::Machine;
+use super::equipment::Machine;
 use crate::experiment::SetPoint;
 use crate::measurement::ArmMotion;
 use crate::random::Random;
@@ -17,12 +16,21 @@ pub(super) struct Motion {
     duration: f64,
 }
 
+/// One plateau as it truly was.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TruePlateau {
+    /// Beginning and end, between ramps, the unit's clock [s].
+    pub window: [f64; 2],
+    /// Speed once settled [rad/s].
+    pub omega: f64,
+}
+
 /// A stretch of one law.
 #[derive(Debug, Clone, Copy)]
 struct Segment {
-    /// When it begins [s].
+    /// Begin [s].
     start: f64,
-    /// How long it lasts [s].
+    /// Duration [s].
     duration: f64,
     /// Carousel angle as it begins [rad].
     angle: f64,
@@ -42,8 +50,8 @@ enum Law {
 }
 
 impl Motion {
-    /// The motion through `schedule`, plateaus with their durations [s], with what is random of these and speed errors drawn
-    /// from `random`.
+    /// The motion through `schedule`, plateaus with their durations [s], their random parts and the speed errors drawn from
+    /// `random`.
     pub fn new(schedule: &[(SetPoint, f64)], machine: &Machine, mut random: Random) -> Self {
         let first_angle = match schedule.first() {
             Some((first, _)) if first.is_rest() => first.angle,
@@ -61,7 +69,7 @@ impl Motion {
         Self { segments: path.segments, duration: path.end }
     }
 
-    /// Where the arm is at time `t` [s] and how it moves; `segment` is where the time before was, 0 at first.
+    /// Angle and motion of the arm at time `t` [s]; `segment` is that of the time before, 0 at first.
     #[inline]
     pub fn at(&self, t: f64, segment: &mut usize) -> ArmMotion {
         while self.segments.get(*segment + 1).is_some_and(|next| next.start <= t) {
@@ -102,7 +110,7 @@ impl Motion {
 struct Path<'a> {
     machine: &'a Machine,
     segments: Vec<Segment>,
-    /// When the last segment ends [s], and the angle there [rad].
+    /// End of the last segment [s], and the angle at it [rad].
     end: f64,
     angle: f64,
 }
@@ -142,7 +150,7 @@ impl Path<'_> {
         };
         let missing = wait(0.0);
         let mut missing = wait((missing * omega.signum()).rem_euclid(TAU) * omega.signum());
-        // What is left of the settling makes the first guess inexact; each round takes a large factor off the rest.
+        // The remaining settling makes the first guess inexact; each round reduces the error by a large factor.
         for _ in 0..8 {
             missing = wait(half_turn_at_most(missing));
         }

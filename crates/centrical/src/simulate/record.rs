@@ -1,11 +1,12 @@
-//! The record of one mounting: the physics, the noise, and what the recorder makes of them.
+//! The record of one mounting: the physics, the noise and the recorder's errors.
 
 use nalgebra::Vector3;
 
-use super::SimulatedMounting;
 use super::draw::{Arrivals, Draw};
-use super::noise::{Noise, Sampling};
+use super::equipment::Equipment;
+use super::motion::Motion;
 use super::response::Response;
+use super::sensor_noise::{Sampling, SensorNoise};
 use crate::measurement::{ArmMotion, Carried, MeasurementModel};
 use crate::reduction::Record;
 
@@ -18,9 +19,11 @@ const ROOM: usize = 8200;
 /// The record of one mounting, a stretch at a time, in memory that does not grow with the record.
 #[derive(Debug, Clone)]
 pub struct Records<'a> {
-    mounting: &'a SimulatedMounting<'a>,
+    motion: &'a Motion,
+    /// Samples per second [Hz].
+    rate: f64,
     physics: Physics<'a>,
-    noise: [Noise; 3],
+    noise: [SensorNoise; 3],
     transmission: Transmission,
     /// Segment of the motion that the last sample was in.
     segment: usize,
@@ -30,19 +33,17 @@ pub struct Records<'a> {
 }
 
 impl<'a> Records<'a> {
-    pub(super) fn new(mounting: &'a SimulatedMounting<'a>) -> Self {
-        let simulation = &mounting.simulation;
-        let settings = simulation.settings;
-        let (duration, rate) = (mounting.duration(), settings.recorder.rate);
-        let sampling = Sampling { seed: simulation.seed, mounting: mounting.mounting, interval: 1.0 / rate, duration };
+    pub(super) fn new(physics: Physics<'a>, motion: &'a Motion, equipment: &Equipment, sampling: &Sampling) -> Self {
+        let rate = equipment.recorder.rate;
         // Lengths are finite and not negative, and a cast to an integer saturates.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let count = (duration * rate) as u64 + 1;
+        let count = (sampling.duration * rate) as u64 + 1;
         Self {
-            mounting,
-            physics: Physics::new(simulation.model, simulation.truth, mounting.mounting),
-            noise: [0, 1, 2].map(|axis| Noise::new(&settings.sensor, &sampling, axis)),
-            transmission: Transmission::new(mounting),
+            motion,
+            rate,
+            physics,
+            noise: [0, 1, 2].map(|axis| SensorNoise::new(&equipment.sensor, sampling, axis)),
+            transmission: Transmission::new(equipment, sampling),
             segment: 0,
             next: 0,
             count,
@@ -51,8 +52,8 @@ impl<'a> Records<'a> {
 
     /// Sample `n`: its time [s] and the sensor's output without noise [m/s^2].
     fn sample(&mut self, n: u64) -> (f64, Vector3<f64>) {
-        let t = n as f64 / self.mounting.simulation.settings.recorder.rate;
-        (t, self.physics.reading(&self.mounting.motion.at(t, &mut self.segment)))
+        let t = n as f64 / self.rate;
+        (t, self.physics.reading(&self.motion.at(t, &mut self.segment)))
     }
 }
 
@@ -82,7 +83,7 @@ impl Iterator for Records<'_> {
 
 /// The unit on the arm, and its response.
 #[derive(Debug, Clone)]
-struct Physics<'a> {
+pub(super) struct Physics<'a> {
     model: &'a MeasurementModel,
     truth: &'a [f64],
     mounting: usize,
@@ -92,7 +93,7 @@ struct Physics<'a> {
 }
 
 impl<'a> Physics<'a> {
-    fn new(model: &'a MeasurementModel, truth: &'a [f64], mounting: usize) -> Self {
+    pub fn new(model: &'a MeasurementModel, truth: &'a [f64], mounting: usize) -> Self {
         let response = Response::new(model.error_model(), model.parameters().coefficients(truth));
         let rigid = (!model.deforms()).then(|| model.carried(mounting, truth, 0.0));
         Self { model, truth, mounting, response, rigid }
@@ -124,14 +125,13 @@ struct Transmission {
 }
 
 impl Transmission {
-    fn new(mounting: &SimulatedMounting) -> Self {
-        let simulation = &mounting.simulation;
-        let random = |draw: Draw| draw.stream(simulation.seed, mounting.mounting);
-        let (recorder, sensor) = (&simulation.settings.recorder, &simulation.settings.sensor);
+    fn new(equipment: &Equipment, sampling: &Sampling) -> Self {
+        let random = |draw: Draw| draw.stream(sampling.seed, sampling.mounting);
+        let (recorder, sensor) = (&equipment.recorder, &equipment.sensor);
         Self {
             spikes: Arrivals::new(random(Draw::Spikes), recorder.spikes.probability),
             spike_size: recorder.spikes.size,
-            gaps: Arrivals::new(random(Draw::Gaps), recorder.gaps.probability),
+            gaps: Arrivals::new(random(Draw::Losses), recorder.gaps.probability),
             gap_end: 1.0 / recorder.gaps.length,
             resumes: 0,
             repeats: Arrivals::new(random(Draw::Repeats), recorder.repeats),
@@ -140,7 +140,7 @@ impl Transmission {
         }
     }
 
-    /// Adds sample `n` to the record as none, one or two rows.
+    /// Adds sample `n` to the record, as zero, one or two rows.
     #[inline]
     fn pass(&mut self, n: u64, t: f64, mut f: Vector3<f64>, record: &mut Record) {
         if let Some(random) = self.spikes.at(n) {
@@ -175,7 +175,7 @@ impl Transmission {
 /// [`f64::round`], which is a call where the processor that is compiled for has no instruction for it.
 #[inline]
 fn rounded(x: f64) -> f64 {
-    /// From here on there are no fractions.
+    /// Numbers from here on have no fraction.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     if x.abs() < WHOLE {
         #[expect(clippy::cast_possible_truncation)]

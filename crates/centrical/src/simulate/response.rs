@@ -1,8 +1,9 @@
-//! The error model prepared for many samples: what depends on one `f_j` alone is summed by Horner's scheme.
+//! The error model prepared for many samples: powers of one `f_j` alone are summed by Horner's scheme.
 
+use centrical_compensate::Monomial;
 use nalgebra::Vector3;
 
-use crate::error_model::{ErrorModel, Monomial};
+use crate::error_model::ErrorModel;
 
 /// Highest power gathered into the polynomials.
 const DEGREE: usize = 3;
@@ -24,9 +25,9 @@ impl Response {
         }
         let mut others = Vec::new();
         for (term, &c) in error_model.terms.iter().zip(coefficients) {
-            match power_of_one(&term.monomial) {
-                Some((j, power)) => polynomials[term.axis][j][power] += c,
-                None => others.push((term.axis, c, term.monomial)),
+            match term.monomial.as_power().map(|(j, power)| (j, usize::from(power))) {
+                Some((j, power)) if power <= DEGREE => polynomials[term.axis][j][power] += c,
+                _ => others.push((term.axis, c, term.monomial)),
             }
         }
         Self { polynomials, others }
@@ -39,16 +40,8 @@ impl Response {
         let along = |i: usize| (0..3).map(|j| horner(&self.polynomials[i][j], f[j])).sum::<f64>();
         let mut reading = Vector3::new(along(0), along(1), along(2));
         for (axis, c, monomial) in &self.others {
-            reading[*axis] += c * monomial.value(f);
+            reading[*axis] += c * monomial.value((*f).into());
         }
         reading
     }
-}
-
-/// The axis and power of a plain power of one `f_j` up to [`DEGREE`].
-fn power_of_one(monomial: &Monomial) -> Option<(usize, usize)> {
-    let axis = (0..3).find(|&j| monomial.powers[j] > 0).unwrap_or(0);
-    let power = usize::from(monomial.powers[axis]);
-    let alone = usize::from(monomial.degree()) == power && monomial.sign_of.is_none();
-    (alone && power <= DEGREE).then_some((axis, power))
 }

@@ -1,8 +1,8 @@
 //! The centrifuge's own report of its speed, by its own clock.
 
 use super::draw::Draw;
+use super::equipment::Tachometer;
 use super::motion::Motion;
-use super::settings::Tachometer;
 
 /// The telemetry of one mounting.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -59,7 +59,7 @@ struct ResidualScale {
 }
 
 impl Budget {
-    /// Budget of `fit`, which was made of `observations` of `model` with `speed_uncertainty`, and what is `stated`.
+    /// Budget of `fit`, which was made of `observations` of `model`, and what is `stated`.
     ///
     /// # Errors
     /// [`FitError`] when an observation cannot be one.
@@ -67,11 +67,10 @@ impl Budget {
         fit: &Fit,
         model: &MeasurementModel,
         observations: &[Observation],
-        speed_uncertainty: f64,
         stated: &TypeB,
     ) -> Result<Self, FitError> {
-        let gain = Gain::of(fit, model, observations, speed_uncertainty)?;
-        let influences = influences(model.experiment(), stated, speed_uncertainty);
+        let gain = Gain::of(fit, model, observations)?;
+        let influences = influences(model.experiment(), stated);
         let of_type_b =
             if stated.doubt > 0.0 { Degrees::Finite(0.5 / (stated.doubt * stated.doubt)) } else { Degrees::Infinite };
         let mut contributions = Vec::new();
@@ -128,7 +127,7 @@ impl Budget {
 
     /// Whether the lost combinations of unknowns leave more doubt in parameter `j` than a tenth of the variance of what `fit`, of
     /// which this is the budget, weighs: products of two unknowns let them in, and only the hold keeps them
-    /// ([`crate::fit::NULL_HOLD`] typical magnitudes), which is no source of the budget.
+    /// ([`crate::NULL_HOLD`] typical magnitudes), which is no source of the budget.
     pub fn leans_on_lost(&self, fit: &Fit, j: usize) -> bool {
         let weighed: f64 = self.contributions.iter().filter(|c| c.source.is_weighed()).map(|c| c.variance(j)).sum();
         fit.covariance(j, j).is_some_and(|all| all > (1.0 + LEANING) * weighed)

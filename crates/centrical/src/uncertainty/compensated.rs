@@ -3,15 +3,13 @@
 //! Compensation solves `f' = f + sum_t c_t m_t(f)` [K4.1] for `f`. Errors `dc` of the coefficients leave in it
 //! `df = -(d f'/d f)^-1 sum_t dc_t m_t(f) e_axis(t)`, in instrument axes. The noise of the reading itself comes on top.
 
+use centrical_compensate::{Term, gain};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, Vector3};
-
-use crate::error_model::ErrorModel;
 
 /// A calibrated error model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compensated {
-    error_model: ErrorModel,
-    coefficients: Vec<f64>,
+    terms: Vec<Term>,
     covariance: DMatrix<f64>,
 }
 
@@ -27,22 +25,24 @@ pub struct CurvePoint {
 }
 
 impl Compensated {
-    /// Error model with `coefficients` in the order of its terms and their `covariance`, SI; `None` unless there is one
-    /// of each for every term.
-    pub fn new(error_model: ErrorModel, coefficients: Vec<f64>, covariance: DMatrix<f64>) -> Option<Self> {
-        let count = error_model.terms.len();
-        let fits = coefficients.len() == count && covariance.shape() == (count, count);
-        fits.then_some(Self { error_model, coefficients, covariance })
+    /// Error model and the `covariance` of its coefficients, SI; `None` unless it has a row and a column for every term.
+    pub fn new(terms: Vec<Term>, covariance: DMatrix<f64>) -> Option<Self> {
+        (covariance.shape() == (terms.len(), terms.len())).then_some(Self { terms, covariance })
+    }
+
+    /// `d f' / d f` at the specific force `f_z` [m/s^2], dimensionless.
+    pub fn gain(&self, f_z: &Vector3<f64>) -> Matrix3<f64> {
+        let rows = gain(&self.terms, (*f_z).into());
+        Matrix3::from_fn(|i, j| rows[i][j])
     }
 
     /// Covariance of the compensated reading at the specific force `f_z` [m^2/s^4]; `None` where the error model cannot be
     /// inverted.
     pub fn covariance(&self, f_z: &Vector3<f64>) -> Option<Matrix3<f64>> {
-        let gain = self.error_model.gain(&self.coefficients, f_z);
-        let terms = &self.error_model.terms;
-        let by_coefficient =
-            Matrix3xX::from_fn(terms.len(), |i, t| if terms[t].axis == i { terms[t].monomial.value(f_z) } else { 0.0 });
-        let df = gain.lu().solve(&by_coefficient)?;
+        let f = (*f_z).into();
+        let monomial = |i: usize, term: &Term| if term.axis == i { term.monomial.value(f) } else { 0.0 };
+        let by_coefficient = Matrix3xX::from_fn(self.terms.len(), |i, t| monomial(i, &self.terms[t]));
+        let df = self.gain(f_z).lu().solve(&by_coefficient)?;
         Some(&df * &self.covariance * df.transpose())
     }
 

@@ -97,11 +97,10 @@ pub fn monte_carlo(
     model: &MeasurementModel,
     truth: &[f64],
     observations: &[Observation],
-    speed_uncertainty: f64,
     settings: &Settings,
     done: &dyn Fn(usize),
 ) -> Result<MonteCarlo, FitError> {
-    let laboratory = Laboratory::new(model, truth, observations, speed_uncertainty, settings)?;
+    let laboratory = Laboratory::new(model, truth, observations, settings)?;
     let mut tally = Tally::new(&laboratory);
     for first in (0..settings.runs).step_by(BATCH) {
         let batch = first..settings.runs.min(first + BATCH);
@@ -130,7 +129,6 @@ struct Laboratory<'a> {
     leans: Vec<bool>,
     /// Combined covariance of type B, of the determined parameters.
     type_b: DMatrix<f64>,
-    speed_uncertainty: f64,
     coverage_factor: f64,
     settings: &'a Settings,
 }
@@ -151,13 +149,12 @@ impl<'a> Laboratory<'a> {
         model: &'a MeasurementModel,
         truth: &'a [f64],
         observations: &'a [Observation],
-        speed_uncertainty: f64,
         settings: &'a Settings,
     ) -> Result<Self, FitError> {
-        let structure = Structure::of(model, observations, speed_uncertainty)?;
+        let structure = Structure::of(model, observations)?;
         let perfect = readings_of(model, truth, observations);
-        let fit = fit::exact_with(&structure, model, &perfect, speed_uncertainty)?;
-        let budget = Budget::new(&fit, model, observations, speed_uncertainty, &settings.stated)?;
+        let fit = fit::exact_with(&structure, model, &perfect)?;
+        let budget = Budget::new(&fit, model, observations, &settings.stated)?;
         let determined: Vec<usize> = (0..truth.len()).filter(|&j| fit.value(j).is_some()).collect();
         let beyond_weights = budget.contributions().iter().filter(|c| !c.source.is_weighed());
         let type_b = beyond_weights.fold(DMatrix::zeros(truth.len(), truth.len()), |sum, c| sum + c.covariance());
@@ -167,13 +164,12 @@ impl<'a> Laboratory<'a> {
             truth,
             observations,
             noise_factors,
-            influences: influences(model.experiment(), &settings.stated, speed_uncertainty),
+            influences: influences(model.experiment(), &settings.stated),
             structure,
             type_b: type_b.select_rows(&determined).select_columns(&determined),
             determined,
             leans: (0..truth.len()).map(|j| budget.leans_on_lost(&fit, j)).collect(),
             budget,
-            speed_uncertainty,
             coverage_factor: coverage_factor(settings.coverage, Degrees::Infinite),
             settings,
         })
@@ -188,7 +184,7 @@ impl<'a> Laboratory<'a> {
             Method::Exact => fit::exact_with,
             Method::Linear => fit::linear_with,
         };
-        let fit = method(&self.structure, self.model, &drawn, self.speed_uncertainty)?;
+        let fit = method(&self.structure, self.model, &drawn)?;
         Ok(self.judge(&fit, &truth))
     }
 

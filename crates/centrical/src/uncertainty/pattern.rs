@@ -53,18 +53,13 @@ pub struct Pattern {
 /// A pattern is untestable when less than this part of it is redundant: the unknowns follow the rest.
 const REDUNDANT: f64 = 1e-3;
 
-/// All patterns of `fit`, which was made of `observations` of `model` with `speed_uncertainty`, the likeliest to be real
+/// All patterns of `fit`, which was made of `observations` of `model`, the likeliest to be real
 /// first. Patterns that the unknowns can follow are left out: the model has them already.
 ///
 /// # Errors
 /// [`FitError`] when an observation cannot be one.
-pub fn patterns(
-    fit: &Fit,
-    model: &MeasurementModel,
-    observations: &[Observation],
-    speed_uncertainty: f64,
-) -> Result<Vec<Pattern>, FitError> {
-    trends_of(fit, model, observations, speed_uncertainty, &trends(model.experiment()))
+pub fn patterns(fit: &Fit, model: &MeasurementModel, observations: &[Observation]) -> Result<Vec<Pattern>, FitError> {
+    trends_of(fit, model, observations, &trends(model.experiment()))
 }
 
 /// Those of the patterns `trends` alone.
@@ -75,10 +70,9 @@ pub fn trends_of(
     fit: &Fit,
     model: &MeasurementModel,
     observations: &[Observation],
-    speed_uncertainty: f64,
     trends: &[Trend],
 ) -> Result<Vec<Pattern>, FitError> {
-    let gain = Gain::of(fit, model, observations, speed_uncertainty)?;
+    let gain = Gain::of(fit, model, observations)?;
     let e = gain.redundant_residuals();
     let candidates: Vec<(usize, Trend)> = trends.iter().flat_map(|t| (0..3).map(move |axis| (axis, *t))).collect();
     let columns = columns(&candidates, model.experiment(), observations);

@@ -6,13 +6,14 @@
 
 use std::collections::HashSet;
 
+use centrical_compensate::Monomial;
 use nalgebra::DMatrix;
 
 use super::coverage::chi_squared_tail;
 use super::validity::{Validity, f_tail};
 use crate::design::Observation;
 use crate::error::FitError;
-use crate::error_model::{ErrorModel, Extra, Monomial, Term};
+use crate::error_model::{ErrorModel, Extra, Term};
 use crate::fit::{self, Fit, Gain, Termination};
 use crate::measurement::MeasurementModel;
 use crate::parameter::{Extension, Kind, Law, Parameter};
@@ -120,16 +121,12 @@ pub fn rivals_of(model: &MeasurementModel) -> Vec<Candidate> {
 ///
 /// # Errors
 /// [`FitError`] when an observation cannot be one, or when there is no candidate ([`FitError::Empty`]).
-pub fn select(
-    candidates: &[Candidate],
-    observations: &[Observation],
-    speed_uncertainty: f64,
-) -> Result<Selection, FitError> {
+pub fn select(candidates: &[Candidate], observations: &[Observation]) -> Result<Selection, FitError> {
     let mut fits = Vec::with_capacity(candidates.len());
     let mut rivals: Vec<Rival> = Vec::with_capacity(candidates.len());
     for candidate in candidates {
-        let fit = fit::exact(&candidate.model, observations, speed_uncertainty)?;
-        rivals.push(rival(candidate, &fit, observations, speed_uncertainty)?);
+        let fit = fit::exact(&candidate.model, observations)?;
+        rivals.push(rival(candidate, &fit, observations)?);
         fits.push(fit);
     }
     for n in 0..rivals.len() {
@@ -137,20 +134,15 @@ pub fn select(
     }
     let converged = (0..rivals.len()).filter(|&n| rivals[n].converged);
     let recommended = converged.min_by(|&a, &b| rivals[a].bic.total_cmp(&rivals[b].bic)).ok_or(FitError::Empty)?;
-    let best = Best { model: &candidates[recommended].model, fit: &fits[recommended], observations, speed_uncertainty };
+    let best = Best { model: &candidates[recommended].model, fit: &fits[recommended], observations };
     let mut terms = best.own_terms();
     terms.extend(best.further_terms(candidates)?);
     Ok(Selection { rivals, recommended, terms })
 }
 
-fn rival(
-    candidate: &Candidate,
-    fit: &Fit,
-    observations: &[Observation],
-    speed_uncertainty: f64,
-) -> Result<Rival, FitError> {
+fn rival(candidate: &Candidate, fit: &Fit, observations: &[Observation]) -> Result<Rival, FitError> {
     let rank = fit.observability().rank();
-    let validity = Validity::of(fit, &candidate.model, observations, speed_uncertainty)?;
+    let validity = Validity::of(fit, &candidate.model, observations)?;
     Ok(Rival {
         name: candidate.name.clone(),
         rank,
@@ -182,7 +174,6 @@ struct Best<'a> {
     model: &'a MeasurementModel,
     fit: &'a Fit,
     observations: &'a [Observation],
-    speed_uncertainty: f64,
 }
 
 impl Best<'_> {
@@ -206,7 +197,7 @@ impl Best<'_> {
     /// redundant of its column in the readings and of the residuals. So many are tried that each has to pass a
     /// family-wise error of 5 % as well.
     fn further_terms(&self, candidates: &[Candidate]) -> Result<Vec<TermVerdict>, FitError> {
-        let gain = Gain::of(self.fit, self.model, self.observations, self.speed_uncertainty)?;
+        let gain = Gain::of(self.fit, self.model, self.observations)?;
         let e = gain.redundant_residuals();
         let mut terms: Vec<TermVerdict> = Vec::new();
         for richer in candidates.iter().map(|c| &c.model) {

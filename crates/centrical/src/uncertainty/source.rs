@@ -138,7 +138,7 @@ pub(super) enum Quantity {
 }
 
 /// The independent influences on `experiment`, those of zero uncertainty left out.
-pub(super) fn influences(experiment: &Experiment, stated: &TypeB, speed_uncertainty: f64) -> Vec<Influence> {
+pub(super) fn influences(experiment: &Experiment, stated: &TypeB) -> Vec<Influence> {
     let mut list = Vec::new();
     let mut add = |source, quantity, standard_uncertainty: f64| {
         if standard_uncertainty > 0.0 {
@@ -149,7 +149,7 @@ pub(super) fn influences(experiment: &Experiment, stated: &TypeB, speed_uncertai
         if set_point.is_rest() {
             add(Source::RestAngle, Quantity::RestAngle(n), stated.rest_angle);
         } else {
-            add(Source::PlateauSpeed, Quantity::PlateauSpeed(n), speed_uncertainty);
+            add(Source::PlateauSpeed, Quantity::PlateauSpeed(n), experiment.centrifuge.speed_uncertainty);
         }
     }
     add(Source::Gravity, Quantity::Gravity, stated.gravity);

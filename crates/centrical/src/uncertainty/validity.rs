@@ -80,17 +80,12 @@ pub struct Cleaned {
 }
 
 impl Validity {
-    /// Checks `fit`, which was made of `observations` of `model` with `speed_uncertainty`.
+    /// Checks `fit`, which was made of `observations` of `model`.
     ///
     /// # Errors
     /// [`FitError`] when an observation cannot be one.
-    pub fn of(
-        fit: &Fit,
-        model: &MeasurementModel,
-        observations: &[Observation],
-        speed_uncertainty: f64,
-    ) -> Result<Self, FitError> {
-        let blocks = Blocks::of(fit, model, observations, speed_uncertainty)?;
+    pub fn of(fit: &Fit, model: &MeasurementModel, observations: &[Observation]) -> Result<Self, FitError> {
+        let blocks = Blocks::of(fit, model, observations)?;
         let set_points = &model.experiment().set_points;
         let mounting_of = |n: usize| set_points[observations[n].set_point].mounting;
         let mountings = (0..model.experiment().mountings.len()).filter_map(|mounting| {
@@ -131,15 +126,14 @@ impl Validity {
 pub fn without_outliers(
     model: &MeasurementModel,
     observations: &[Observation],
-    speed_uncertainty: f64,
     alpha: f64,
 ) -> Result<Cleaned, FitError> {
     let mut observations = observations.to_vec();
     let mut left_out = Vec::new();
     let most = observations.len() / 10;
     loop {
-        let fit = fit::exact(model, &observations, speed_uncertainty)?;
-        let validity = Validity::of(&fit, model, &observations, speed_uncertainty)?;
+        let fit = fit::exact(model, &observations)?;
+        let validity = Validity::of(&fit, model, &observations)?;
         match validity.outlier(alpha).filter(|_| left_out.len() < most) {
             Some(n) => {
                 left_out.push((observations[n].set_point, validity.plateaus[n].prediction.probability));
@@ -168,13 +162,8 @@ struct Blocks {
 }
 
 impl Blocks {
-    fn of(
-        fit: &Fit,
-        model: &MeasurementModel,
-        observations: &[Observation],
-        speed_uncertainty: f64,
-    ) -> Result<Self, FitError> {
-        let gain = Gain::of(fit, model, observations, speed_uncertainty)?;
+    fn of(fit: &Fit, model: &MeasurementModel, observations: &[Observation]) -> Result<Self, FitError> {
+        let gain = Gain::of(fit, model, observations)?;
         Ok(Self {
             residuals: gain.whitened_residuals(),
             hat: gain.hat(),

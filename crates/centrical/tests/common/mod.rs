@@ -1,57 +1,18 @@
 //! Random numbers, random unknowns and noise-free sessions shared by the test kinds.
 #![allow(dead_code, reason = "each kind of test uses its part")]
 
+pub mod random;
+#[path = "../../examples/rank_table.rs"]
+pub mod rank_table;
+
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
-use centrical::{ErrorModel, Experiment, Extension, Law, MeasurementModel, Observation, PairRelation};
-use nalgebra::Matrix3;
+use centrical::{ErrorModel, Experiment, Extension, Law, LeastSquares, MeasurementModel, Observation, PairRelation};
+use nalgebra::{DMatrix, DVector, Matrix3};
+pub use random::Random;
+pub use rank_table::spread;
 
-/// `rho0` of the rank table (docs/source-and-findings.md), in units of `R*`.
-pub fn spread() -> Matrix3<f64> {
-    Matrix3::new(0.0, 0.05, 0.04, 0.0, 0.03, -0.02, 0.0, 0.02, -0.03)
-}
-
-/// A small generator of its own, so that a test means the same on every machine (SplitMix64, G. L. Steele et al., OOPSLA 2014).
-pub struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// All 64 bits.
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform among 0, ..., `count - 1`.
-    pub fn below(&mut self, count: usize) -> usize {
-        usize::try_from(self.next() % count as u64).unwrap()
-    }
-
-    /// Uniform on (0, 1).
-    pub fn uniform(&mut self) -> f64 {
-        ((self.next() >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-    }
-
-    /// Puts items into random order, Fisher-Yates.
-    pub fn shuffle<T>(&mut self, items: &mut [T]) {
-        for last in (1..items.len()).rev() {
-            items.swap(last, self.below(last + 1));
-        }
-    }
-
-    /// Standard normal, Box-Muller.
-    pub fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform().ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-}
-
-/// The [K5.5] experiment with proof masses apart, Earth rotation and eight levels up to 200 g.
+/// The [K5.5] experiment with proof masses apart, Earth rotation and eight levels up to 200 g, speeds to 10 ppm.
 pub fn experiment(third: ThirdPosition, pair_relation: PairRelation, radii: &[f64]) -> Experiment {
     let plan = Normalised {
         third,
@@ -63,6 +24,7 @@ pub fn experiment(third: ThirdPosition, pair_relation: PairRelation, radii: &[f6
     };
     let mut experiment = plan.experiment();
     experiment.site.latitude = Some(0.97);
+    experiment.centrifuge.speed_uncertainty = 1e-5;
     experiment
 }
 
@@ -107,4 +69,27 @@ pub fn observations(model: &MeasurementModel, x: &[f64]) -> Vec<Observation> {
             covariance: Matrix3::identity() * 1e-4_f64.powi(2),
         })
         .collect()
+}
+
+/// A linear regression `min |A x - b|` by the least squares of the fit, the columns in units of their lengths.
+pub struct Regression {
+    pub x: DVector<f64>,
+    /// Of `x`, by the scatter of the residuals.
+    pub covariance: DMatrix<f64>,
+    /// Sum of squared residuals, and the same per degree of freedom.
+    pub sum_of_squares: f64,
+    pub variance: f64,
+}
+
+impl Regression {
+    pub fn of(a: &DMatrix<f64>, b: &DVector<f64>) -> Self {
+        let (n, p) = a.shape();
+        let sizes = DVector::from_iterator(p, a.column_iter().map(|column| column.norm().recip()));
+        let equations = LeastSquares::new(a * DMatrix::from_diagonal(&sizes), sizes);
+        let rotated = equations.rotated(DMatrix::from_column_slice(n, 1, b.as_slice()));
+        let sum_of_squares = rotated.rows(p, n - p).norm_squared();
+        let variance = sum_of_squares / (n - p) as f64;
+        let covariance = equations.covariance() * variance;
+        Self { x: equations.solve(b.clone()).x, covariance, sum_of_squares, variance }
+    }
 }

@@ -2,9 +2,9 @@
 
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
-use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, reduce};
+use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
 use centrical::simulate::{
-    Coloured, Gaps, Machine, Recorder, Sensor, Settings, Simulation, Spikes, Tachometer, draw_truth,
+    Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes, Tachometer, draw_truth,
 };
 use centrical::{Fit, MeasurementModel, Observation, PairRelation, fit, linear};
 use nalgebra::{DVector, Matrix3};
@@ -33,12 +33,13 @@ fn model() -> MeasurementModel {
     }
     .experiment();
     experiment.site.latitude = Some(52.1_f64.to_radians());
+    experiment.centrifuge.speed_uncertainty = SPEED_ERROR;
     kozlov(experiment)
 }
 
 /// Spikes, gaps, repeated samples, coloured noise, settling, rounding: all of it in every record.
-fn rough() -> Settings {
-    Settings {
+fn rough() -> Equipment {
+    Equipment {
         machine: Machine {
             plateau: 14.0,
             plateau_spread: 1.0,
@@ -56,7 +57,7 @@ fn rough() -> Settings {
         recorder: Recorder {
             rate: 250.0,
             spikes: Spikes { probability: 2e-4, size: 20.0 },
-            gaps: Gaps { probability: 1e-3, length: 1.0 },
+            gaps: Losses { probability: 1e-3, length: 1.0 },
             repeats: 1e-4,
         },
         tachometer: Tachometer::default(),
@@ -75,8 +76,8 @@ fn record(simulation: &Simulation, mounting: usize) -> Record {
 
 /// The means of a session from its records.
 fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean> {
-    let (experiment, settings) = (model.experiment(), rough());
-    let simulation = Simulation::new(model, truth, &settings, seed).expect("the settings make sense");
+    let (experiment, equipment) = (model.experiment(), rough());
+    let simulation = Simulation::new(model, truth, &equipment, seed).expect("the equipment is within its bounds");
     let reduced: Vec<ReducedMounting> = (0..experiment.mountings.len())
         .map(|m| {
             let of_mounting = experiment.set_points.iter().filter(|s| s.mounting == m);
@@ -87,7 +88,7 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
         })
         .collect();
     let noise = NoiseModel::pool(&reduced);
-    reduced.iter().flat_map(|mounting| mounting.means(&noise)).collect()
+    reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise)).collect()
 }
 
 /// Calibration from plateau means, each with the covariance that `covariance` gives it.
@@ -102,7 +103,7 @@ fn calibrated(
         covariance: covariance(mean),
     };
     let observations: Vec<Observation> = means.iter().enumerate().map(observation).collect();
-    fit::exact(model, &observations, SPEED_ERROR).expect("the session determines everything")
+    fit::exact(model, &observations).expect("the session determines everything")
 }
 
 /// Squared error of all parameters over their stated covariance: as many as there are parameters, on average.

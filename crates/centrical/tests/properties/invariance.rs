@@ -14,7 +14,7 @@ use crate::observability::random_design;
 fn study(experiment: Experiment) -> Study {
     let model = MeasurementModel::new(experiment, ErrorModel::kozlov_2017(), &[]);
     let weights = Weight::equal(model.experiment().set_points.len(), 1e-4);
-    Study::at_zero(model, weights, 0.0).unwrap()
+    Study::at_zero(model, weights).unwrap()
 }
 
 fn plans() -> Vec<Normalised> {
@@ -92,7 +92,7 @@ fn order_of_rows_does_not_matter() {
         for n in (1..weights.len()).rev() {
             weights.swap(n, random.below(n + 1));
         }
-        let shuffled = Study::at_zero(ordered.model().clone(), weights, 0.0).unwrap();
+        let shuffled = Study::at_zero(ordered.model().clone(), weights).unwrap();
         same_seen(&ordered, &shuffled);
         same_singular_values(&ordered, &shuffled);
         same_null_space(&ordered, &shuffled, |_| 1.0);
@@ -152,7 +152,9 @@ fn weights_do_not_matter() {
                 Weight { covariance: factor * factor.transpose() * (size * size), ..*weight }
             })
             .collect();
-        let weighted = Study::at_zero(plain.model().clone(), weights, 1e-5).unwrap();
+        let mut experiment = plain.model().experiment().clone();
+        experiment.centrifuge.speed_uncertainty = 1e-5;
+        let weighted = Study::at_zero(plain.model().in_experiment(experiment), weights).unwrap();
         if !plain.observability().is_doubtful() && !weighted.observability().is_doubtful() {
             same_seen(&plain, &weighted);
             compared += 1;

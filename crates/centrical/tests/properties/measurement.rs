@@ -22,14 +22,20 @@ fn offset(mut experiment: Experiment) -> Experiment {
     experiment
 }
 
+/// The experiment with a speed uncertainty of one, so that a speed error is the derivative by the logarithm of the speed.
+fn unit_speed_error(mut experiment: Experiment) -> Experiment {
+    experiment.centrifuge.speed_uncertainty = 1.0;
+    experiment
+}
+
 /// [K5.3] is the exact model's Jacobian at zero, to rounding, for both P_3, every pair relation and extension.
 #[test]
 fn h_is_the_jacobian_at_zero() {
     for third in [AxisOneUp, AxisOneDown] {
         for relation in RELATIONS {
             for model in [
-                kozlov(experiment(third, relation, &[1.0, 0.5])),
-                everything(offset(experiment(third, relation, &[1.0, 0.7, 0.5]))),
+                kozlov(unit_speed_error(experiment(third, relation, &[1.0, 0.5]))),
+                everything(offset(unit_speed_error(experiment(third, relation, &[1.0, 0.7, 0.5])))),
             ] {
                 let p = model.parameters().len();
                 let zero = vec![0.0; p];
@@ -44,7 +50,7 @@ fn h_is_the_jacobian_at_zero() {
                         assert!(error <= 1e-14 * size, "{}: {error:e} of {size:e}", model.parameters()[column].name);
                     }
                     assert!((h.reading - exact.reading).amax() <= 1e-14 * h.reading.amax());
-                    assert!((h.speed - exact.speed).amax() <= 1e-13 * (1.0 + h.speed.amax()));
+                    assert!((h.speed_error - exact.speed_error).amax() <= 1e-13 * (1.0 + h.speed_error.amax()));
                 }
             }
         }
@@ -109,7 +115,7 @@ fn jacobian_equals_differences() {
 
 /// Transverse axes stand near zero, where `|f| f` has a jump in its second derivative that no difference should
 /// straddle: the coefficients of odd terms are set to zero. Their columns stay tested here, and their gradients
-/// in `gradients_of_monomials`.
+/// in the tests of `centrical-compensate`.
 fn without_kinks(model: &MeasurementModel, mut x: Vec<f64>) -> Vec<f64> {
     for (value, parameter) in x.iter_mut().zip(model.parameters()) {
         if parameter.name.starts_with("odd") {
@@ -119,41 +125,17 @@ fn without_kinks(model: &MeasurementModel, mut x: Vec<f64>) -> Vec<f64> {
     x
 }
 
-#[test]
-fn gradients_of_monomials() {
-    let f = Vector3::new(-1.5, 0.8, 2.1);
-    let monomials = [
-        Monomial::ONE,
-        Monomial::power(0, 1),
-        Monomial::power(2, 3),
-        Monomial::product(0, 2),
-        Monomial::odd_square(0),
-        Monomial::odd_square(1),
-        Monomial { powers: [1, 2, 1], sign_of: Some(0) },
-    ];
-    for monomial in monomials {
-        let gradient = monomial.gradient(&f);
-        for j in 0..3 {
-            let step = Vector3::ith(j, 1e-3);
-            let at = |steps: f64| monomial.value(&(f + step * steps));
-            let numeric = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / 12e-3;
-            assert!((numeric - gradient[j]).abs() < 1e-11, "{monomial:?}");
-        }
-    }
-    assert_eq!(Monomial::odd_square(0).value(&f), -2.25);
-}
-
 /// `d f' / d ln Omega` of the full model against differences of the speed.
 #[test]
 fn speed_direction_equals_differences() {
     let mut random = Random::new(8);
-    let model = everything(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]));
+    let model = everything(unit_speed_error(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5])));
     let x = truth(&model, 10.0, &mut random);
     let at = |set_point: &SetPoint, factor: f64| {
         model.reading(&SetPoint { omega: set_point.omega * factor, ..*set_point }, &x)
     };
     for set_point in &model.experiment().set_points {
-        let speed = model.linearise(set_point, &x).speed;
+        let speed = model.linearise(set_point, &x).speed_error;
         let h = 1e-4;
         let numeric = (8.0 * (at(set_point, 1.0 + h) - at(set_point, 1.0 - h))
             - (at(set_point, 1.0 + 2.0 * h) - at(set_point, 1.0 - 2.0 * h)))
@@ -174,7 +156,7 @@ fn mean_over_a_revolution_is_exact() {
         name: "none".to_owned(),
         group: "none",
         axis: 0,
-        monomial: centrical::Monomial { powers: [60, 0, 0], sign_of: None },
+        monomial: Monomial { powers: [60, 0, 0], sign_of: None },
     });
     let fine = MeasurementModel::new(model.experiment().clone(), finer, &[]);
     let mut x_fine = x.clone();

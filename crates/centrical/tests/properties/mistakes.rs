@@ -1,7 +1,7 @@
 //! Records that were taken down by mistake are named for what they are, and good ones are not blamed.
 
 use centrical::STANDARD_GRAVITY;
-use centrical::reduction::{NoiseModel, Record, ReductionError, reduce};
+use centrical::reduction::{NoiseModel, Record, ReductionError, plateau_means, reduce};
 
 use crate::stream::Stream;
 
@@ -135,7 +135,7 @@ fn gaps_repeats_and_spikes_are_counted() {
         }
     }
     let reduced = reduce(&record, None, &stream.schedule()).expect("the plateau is there");
-    let means = reduced.means(&NoiseModel::pool([&reduced]));
+    let means = plateau_means(&reduced, &NoiseModel::pool([&reduced]));
     let found = means[1].left_out;
     assert_eq!((found.missing, found.repeated, found.spikes, found.stuck), (200, 100, 5, 0));
     let error = means[1].mean - stream.truth(1);
@@ -150,7 +150,7 @@ fn gaps_repeats_and_spikes_are_counted() {
 fn a_plateau_cut_short_is_used_or_named() {
     let stream = Stream { lengths: vec![10.0, 10.0, 3.0, 10.0, 10.0, 10.0], ..Stream::default() };
     let reduced = reduce(&stream.record(), None, &stream.schedule()).expect("three seconds are enough");
-    let window = reduced.means(&NoiseModel::pool([&reduced]))[2].window;
+    let window = plateau_means(&reduced, &NoiseModel::pool([&reduced]))[2].window;
     let [start, end] = stream.windows()[2];
     assert!(window[0] >= start && window[1] <= end && window[1] - window[0] > 0.5, "{window:?} in {start} {end}");
     let short = Stream { lengths: vec![10.0, 10.0, 0.3, 10.0, 10.0, 10.0], ..Stream::default() };
@@ -173,7 +173,7 @@ fn robust_location_is_as_efficient_as_the_mean() {
         });
         let means = |record: &Record| {
             let reduced = reduce(record, None, &stream.schedule()).expect("the plateaus are there");
-            reduced.means(&NoiseModel::pool([&reduced]))
+            plateau_means(&reduced, &NoiseModel::pool([&reduced]))
         };
         for (means, record, sum) in [(means(&record), &record, &mut clean), (means(&dirty), &dirty, &mut spiked)] {
             for k in [0, 5] {

@@ -1,7 +1,7 @@
 //! Noise analysis against noise of known coefficients.
 
-use centrical::noise::{
-    Coefficient, Estimator, NoiseTerm, Phase, PowerLaw, deviations, fit_noise_terms, maximum_time_interval,
+use centrical::stability::{
+    Coefficient, Estimator, NoiseTerm, Phase, PowerLaw, degrees_of_freedom, deviations, fit_noise_terms,
     power_spectrum, regular_grid,
 };
 
@@ -150,7 +150,7 @@ fn degrees_of_freedom_of_the_windowed_totals() {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64;
         let observed = 2.0 * mean * mean / variance;
-        let stated = estimator.degrees_of_freedom(PowerLaw::White, m, readings + 1);
+        let stated = degrees_of_freedom(estimator, PowerLaw::White, m, readings + 1);
         // The variance of 400 chi^2 of this freedom is itself known to sqrt((2 + 12 / edf) / 400) = 8 %.
         assert!((stated / observed - 1.0).abs() < 0.25, "{estimator:?}: observed {observed}, stated {stated}");
     }
@@ -226,19 +226,6 @@ fn a_line_stands_at_its_frequency_with_its_power() {
     assert_eq!(spectrum.frequency[peak], frequency);
     let power = spectrum.density[peak] * spectrum.resolution;
     assert!((power / (amplitude * amplitude / 2.0) - 1.0).abs() < 1e-9);
-}
-
-#[test]
-fn maximum_interval_is_the_largest_range_of_any_window() {
-    let phase = phase(&Recipe { white: 1.0, ..Recipe::default() }, 300, 9);
-    for m in [1, 2, 7, 50, 300] {
-        let ranges = phase
-            .points()
-            .windows(m + 1)
-            .map(|x| x.iter().copied().fold(f64::MIN, f64::max) - x.iter().copied().fold(f64::MAX, f64::min));
-        assert_eq!(maximum_time_interval(&phase, m), Some(ranges.fold(0.0, f64::max)));
-    }
-    assert_eq!(maximum_time_interval(&phase, 301), None);
 }
 
 /// The record reaches the estimators the same whether as readings, as phase or with time stamps.

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use centrical::observability::{Addition, STRONG_CORRELATION};
 use centrical::position::Position;
 use centrical::{
-    Combination, ErrorModel, Experiment, Extension, Extra, Law, MeasurementModel, Mounting, PairRelation,
+    Centrifuge, Combination, ErrorModel, Experiment, Extension, Extra, Law, MeasurementModel, Mounting, PairRelation,
     ReferencePoint, SetPoint, Site, Study, Unit, Weight, rotation,
 };
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -40,6 +40,7 @@ pub fn random_design(random: &mut Random) -> Study {
         set_points.push(SetPoint { mounting: 0, omega: 14.0, angle: 0.0 });
     }
     let experiment = Experiment {
+        centrifuge: Centrifuge::default(),
         site: Site { gravity: 9.81, latitude: (random.below(2) == 0).then_some(0.97) },
         unit: Unit {
             rho_z: if random.below(2) == 0 { spread() * 0.5 } else { Matrix3::zeros() },
@@ -60,7 +61,7 @@ pub fn random_design(random: &mut Random) -> Study {
         (random.below(3) == 0).then(|| Extension::NAMED[random.below(8)].1).into_iter().collect();
     let model = MeasurementModel::new(experiment, error_model, &extensions);
     let count = model.experiment().set_points.len();
-    Study::at_zero(model, Weight::equal(count, 1e-4), 0.0).unwrap()
+    Study::at_zero(model, Weight::equal(count, 1e-4)).unwrap()
 }
 
 fn random_positions(random: &mut Random) -> Vec<Position> {
@@ -228,7 +229,7 @@ fn remedies_keep_their_promise() {
             let mut study = start.clone();
             for step in &remedy.steps {
                 let next = step.addition.apply(&study).unwrap();
-                let next = Study::at_zero(next.model().clone(), next.weights().to_vec(), 0.0).unwrap();
+                let next = Study::at_zero(next.model().clone(), next.weights().to_vec()).unwrap();
                 assert_eq!(study.observability().lost() - next.observability().lost(), step.gain, "{}", step.text);
                 assert!(step.gain > 0);
                 study = next;
@@ -252,7 +253,7 @@ fn additions_keep_order_and_weights() {
         let weights: Vec<Weight> = (study.weights().iter())
             .map(|w| Weight { covariance: w.covariance * (1.0 + w.set_point as f64), ..*w })
             .collect();
-        study = Study::at_zero(study.model().clone(), weights, 0.0).unwrap();
+        study = Study::at_zero(study.model().clone(), weights).unwrap();
         let mountings = (0..study.model().experiment().mountings.len()).collect();
         let addition = Addition::Rest { mountings, angle: PI };
         let after = addition.apply(&study).unwrap();

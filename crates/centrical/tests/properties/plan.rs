@@ -1,14 +1,14 @@
 use centrical::plan::{
-    Account, Candidates, Costs, Criterion, Effort, Goal, Noise, Plan, PlanError, ReadingRange, Robustness, Scenario,
+    Candidates, Costs, Criterion, Effort, Goal, Noise, Plan, PlanError, Rationale, ReadingRange, Robustness, Scenario,
     Schedule, Visit, best_for_time, next_best, predict, shortest_for_goals,
 };
 use centrical::position::{ThirdPosition, kozlov_2017};
-use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, reduce};
+use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, plateau_means, reduce};
 use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
 use centrical::uncertainty::{Compensated, Method, Settings, TypeB, monte_carlo};
 use centrical::{
-    ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, Observation, PairRelation,
-    ReferencePoint, SetPoint, Site, Term, Unit, Weight, fit, linear,
+    Centrifuge, ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, NULL_HOLD, Observation,
+    PairRelation, ReferencePoint, SetPoint, Site, Term, Unit, Weight, fit, linear,
 };
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
@@ -16,9 +16,9 @@ use crate::common::{Random, spread, truth};
 use crate::uncertainty::STATED;
 
 /// One that expects a unit without errors.
-pub fn scenario(model: MeasurementModel, noise: Noise, speed_uncertainty: f64) -> Scenario {
+pub fn scenario(model: MeasurementModel, noise: Noise) -> Scenario {
     let nominal = vec![0.0; model.parameters().len()];
-    Scenario { model, nominal, noise, speed_uncertainty, weight: 1.0 }
+    Scenario { model, nominal, noise, weight: 1.0 }
 }
 
 /// A few plateaus of one to three mountings, a unit of four to six coefficients, costs and durations by chance.
@@ -36,9 +36,10 @@ fn small(random: &mut Random) -> Candidates {
             _ => SetPoint { mounting, omega: 10.0 + 40.0 * random.uniform(), angle: 0.0 },
         })
         .collect();
-    let experiment = Experiment {
+    let mut experiment = Experiment {
         site: Site { gravity: 9.81, latitude: None },
         unit: Unit { rho_z: spread() * 0.5, reference: ReferencePoint::FirstProofMass },
+        centrifuge: Centrifuge::default(),
         positions: positions[..used].to_vec(),
         pair_relation: PairRelation::Common,
         mountings,
@@ -50,11 +51,12 @@ fn small(random: &mut Random) -> Candidates {
             .push(Term::new(random.below(3), Monomial::power(random.below(3), u8::try_from(random.below(4)).unwrap())));
     }
     terms.dedup();
-    let model = MeasurementModel::new(experiment, ErrorModel { terms }, &[]);
     let noise = Noise { density: 1e-4 * (1.0 + random.uniform()), floor: 1e-5 * random.uniform() };
     let position = 300.0 * random.uniform();
+    experiment.centrifuge.speed_uncertainty = 1e-5 * random.uniform();
+    let model = MeasurementModel::new(experiment, ErrorModel { terms }, &[]);
     Candidates {
-        scenarios: vec![scenario(model, noise, 1e-5 * random.uniform())],
+        scenarios: vec![scenario(model, noise)],
         robustness: Robustness::Mean,
         durations: vec![20.0 + 40.0 * random.uniform(), 100.0 + 100.0 * random.uniform()],
         repeats: 1,
@@ -73,11 +75,11 @@ fn covariance(scenario: &Scenario, visits: &[Visit]) -> DMatrix<f64> {
     let model = &scenario.model;
     let p = model.parameters().len();
     let mut rows = DMatrix::zeros(p + 3 * visits.len(), p);
-    rows.fill_diagonal(1.0 / fit::NULL_HOLD);
+    rows.fill_diagonal(1.0 / NULL_HOLD);
     for (n, visit) in visits.iter().enumerate() {
-        let l = model.linearise(&model.experiment().set_points[visit.plateau], &scenario.nominal);
-        let shift = l.speed * scenario.speed_uncertainty;
-        let sigma = Matrix3::identity() * scenario.noise.variance(visit.duration) + shift * shift.transpose();
+        let l = model.linearise(&model.experiment().set_points[visit.candidate], &scenario.nominal);
+        let sigma =
+            Matrix3::identity() * scenario.noise.variance(visit.duration) + l.speed_error * l.speed_error.transpose();
         let whitener = sigma.cholesky().unwrap().l().try_inverse().unwrap();
         for (j, column) in &l.columns {
             let typical = model.parameters()[*j].typical;
@@ -135,9 +137,9 @@ fn enumerated(candidates: &Candidates, time: f64, visit: &mut dyn FnMut(&[Visit]
     for code in 0..count {
         let mut rest = code;
         let mut visits = Vec::new();
-        for plateau in 0..candidates.len() {
+        for candidate in 0..candidates.len() {
             if rest % options > 0 {
-                visits.push(Visit { plateau, duration: candidates.durations[rest % options - 1] });
+                visits.push(Visit { candidate, duration: candidates.durations[rest % options - 1] });
             }
             rest /= options;
         }
@@ -163,21 +165,21 @@ fn criterion(number: usize, model: &MeasurementModel) -> Criterion {
     }
 }
 
-/// On small cases the plan is the best of all that there are.
+/// On small cases most plans are the best of all that there are, and none is far from it.
 #[test]
-fn small_plans_are_the_best_of_all() {
-    let proven = compared_with_all(11, 60, &mut |candidates, _| candidates);
-    assert!(proven.len() >= 55, "{}", proven.len());
+fn small_plans_are_nearly_the_best_of_all() {
+    let found = compared_with_all(11, 60, &mut |candidates, _| candidates);
+    assert!(found.len() >= 55, "{}", found.len());
 }
 
 /// So it is for several scenarios of which none is the worst for all plans: much white noise; little of it but a floor that
 /// longer plateaus do not lower; an elastic turn; a unit with errors.
 #[test]
-fn small_plans_are_the_best_in_the_worst_case() {
-    let proven = compared_with_all(12, 48, &mut |mut candidates, random| {
+fn small_plans_are_nearly_the_best_in_the_worst_case() {
+    let found = compared_with_all(12, 48, &mut |mut candidates, random| {
         let first = candidates.scenarios[0].clone();
         let noise = Noise { density: 0.2 * first.noise.density, floor: (2.0 + 3.0 * random.uniform()) * 1e-5 };
-        let coloured = scenario(first.model.clone(), noise, first.speed_uncertainty);
+        let coloured = scenario(first.model.clone(), noise);
         let elastic = MeasurementModel::new(
             first.model.experiment().clone(),
             first.model.error_model().clone(),
@@ -186,36 +188,36 @@ fn small_plans_are_the_best_in_the_worst_case() {
         let quiet = Noise { density: 0.3 * first.noise.density, ..first.noise };
         let mut with_errors = first.clone();
         with_errors.nominal = truth(&first.model, 1.0, random);
-        candidates.scenarios = vec![first, coloured, scenario(elastic, quiet, 0.0), with_errors];
+        candidates.scenarios = vec![first, coloured, scenario(elastic, quiet), with_errors];
         candidates.robustness = if random.below(4) == 0 { Robustness::Mean } else { Robustness::Worst };
         candidates
     });
-    assert!(proven.len() >= 40, "{}", proven.len());
-    // Not one scenario is always the worst: there is something to weigh.
+    assert!(found.len() >= 40, "{}", found.len());
+    // No scenario is always the worst, so they have to be weighed.
     let is_worst = |s: usize| {
         let worst = |plan: &&Plan| plan.by_scenario.iter().all(|value| *value <= plan.by_scenario[s]);
-        proven.iter().filter(worst).count()
+        found.iter().filter(worst).count()
     };
     let counts = [0, 1, 2, 3].map(is_worst);
     println!("{counts:?} plans are worst in each scenario");
     assert!(counts.iter().filter(|count| **count >= 5).count() >= 2, "{counts:?}");
 }
 
-/// Enumerates all plans of small cases and compares the best with what is found; the plans found.
+/// Enumerates all plans of small cases and compares the best with the one that is found; the plans found.
 fn compared_with_all(
     seed: u64,
     cases: usize,
     changed: &mut dyn FnMut(Candidates, &mut Random) -> Candidates,
 ) -> Vec<Plan> {
     let mut random = Random::new(seed);
-    let (mut enumerated_plans, mut raised) = (0, 0);
-    let mut proven = Vec::new();
+    let mut enumerated_plans = 0;
+    let (mut plans, mut ratios) = (Vec::new(), Vec::new());
     for case in 0..cases {
         let candidates = small(&mut random);
         let candidates = changed(candidates, &mut random);
         let criterion = criterion(case % 4, &candidates.scenarios[0].model);
         let all: Vec<Visit> =
-            (0..candidates.len()).map(|plateau| Visit { plateau, duration: candidates.durations[1] }).collect();
+            (0..candidates.len()).map(|candidate| Visit { candidate, duration: candidates.durations[1] }).collect();
         let time = candidates.time_of(&all) * (0.4 + 0.5 * random.uniform());
         let mut best = (f64::INFINITY, Vec::new());
         enumerated(&candidates, time, &mut |visits| {
@@ -228,41 +230,32 @@ fn compared_with_all(
         if best.1.is_empty() {
             continue;
         }
-        let plan = best_for_time(&candidates, &criterion, time, Effort::EXHAUSTIVE).unwrap();
+        let plan = best_for_time(&candidates, &criterion, time, Effort::CERTIFIED).unwrap();
         let found = value(&criterion, &candidates, &plan.schedule.visits);
         assert!((plan.criterion / found - 1.0).abs() < 1e-6, "case {case}: {} {found}", plan.criterion);
-        assert!(plan.schedule.time <= time * (1.0 + 1e-12) && plan.bound <= best.0 * (1.0 + 1e-6), "case {case}");
-        assert!(
-            found <= best.0 * (1.0 + 1e-6),
-            "case {case}, {criterion:?}: found {found:e}, best {:e}\n{:?}\n{:?}",
-            best.0,
-            plan,
-            best.1
-        );
-        // However early the search ends, no schedule is below its bound: over mountings, or over totals of visits.
-        let ends = [1, 2, 3, 5, 9].map(|mounting_nodes| Effort { mounting_nodes, ..Effort::QUICK });
-        let by_totals = [4, 12, 40].map(|visit_nodes| Effort { visit_nodes, ..Effort::CERTIFIED });
-        for effort in ends.into_iter().chain(by_totals) {
+        assert!(plan.schedule.time <= time * (1.0 + 1e-12), "case {case}");
+        // However early the search ends, no schedule is below its bound.
+        let ends = [1, 2, 3, 5, 9].map(|nodes| Effort { nodes, ..Effort::QUICK });
+        for effort in ends.into_iter().chain([Effort::CERTIFIED]) {
             let early = best_for_time(&candidates, &criterion, time, effort).unwrap();
             assert!(early.bound <= best.0 * (1.0 + 1e-9), "case {case}, {effort:?}: {:e} {:e}", early.bound, best.0);
             assert!(early.bound > 0.0 && early.criterion >= best.0 * (1.0 - 1e-6), "case {case}, {effort:?}");
         }
-        let bound_by = |visit_nodes| {
-            best_for_time(&candidates, &criterion, time, Effort { visit_nodes, ..Effort::CERTIFIED }).unwrap().bound
-        };
-        raised += usize::from(bound_by(40) > bound_by(0) * 1.002);
-        proven.push(plan);
+        ratios.push((found / best.0).sqrt());
+        plans.push(plan);
     }
-    println!("{} cases, {enumerated_plans} plans enumerated, {raised} bounds raised by totals", proven.len());
-    // There is something to decide on.
-    assert!(raised >= cases / 4, "{raised}");
-    proven
+    ratios.sort_by(f64::total_cmp);
+    let best = ratios.iter().filter(|ratio| **ratio < 1.0 + 1e-6).count();
+    let most = ratios[ratios.len() - 1];
+    println!("{enumerated_plans} plans enumerated, {best} of {} found are the best, the worst {most:.4}", plans.len());
+    assert!(best * 10 >= plans.len() * 8 && most < 1.05, "{best}, {ratios:.4?}");
+    plans
 }
 
 /// Mounting by mounting, and no plateau twice running.
 fn schedule_is_sorted(schedule: &Schedule, candidates: &Candidates) -> bool {
-    let mounting = |v: &Visit| candidates.experiment().set_points[v.plateau].mounting;
-    schedule.visits.windows(2).all(|w| mounting(&w[0]) <= mounting(&w[1]) && w[0].plateau != w[1].plateau)
+    let mounting = |v: &Visit| candidates.experiment().set_points[v.candidate].mounting;
+    schedule.visits.windows(2).all(|w| mounting(&w[0]) <= mounting(&w[1]) && w[0].candidate != w[1].candidate)
 }
 
 /// A machine's worth of candidates: six positions, two radii, speeds by load.
@@ -284,7 +277,7 @@ pub fn large(speeds: usize, durations: &[f64]) -> Candidates {
     let model = MeasurementModel::new(experiment, ErrorModel::kozlov_2017(), &[]);
     let noise = Noise { density: 20e-6 * 9.80665, floor: 1e-6 * 9.80665 };
     Candidates {
-        scenarios: vec![scenario(model, noise, 1e-5)],
+        scenarios: vec![scenario(model, noise)],
         robustness: Robustness::Mean,
         durations: durations.to_vec(),
         repeats: 2,
@@ -326,7 +319,7 @@ fn predictions_are_what_monte_carlo_shows() {
     let scenario = &candidates.scenarios[0];
     let model = scenario.model.in_experiment(experiment);
     let zero = vec![0.0; model.parameters().len()];
-    let prediction = predict(&model, &weights, scenario.speed_uncertainty, &STATED, &zero).unwrap();
+    let prediction = predict(&model, &weights, &STATED, &zero).unwrap();
     let observations: Vec<Observation> = weights
         .iter()
         .map(|w| Observation {
@@ -336,7 +329,7 @@ fn predictions_are_what_monte_carlo_shows() {
         })
         .collect();
     let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact, stated: STATED };
-    let shown = monte_carlo(&model, &zero, &observations, scenario.speed_uncertainty, &settings, &|_| {}).unwrap();
+    let shown = monte_carlo(&model, &zero, &observations, &settings, &|_| {}).unwrap();
     let mut ratios = Vec::new();
     for (j, statistics) in shown.parameters.iter().enumerate() {
         let (Some(statistics), Some(u)) = (statistics, prediction.budget().standard_uncertainty(j)) else { continue };
@@ -361,12 +354,12 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let (mut candidates, _) = planned();
     candidates.durations = vec![40.0];
     candidates.repeats = 1;
-    let every = (0..candidates.len()).map(|plateau| Visit { plateau, duration: 40.0 }).collect();
+    let every = (0..candidates.len()).map(|candidate| Visit { candidate, duration: 40.0 }).collect();
     let (experiment, _) = candidates.experiment_of(&candidates.schedule(every));
     let model = candidates.scenarios[0].model.in_experiment(experiment);
     // Noise of 20 ug/sqrt(Hz) at this rate.
     let white = 20e-6 * 9.80665 * (0.5 * RATE).sqrt();
-    let settings = centrical::simulate::Settings {
+    let settings = centrical::simulate::Equipment {
         machine: Machine { plateau: 40.0, speed_error: 1e-5, ..Machine::default() },
         sensor: Sensor { white, ..Sensor::default() },
         recorder: Recorder { rate: RATE, ..Recorder::default() },
@@ -375,7 +368,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let noise = Noise { density: 20e-6 * 9.80665, floor: 0.0 };
     let weights: Vec<Weight> = (0..model.experiment().set_points.len()).map(|n| noise.weight(n, 40.0)).collect();
     let truth = truth(&model, 1.0, &mut Random::new(100));
-    let prediction = predict(&model, &weights, 1e-5, &TypeB::default(), &truth).unwrap();
+    let prediction = predict(&model, &weights, &TypeB::default(), &truth).unwrap();
     let p = model.parameters().len();
     let scale = nalgebra::DVector::from_fn(p, |j, _| prediction.budget().standard_uncertainty(j).unwrap());
     let correlation = DMatrix::from_fn(p, p, |i, j| prediction.budget().correlation(i, j).unwrap());
@@ -384,7 +377,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let mut weighted = 0.0;
     for seed in 0..SESSIONS {
         let observations = calibration_means(&model, &truth, &settings, seed);
-        let fit = fit::exact(&model, &observations, 1e-5).unwrap();
+        let fit = fit::exact(&model, &observations).unwrap();
         let error = nalgebra::DVector::from_fn(p, |j, _| (fit.value(j).unwrap() - truth[j]) / scale[j]);
         squares += error.component_mul(&error) / SESSIONS as f64;
         weighted += factor.solve(&error).dot(&error);
@@ -408,7 +401,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
 fn calibration_means(
     model: &MeasurementModel,
     truth: &[f64],
-    settings: &centrical::simulate::Settings,
+    settings: &centrical::simulate::Equipment,
     seed: u64,
 ) -> Vec<Observation> {
     let simulation = Simulation::new(model, truth, settings, seed).unwrap();
@@ -427,7 +420,7 @@ fn calibration_means(
         })
         .collect();
     let pooled = NoiseModel::pool(&reduced);
-    let means = reduced.iter().flat_map(|mounting| mounting.means(&pooled));
+    let means = reduced.iter().flat_map(|mounting| plateau_means(mounting, &pooled));
     let observation = |(set_point, mean): (usize, centrical::reduction::PlateauMean)| Observation {
         set_point,
         mean: mean.mean,
@@ -443,11 +436,11 @@ fn reading_criterion_is_the_mean_over_forces() {
     let (experiment, weights) = candidates.experiment_of(&schedule);
     let model = candidates.scenarios[0].model.in_experiment(experiment);
     let zero = vec![0.0; model.parameters().len()];
-    let prediction = predict(&model, &weights, 1e-5, &TypeB::default(), &zero).unwrap();
+    let prediction = predict(&model, &weights, &TypeB::default(), &zero).unwrap();
     let [_, cubature] = prediction.reading(RANGE).unwrap();
     let first = model.parameters().find("df_1").unwrap();
     let covariance = DMatrix::from_fn(21, 21, |i, j| prediction.budget().covariance(first + i, first + j).unwrap());
-    let compensated = Compensated::new(ErrorModel::kozlov_2017(), vec![0.0; 21], covariance).unwrap();
+    let compensated = Compensated::new(ErrorModel::kozlov_2017().with_coefficients(&[0.0; 21]), covariance).unwrap();
     let mut random = Random::new(9);
     let draws = 40_000;
     let mut squares = Vec::with_capacity(draws);
@@ -492,12 +485,12 @@ fn least_times_for_goals_are_below_all_that_keep_them() {
     let (mut cases, mut ratios, mut bounds) = (0, Vec::new(), Vec::new());
     while cases < 24 {
         let candidates = small(&mut random);
-        let longest = |plateau| Visit { plateau, duration: candidates.durations[1] };
+        let longest = |candidate| Visit { candidate, duration: candidates.durations[1] };
         let everything: Vec<Visit> = (0..candidates.len()).map(longest).collect();
         let reached = value(&Criterion::Reading(RANGE), &candidates, &everything).sqrt();
         let uncertainty = reached * (1.02 + random.uniform());
         let goal = Criterion::Worst(vec![Goal::Reading { range: RANGE, uncertainty }]);
-        let plan = shortest_for_goals(&candidates, &goal, 0.01, Effort::EXHAUSTIVE).unwrap();
+        let plan = shortest_for_goals(&candidates, &goal, 0.01, Effort::CERTIFIED).unwrap();
         let mut shortest = f64::INFINITY;
         enumerated(&candidates, plan.schedule.time, &mut |visits| {
             let time = candidates.time_of(visits);
@@ -541,44 +534,43 @@ fn next_best_is_the_best() {
     let all: Vec<Weight> = (0..candidates.len()).map(|n| noise.weight(n, 60.0)).collect();
     let (taken, rest) = all.split_at(candidates.len() - 6);
     let criterion = Criterion::Reading(RANGE);
-    let gains = next_best(model, 1e-5, &criterion, taken, rest).unwrap();
-    assert_eq!(gains.len(), 6);
+    let benefits = next_best(model, &criterion, taken, rest).unwrap();
+    assert_eq!(benefits.len(), 6);
     let zero = vec![0.0; model.parameters().len()];
-    let reading = |weights: &[Weight]| {
-        predict(model, weights, 1e-5, &TypeB::default(), &zero).unwrap().reading(RANGE).unwrap()[1]
-    };
+    let reading =
+        |weights: &[Weight]| predict(model, weights, &TypeB::default(), &zero).unwrap().reading(RANGE).unwrap()[1];
     let before = reading(taken);
-    for pair in gains.windows(2) {
+    for pair in benefits.windows(2) {
         assert!(pair[0].factor <= pair[1].factor);
     }
-    for gain in &gains {
-        let with: Vec<Weight> = taken.iter().copied().chain([all[gain.set_point]]).collect();
+    for benefit in &benefits {
+        let with: Vec<Weight> = taken.iter().copied().chain([all[benefit.set_point]]).collect();
         let factor = reading(&with) / before;
-        assert!((factor - gain.factor).abs() < 1e-4, "{}: {factor} {}", gain.set_point, gain.factor);
-        assert!(gain.factor < 1.0);
+        assert!((factor - benefit.factor).abs() < 1e-4, "{}: {factor} {}", benefit.set_point, benefit.factor);
+        assert!(benefit.factor < 1.0);
     }
 }
 
-/// An account says what a plan without the visit is worth.
+/// A rationale states the value of the plan without the visit.
 #[test]
-fn accounts_are_what_is_lost() {
+fn rationales_are_what_is_lost() {
     let (candidates, schedule) = planned();
     let criterion = Criterion::Average;
-    let account = Account::of(&candidates, &criterion, &schedule).unwrap();
-    assert_eq!(account.visits.len(), schedule.visits.len());
+    let rationale = Rationale::of(&candidates, &criterion, &schedule).unwrap();
+    assert_eq!(rationale.visits.len(), schedule.visits.len());
     let with = value(&criterion, &candidates, &schedule.visits);
     for n in (0..schedule.visits.len()).step_by(7) {
         let mut without = schedule.visits.clone();
         without.remove(n);
         let rise = value(&criterion, &candidates, &without) / with - 1.0;
-        let reason = &account.visits[n];
+        let reason = &rationale.visits[n];
         assert!((reason.rise - rise).abs() < 1e-6 * (1.0 + rise), "{n}: {} {rise}", reason.rise);
         assert!(reason.rise > 0.0 && reason.factor >= 1.0);
         assert!(candidates.scenarios[0].model.parameters()[reason.parameter].is_of_instrument());
     }
 }
 
-/// A plan's bound is one, whatever is left to chance: a uniform plan and [K5.5] in the same time are above it.
+/// The bound is below any plan: also below a uniform plan for the same time.
 #[test]
 fn no_usual_plan_is_below_the_bound() {
     let candidates = large(6, &[30.0, 60.0, 120.0]);

@@ -12,8 +12,6 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
 
-const SPEED_UNCERTAINTY: f64 = 1e-5;
-
 /// Issue: values to 1e-9 of a standard uncertainty, covariances to 1e-9 relative.
 const AGREEMENT: f64 = 1e-9;
 
@@ -83,7 +81,7 @@ fn noisy(model: &MeasurementModel, random: &mut Random) -> Vec<Observation> {
         let spread = Matrix3::from_fn(|_, _| 1e-5 * random.normal()) + Matrix3::identity() * 3e-5;
         observation.covariance = spread * spread.transpose();
         let set_point = &model.experiment().set_points[observation.set_point];
-        let speed = model.linearise(set_point, &x).speed * (SPEED_UNCERTAINTY * random.normal());
+        let speed = model.linearise(set_point, &x).speed_error * random.normal();
         observation.mean += spread * Vector3::from_fn(|_, _| random.normal()) + speed;
     }
     data
@@ -96,7 +94,7 @@ fn linear_noise(model: &MeasurementModel, random: &mut Random) -> Vec<Observatio
         let at_zero = model.linearise_at_zero(&model.experiment().set_points[observation.set_point]);
         let root = observation.covariance.cholesky().unwrap().unpack();
         let noise = root * Vector3::from_fn(|_, _| random.normal());
-        observation.mean = at_zero.reading + noise + at_zero.speed * (SPEED_UNCERTAINTY * random.normal());
+        observation.mean = at_zero.reading + noise + at_zero.speed_error * random.normal();
     }
     data
 }
@@ -136,7 +134,7 @@ fn order(data: &[Observation]) -> Vec<usize> {
 fn readings_at_zero(model: &MeasurementModel, data: &[Observation]) -> Vec<Readings> {
     let at_zero = |o: &Observation| {
         let linearisation = model.linearise_at_zero(&model.experiment().set_points[o.set_point]);
-        Readings::new(o, &linearisation, SPEED_UNCERTAINTY).unwrap()
+        Readings::new(o, &linearisation).unwrap()
     };
     data.iter().map(at_zero).collect()
 }
@@ -147,8 +145,8 @@ fn linear_filter_is_the_batch() {
     let mut random = Random::new(40);
     for n in 0..40 {
         let (model, data) = random_session(&mut random);
-        let batch = fit::linear(&model, &data, SPEED_UNCERTAINTY).unwrap();
-        let filtered = recursive::linear(&model, &data, SPEED_UNCERTAINTY).unwrap();
+        let batch = fit::linear(&model, &data).unwrap();
+        let filtered = recursive::linear(&model, &data).unwrap();
         assert_agreement(&filtered, &batch, &format!("session {n}"));
     }
 }
@@ -162,8 +160,8 @@ fn random_designs_are_the_batch_too() {
     let (mut firm, mut short, mut sizes) = (0, 0, HashSet::new());
     for n in 0..60 {
         let (model, mut data) = random_design(&mut random);
-        let batch = fit::linear(&model, &data, SPEED_UNCERTAINTY).unwrap();
-        let filtered = recursive::linear(&model, &data, SPEED_UNCERTAINTY).unwrap();
+        let batch = fit::linear(&model, &data).unwrap();
+        let filtered = recursive::linear(&model, &data).unwrap();
         let seen = batch.observability();
         let what = format!("design {n}, rank {} of {}", seen.rank(), seen.columns());
         let mut agreement = AGREEMENT;
@@ -171,7 +169,7 @@ fn random_designs_are_the_batch_too() {
             firm += 1;
         } else {
             random.shuffle(&mut data);
-            let (values, covariances) = difference(&fit::linear(&model, &data, SPEED_UNCERTAINTY).unwrap(), &batch);
+            let (values, covariances) = difference(&fit::linear(&model, &data).unwrap(), &batch);
             agreement += 10.0 * values.max(covariances);
         }
         assert_agreement_to(agreement, &filtered, &batch, &what);
@@ -188,8 +186,8 @@ fn iterated_filter_is_the_exact_batch() {
     let mut converged = 0;
     for n in 0..20 {
         let (model, data) = random_session(&mut random);
-        let batch = fit::exact(&model, &data, SPEED_UNCERTAINTY).unwrap();
-        let filtered = recursive::exact(&model, &data, SPEED_UNCERTAINTY).unwrap();
+        let batch = fit::exact(&model, &data).unwrap();
+        let filtered = recursive::exact(&model, &data).unwrap();
         assert_eq!((filtered.termination, filtered.iterations), (batch.termination, batch.iterations), "session {n}");
         assert_eq!(filtered.null_directions_held, batch.null_directions_held, "session {n}");
         // A session that chance made too poor for the batch to converge has nothing to agree with.
@@ -216,9 +214,9 @@ fn extensions_and_ungrouped_orders_are_the_batch_too() {
         let model = MeasurementModel::new(experiment.clone(), ErrorModel::kozlov_2017(), extensions);
         let mut data = noisy(&model, &mut random);
         for what in ["grouped", "shuffled"] {
-            let batch = fit::linear(&model, &data, SPEED_UNCERTAINTY).unwrap();
+            let batch = fit::linear(&model, &data).unwrap();
             let what = format!("{extensions:?} {what}, rank {}", batch.observability().rank());
-            assert_agreement(&recursive::linear(&model, &data, SPEED_UNCERTAINTY).unwrap(), &batch, &what);
+            assert_agreement(&recursive::linear(&model, &data).unwrap(), &batch, &what);
             random.shuffle(&mut data);
         }
     }
@@ -231,14 +229,14 @@ fn priors_count_as_in_the_batch() {
     let model = kozlov(experiment(AxisOneUp, PairRelation::Opposite, &[1.0, 0.5]));
     let model = model.with_prior("proof mass", 1e-4).unwrap().with_prior("tilt", 1e-3).unwrap();
     let data = noisy(&model, &mut random);
-    let batch = fit::linear(&model, &data, SPEED_UNCERTAINTY).unwrap();
-    let filtered = recursive::linear(&model, &data, SPEED_UNCERTAINTY).unwrap();
+    let batch = fit::linear(&model, &data).unwrap();
+    let filtered = recursive::linear(&model, &data).unwrap();
     assert_eq!(batch.observability().rank(), 49);
     assert_agreement(&filtered, &batch, "with priors");
     assert!((0..49).all(|j| filtered.rests_on_prior(j) == batch.rests_on_prior(j)));
     assert!((0..49).any(|j| filtered.rests_on_prior(j)));
-    let batch = fit::exact(&model, &data, SPEED_UNCERTAINTY).unwrap();
-    let filtered = recursive::exact(&model, &data, SPEED_UNCERTAINTY).unwrap();
+    let batch = fit::exact(&model, &data).unwrap();
+    let filtered = recursive::exact(&model, &data).unwrap();
     assert_agreement_to(CONVERGENCE, &filtered, &batch, "with priors, exact");
 }
 
@@ -253,7 +251,7 @@ fn filtered_estimates_are_those_of_the_plateaus_so_far() {
     let mut compared = 0;
     for (place, readings) in readings_at_zero(&model, &data).iter().enumerate() {
         filter.update(place, readings).unwrap();
-        let batch = fit::linear(&model, &data[..=place], SPEED_UNCERTAINTY).unwrap();
+        let batch = fit::linear(&model, &data[..=place]).unwrap();
         let all_estimable = filter.carried().iter().all(|&j| batch.value(j).is_some());
         if all_estimable {
             let (x, covariance) = filter.factor().solve().unwrap();
@@ -310,8 +308,8 @@ fn an_order_by_radius_costs_nineteen_states() {
     assert!(waiting.contains(&"delta_1[1]".to_owned()) && waiting.contains(&"dR_2[B]".to_owned()), "{waiting:?}");
     let mut random = Random::new(44);
     let data = noisy(&model, &mut random);
-    let batch = fit::linear(&model, &data, SPEED_UNCERTAINTY).unwrap();
-    assert_agreement(&recursive::linear(&model, &data, SPEED_UNCERTAINTY).unwrap(), &batch, "by radius");
+    let batch = fit::linear(&model, &data).unwrap();
+    assert_agreement(&recursive::linear(&model, &data).unwrap(), &batch, "by radius");
 }
 
 fn by_radius(mut experiment: Experiment) -> Experiment {
@@ -334,7 +332,7 @@ fn order_within_a_position_does_not_matter() {
         first || !(18..36).contains(&o.set_point)
     });
     assert!(seen && data.len() == 91);
-    let batch = fit::linear(&model, &data, SPEED_UNCERTAINTY).unwrap();
+    let batch = fit::linear(&model, &data).unwrap();
     let undetermined: Vec<_> = batch.observability().null_directions().iter().map(|d| d.terms().len()).collect();
     assert!(undetermined.len() > 2, "{undetermined:?}");
     for _ in 0..5 {
@@ -343,7 +341,7 @@ fn order_within_a_position_does_not_matter() {
             let (first, last) = ((0..91).find(|&p| at(p)).unwrap(), (0..91).rev().find(|&p| at(p)).unwrap());
             random.shuffle(&mut data[first..=last]);
         }
-        assert_agreement(&recursive::linear(&model, &data, SPEED_UNCERTAINTY).unwrap(), &batch, "shuffled");
+        assert_agreement(&recursive::linear(&model, &data).unwrap(), &batch, "shuffled");
     }
 }
 
@@ -398,7 +396,7 @@ fn innovations_add_up_to_chi_squared() {
         if n % 2 == 1 {
             random.shuffle(&mut data);
         }
-        let batch = fit::linear(&model, &data, SPEED_UNCERTAINTY).unwrap();
+        let batch = fit::linear(&model, &data).unwrap();
         let lives = Lives::new(&model, &order(&data));
         let mut filter = Filter::new(&lives);
         let (mut squared, mut degrees_of_freedom) = (0.0, 0);
@@ -455,7 +453,7 @@ fn a_followed_session() {
         let model = kozlov(experiment(AxisOneUp, relation, &[1.0, 0.5]));
         let mut data = noisy(&model, &mut Random::new(seed));
         let follower = follow(&model, &mut data);
-        let fit = fit::exact(&model, &data, SPEED_UNCERTAINTY).unwrap();
+        let fit = fit::exact(&model, &data).unwrap();
         let progress = follower.progress().unwrap();
         assert_eq!(progress.rank, fit.observability().rank());
         for (j, estimate) in progress.estimates.iter().enumerate() {
@@ -474,7 +472,7 @@ fn follow<'m>(model: &'m MeasurementModel, data: &mut Vec<Observation>) -> Follo
     const BAD: usize = 61;
     // 50 ug, where means are known to 5 and the speed's 4 mg is along the arm.
     data[BAD].mean += Vector3::repeat(5e-4);
-    let mut follower = Follower::new(model, SPEED_UNCERTAINTY);
+    let mut follower = Follower::new(model);
     let mut probabilities = Vec::new();
     let mut degrees_of_freedom = 0;
     for (place, observation) in data.iter().enumerate() {
@@ -491,7 +489,7 @@ fn follow<'m>(model: &'m MeasurementModel, data: &mut Vec<Observation>) -> Follo
     }
     assert_uniform(&mut probabilities);
     data.remove(BAD);
-    assert_eq!(degrees_of_freedom, fit::exact(model, data, SPEED_UNCERTAINTY).unwrap().degrees_of_freedom);
+    assert_eq!(degrees_of_freedom, fit::exact(model, data).unwrap().degrees_of_freedom);
     follower
 }
 
@@ -501,13 +499,13 @@ fn expectation_and_resumption_of_a_followed_session() {
     let mut random = Random::new(51);
     let model = kozlov(experiment(AxisOneDown, PairRelation::Opposite, &[1.0, 0.5]));
     let data = noisy(&model, &mut random);
-    let mut follower = Follower::new(&model, SPEED_UNCERTAINTY);
+    let mut follower = Follower::new(&model);
     assert_eq!(follower.progress(), Err(FitError::Empty));
     for observation in &data[..95] {
         follower.take(observation.clone()).unwrap();
     }
     let expected = follower.expected(95, data[95].covariance).unwrap();
-    let resumed = Follower::resume(&model, SPEED_UNCERTAINTY, follower.taken().to_vec(), follower.point());
+    let resumed = Follower::resume(&model, follower.taken().to_vec(), follower.point());
     let mut resumed = resumed.unwrap();
     follower.take(data[95].clone()).unwrap();
     resumed.take(data[95].clone()).unwrap();
@@ -536,7 +534,7 @@ fn a_gross_plateau_anywhere_is_alarmed_and_survived() {
         let data = noisy(&model, &mut random);
         let lives = Lives::new(&model, &order(&data));
         let mut perfect = Filter::new(&lives);
-        let mut follower = Follower::new(&model, SPEED_UNCERTAINTY);
+        let mut follower = Follower::new(&model);
         let mut told = 0;
         for (place, observation) in data.iter().enumerate() {
             let size = [20e-3, 1.0, 10.0][(place + random.below(3)) % 3] * STANDARD_GRAVITY;
@@ -546,7 +544,7 @@ fn a_gross_plateau_anywhere_is_alarmed_and_survived() {
             let at_zero = model.linearise_at_zero(&model.experiment().set_points[observation.set_point]);
             let reading = |off: Vector3<f64>| {
                 let perfect = Observation { mean: at_zero.reading + off, ..observation.clone() };
-                Readings::new(&perfect, &at_zero, SPEED_UNCERTAINTY).unwrap()
+                Readings::new(&perfect, &at_zero).unwrap()
             };
             let telling = perfect.innovation(place, &reading(blow)).unwrap().squared > TELLING;
             perfect.update(place, &reading(Vector3::zeros())).unwrap();
@@ -571,14 +569,14 @@ fn a_follower_resumed_anywhere_is_the_same() {
     let mut random = Random::new(58);
     let model = kozlov(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]));
     let data = noisy(&model, &mut random);
-    let mut through = Follower::new(&model, SPEED_UNCERTAINTY);
+    let mut through = Follower::new(&model);
     let mut stopped = through.clone();
     for observation in &data {
         assert_eq!(through.test(observation).unwrap(), stopped.test(observation).unwrap());
         through.take(observation.clone()).unwrap();
         stopped.take(observation.clone()).unwrap();
         let (taken, point) = (stopped.taken().to_vec(), stopped.point().to_vec());
-        stopped = Follower::resume(&model, SPEED_UNCERTAINTY, taken, &point).unwrap();
+        stopped = Follower::resume(&model, taken, &point).unwrap();
         assert_eq!(through.point(), stopped.point());
         assert_eq!(through.progress().unwrap(), stopped.progress().unwrap());
     }

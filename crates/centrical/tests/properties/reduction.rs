@@ -1,7 +1,10 @@
 //! Reduction of simulated records: plateaus found where they are, means right to their own uncertainty, and plain
 //! words where a plateau is not there.
 
-use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, Survey, reduce};
+use centrical::reduction::{
+    Averaging, NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, Survey, average, locate,
+    plateau_means, reduce,
+};
 use nalgebra::Vector3;
 
 use crate::common::Random;
@@ -51,7 +54,7 @@ fn pooled(session: &[(Stream, ReducedMounting)]) -> NoiseModel {
 
 fn means(session: &[(Stream, ReducedMounting)]) -> Vec<(&Stream, usize, PlateauMean)> {
     let noise = pooled(session);
-    let of = |reduced: &ReducedMounting| reduced.means(&noise).into_iter().enumerate().collect();
+    let of = |reduced: &ReducedMounting| plateau_means(reduced, &noise).into_iter().enumerate().collect();
     let all: Vec<Vec<(usize, PlateauMean)>> = session.iter().map(|(_, reduced)| of(reduced)).collect();
     session.iter().zip(all).flat_map(|((s, _), means)| means.into_iter().map(move |(k, mean)| (s, k, mean))).collect()
 }
@@ -133,7 +136,8 @@ fn spikes_do_not_move_means() {
                 record.f_z[(3.0 * random.uniform()) as usize][i] += 30.0 + 100.0 * random.uniform();
             }
         }
-        let spiked = reduce(&record, None, &stream.schedule()).expect("spikes hide no plateau").means(&noise);
+        let spiked = reduce(&record, None, &stream.schedule()).expect("spikes hide no plateau");
+        let spiked = plateau_means(&spiked, &noise);
         // Samples that are left out move the mean as well: by the root of their share of its standard error.
         let moved = (spiked[k].mean - mean.mean).component_div(&mean.covariance.diagonal().map(f64::sqrt));
         squares.push(moved.norm_squared() / 3.0);
@@ -203,7 +207,7 @@ fn the_clock_offset_comes_from_the_ramps() {
         assert_eq!(found.ramps, 5);
         // A twentieth of a block.
         assert!((found.seconds - offset).abs() < 5e-3, "{found:?}");
-        for (mean, omega) in reduced.means(&NoiseModel::pool([&reduced])).iter().zip(&stream.omegas) {
+        for (mean, omega) in plateau_means(&reduced, &NoiseModel::pool([&reduced])).iter().zip(&stream.omegas) {
             let speed = mean.measured_speed.expect("telemetry covers the record");
             assert!((speed - omega).abs() < 1e-4 * omega + 1e-9, "{speed} {omega}");
         }
@@ -215,7 +219,7 @@ fn the_same_record_gives_the_same_bits() {
     let stream = Stream { colour: (1e-3, 0.5), ..Stream::default() }.rough();
     let twice = [0, 1].map(|_| {
         let reduced = reduced(&stream);
-        reduced.means(&NoiseModel::pool([&reduced]))
+        plateau_means(&reduced, &NoiseModel::pool([&reduced]))
     });
     assert_eq!(twice[0], twice[1]);
 }
@@ -236,12 +240,16 @@ fn in_stretches_as_whole() {
             from = to;
         }
         survey.finish();
-        let located = survey.locate(None, &schedule).expect("plateaus are there");
+        let located = locate(&survey, None, &schedule).expect("plateaus are there");
         let windows = located.windows();
         let average =
-            |k: usize| located.average(k, record.as_slice().between(windows[k]), 0).expect("a steady plateau");
+            |k: usize| average(&located, k, record.as_slice().between(windows[k]), 0).expect("a steady plateau");
         let averaged = (0..windows.len()).map(average).collect();
-        assert_eq!(located.into_mounting(averaged).means(&noise), whole.means(&noise), "stretches of {length}");
+        assert_eq!(
+            plateau_means(&ReducedMounting::new(located, averaged), &noise),
+            plateau_means(&whole, &noise),
+            "stretches of {length}"
+        );
     }
 }
 
@@ -258,9 +266,9 @@ fn in_parts_as_whole() {
         let mut survey = Survey::new(&record.t);
         survey.append(survey.condense(record.as_slice()));
         survey.finish();
-        let located = survey.locate(None, &schedule).expect("plateaus are there");
+        let located = locate(&survey, None, &schedule).expect("plateaus are there");
         let of_parts = |(k, [from, to]): (usize, [f64; 2])| {
-            let mut plateau = located.plateau(k);
+            let mut plateau = Averaging::new(&located, k);
             let cuts = [from, from + 0.4 * (to - from), from + 0.75 * (to - from), to];
             for (i, cut) in cuts.windows(2).enumerate() {
                 let part = [if i == 0 { cut[0] } else { cut[0].next_up() }, cut[1]];
@@ -269,8 +277,8 @@ fn in_parts_as_whole() {
             plateau.finish().expect("a steady plateau")
         };
         let averaged = located.windows().into_iter().enumerate().map(of_parts).collect();
-        let in_parts = located.into_mounting(averaged).means(&noise);
-        for (k, (part, whole)) in in_parts.iter().zip(whole.means(&noise)).enumerate() {
+        let in_parts = plateau_means(&ReducedMounting::new(located, averaged), &noise);
+        for (k, (part, whole)) in in_parts.iter().zip(plateau_means(&whole, &noise)).enumerate() {
             let off = (part.mean - whole.mean).component_div(&whole.covariance.diagonal().map(f64::sqrt));
             assert!(off.amax() < 0.5, "{name}, {k}: {off}");
             squares.push(off.norm_squared() / 3.0);
@@ -292,7 +300,7 @@ fn a_clock_that_starts_late_costs_nothing() {
     let (record, schedule) = (stream.record(), stream.schedule());
     let means = |record: &Record| {
         let reduced = reduce(record, None, &schedule).expect("plateaus are there");
-        reduced.means(&NoiseModel::pool([&reduced]))
+        plateau_means(&reduced, &NoiseModel::pool([&reduced]))
     };
     let expected = means(&record);
     for stutter in [0.0, 1e-12] {
@@ -328,7 +336,7 @@ fn two_rests_with_a_turn_between_are_two() {
     let mut schedule = run.schedule();
     schedule.remove(1);
     let reduced = reduce(&run.record(), None, &schedule).expect("all four are there");
-    let means = reduced.means(&NoiseModel::pool([&reduced]));
+    let means = plateau_means(&reduced, &NoiseModel::pool([&reduced]));
     for (mean, k) in means.iter().zip([0, 2, 3, 4]) {
         let [start, end] = run.windows()[k];
         assert!(mean.window[0] >= start - 0.1 && mean.window[1] <= end + 0.1, "{:?} {start} {end}", mean.window);
@@ -348,7 +356,7 @@ fn of_a_plateau_run_twice_the_longer_is_taken() {
     let all = run.schedule();
     let schedule = [all[0], all[3], all[4], all[5]];
     let reduced = reduce(&run.record(), None, &schedule).expect("all four are there");
-    let means = reduced.means(&NoiseModel::pool([&reduced]));
+    let means = plateau_means(&reduced, &NoiseModel::pool([&reduced]));
     let [start, end] = run.windows()[3];
     assert!(means[1].window[0] >= start && means[1].window[1] <= end, "{:?}", means[1].window);
 }
@@ -415,7 +423,7 @@ fn a_reading_stuck_for_a_while_is_left_out() {
     let held = record.f_z[1][from];
     record.f_z[1][from..from + 100].fill(held);
     let reduced = reduce(&record, None, &run.schedule()).expect("the rest of it is there");
-    let means = reduced.means(&NoiseModel::pool([&reduced]));
+    let means = plateau_means(&reduced, &NoiseModel::pool([&reduced]));
     assert!(means[2].rejected >= 100);
     assert!(chi_squared(&run, 2, &means[2]) < 20.0);
 }

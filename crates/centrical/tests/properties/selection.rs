@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use crate::common::{Random, observations, truth};
 use crate::validity::{session, source_model};
 
-const SPEED: f64 = 1e-5;
 const SESSIONS: u64 = 100;
 
 /// The source's model with `extra`.
@@ -31,7 +30,7 @@ fn five_sigma_is_kept_and_nothing_is_rejected() {
         let j = larger.parameters().find(term).unwrap();
         let size = {
             let x = truth(larger, 0.0, &mut Random::new(1));
-            let fit = fit::exact(larger, &observations(larger, &x), SPEED).unwrap();
+            let fit = fit::exact(larger, &observations(larger, &x)).unwrap();
             5.0 * fit.standard_uncertainty(j).unwrap()
         };
         for present in [true, false] {
@@ -44,7 +43,7 @@ fn five_sigma_is_kept_and_nothing_is_rejected() {
                     let data = session(larger, &x, &mut random);
                     let candidates =
                         [smaller, larger].map(|model| Candidate { name: String::new(), model: model.clone() });
-                    let selection = select(&candidates, &data, SPEED).unwrap();
+                    let selection = select(&candidates, &data).unwrap();
                     let verdict = selection.terms.iter().find(|t| t.name == term).unwrap();
                     ((selection.recommended == 1) == present, verdict.kept == present)
                 })
@@ -62,7 +61,7 @@ fn five_sigma_is_kept_and_nothing_is_rejected() {
 fn the_true_model_is_recommended() {
     let (model, mut random) = (source_model(), Random::new(21));
     let data = session(&model, &truth(&model, 1.0, &mut random), &mut random);
-    let selection = select(&rivals_of(&model), &data, SPEED).unwrap();
+    let selection = select(&rivals_of(&model), &data).unwrap();
     let names: Vec<&str> = selection.rivals.iter().map(|r| r.name.as_str()).collect();
     assert_eq!(names.len(), 7, "{names:?}");
     assert_eq!(names[selection.recommended], "as stated");
@@ -86,5 +85,5 @@ fn the_true_model_is_recommended() {
 fn no_candidate_is_an_error() {
     let model = source_model();
     let data = observations(&model, &truth(&model, 1.0, &mut Random::new(3)));
-    assert!(select(&[], &data, SPEED).is_err());
+    assert!(select(&[], &data).is_err());
 }

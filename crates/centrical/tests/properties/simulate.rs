@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::reduction::Record;
-use centrical::simulate::{Machine, Recorder, Settings, Simulation, SimulationError, Tachometer};
+use centrical::simulate::{Equipment, Machine, Recorder, Simulation, SimulationError, Tachometer};
 use centrical::{ArmMotion, EARTH_RATE, Experiment, MeasurementModel, PairRelation, SetPoint, carousel, rotation};
 use nalgebra::Vector3;
 
@@ -46,12 +46,12 @@ fn mean_of_a_record_is_the_reading() {
             one.set_points = vec![set_point];
             let simulated = everything(one.clone());
             let rate = if set_point.is_rest() { 100.0 } else { STEPS as f64 * set_point.omega.abs() / TAU };
-            let settings = Settings {
+            let equipment = Equipment {
                 machine: Machine { plateau: 40.5 / rate, ..Machine::default() },
                 recorder: Recorder { rate, ..Recorder::default() },
-                ..Settings::default()
+                ..Equipment::default()
             };
-            let record = record(&Simulation::new(&simulated, &x, &settings, 5).unwrap(), set_point.mounting);
+            let record = record(&Simulation::new(&simulated, &x, &equipment, 5).unwrap(), set_point.mounting);
             assert_eq!(record.t.len(), 41);
             let mean = (0..2 * STEPS).map(|n| row(&record, n)).sum::<Vector3<f64>>() / (2 * STEPS) as f64;
             let expected = everything(at_latitude_of_the_axis(one, [x[0], x[1]])).reading(&set_point, &x);
@@ -142,8 +142,8 @@ fn the_arm_stops_at_the_angle_set() {
     for sense in [1.0, -1.0] {
         let model = tour(sense);
         let x = truth(&model, 1.0, &mut random);
-        let settings = Settings { machine: rough_machine(), ..Settings::default() };
-        let simulation = Simulation::new(&model, &x, &settings, 8).unwrap();
+        let equipment = Equipment { machine: rough_machine(), ..Equipment::default() };
+        let simulation = Simulation::new(&model, &x, &equipment, 8).unwrap();
         let (record, plateaus) = (record(&simulation, 0), simulation.mounting(0).plateaus());
         assert_eq!(plateaus.len(), 7);
         for (plateau, set_point) in plateaus.iter().zip(&model.experiment().set_points).filter(|(_, s)| s.is_rest()) {
@@ -164,8 +164,8 @@ fn plateaus_are_where_the_truth_says() {
     let model = tour(1.0);
     let x = vec![0.0; 49];
     let tachometer = Tachometer { rate: 1000.0, ..Tachometer::default() };
-    let settings = Settings { machine: rough_machine(), tachometer, ..Settings::default() };
-    let simulated = Simulation::new(&model, &x, &settings, 9).unwrap().mounting(0);
+    let equipment = Equipment { machine: rough_machine(), tachometer, ..Equipment::default() };
+    let simulated = Simulation::new(&model, &x, &equipment, 9).unwrap().mounting(0);
     let (plateaus, telemetry) = (simulated.plateaus(), simulated.telemetry());
     for pair in plateaus.windows(2) {
         assert!((pair[1].window[0] - pair[0].window[1] - 4.0).abs() < 1e-9, "a ramp lasts 4 s");
@@ -194,8 +194,8 @@ fn the_clocks_are_not_synchronised() {
     let model = tour(1.0);
     let x = vec![0.0; 49];
     let tachometer = Tachometer { clock_offset: 2.0, clock_drift: 1e-4, quantum: 1e-2, noise: 0.1, rate: 20.0 };
-    let settings = Settings { machine: rough_machine(), tachometer, ..Settings::default() };
-    let simulation = Simulation::new(&model, &x, &settings, 10).unwrap();
+    let equipment = Equipment { machine: rough_machine(), tachometer, ..Equipment::default() };
+    let simulation = Simulation::new(&model, &x, &equipment, 10).unwrap();
     let telemetry = simulation.mounting(0).telemetry();
     let (offset, drift) = (telemetry.clock_offset, telemetry.clock_drift);
     assert!(offset.abs() <= 2.0 && offset != 0.0 && drift.abs() < 5e-4 && drift != 0.0);
@@ -234,10 +234,10 @@ fn deformations_follow_the_speed() {
 fn records_follow_from_the_seed() {
     let model = kozlov(experiment(AxisOneUp, PairRelation::Common, &[1.0]));
     let x = vec![0.0; 49];
-    let mut settings = Settings { machine: rough_machine(), ..Settings::default() };
-    settings.sensor.white = 1e-3;
-    settings.sensor.bias_instability = 1e-4;
-    let simulation = |seed| Simulation::new(&model, &x, &settings, seed).unwrap();
+    let mut equipment = Equipment { machine: rough_machine(), ..Equipment::default() };
+    equipment.sensor.white = 1e-3;
+    equipment.sensor.bias_instability = 1e-4;
+    let simulation = |seed| Simulation::new(&model, &x, &equipment, seed).unwrap();
     let first = record(&simulation(1), 2);
     let from_thread = std::thread::scope(|scope| scope.spawn(|| record(&simulation(1), 2)).join().unwrap());
     assert_eq!(first, from_thread);
@@ -250,8 +250,8 @@ fn records_follow_from_the_seed() {
 #[test]
 fn nonsense_is_refused() {
     let model = kozlov(experiment(AxisOneUp, PairRelation::Common, &[1.0]));
-    let refusal = |x: &[f64], settings: &Settings| Simulation::new(&model, x, settings, 1).unwrap_err().to_string();
-    let perfect = Settings::default();
+    let refusal = |x: &[f64], equipment: &Equipment| Simulation::new(&model, x, equipment, 1).unwrap_err().to_string();
+    let perfect = Equipment::default();
     assert_eq!(
         Simulation::new(&model, &[0.0; 3], &perfect, 1).unwrap_err(),
         SimulationError::TruthLength { found: 3, expected: 49 }
@@ -260,13 +260,13 @@ fn nonsense_is_refused() {
     x[2] = f64::NAN;
     assert_eq!(refusal(&x, &perfect), "truth of delta_1[1]: found NaN, expected a finite number");
     x[2] = 0.0;
-    let mut settings = perfect;
-    settings.recorder.rate = 0.0;
-    assert_eq!(refusal(&x, &settings), "recorder.rate: found 0, expected a finite number above 0");
-    let mut settings = perfect;
-    settings.recorder.gaps.length = 0.5;
-    assert_eq!(refusal(&x, &settings), "recorder.gaps.length: found 0.5, expected a number of samples, 1 or more");
-    let mut settings = perfect;
-    settings.recorder.spikes.probability = 1.0;
-    assert_eq!(refusal(&x, &settings), "recorder.spikes.probability: found 1, expected 0 or more and below 1");
+    let mut equipment = perfect;
+    equipment.recorder.rate = 0.0;
+    assert_eq!(refusal(&x, &equipment), "recorder.rate: found 0, expected a finite number above 0");
+    let mut equipment = perfect;
+    equipment.recorder.gaps.length = 0.5;
+    assert_eq!(refusal(&x, &equipment), "recorder.gaps.length: found 0.5, expected a number of samples, 1 or more");
+    let mut equipment = perfect;
+    equipment.recorder.spikes.probability = 1.0;
+    assert_eq!(refusal(&x, &equipment), "recorder.spikes.probability: found 1, expected 0 or more and below 1");
 }

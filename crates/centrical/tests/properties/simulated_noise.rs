@@ -5,7 +5,7 @@
 
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::reduction::Record;
-use centrical::simulate::{Coloured, Gaps, Machine, Recorder, Sensor, Settings, Simulation, Spikes};
+use centrical::simulate::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes};
 use centrical::{MeasurementModel, PairRelation, SetPoint};
 
 use crate::common::{experiment, kozlov};
@@ -18,14 +18,14 @@ fn at_rest() -> MeasurementModel {
 }
 
 fn rest(seed: u64, mounting: usize, duration: f64, sensor: Sensor, recorder: Recorder) -> Record {
-    let settings = Settings {
+    let equipment = Equipment {
         machine: Machine { plateau: duration, ..Machine::default() },
         sensor,
         recorder,
-        ..Settings::default()
+        ..Equipment::default()
     };
     let (model, x) = (at_rest(), vec![0.0; 49]);
-    let simulation = Simulation::new(&model, &x, &settings, seed).unwrap();
+    let simulation = Simulation::new(&model, &x, &equipment, seed).unwrap();
     let level = model.reading(&model.experiment().set_points[mounting], &x);
     let mut whole = Record::default();
     for stretch in simulation.mounting(mounting).records() {
@@ -145,8 +145,8 @@ fn drift_is_a_slope() {
 fn output_is_saturated_and_quantised() {
     let sensor = Sensor { white: 2e-3, quantum: 1e-3, range: Some(9.807), ..Sensor::default() };
     let (model, x) = (at_rest(), vec![0.0; 49]);
-    let settings = Settings { sensor, ..Settings::default() };
-    let simulation = Simulation::new(&model, &x, &settings, 5).unwrap();
+    let equipment = Equipment { sensor, ..Equipment::default() };
+    let simulation = Simulation::new(&model, &x, &equipment, 5).unwrap();
     let record = simulation.mounting(0).records().next().unwrap();
     // Newtonometer 3 stands upright: 9.80665 m/s^2 with 2 mm/s^2 of noise against a limit at +0.35 mm/s^2.
     let saturated = record.f_z[2].iter().filter(|f| **f >= 9.807 - 1e-12).count() as f64 / record.f_z[2].len() as f64;
@@ -177,7 +177,7 @@ fn spikes_come_as_often_and_as_large_as_set() {
 
 #[test]
 fn gaps_and_repeats_come_as_set() {
-    let gaps = Gaps { probability: 1e-3, length: 4.0 };
+    let gaps = Losses { probability: 1e-3, length: 4.0 };
     let recorder = Recorder { gaps, repeats: 1e-3, ..Recorder::default() };
     let record = rest(7, 0, 2e4, Sensor { white: 1e-3, ..Sensor::default() }, recorder);
     let steps: Vec<f64> = record.t.windows(2).map(|pair| ((pair[1] - pair[0]) * 100.0).round()).collect();

@@ -2,8 +2,8 @@
 
 use centrical::PairRelation;
 use centrical::position::ThirdPosition;
-use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, reduce};
-use centrical::simulate::{Machine, Sensor, Settings, Simulation, draw_truth};
+use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
+use centrical::simulate::{Equipment, Machine, Sensor, Simulation, draw_truth};
 use centrical::uncertainty::{OncePerRevolution, TiltComparison, tilt_while_spinning};
 use centrical::{MeasurementModel, Observation, fit, linear};
 use nalgebra::Vector3;
@@ -13,13 +13,13 @@ use crate::common::{experiment, kozlov};
 const SPEED_ERROR: f64 = 1e-5;
 
 fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean> {
-    let settings = Settings {
+    let equipment = Equipment {
         machine: Machine { plateau: 8.0, speed_error: SPEED_ERROR, settling: 1e-3, ..Machine::default() },
         sensor: Sensor { white: 2e-3, ..Sensor::default() },
-        ..Settings::default()
+        ..Equipment::default()
     };
     let experiment = model.experiment();
-    let simulation = Simulation::new(model, truth, &settings, seed).expect("the settings make sense");
+    let simulation = Simulation::new(model, truth, &equipment, seed).expect("the equipment is within its bounds");
     let of_mounting = |m: usize| {
         let record = simulation.mounting(m).records().fold(Record::default(), |mut whole, stretch| {
             whole.t.extend(stretch.t);
@@ -33,7 +33,7 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
     };
     let reduced: Vec<ReducedMounting> = (0..experiment.mountings.len()).map(of_mounting).collect();
     let noise = NoiseModel::pool(&reduced);
-    reduced.iter().flat_map(|mounting| mounting.means(&noise)).collect()
+    reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise)).collect()
 }
 
 /// The comparison for a session whose true tilt has that size [rad]; `change` is done to every term.
@@ -45,7 +45,7 @@ fn comparison(tilt: [f64; 2], seed: u64, change: impl Fn(&mut [Vector3<f64>; 2])
     let observation =
         |(set_point, m): (usize, &PlateauMean)| Observation { set_point, mean: m.mean, covariance: m.covariance };
     let observations: Vec<Observation> = means.iter().enumerate().map(observation).collect();
-    let fit = fit::exact(&model, &observations, SPEED_ERROR).expect("the session determines everything");
+    let fit = fit::exact(&model, &observations).expect("the session determines everything");
     let spins = |set_point: &usize| !model.experiment().set_points[*set_point].is_rest();
     let terms: Vec<OncePerRevolution> = (0..means.len())
         .filter(spins)

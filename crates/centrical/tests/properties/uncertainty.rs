@@ -36,16 +36,16 @@ impl Case {
     }
 
     fn fit(&self) -> Fit {
-        fit::exact(&self.model, &self.observations, SPEED).unwrap()
+        fit::exact(&self.model, &self.observations).unwrap()
     }
 
     fn budget(&self, stated: &TypeB) -> Budget {
-        Budget::new(&self.fit(), &self.model, &self.observations, SPEED, stated).unwrap()
+        Budget::new(&self.fit(), &self.model, &self.observations, stated).unwrap()
     }
 
     pub fn monte_carlo(&self, runs: usize, stated: TypeB, method: Method) -> MonteCarlo {
         let settings = Settings { runs, seed: 1, coverage: 0.95, method, stated };
-        monte_carlo(&self.model, &self.truth, &self.observations, SPEED, &settings, &|_| {}).unwrap()
+        monte_carlo(&self.model, &self.truth, &self.observations, &settings, &|_| {}).unwrap()
     }
 }
 
@@ -132,7 +132,7 @@ fn contributions_are_what_a_refit_shows() {
             let mut experiment = case.model.experiment().clone();
             change(&mut experiment, sign);
             let readings = observations(&case.model.in_experiment(experiment), &case.truth);
-            fit::exact(&case.model, &readings, SPEED).unwrap().state().to_vec()
+            fit::exact(&case.model, &readings).unwrap().state().to_vec()
         };
         estimate(1.0).iter().zip(estimate(-1.0)).map(|(up, down)| 0.5 * (up - down)).collect()
     };
@@ -206,8 +206,8 @@ fn degrees_of_freedom_follow_what_is_known() {
     for o in &mut noisy {
         o.mean += nalgebra::Vector3::from_fn(|_, _| 1e-4 * random.normal());
     }
-    let fit = fit::exact(&case.model, &noisy, SPEED).unwrap();
-    let budget = |stated: &TypeB| Budget::new(&fit, &case.model, &noisy, SPEED, stated).unwrap();
+    let fit = fit::exact(&case.model, &noisy).unwrap();
+    let budget = |stated: &TypeB| Budget::new(&fit, &case.model, &noisy, stated).unwrap();
     assert_eq!(budget(&STATED).degrees_of_freedom(30), Some(Degrees::Infinite));
     let scaled = budget(&TypeB::default()).scaled_by_residuals(&fit);
     let Some(Degrees::Finite(nu)) = scaled.degrees_of_freedom(30) else { panic!("finite") };
@@ -234,7 +234,7 @@ fn monte_carlo_does_not_depend_on_threads() {
     assert_eq!(one.parameters.iter().flatten().count(), 43);
     assert_eq!(one, on(3));
     let settings = Settings { runs: 300, seed: 2, coverage: 0.95, method: Method::Exact, stated: STATED };
-    let other = monte_carlo(&case.model, &case.truth, &case.observations, SPEED, &settings, &|_| {}).unwrap();
+    let other = monte_carlo(&case.model, &case.truth, &case.observations, &settings, &|_| {}).unwrap();
     assert_ne!(one, other);
 }
 

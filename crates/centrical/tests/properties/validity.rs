@@ -31,15 +31,15 @@ pub fn session(model: &MeasurementModel, x: &[f64], random: &mut Random) -> Vec<
 fn statistics_are_what_a_fit_without_the_block_shows() {
     let (model, mut random) = (source_model(), Random::new(11));
     let data = session(&model, &truth(&model, 1.0, &mut random), &mut random);
-    let whole = fit::exact(&model, &data, SPEED).unwrap();
-    let validity = Validity::of(&whole, &model, &data, SPEED).unwrap();
+    let whole = fit::exact(&model, &data).unwrap();
+    let validity = Validity::of(&whole, &model, &data).unwrap();
     let leverage: f64 = validity.plateaus.iter().map(|p| 3.0 * p.leverage).sum();
     assert!((leverage - 49.0).abs() < 1e-6, "{leverage}");
     let set_points = &model.experiment().set_points;
     for check in &validity.mountings {
         let others: Vec<_> =
             data.iter().filter(|o| set_points[o.set_point].mounting != check.mounting).cloned().collect();
-        let without = fit::exact(&model, &others, SPEED).unwrap();
+        let without = fit::exact(&model, &others).unwrap();
         let fall = whole.chi_squared - without.chi_squared;
         // The weights follow the estimate, by a millionth; a chi^2 of 275 hardly.
         assert!((check.prediction.statistic - fall).abs() < 1e-2, "{} {fall}", check.prediction.statistic);
@@ -48,7 +48,7 @@ fn statistics_are_what_a_fit_without_the_block_shows() {
     }
     for n in [0, 17, 53, 107] {
         let others: Vec<_> = data.iter().enumerate().filter(|(m, _)| *m != n).map(|(_, o)| o.clone()).collect();
-        let fall = whole.chi_squared - fit::exact(&model, &others, SPEED).unwrap().chi_squared;
+        let fall = whole.chi_squared - fit::exact(&model, &others).unwrap().chi_squared;
         let statistic = validity.plateaus[n].prediction.statistic;
         assert!((statistic - fall).abs() < 1e-2, "plateau {n}: {statistic} {fall}");
     }
@@ -63,14 +63,14 @@ fn outliers_are_found_and_only_they() {
     let mut false_alarms = 0;
     for n in 0..SESSIONS {
         let mut data = session(&model, &x, &mut random);
-        let sound = without_outliers(&model, &data, SPEED, 0.05).unwrap();
+        let sound = without_outliers(&model, &data, 0.05).unwrap();
         false_alarms += usize::from(!sound.left_out.is_empty());
         let victim = (n * 7) % data.len();
         data[victim].mean[n % 3] += 10.0 * data[victim].covariance[(0, 0)].sqrt();
         let set_point = &model.experiment().set_points[victim];
         // A speed error hides what acts along the pull: put the blow across, on a plateau at rest.
         if set_point.is_rest() {
-            let cleaned = without_outliers(&model, &data, SPEED, 0.05).unwrap();
+            let cleaned = without_outliers(&model, &data, 0.05).unwrap();
             assert_eq!(cleaned.left_out[0].0, victim);
         }
     }
@@ -93,8 +93,8 @@ fn patterns_name_what_is_missing() {
     let mut alarms = 0;
     for _ in 0..SESSIONS {
         let data = session(&model, &x, &mut random);
-        let sound = fit::exact(&model, &data, SPEED).unwrap();
-        alarms += usize::from(patterns(&sound, &model, &data, SPEED).unwrap()[0].family_wise < 0.05);
+        let sound = fit::exact(&model, &data).unwrap();
+        alarms += usize::from(patterns(&sound, &model, &data).unwrap()[0].family_wise < 0.05);
     }
     assert!(alarms <= 7, "{alarms} of {SESSIONS} where 2 are expected");
     x.resize(bending.parameters().len(), 0.0);
@@ -104,8 +104,8 @@ fn patterns_name_what_is_missing() {
         x[bending.parameters().find(name).unwrap()] = 20e-6 / (fastest * fastest);
     }
     let data = session(&bending, &x, &mut random);
-    let fitted = fit::exact(&model, &data, SPEED).unwrap();
-    let found = patterns(&fitted, &model, &data, SPEED).unwrap();
+    let fitted = fit::exact(&model, &data).unwrap();
+    let found = patterns(&fitted, &model, &data).unwrap();
     assert!(found[0].family_wise < 1e-6, "{:?}", found[0]);
     assert!(matches!(found[0].trend, Trend::SpeedInPosition(2 | 3)), "positions 3 and 4 turn, found {:?}", &found[..3]);
 }

@@ -20,7 +20,7 @@ fn study(levels: &[f64], radii: &[f64], rest_angles: &[f64]) -> Study {
     };
     let model = MeasurementModel::new(plan.experiment(), ErrorModel::kozlov_2017(), &[]);
     let weights = Weight::equal(model.experiment().set_points.len(), 1.0);
-    Study::at_zero(model, weights, 0.0).unwrap()
+    Study::at_zero(model, weights).unwrap()
 }
 
 /// Rest angles, vertical axes, radii, speeds, directions.

@@ -1,8 +1,9 @@
-//! Examples H.1 to H.3 and table G.2 of the GUM (JCGM 100:2008): every number printed, to every digit printed.
+//! Examples H.1 and H.3 and table G.2 of the GUM (JCGM 100:2008): every number printed, to every digit printed.
 
-use centrical::LeastSquares;
 use centrical::uncertainty::{Degrees, coverage_factor, effective_degrees_of_freedom};
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector};
+
+use crate::common::Regression;
 
 /// `found` rounds to `printed`, which has `decimals` decimal places.
 fn assert_printed(what: &str, found: f64, printed: f64, decimals: i32) {
@@ -66,87 +67,6 @@ fn h_1_end_gauge() {
     assert_printed("u_c with second-order terms", combined(&[u_c, second[0], second[1]]), 34.0, 0);
 }
 
-/// Columns of table H.2: V in V, I in A, phi in rad.
-const H_2: [[f64; 3]; 5] = [
-    [5.007, 19.663e-3, 1.0456],
-    [4.994, 19.639e-3, 1.0438],
-    [5.005, 19.640e-3, 1.0468],
-    [4.990, 19.685e-3, 1.0428],
-    [4.999, 19.678e-3, 1.0433],
-];
-
-/// Mean of the rows and covariance of that mean.
-fn mean_and_covariance(rows: &[[f64; 3]]) -> (Vector3<f64>, Matrix3<f64>) {
-    let count = rows.len() as f64;
-    let mean = rows.iter().map(|row| Vector3::from(*row)).sum::<Vector3<f64>>() / count;
-    let products = rows.iter().map(|row| Vector3::from(*row) - mean).map(|d| d * d.transpose());
-    (mean, products.sum::<Matrix3<f64>>() / (count * (count - 1.0)))
-}
-
-fn correlations(covariance: &Matrix3<f64>) -> [f64; 3] {
-    [(0, 1), (0, 2), (1, 2)].map(|(i, j)| covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt())
-}
-
-/// R, X, Z of the voltage, current and phase.
-fn impedance([v, i, phi]: [f64; 3]) -> [f64; 3] {
-    [v / i * phi.cos(), v / i * phi.sin(), v / i]
-}
-
-/// H.2, simultaneous resistance and reactance, tables H.2 to H.4: correlated inputs and outputs, by both approaches.
-#[test]
-fn h_2_resistance_and_reactance() {
-    let (mean, covariance) = mean_and_covariance(&H_2);
-    assert_printed("V", mean[0], 4.9990, 4);
-    assert_printed("I in mA", mean[1] * 1e3, 19.6610, 4);
-    assert_printed("phi", mean[2], 1.044_46, 5);
-    let u = covariance.diagonal().map(f64::sqrt);
-    assert_printed("s(V)", u[0], 0.0032, 4);
-    assert_printed("s(I) in mA", u[1] * 1e3, 0.0095, 4);
-    assert_printed("s(phi)", u[2], 0.000_75, 5);
-    for (found, printed) in correlations(&covariance).into_iter().zip([-0.36, 0.86, -0.65]) {
-        assert_printed("correlation of inputs", found, printed, 2);
-    }
-
-    // Approach 1: propagation from the means (table H.3), sensitivities as the GUM's 5.1.3, note 2.
-    let mut j = Matrix3::zeros();
-    for input in 0..3 {
-        let at = |sign: f64| Vector3::from(impedance((mean + Vector3::ith(input, sign * u[input])).into()));
-        j.set_column(input, &((at(1.0) - at(-1.0)) / (2.0 * u[input])));
-    }
-    check_impedance(impedance(mean.into()), &(j * covariance * j.transpose()));
-
-    // Approach 2: from each set of observations (table H.4).
-    let printed = [
-        [127.67, 220.32, 254.64],
-        [127.89, 219.79, 254.29],
-        [127.51, 220.64, 254.84],
-        [127.71, 218.97, 253.49],
-        [127.88, 219.51, 254.04],
-    ];
-    let outputs = H_2.map(impedance);
-    for (found, printed) in outputs.iter().flatten().zip(printed.iter().flatten()) {
-        assert_printed("impedance of one set", *found, *printed, 2);
-    }
-    let (mean, covariance) = mean_and_covariance(&outputs);
-    check_impedance(mean.into(), &covariance);
-}
-
-fn check_impedance(values: [f64; 3], covariance: &Matrix3<f64>) {
-    for (k, (value, uncertainty, relative)) in
-        [(127.732, 0.071, 0.06), (219.847, 0.295, 0.13), (254.260, 0.236, 0.09)].into_iter().enumerate()
-    {
-        let u = covariance[(k, k)].sqrt();
-        assert_printed("R, X, Z", values[k], value, 3);
-        // u_c(X) is 0.2956 by both approaches.
-        let assert = if k == 1 { assert_cut_off } else { assert_printed };
-        assert("u_c", u, uncertainty, 3);
-        assert_printed("relative u_c in %", 100.0 * u / values[k], relative, 2);
-    }
-    for (found, printed) in correlations(covariance).into_iter().zip([-0.588, -0.485, 0.993]) {
-        assert_printed("correlation of outputs", found, printed, 3);
-    }
-}
-
 /// Table H.6: thermometer reading, observed correction, predicted correction, difference.
 const H_3: [[f64; 4]; 11] = [
     [21.521, -0.171, -0.1679, -0.0031],
@@ -167,24 +87,21 @@ const H_3: [[f64; 4]; 11] = [
 fn h_3_thermometer() {
     let a = DMatrix::from_fn(11, 2, |k, power| (H_3[k][0] - 20.0).powi(i32::try_from(power).unwrap()));
     let b = DVector::from_fn(11, |k, _| H_3[k][1]);
-    let fit = LeastSquares::solve(a.clone(), &b).unwrap();
-    assert_eq!(fit.degrees_of_freedom, 9);
-    let variance = fit.residual_variance().unwrap();
-    let covariance = fit.covariance() * variance;
+    let Regression { x, covariance, variance, .. } = Regression::of(&a, &b);
     let u = [covariance[(0, 0)].sqrt(), covariance[(1, 1)].sqrt()];
-    assert_printed("y_1", fit.solution[0], -0.1712, 4);
+    assert_printed("y_1", x[0], -0.1712, 4);
     assert_printed("s(y_1)", u[0], 0.0029, 4);
-    assert_printed("y_2", fit.solution[1], 0.002_18, 5);
+    assert_printed("y_2", x[1], 0.002_18, 5);
     assert_printed("s(y_2)", u[1], 0.000_67, 5);
     assert_printed("r(y_1, y_2)", covariance[(0, 1)] / (u[0] * u[1]), -0.930, 3);
     assert_printed("s", variance.sqrt(), 0.0035, 4);
-    let predicted = &a * &fit.solution;
+    let predicted = &a * &x;
     for (k, row) in H_3.iter().enumerate() {
         assert_printed("predicted correction", predicted[k], row[2], 4);
         assert_printed("difference", row[1] - predicted[k], row[3], 4);
     }
     let at_30 = DVector::from_column_slice(&[1.0, 10.0]);
-    assert_printed("b(30)", fit.solution.dot(&at_30), -0.1494, 4);
+    assert_printed("b(30)", x.dot(&at_30), -0.1494, 4);
     assert_printed("u(b(30))", at_30.dot(&(covariance * &at_30)).sqrt(), 0.0041, 4);
 }
 

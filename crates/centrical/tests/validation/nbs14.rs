@@ -1,6 +1,6 @@
 //! The NBS data sets: nine readings of NBS Monograph 140, Annex 8.E, and Riley's 1000 pseudo-random readings.
 
-use centrical::noise::{Deviation, Estimator, Phase, PowerLaw, deviations, maximum_time_interval, time_interval_rms};
+use centrical::stability::{Deviation, Estimator, Phase, PowerLaw, degrees_of_freedom, deviations};
 
 const RILEY: &str = include_str!("nbs14/riley_tables.csv");
 const STABLE32: &str = include_str!("nbs14/stable32.csv");
@@ -95,21 +95,15 @@ fn every_value_of_stable32() {
     let mut cells = 0;
     for row in rows(STABLE32) {
         let m: usize = row[1].parse().unwrap();
-        let (computed, terms) = match row[0] {
-            "TimeIntervalRms" => (time_interval_rms(&phase, m).unwrap(), 1001 - m),
-            "MaximumTimeInterval" => (maximum_time_interval(&phase, m).unwrap(), 1001 - m),
-            name => {
-                let raw = estimator(name).variance(&phase, m).unwrap();
-                // Stable32 corrects the Hadamard total alone, where it takes the noise for white.
-                let is_corrected = name == "HadamardTotal" && m > 1 && row[3] == "0";
-                ((raw.value / if is_corrected { 0.995 } else { 1.0 }).sqrt(), raw.terms)
-            }
-        };
+        let raw = estimator(row[0]).variance(&phase, m).unwrap();
+        // Stable32 corrects the Hadamard total alone, where it takes the noise for white.
+        let is_corrected = row[0] == "HadamardTotal" && m > 1 && row[3] == "0";
+        let computed = (raw.value / if is_corrected { 0.995 } else { 1.0 }).sqrt();
         assert_printed(&format!("{} at m = {m}", row[0]), computed, row[5], 0.51);
-        assert_eq!(terms.to_string(), row[2], "terms of {} at m = {m}", row[0]);
+        assert_eq!(raw.terms.to_string(), row[2], "terms of {} at m = {m}", row[0]);
         cells += 1;
     }
-    assert_eq!(cells, 232);
+    assert_eq!(cells, 84);
 }
 
 /// Stable32's intervals, for white readings, to 1 % of their half width (the chi^2 quantiles of Stable32 are
@@ -152,16 +146,12 @@ fn every_deviation_of_allantools() {
     for row in rows(ALLANTOOLS).filter(|row| row[0] == "deviation") {
         let phase = if row[1] == "nine" { &nine } else { &thousand };
         let m: usize = row[3].parse().unwrap();
-        let computed = match row[2] {
-            "TimeIntervalRms" => time_interval_rms(phase, m).unwrap(),
-            "MaximumTimeInterval" => maximum_time_interval(phase, m).unwrap(),
-            name => estimator(name).variance(phase, m).unwrap().value.sqrt(),
-        };
+        let computed = estimator(row[2]).variance(phase, m).unwrap().value.sqrt();
         let expected: f64 = row[4].parse().unwrap();
         assert!((computed / expected - 1.0).abs() < 1e-10, "{row:?}: computed {computed:e}");
         cells += 1;
     }
-    assert_eq!(cells, 120);
+    assert_eq!(cells, 100);
 }
 
 /// Greenhall and Riley's degrees of freedom by allantools: every noise, estimator and branch of the algorithm that
@@ -171,7 +161,7 @@ fn every_degree_of_freedom_of_allantools() {
     let mut cells = 0;
     for row in rows(ALLANTOOLS).filter(|row| row[0] == "freedom") {
         let law = PowerLaw::ALL.into_iter().find(|law| law.alpha().to_string() == row[4]).unwrap();
-        let computed = estimator(row[2]).degrees_of_freedom(law, row[3].parse().unwrap(), row[1].parse().unwrap());
+        let computed = degrees_of_freedom(estimator(row[2]), law, row[3].parse().unwrap(), row[1].parse().unwrap());
         let expected: f64 = row[5].parse().unwrap();
         // Rounding in s_w grows with F^2 |t|^(3 - alpha): 1e-6 is what the largest F and |t| leave of 16 digits.
         assert!((computed / expected - 1.0).abs() < 1e-6, "{row:?}: computed {computed}");

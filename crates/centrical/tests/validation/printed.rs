@@ -129,6 +129,6 @@ fn error_model_as_printed() {
     }
     expected.extend((0..3).map(|i| (format!("G2_{0}{0}", i + 1), i, f[i].powi(3))));
     let found: Vec<(String, usize, f64)> =
-        model.terms.iter().map(|t| (t.name.clone(), t.axis, t.monomial.value(&f))).collect();
+        model.terms.iter().map(|t| (t.name.clone(), t.axis, t.monomial.value(f.into()))).collect();
     assert_eq!(found, expected);
 }

@@ -2,14 +2,12 @@
 //! (column-scaled SVD, tolerance 1e-10), with the smallest non-zero singular value over the largest in brackets where it
 //! is below 1e-3. The null directions and the ranks with extensions named there.
 
-use std::f64::consts::PI;
-
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition::{self, AxisOneDown, AxisOneUp};
 use centrical::{ErrorModel, Extension, Law, MeasurementModel, Observability, PairRelation, Study, Weight};
 use nalgebra::Matrix3;
 
-use crate::common::spread;
+use crate::common::rank_table::{self, CASES, Case, RELATIONS, spread};
 
 /// Ranks with proof masses apart and together, and the bracketed singular value of each if one is printed.
 type Cell = [(usize, Option<f64>); 2];
@@ -22,54 +20,28 @@ const fn thread(apart: usize, smallest: f64, together: usize) -> Cell {
     [(apart, Some(smallest)), (together, None)]
 }
 
-struct Row {
-    case: &'static str,
-    levels: std::ops::RangeInclusive<u32>,
-    radii: &'static [f64],
-    rest_angles: &'static [f64],
-    /// Opposite (printed), common, free.
-    cells: [Cell; 3],
-}
-
-const TWO: &[f64] = &[1.0, 0.5];
-const BOTH: &[f64] = &[0.0, PI];
-
-#[rustfmt::skip]
-const TABLE: [Row; 7] = [
-    Row { case: "m = 0..3, radii 1 and 1/2", levels: 0..=3, radii: TWO, rest_angles: BOTH,
-        cells: [plain(47, 47), plain(49, 49), plain(53, 53)] },
-    Row { case: "m = 0..20", levels: 0..=20, radii: TWO, rest_angles: BOTH,
-        cells: [plain(47, 47), plain(49, 49), plain(53, 53)] },
-    Row { case: "m = 0, 1, 2", levels: 0..=2, radii: TWO, rest_angles: BOTH,
-        cells: [plain(47, 47), plain(49, 49), plain(53, 53)] },
-    Row { case: "m = 0, 1 (one speed)", levels: 0..=1, radii: TWO, rest_angles: BOTH,
-        cells: [thread(46, 4e-5, 44), plain(48, 46), thread(50, 9e-5, 47)] },
-    Row { case: "m = 0..3, one radius", levels: 0..=3, radii: &[1.0], rest_angles: BOTH,
-        cells: [plain(44, 44), thread(45, 3e-4, 43), thread(46, 2e-4, 44)] },
-    Row { case: "m = 0..3, one rest angle", levels: 0..=3, radii: TWO, rest_angles: &[0.0],
-        cells: [plain(47, 47), plain(49, 49), plain(53, 53)] },
-    Row { case: "m = 1..3, no rest", levels: 1..=3, radii: TWO, rest_angles: BOTH,
-        cells: [plain(45, 45), plain(47, 47), plain(51, 51)] },
+/// Of every case: opposite (printed), common, free.
+const TABLE: [[Cell; 3]; 7] = [
+    [plain(47, 47), plain(49, 49), plain(53, 53)],
+    [plain(47, 47), plain(49, 49), plain(53, 53)],
+    [plain(47, 47), plain(49, 49), plain(53, 53)],
+    [thread(46, 4e-5, 44), plain(48, 46), thread(50, 9e-5, 47)],
+    [plain(44, 44), thread(45, 3e-4, 43), thread(46, 2e-4, 44)],
+    [plain(47, 47), plain(49, 49), plain(53, 53)],
+    [plain(45, 45), plain(47, 47), plain(51, 51)],
 ];
 
-const RELATIONS: [PairRelation; 3] = [PairRelation::Opposite, PairRelation::Common, PairRelation::Free];
+/// The cases with two radii, rest and two or more speeds.
+const COMPLETE: [&Case; 4] = [&CASES[0], &CASES[1], &CASES[2], &CASES[5]];
 
-fn plan(row: &Row, third: ThirdPosition, pair_relation: PairRelation, rho: Matrix3<f64>) -> Normalised {
-    Normalised {
-        third,
-        pair_relation,
-        rho,
-        radii: row.radii.to_vec(),
-        levels: row.levels.clone().map(f64::from).collect(),
-        rest_angles: row.rest_angles.to_vec(),
-        ..Normalised::default()
-    }
+fn plan(case: &Case, third: ThirdPosition, relation: PairRelation, rho: Matrix3<f64>) -> Normalised {
+    Normalised { third, ..rank_table::plan(case, relation, rho) }
 }
 
 fn study(plan: &Normalised, extensions: &[Extension]) -> Study {
     let model = MeasurementModel::new(plan.experiment(), ErrorModel::kozlov_2017(), extensions);
     let weights = Weight::equal(model.experiment().set_points.len(), 1.0);
-    Study::at_zero(model, weights, 0.0).unwrap()
+    Study::at_zero(model, weights).unwrap()
 }
 
 fn is_printed_as(value: f64, printed: f64) -> bool {
@@ -79,13 +51,13 @@ fn is_printed_as(value: f64, printed: f64) -> bool {
 
 #[test]
 fn every_cell() {
-    for row in &TABLE {
+    for (case, row) in CASES.iter().zip(&TABLE) {
         for third in [AxisOneUp, AxisOneDown] {
-            for (relation, cell) in RELATIONS.into_iter().zip(&row.cells) {
+            for (relation, cell) in RELATIONS.into_iter().zip(row) {
                 for (rho, (rank, smallest)) in [spread(), Matrix3::zeros()].into_iter().zip(cell) {
-                    let study = study(&plan(row, third, relation, rho), &[]);
+                    let study = study(&plan(case, third, relation, rho), &[]);
                     let seen = study.observability();
-                    let cell = format!("{}, {third:?}, {relation:?}, rho0 {}", row.case, rho.amax());
+                    let cell = format!("{}, {third:?}, {relation:?}, rho0 {}", case.0, rho.amax());
                     assert_eq!(seen.columns(), if relation == PairRelation::Free { 55 } else { 49 }, "{cell}");
                     assert_eq!(seen.rank(), *rank, "{cell}");
                     assert!(!seen.is_doubtful(), "{cell}");
@@ -108,12 +80,12 @@ fn directions(study: &Study) -> Vec<String> {
 
 #[test]
 fn null_directions_of_the_printed_relation() {
-    for row in TABLE[..3].iter().chain([&TABLE[5]]) {
+    for case in COMPLETE {
         for rho in [spread(), Matrix3::zeros()] {
-            let up = directions(&study(&plan(row, AxisOneUp, PairRelation::Opposite, rho), &[]));
-            assert_eq!(up, ["dR_2[A] + dR_1[B] - drho_22", "dR_2[B] + dR_1[C] - drho_33"], "{}", row.case);
-            let down = directions(&study(&plan(row, AxisOneDown, PairRelation::Opposite, rho), &[]));
-            assert_eq!(down, ["dR_2[A] + dR_1[B] - drho_22", "dR_2[B] - dR_1[C] + drho_33"], "{}", row.case);
+            let up = directions(&study(&plan(case, AxisOneUp, PairRelation::Opposite, rho), &[]));
+            assert_eq!(up, ["dR_2[A] + dR_1[B] - drho_22", "dR_2[B] + dR_1[C] - drho_33"], "{}", case.0);
+            let down = directions(&study(&plan(case, AxisOneDown, PairRelation::Opposite, rho), &[]));
+            assert_eq!(down, ["dR_2[A] + dR_1[B] - drho_22", "dR_2[B] - dR_1[C] + drho_33"], "{}", case.0);
         }
     }
 }
@@ -122,21 +94,21 @@ fn null_directions_of_the_printed_relation() {
 #[test]
 fn null_directions_without_rest() {
     let expected = ["alpha_1", "alpha_2", "dR_2[A] + dR_1[B] - drho_22", "dR_2[B] + dR_1[C] - drho_33"];
-    assert_eq!(directions(&study(&plan(&TABLE[6], AxisOneUp, PairRelation::Opposite, spread()), &[])), expected);
-    assert_eq!(directions(&study(&plan(&TABLE[6], AxisOneUp, PairRelation::Common, spread()), &[])), expected[..2]);
+    assert_eq!(directions(&study(&plan(&CASES[6], AxisOneUp, PairRelation::Opposite, spread()), &[])), expected);
+    assert_eq!(directions(&study(&plan(&CASES[6], AxisOneUp, PairRelation::Common, spread()), &[])), expected[..2]);
 }
 
 /// "In every row with two radii, rest and two or more speeds all 21 instrument parameters are estimable: the null
 /// directions lie in dR, drho alone."
 #[test]
 fn instrument_is_estimable_with_two_radii_rest_and_two_speeds() {
-    for row in TABLE[..3].iter().chain([&TABLE[5]]) {
+    for case in COMPLETE {
         for relation in RELATIONS {
             for rho in [spread(), Matrix3::zeros()] {
-                let study = study(&plan(row, AxisOneUp, relation, rho), &[]);
+                let study = study(&plan(case, AxisOneUp, relation, rho), &[]);
                 for (j, parameter) in study.model().parameters().iter().enumerate() {
                     let may_be_lost = ["shift", "proof mass"].contains(&parameter.group);
-                    assert!(may_be_lost || study.observability().is_estimable(j), "{}: {}", row.case, parameter.name);
+                    assert!(may_be_lost || study.observability().is_estimable(j), "{}: {}", case.0, parameter.name);
                 }
                 assert!(study.lost_of_instrument().is_empty());
             }
@@ -145,7 +117,7 @@ fn instrument_is_estimable_with_two_radii_rest_and_two_speeds() {
 }
 
 fn with(extensions: &[Extension], relation: PairRelation) -> Study {
-    study(&plan(&TABLE[0], AxisOneUp, relation, spread()), extensions)
+    study(&plan(&CASES[0], AxisOneUp, relation, spread()), extensions)
 }
 
 fn rank_of_columns(seen: &Observability) -> (usize, usize) {

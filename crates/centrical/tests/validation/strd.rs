@@ -6,8 +6,9 @@
 //! double-precision solution can escape, and six standard deviations of it are the tolerance, for every number
 //! certified. (Worst-case bounds such as `eps kappa^2 tan theta` exceed 1 for Filip and would prove nothing.)
 
-use centrical::LeastSquares;
 use nalgebra::{DMatrix, DVector};
+
+use crate::common::{Random, Regression};
 
 struct Certified {
     data: &'static str,
@@ -69,28 +70,23 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
 }
 
 /// All that is certified of a data set, in one order.
-fn computed(a: DMatrix<f64>, b: &DVector<f64>) -> Vec<f64> {
-    let fit = LeastSquares::solve(a, b).unwrap();
-    let variance = fit.residual_variance().unwrap();
-    let deviations = (fit.covariance() * variance).diagonal().map(f64::sqrt);
-    let estimates = fit.solution.iter().chain(deviations.iter()).copied();
-    estimates.chain([variance.sqrt(), fit.sum_of_squares]).collect()
+fn computed(a: &DMatrix<f64>, b: &DVector<f64>) -> Vec<f64> {
+    let fit = Regression::of(a, b);
+    let deviations = fit.covariance.diagonal().map(f64::sqrt);
+    let estimates = fit.x.iter().chain(deviations.iter()).copied();
+    estimates.chain([fit.variance.sqrt(), fit.sum_of_squares]).collect()
 }
 
 /// Root mean square changes of [`computed`] when every number of the data is off by up to half a unit in its last place.
 fn spread(a: &DMatrix<f64>, b: &DVector<f64>) -> Vec<f64> {
     const TIMES: usize = 100;
-    // Knuth's linear congruential generator: any will do.
-    let mut state = 1_u64;
-    let mut off = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        1.0 + f64::EPSILON * ((state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5)
-    };
-    let unperturbed = computed(a.clone(), b);
+    let mut random = Random::new(1);
+    let mut off = || 1.0 + f64::EPSILON * (random.uniform() - 0.5);
+    let unperturbed = computed(a, b);
     let mut squares = vec![0.0; unperturbed.len()];
     for _ in 0..TIMES {
         // In steps of whole units: half of the entries stay, half go to a neighbour.
-        let perturbed = computed(a.map(|v| v * off()), &b.map(|v| v * off()));
+        let perturbed = computed(&a.map(|v| v * off()), &b.map(|v| v * off()));
         for (square, (p, u)) in squares.iter_mut().zip(perturbed.iter().zip(&unperturbed)) {
             *square += (p - u).powi(2) / TIMES as f64;
         }
@@ -106,7 +102,7 @@ fn check(certified: &Certified, design: impl Fn(&[f64]) -> Vec<f64>) {
     let (estimates, deviations): (Vec<f64>, Vec<f64>) = certified.parameters.iter().copied().unzip();
     let residual = vec![certified.residual_standard_deviation, certified.residual_sum_of_squares];
     let expected = [estimates, deviations, residual].concat();
-    let found = computed(a.clone(), &b);
+    let found = computed(&a, &b);
     assert_eq!(found.len(), expected.len());
     for (n, (spread, (found, expected))) in spread(&a, &b).iter().zip(found.iter().zip(&expected)).enumerate() {
         // Fifteen digits are certified.

@@ -1,6 +1,6 @@
 //! The error model that a result holds, as compensation takes it.
 
-use centrical_compensate::{Compensation, NotInvertible, Term};
+use centrical_compensate::{Compensation, Monomial, NotInvertible, Term};
 
 use super::schema::{CalibrationResult, TermSummary};
 use crate::error::NoErrorModel;
@@ -31,16 +31,26 @@ impl CalibrationResult {
     }
 
     fn error_term(&self, term: &TermSummary) -> Result<Term, NoErrorModel> {
-        let name = || term.name.clone();
-        let axis = |number: usize| {
-            number.checked_sub(1).filter(|axis| *axis < 3).ok_or_else(|| NoErrorModel::Axis { name: name() })
-        };
         let value = self.parameter(&term.name).and_then(|parameter| parameter.value);
-        Ok(Term {
-            axis: axis(term.axis)?,
-            powers: term.powers,
-            sign_of: term.sign_of.map(axis).transpose()?,
-            coefficient: value.ok_or_else(|| NoErrorModel::NotEstimable { name: name() })?,
-        })
+        let not_estimable = || NoErrorModel::NotEstimable { name: term.name.clone() };
+        let (axis, monomial) = (term.index_of(term.axis)?, term.monomial()?);
+        Ok(Term { axis, monomial, coefficient: value.ok_or_else(not_estimable)? })
+    }
+}
+
+impl TermSummary {
+    /// What multiplies the coefficient.
+    ///
+    /// # Errors
+    /// [`NoErrorModel::Axis`] when it takes the sign of a newtonometer that does not exist.
+    pub fn monomial(&self) -> Result<Monomial, NoErrorModel> {
+        let sign_of = self.sign_of.map(|number| self.index_of(number)).transpose()?;
+        Ok(Monomial { powers: self.powers, sign_of })
+    }
+
+    /// Index of newtonometer 1, 2 or 3.
+    fn index_of(&self, number: usize) -> Result<usize, NoErrorModel> {
+        let index = number.checked_sub(1).filter(|axis| *axis < 3);
+        index.ok_or_else(|| NoErrorModel::Axis { name: self.name.clone() })
     }
 }

@@ -23,18 +23,18 @@ impl CalibrationResult {
             program,
             inputs: reduced.inputs.clone(),
             session: SessionSummary::new(session),
-            model: ModelSummary::new(session, model),
+            model: ModelSummary::new(model),
             parameters: (0..count).map(|j| ParameterEstimate::new(model, fit, j)).collect(),
             covariance: (0..count).map(|i| (0..count).map(|j| fit.covariance(i, j)).collect()).collect(),
             observability: ObservabilitySummary::new(model, fit),
             fit: FitSummary::new(fit),
             mountings: mountings(model, reduced),
-            plateaus: plateaus(session, model, reduced, fit),
+            plateaus: plateaus(model, reduced, fit),
             convergence: Some(ConvergenceSummary::new(model, reduced, fit)),
             budget: None,
             validity: None,
             stability: None,
-            drift: steadiness::drift(session, model, reduced, fit),
+            drift: steadiness::drift(model, reduced, fit),
             tilt: steadiness::tilt(model, reduced, fit),
             records: reduced.records.clone(),
         }
@@ -54,7 +54,7 @@ impl CalibrationResult {
         observations: &[Observation],
         fit: &Fit,
     ) -> Result<Self, FitError> {
-        let budget = Budget::new(fit, model, observations, session.speed_uncertainty, &session.type_b)?;
+        let budget = Budget::new(fit, model, observations, &session.type_b)?;
         let count = self.parameters.len();
         if budget.contributions().iter().any(|c| !c.source.is_weighed()) {
             for (j, parameter) in self.parameters.iter_mut().enumerate() {
@@ -64,8 +64,8 @@ impl CalibrationResult {
         }
         self.budget = Some(BudgetSummary::new(&budget, count));
         if fit.termination != centrical::Termination::Linear {
-            let validity = Validity::of(fit, model, observations, session.speed_uncertainty)?;
-            let patterns = patterns(fit, model, observations, session.speed_uncertainty)?;
+            let validity = Validity::of(fit, model, observations)?;
+            let patterns = patterns(fit, model, observations)?;
             self.validity = Some(ValiditySummary::new(model.experiment(), &validity, &patterns));
         }
         Ok(self)
@@ -91,7 +91,7 @@ impl SessionSummary {
 }
 
 impl ModelSummary {
-    fn new(session: &Session, model: &MeasurementModel) -> Self {
+    fn new(model: &MeasurementModel) -> Self {
         let experiment = model.experiment();
         let terms = model.error_model().terms.iter().map(|term| TermSummary {
             name: term.name.clone(),
@@ -105,7 +105,7 @@ impl ModelSummary {
             reference: experiment.unit.reference.name().to_owned(),
             gravity: experiment.site.gravity,
             latitude: experiment.site.latitude,
-            speed_uncertainty: session.speed_uncertainty,
+            speed_uncertainty: model.experiment().centrifuge.speed_uncertainty,
             positions: experiment.positions.iter().map(PositionSummary::new).collect(),
         }
     }
@@ -194,7 +194,7 @@ fn mountings(model: &MeasurementModel, reduced: &Reduced) -> Vec<MountingSummary
     experiment.mountings.iter().enumerate().map(summary).collect()
 }
 
-fn plateaus(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<PlateauSummary> {
+fn plateaus(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<PlateauSummary> {
     let mut index = 0;
     let mut previous = None;
     let mut summaries = Vec::with_capacity(reduced.plateaus.len());
@@ -202,7 +202,7 @@ fn plateaus(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit:
     for (n, (set_point, plateau)) in model.experiment().set_points.iter().zip(&reduced.plateaus).enumerate() {
         let held_out = reduced.held_out.contains(&n);
         let next = if held_out { None } else { fitted.next().map(|(c, r)| (*c, *r)) };
-        let (covariance, residual) = next.unwrap_or_else(|| against(fit, model, set_point, plateau, session));
+        let (covariance, residual) = next.unwrap_or_else(|| against(fit, model, set_point, plateau));
         index = if previous == Some(set_point.mounting) { index + 1 } else { 0 };
         previous = Some(set_point.mounting);
         let turning = plateau.steadiness.filter(|_| !set_point.is_rest());
@@ -240,11 +240,9 @@ fn against(
     model: &MeasurementModel,
     set_point: &SetPoint,
     plateau: &ReducedPlateau,
-    session: &Session,
 ) -> (Matrix3<f64>, Vector3<f64>) {
     let there = model.linearise(set_point, fit.state());
-    let shift = there.speed * session.speed_uncertainty;
-    (plateau.covariance + shift * shift.transpose(), plateau.mean - there.reading)
+    (plateau.covariance + there.speed_error * there.speed_error.transpose(), plateau.mean - there.reading)
 }
 
 fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {

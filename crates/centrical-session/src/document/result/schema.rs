@@ -8,14 +8,15 @@ use std::fs;
 use std::path::Path;
 
 use centrical::uncertainty::Estimates;
+use centrical_table::write_whole;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
+use crate::document::json;
 use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
 use crate::error::{Error, Place};
 use crate::record::{Input, RecordOverview};
-use crate::write::write_whole;
 
 /// Name of the schema's present version.
 pub const SCHEMA: &str = "centrical-result/1";
@@ -299,26 +300,24 @@ impl CalibrationResult {
     /// Writes the file, whole or not at all.
     ///
     /// # Errors
-    /// [`Error::Io`] when the folder does not take it.
+    /// [`Error::Json`] when a value has no place in JSON, [`Error::Table`] when the folder does not take it.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
-        write_whole(path, self.to_json().as_bytes())
+        Ok(write_whole(path, self.to_json()?.as_bytes())?)
     }
 
     /// The text of the file.
-    pub fn to_json(&self) -> String {
-        // Plain structs with text keys: serialisation has nothing to fail on.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(SCHEMA, self)
     }
 
     /// The estimates that the data determine, of the coefficients of the error model alone: what belongs to the unit
     /// and not to how it was mounted.
     pub fn of_unit(&self) -> Estimates {
-        let is_determined = |j: &usize| self.parameters[*j].value.is_some();
-        let of_unit = |name: &str| self.model.error_model.iter().any(|term| term.name == name);
-        let own: Vec<usize> =
-            (0..self.parameters.len()).filter(|j| of_unit(&self.parameters[*j].name)).filter(is_determined).collect();
+        let place = |name: &str| self.parameters.iter().position(|p| p.name == name && p.value.is_some());
+        let own: Vec<usize> = self.model.error_model.iter().filter_map(|term| place(&term.name)).collect();
         let covariance = |a: usize, b: usize| self.covariance.get(own[a])?.get(own[b]).copied().flatten();
         Estimates {
             names: own.iter().map(|&j| self.parameters[j].name.clone()).collect(),

@@ -7,10 +7,11 @@ use std::path::Path;
 
 use centrical::MeasurementModel;
 use centrical::fit::recursive::{Innovation, Progress};
+use centrical_table::write_whole;
 use serde::{Deserialize, Serialize};
 
+use crate::document::json;
 use crate::error::{Error, Place};
-use crate::write::write_whole;
 
 /// What was known after a plateau.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -78,11 +79,9 @@ impl HistoryEstimate {
 /// Adds a line to the history.
 ///
 /// # Errors
-/// [`Error::Io`] when the file does not take it; it is as it was then.
+/// [`Error::Json`] when a value has no place in JSON, [`Error::Table`] when the file does not take it; it is as it was then.
 pub fn append_history(file: &Path, entry: &HistoryEntry) -> Result<(), Error> {
-    // Plain structs: serialisation has nothing to fail on.
-    let mut line = serde_json::to_string(entry).unwrap_or_default();
-    line.push('\n');
+    let line = json::line("watch-history.jsonl", entry)?;
     let mut open = OpenOptions::new();
     let written = open.create(true).append(true).open(file).and_then(|file| append(file, line.as_bytes()));
     written.map_err(|error| Error::writing(file, error))
@@ -121,7 +120,7 @@ pub fn read_history(file: &Path) -> Result<Vec<HistoryEntry>, Error> {
 /// Keeps the lines of the first `plateaus` and drops what a broken run may have written after them.
 ///
 /// # Errors
-/// [`Error::Io`] when the file can be neither read nor written.
+/// [`Error::Table`] when the file can be neither read nor written.
 pub fn keep_history(file: &Path, plateaus: usize) -> Result<(), Error> {
     if !file.exists() {
         return Ok(());
@@ -130,5 +129,5 @@ pub fn keep_history(file: &Path, plateaus: usize) -> Result<(), Error> {
     // One plateau may have no line: while nothing is taken up there is nothing to tell.
     let is_of = |line: &&str| serde_json::from_str::<HistoryEntry>(line).is_ok_and(|entry| entry.plateau <= plateaus);
     let kept: String = ended(&text).split_inclusive('\n').take_while(is_of).collect();
-    if kept == text { Ok(()) } else { write_whole(file, kept.as_bytes()) }
+    if kept == text { Ok(()) } else { Ok(write_whole(file, kept.as_bytes())?) }
 }

@@ -4,14 +4,15 @@ use std::fs;
 use std::path::Path;
 
 use centrical::Observation;
+use centrical_table::write_stream;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::history::InnovationSummary;
+use crate::document::json;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::Input;
-use crate::write::write_stream;
 
 /// Name of the form's present version.
 const SCHEMA: &str = "centrical-watch/1";
@@ -86,12 +87,10 @@ impl WatchState {
     /// Writes the state, whole or not at all; after a power cut it may be lost, and is made anew from the session's records.
     ///
     /// # Errors
-    /// [`Error::Io`] when the folder does not take it.
+    /// [`Error::Json`] when a value has no place in JSON, [`Error::Table`] when the folder does not take it.
     pub fn write(&self, file: &Path) -> Result<(), Error> {
-        // Plain structs: serialisation has nothing to fail on.
-        let mut text = serde_json::to_string(self).unwrap_or_default();
-        text.push('\n');
-        write_stream(file, |output| output.write_all(text.as_bytes()))
+        let text = json::line(SCHEMA, self)?;
+        Ok(write_stream(file, |output| output.write_all(text.as_bytes()))?)
     }
 
     /// The plateaus that are not held out, as data of a fit.

@@ -2,11 +2,11 @@
 
 use std::fmt;
 
+use centrical_table::ColumnName;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 
 use crate::quantity::Quantity;
-use crate::table::ColumnName;
 
 /// A preset's name, or a list of terms.
 #[derive(Debug)]

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use centrical_table::{ColumnName, Field, Rule};
+
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
 use crate::job::reduce::reduce;
 use crate::quantity::Dimension;
 use crate::record::{Column, Scale};
-use crate::table::{self, ColumnName, Field, Rule};
 
 /// Columns of readings, and their time.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,7 +34,7 @@ impl Series {
         fields.extend(readings.iter().map(|column| field(column, Rule::OrMissing)));
         let (mut t, mut values) = (Vec::new(), vec![Vec::new(); readings.len()]);
         let (mut rows, mut ends) = (0_u64, [f64::INFINITY, f64::NEG_INFINITY]);
-        table::read(file, &fields, "a record", &mut |block| {
+        centrical_table::read(file, &fields, "a record", &mut |block| {
             let first = rows;
             rows += block[0].len() as u64;
             let times: Vec<f64> = if counted {

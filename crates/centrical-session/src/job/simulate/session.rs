@@ -4,19 +4,16 @@
 use std::path::Path;
 
 use centrical::simulate::{SimulatedMounting, Simulation};
+use centrical_table::{ColumnName, TableFormat, create_folder, write_table, write_whole};
 use rayon::prelude::*;
 
-use super::files::{TableFormat, record_path, telemetry_path};
+use super::files::{record_path, telemetry_path};
 use super::session_text::with_files;
-use crate::csv_table::CsvTable;
 use crate::document::{Written, truth_json};
 use crate::error::{Error, Place};
 use crate::experiment::{EXPERIMENT_FILE, Session};
-use crate::parquet_table::{Layout, ParquetTable};
 use crate::record::Column;
-use crate::table::ColumnName;
 use crate::truth::Truth;
-use crate::write::{create_folder, write_stream, write_whole};
 
 /// Simulates the session that `plan` describes and writes it to `folder`. `done` is told the index of each mounting as
 /// it is written, from any thread; the files do not depend on the number of threads.
@@ -39,9 +36,9 @@ pub fn simulate_session(
     let columns = Headers::of(plan)?;
     let text = with_files(plan, format)?;
     // Plateaus last as long as the plan says, or as the machine makes them.
-    let stated = plan.durations.iter().map(|duration| duration.unwrap_or(truth.settings.machine.plateau));
+    let stated = plan.durations.iter().map(|duration| duration.unwrap_or(truth.equipment.machine.plateau));
     let durations: Vec<f64> = stated.collect();
-    let simulation = Simulation::new(&truth.model, &truth.values, &truth.settings, seed)
+    let simulation = Simulation::new(&truth.model, &truth.values, &truth.equipment, seed)
         .and_then(|simulation| simulation.with_durations(&durations))
         .map_err(|source| Error::Simulation { file: truth.file.clone(), source })?;
     create_folder(&folder.join("records"))?;
@@ -54,7 +51,7 @@ pub fn simulate_session(
     let mountings = mountings.collect::<Result<Vec<Written>, Error>>()?;
     write_whole(&folder.join("truth.json"), truth_json(plan, truth, seed, &mountings).as_bytes())?;
     // Last, so that a folder with an experiment file is a whole session.
-    write_whole(&experiment_file, text.as_bytes())
+    Ok(write_whole(&experiment_file, text.as_bytes())?)
 }
 
 /// The record and the telemetry of one mounting.
@@ -101,37 +98,17 @@ fn raw<const N: usize>(mut values: [Vec<f64>; N], columns: [&Column; N]) -> [Vec
     values
 }
 
-/// Writes stretches of columns as one table.
-fn write_table<const N: usize>(
-    file: &Path,
-    format: TableFormat,
-    names: &[String; N],
-    stretches: impl Iterator<Item = [Vec<f64>; N]>,
-) -> Result<(), Error> {
-    write_stream(file, |output| match format {
-        TableFormat::Csv => {
-            let mut table = CsvTable::new(output, names)?;
-            stretches.into_iter().try_for_each(|rows| table.write(&rows))
-        }
-        TableFormat::Parquet => {
-            let mut table = ParquetTable::new(output, Layout::PACKED, names)?;
-            stretches.into_iter().try_for_each(|rows| table.write(&rows))?;
-            table.finish().map(|_| ())
-        }
-    })
-}
-
 /// Names of the columns of records and telemetry.
 #[derive(Debug)]
-struct Headers {
-    record: [String; 4],
-    telemetry: [String; 2],
+struct Headers<'a> {
+    record: [&'a str; 4],
+    telemetry: [&'a str; 2],
 }
 
-impl Headers {
-    fn of(plan: &Session) -> Result<Self, Error> {
-        let name = |column: &Column| match &column.name {
-            ColumnName::Name(name) => Ok(name.clone()),
+impl<'a> Headers<'a> {
+    fn of(plan: &'a Session) -> Result<Self, Error> {
+        let name = |column: &'a Column| match &column.name {
+            ColumnName::Name(name) => Ok(name.as_str()),
             other => {
                 let place = Place::Key { table: "[columns]".to_owned(), key: other.to_string() };
                 let expected = "a column by name: simulated tables have a header";
@@ -140,9 +117,6 @@ impl Headers {
         };
         let time = name(&plan.columns.time)?;
         let [f1, f2, f3] = &plan.columns.f;
-        Ok(Self {
-            record: [time.clone(), name(f1)?, name(f2)?, name(f3)?],
-            telemetry: [time, name(&plan.columns.speed)?],
-        })
+        Ok(Self { record: [time, name(f1)?, name(f2)?, name(f3)?], telemetry: [time, name(&plan.columns.speed)?] })
     }
 }

@@ -2,9 +2,10 @@
 
 use std::fs;
 
+use centrical_table::TableFormat;
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value, value};
 
-use super::files::{TableFormat, record_path, telemetry_path};
+use super::files::{record_path, telemetry_path};
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 

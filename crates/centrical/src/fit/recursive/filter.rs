@@ -32,12 +32,8 @@ impl Readings {
     ///
     /// # Errors
     /// [`FitError::Covariance`] when the covariance is not positive definite.
-    pub fn new(
-        observation: &Observation,
-        linearisation: &Linearisation,
-        speed_uncertainty: f64,
-    ) -> Result<Self, FitError> {
-        let whitener = Whitener::new(&observation.into(), &linearisation.speed, speed_uncertainty)?;
+    pub fn new(observation: &Observation, linearisation: &Linearisation) -> Result<Self, FitError> {
+        let whitener = Whitener::new(&observation.into(), &linearisation.speed_error)?;
         Ok(Self {
             columns: linearisation.columns.iter().map(|(column, d)| (*column, whitener.apply(d))).collect(),
             misfit: whitener.apply(&(observation.mean - linearisation.reading)),

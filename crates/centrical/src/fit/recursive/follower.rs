@@ -12,8 +12,9 @@ use super::filtered;
 use super::innovation::{Innovation, Unexplained};
 use crate::design::{Design, Observation};
 use crate::error::FitError;
-use crate::fit::{Equations, HALVING_LIMIT, NULL_HOLD, Structure, check, chi_squared, linearised, residuals};
+use crate::fit::{Equations, HALVING_LIMIT, Structure, check, chi_squared, linearised, residuals};
 use crate::measurement::{Linearisation, MeasurementModel};
+use crate::parameter::NULL_HOLD;
 
 /// A point is close enough when the last step was below this many standard uncertainties: what the step after it would
 /// change is of the square of it.
@@ -27,7 +28,6 @@ const STEP_LIMIT: usize = 10;
 #[derive(Debug, Clone)]
 pub struct Follower<'m> {
     model: &'m MeasurementModel,
-    speed_uncertainty: f64,
     taken: Vec<Observation>,
     point: DVector<f64>,
 }
@@ -42,10 +42,10 @@ pub struct Progress {
 }
 
 impl<'m> Follower<'m> {
-    /// Before the first plateau. `speed_uncertainty` is the relative standard uncertainty of a plateau's speed.
-    pub fn new(model: &'m MeasurementModel, speed_uncertainty: f64) -> Self {
+    /// Before the first plateau.
+    pub fn new(model: &'m MeasurementModel) -> Self {
         let point = DVector::zeros(model.parameters().len());
-        Self { model, speed_uncertainty, taken: Vec::new(), point }
+        Self { model, taken: Vec::new(), point }
     }
 
     /// Where a follower stood that had taken up some plateaus and reached [`Follower::point`]; it goes on as if it had never
@@ -53,13 +53,8 @@ impl<'m> Follower<'m> {
     ///
     /// # Errors
     /// [`FitError`] when an observation cannot be one.
-    pub fn resume(
-        model: &'m MeasurementModel,
-        speed_uncertainty: f64,
-        taken: Vec<Observation>,
-        point: &[f64],
-    ) -> Result<Self, FitError> {
-        let mut follower = Self::new(model, speed_uncertainty);
+    pub fn resume(model: &'m MeasurementModel, taken: Vec<Observation>, point: &[f64]) -> Result<Self, FitError> {
+        let mut follower = Self::new(model);
         if !taken.is_empty() {
             check(model, &taken)?;
         }
@@ -127,7 +122,7 @@ impl<'m> Follower<'m> {
         let objective = |x: &DVector<f64>| -> Result<f64, FitError> {
             let residuals = residuals(self.model, &self.taken, x);
             let priors = self.model.priors();
-            let data = chi_squared(priors, &self.taken, linearisations, self.speed_uncertainty, &residuals, x)?;
+            let data = chi_squared(priors, &self.taken, linearisations, &residuals, x)?;
             Ok(data + (x.component_div(typical) / NULL_HOLD).norm_squared())
         };
         let here = objective(&self.point)?;
@@ -145,7 +140,7 @@ impl<'m> Follower<'m> {
     /// # Errors
     /// [`FitError::Empty`] before the first.
     pub fn progress(&self) -> Result<Progress, FitError> {
-        let structure = Structure::by(filtered, self.model, &self.taken, self.speed_uncertainty)?;
+        let structure = Structure::by(filtered, self.model, &self.taken)?;
         let step = structure.equations(&self.design()?, &self.point, 1.0 / NULL_HOLD).solve();
         let covariance = step.covariance();
         let known = |j: usize| (self.point[j] + step.dx[j], covariance[(j, j)].sqrt());
@@ -172,7 +167,7 @@ impl<'m> Follower<'m> {
         if self.taken.is_empty() {
             return Ok(Unexplained { squared: 0.0, rank: self.model.priors().len() });
         }
-        let structure = Structure::by(filtered, self.model, &self.taken, self.speed_uncertainty)?;
+        let structure = Structure::by(filtered, self.model, &self.taken)?;
         let design = self.design()?;
         let Equations { rows, mut misfit, .. } = structure.equations(&design, &self.point, 1.0 / NULL_HOLD);
         let unknowns = rows.ncols();
@@ -190,7 +185,7 @@ impl<'m> Follower<'m> {
     }
 
     fn design_of(&self, linearisations: &[Linearisation]) -> Result<Design, FitError> {
-        filtered(self.point(), self.model, &self.taken, linearisations, self.speed_uncertainty)
+        filtered(self.point(), self.model, &self.taken, linearisations)
     }
 
     /// The equations with every unknown held about zero, in typical units.

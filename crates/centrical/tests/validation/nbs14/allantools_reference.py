@@ -16,7 +16,7 @@ NINE = [892.0, 809.0, 823.0, 798.0, 671.0, 644.0, 883.0, 903.0, 677.0]
 ESTIMATORS = {
     "Allan": at.adev, "OverlappingAllan": at.oadev, "ModifiedAllan": at.mdev, "Time": at.tdev, "Hadamard": at.hdev,
     "OverlappingHadamard": at.ohdev, "Total": at.totdev, "ModifiedTotal": at.mtotdev, "TimeTotal": at.ttotdev,
-    "HadamardTotal": at.htotdev, "TimeIntervalRms": at.tierms, "MaximumTimeInterval": at.mtie,
+    "HadamardTotal": at.htotdev,
 }
 GREENHALL = {
     "Allan": (2, False, False), "OverlappingAllan": (2, True, False), "ModifiedAllan": (2, True, True),

@@ -1,0 +1,19 @@
+//! Documents as JSON text, a line end at the end.
+
+use serde::Serialize;
+
+use crate::error::Error;
+
+/// A document over many lines.
+pub(super) fn document(name: &'static str, value: &impl Serialize) -> Result<String, Error> {
+    ended(name, serde_json::to_string_pretty(value))
+}
+
+/// A document on one line.
+pub(super) fn line(name: &'static str, value: &impl Serialize) -> Result<String, Error> {
+    ended(name, serde_json::to_string(value))
+}
+
+fn ended(document: &'static str, text: serde_json::Result<String>) -> Result<String, Error> {
+    text.map(|text| text + "\n").map_err(|source| Error::Json { document, source })
+}

@@ -1,3 +1,0 @@
-//! Records written by other programs: `../data/generate.py` says which, and wrote them.
-
-mod formats;

@@ -1,0 +1,207 @@
+//! Numbers as arrays of bytes: columns of vectors, matrices and records, wherever they lie in a file.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use flate2::read::{DeflateDecoder, ZlibDecoder};
+use lz4_flex::frame::FrameDecoder;
+
+use super::columnar::Column;
+use crate::column::{ColumnName, Field};
+use crate::error::{Error, Place, quoted};
+use crate::rows::BLOCK;
+
+/// Longest row of an array [bytes]: thousands of columns.
+const LONGEST_ROW: u64 = 1 << 16;
+
+/// An array of a file: rows of numbers in columns.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Array {
+    /// Its name in the file; empty where there is only one.
+    pub name: String,
+    /// Where its bytes are.
+    pub bytes: Bytes,
+    pub rows: u64,
+    /// Bytes from one row to the next.
+    pub stride: u64,
+    pub columns: Vec<ArrayColumn>,
+}
+
+/// A column of an array.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ArrayColumn {
+    /// Its name in the array; empty where columns have none.
+    pub name: String,
+    /// Bytes before its first number.
+    pub start: u64,
+    pub scalar: Scalar,
+}
+
+/// Where the bytes of an array are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Bytes {
+    pub packing: Packing,
+    /// First byte in the file, and how many there are at most.
+    pub offset: u64,
+    pub length: u64,
+    /// Bytes before the array, after unpacking.
+    pub skip: u64,
+}
+
+/// How bytes are packed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Packing {
+    Plain,
+    Deflate,
+    Zlib,
+    /// A frame of LZ4.
+    Lz4,
+    Zstd,
+}
+
+/// A type of numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Scalar {
+    pub kind: ScalarKind,
+    pub size: usize,
+    pub big_endian: bool,
+}
+
+/// What the bytes of a number mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ScalarKind {
+    Float,
+    Signed,
+    Unsigned,
+}
+
+/// The wanted columns of arrays, in the order of the fields.
+///
+/// A name is that of an array of one column, or of a column of an array; a number counts the columns of the only
+/// array.
+pub(super) fn columns<'a>(file: &'a Path, arrays: &[Array], fields: &'a [Field]) -> Result<Vec<Column<'a>>, Error> {
+    fields.iter().map(|field| column(file, find(file, arrays, field)?, field)).collect()
+}
+
+/// The array and the column in it that a field asks for.
+fn find<'a>(file: &Path, arrays: &'a [Array], field: &Field) -> Result<(&'a Array, &'a ArrayColumn), Error> {
+    let wrong = |found: String, expected: &str| {
+        Err(Error::content(file, Place::Column(field.name.to_string()), found, expected))
+    };
+    let all = || arrays.iter().flat_map(|array| array.columns.iter().map(move |column| (array, column)));
+    match &field.name {
+        ColumnName::Name(name) => {
+            let is = |(array, column): &(&Array, &ArrayColumn)| {
+                column.name == *name || (array.name == *name && array.columns.len() == 1)
+            };
+            let mut places = all().filter(is);
+            match (places.next(), places.next()) {
+                (Some(place), None) => Ok(place),
+                (None, _) => wrong(contents(arrays), "a column of this name (for a matrix give [columns] by number)"),
+                _ => wrong(format!("two such columns in {}", contents(arrays)), "one"),
+            }
+        }
+        ColumnName::Number(number) => match arrays {
+            [array] => number
+                .checked_sub(1)
+                .and_then(|i| Some((array, array.columns.get(i)?)))
+                .map_or_else(|| wrong(format!("{} columns", array.columns.len()), "that many columns"), Ok),
+            _ => wrong(contents(arrays), "one array, or [columns] by name"),
+        },
+        ColumnName::Row => wrong("no such column".to_owned(), "a column by name or number"),
+    }
+}
+
+/// What there is, for messages.
+fn contents(arrays: &[Array]) -> String {
+    let named = |array: &Array| match array.columns.as_slice() {
+        [] => format!("{} (no numbers)", array.name),
+        [column] if column.name.is_empty() => array.name.clone(),
+        columns if columns.iter().all(|c| c.name.is_empty()) => {
+            format!("{} ({} x {})", array.name, array.rows, columns.len())
+        }
+        columns => columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "),
+    };
+    format!("columns {}", quoted(arrays.iter().map(named).collect::<Vec<_>>().join(", ").trim().as_bytes()))
+}
+
+/// A reader of one column.
+pub(super) fn column<'a>(
+    file: &'a Path,
+    (array, place): (&Array, &ArrayColumn),
+    field: &'a Field,
+) -> Result<Column<'a>, Error> {
+    let failed = move |e: io::Error| {
+        let place = Place::Column(field.name.to_string());
+        let expected = "an array as long as it says";
+        match e.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::PermissionDenied => Error::reading(file, e, expected),
+            _ => Error::content(file, place, format!("a damaged array ({e})"), expected),
+        }
+    };
+    let (scalar, mut left) = (place.scalar, array.rows);
+    let stride = usize::try_from(array.stride.min(LONGEST_ROW)).unwrap_or(usize::MAX);
+    if array.stride > LONGEST_ROW || scalar.size > stride {
+        return Err(failed(io::Error::other(format!("{} bytes a row", array.stride))));
+    }
+    let mut input = array.bytes.open(file, place.start).map_err(failed)?;
+    let mut buffer = Vec::new();
+    Ok(Box::new(move |values| {
+        let rows = usize::try_from(left.min(BLOCK as u64)).unwrap_or(BLOCK);
+        left -= rows as u64;
+        // The last row ends with its number, not with its stride.
+        let length = (rows * stride).saturating_sub(if left == 0 { stride - scalar.size } else { 0 });
+        buffer.resize(length, 0);
+        input.read_exact(&mut buffer).map_err(failed)?;
+        values.extend(buffer.chunks(stride).map(|row| scalar.read(&row[..scalar.size])));
+        Ok(())
+    }))
+}
+
+impl Bytes {
+    /// The bytes of the array from `start` on.
+    pub fn open(&self, file: &Path, start: u64) -> io::Result<Box<dyn Read + Send>> {
+        let mut input = File::open(file)?;
+        input.seek(SeekFrom::Start(self.offset))?;
+        let input = io::BufReader::with_capacity(1 << 16, input.take(self.length));
+        let mut unpacked: Box<dyn Read + Send> = match self.packing {
+            Packing::Plain => Box::new(input),
+            Packing::Deflate => Box::new(DeflateDecoder::new(input)),
+            Packing::Zlib => Box::new(ZlibDecoder::new(input)),
+            Packing::Lz4 => Box::new(FrameDecoder::new(input)),
+            Packing::Zstd => Box::new(zstd::Decoder::with_buffer(input)?),
+        };
+        let skip = self.skip.saturating_add(start);
+        if io::copy(&mut unpacked.by_ref().take(skip), &mut io::sink())? < skip {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        Ok(unpacked)
+    }
+}
+
+impl Scalar {
+    /// A type of numbers; nothing where no number has that size.
+    pub fn new(kind: ScalarKind, size: usize, big_endian: bool) -> Option<Self> {
+        let known = matches!(size, 4 | 8) || (matches!(size, 1 | 2) && kind != ScalarKind::Float);
+        known.then_some(Self { kind, size, big_endian })
+    }
+
+    /// The number in the first bytes, as many as its size.
+    fn read(self, bytes: &[u8]) -> f64 {
+        let mut low = [0; 8];
+        low[..self.size].copy_from_slice(bytes);
+        if self.big_endian {
+            low[..self.size].reverse();
+        }
+        let bits = u64::from_le_bytes(low);
+        let unused = 64 - 8 * self.size;
+        match self.kind {
+            ScalarKind::Float if self.size == 8 => f64::from_bits(bits),
+            ScalarKind::Float => f64::from(f32::from_le_bytes([low[0], low[1], low[2], low[3]])),
+            // Up and down again fills the upper bytes with the sign.
+            ScalarKind::Signed => ((bits << unused).cast_signed() >> unused) as f64,
+            ScalarKind::Unsigned => bits as f64,
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Columns of an Arrow schema: which are numbers, and where they stand among the nodes and buffers of a batch.
+
+use std::path::Path;
+
+use polars_arrow_format::ipc::{Endianness, FieldRef, Precision, SchemaRef, TimeUnit, TypeRef};
+
+use super::super::arrays::{Array, ArrayColumn, Bytes, Scalar, ScalarKind};
+use super::super::columnar::Column;
+use super::damaged;
+use crate::column::{ColumnName, Field, Rule};
+use crate::error::{Error, Place, quoted};
+
+/// A column that a field asks for.
+pub(super) struct ArrowColumn {
+    pub name: String,
+    /// Its node and its first buffer, that of the missing values.
+    pub node: usize,
+    pub buffer: usize,
+    scalar: Scalar,
+    /// Seconds per unit of stamps, 1 for numbers.
+    pub unit: f64,
+}
+
+/// Deepest nesting of types, and most of them in all: a damaged schema may contain itself.
+const LIMITS: Limits = Limits { depth: 32, count: 1 << 16 };
+
+/// How many types may still be looked at.
+struct Limits {
+    depth: usize,
+    count: usize,
+}
+
+/// The columns that the fields ask for.
+pub(super) fn find(file: &Path, schema: SchemaRef, fields: &[Field]) -> Result<Vec<ArrowColumn>, Error> {
+    let failed = |e| damaged(file, e);
+    let big_endian = schema.endianness().map_err(failed)? == Endianness::Big;
+    let listed = schema.fields().map_err(failed)?;
+    let columns: Vec<FieldRef> = listed.into_iter().flatten().collect::<Result<_, _>>().map_err(failed)?;
+    let names: Vec<&str> = columns
+        .iter()
+        .map(|column| Ok(column.name()?.unwrap_or_default()))
+        .collect::<Result<_, _>>()
+        .map_err(failed)?;
+    let one = |field: &Field| {
+        let wrong = |found: String, expected: &str| {
+            Err(Error::content(file, Place::Column(field.name.to_string()), found, expected))
+        };
+        let mut places = match &field.name {
+            ColumnName::Name(name) => (0..columns.len()).filter(|i| names[*i] == name).collect(),
+            ColumnName::Number(number) => vec![number.wrapping_sub(1)],
+            ColumnName::Row => Vec::new(),
+        };
+        let (Some(place), None) = (places.pop().filter(|i| *i < columns.len()), places.pop()) else {
+            let list = quoted(names.join(", ").as_bytes());
+            return wrong(format!("columns {list}"), "one column of this name");
+        };
+        let (mut node, mut buffer, mut limits) = (0, 0, LIMITS);
+        for (column, name) in columns[..place].iter().zip(&names) {
+            let Some((nodes, buffers)) = size(column, &mut limits).map_err(failed)? else {
+                return wrong(
+                    format!("it after {name:?}, a column of nested or viewed values"),
+                    "columns of plain types",
+                );
+            };
+            (node, buffer) = (node + nodes, buffer + buffers);
+        }
+        match numbers(&columns[place], field.rule, big_endian).map_err(failed)? {
+            Ok((scalar, unit)) => Ok(ArrowColumn { name: names[place].to_owned(), node, buffer, scalar, unit }),
+            Err(other) => wrong(other, &field.expected),
+        }
+    };
+    fields.iter().map(one).collect()
+}
+
+impl ArrowColumn {
+    /// Its array in a batch.
+    pub fn array(&self, rows: u64, bytes: Bytes) -> Array {
+        let column = ArrayColumn { name: String::new(), start: 0, scalar: self.scalar };
+        Array { name: self.name.clone(), bytes, rows, stride: self.scalar.size as u64, columns: vec![column] }
+    }
+}
+
+/// A column of stamps in seconds; of numbers, as it is.
+pub(super) fn in_seconds(mut numbers: Column, unit: f64) -> Column {
+    if unit == 1.0 {
+        return numbers;
+    }
+    Box::new(move |values| {
+        numbers(values)?;
+        for value in values {
+            *value *= unit;
+        }
+        Ok(())
+    })
+}
+
+type Flat<T> = Result<T, polars_arrow_format::ipc::planus::Error>;
+
+/// The numbers of a column and their unit; or what it is if it is neither numbers nor, where allowed, stamps.
+fn numbers(column: &FieldRef, rule: Rule, big_endian: bool) -> Flat<Result<(Scalar, f64), String>> {
+    let described = || Ok(Err("a column without numbers".to_owned()));
+    let (Some(kind), None) = (column.type_()?, column.dictionary()?) else { return described() };
+    let (kind, bits, unit) = match kind {
+        TypeRef::Int(int) if int.is_signed()? => (ScalarKind::Signed, int.bit_width()?, 1.0),
+        TypeRef::Int(int) => (ScalarKind::Unsigned, int.bit_width()?, 1.0),
+        TypeRef::FloatingPoint(float) => match float.precision()? {
+            Precision::Half => (ScalarKind::Float, 16, 1.0),
+            Precision::Single => (ScalarKind::Float, 32, 1.0),
+            Precision::Double => (ScalarKind::Float, 64, 1.0),
+        },
+        TypeRef::Timestamp(stamp) if rule == (Rule::Ascending { stamps: true }) => {
+            let unit = match stamp.unit()? {
+                TimeUnit::Second => 1.0,
+                TimeUnit::Millisecond => 1e-3,
+                TimeUnit::Microsecond => 1e-6,
+                TimeUnit::Nanosecond => 1e-9,
+            };
+            (ScalarKind::Signed, 64, unit)
+        }
+        _ => return described(),
+    };
+    let scalar = usize::try_from(bits / 8).ok().and_then(|size| Scalar::new(kind, size, big_endian));
+    Ok(scalar.map(|scalar| (scalar, unit)).ok_or_else(|| format!("numbers of {bits} bits")))
+}
+
+/// Nodes and buffers of a column; none where their number depends on the batch.
+fn size(column: &FieldRef, limits: &mut Limits) -> Flat<Option<(usize, usize)>> {
+    let (Some(depth), Some(count)) = (limits.depth.checked_sub(1), limits.count.checked_sub(1)) else {
+        return Ok(None);
+    };
+    *limits = Limits { depth, count };
+    let own = match column.type_()? {
+        _ if column.dictionary()?.is_some() => 2,
+        Some(TypeRef::Null(_)) => 0,
+        Some(TypeRef::Struct(_) | TypeRef::FixedSizeList(_)) => 1,
+        Some(TypeRef::Binary(_) | TypeRef::Utf8(_) | TypeRef::LargeBinary(_) | TypeRef::LargeUtf8(_)) => 3,
+        Some(
+            TypeRef::Union(_)
+            | TypeRef::RunEndEncoded(_)
+            | TypeRef::BinaryView(_)
+            | TypeRef::Utf8View(_)
+            | TypeRef::ListView(_)
+            | TypeRef::LargeListView(_),
+        )
+        | None => return Ok(None),
+        Some(_) => 2,
+    };
+    let mut total = (1, own);
+    let children = if column.dictionary()?.is_some() { None } else { column.children()? };
+    for child in children.into_iter().flatten() {
+        let Some((nodes, buffers)) = size(&child?, limits)? else { return Ok(None) };
+        total = (total.0 + nodes, total.1 + buffers);
+    }
+    limits.depth += 1;
+    Ok(Some(total))
+}

@@ -1,0 +1,125 @@
+//! HDF5 files, and MATLAB files of version 7.3, which are HDF5 too.
+
+use std::fs;
+use std::path::Path;
+
+use hdf5_pure::{ChunkIndex, Dataset, Error as HdfError, File, FormatError};
+
+use super::columnar::{self, Column};
+use super::panics::caught;
+use crate::column::{ColumnName, Field};
+use crate::error::{Error, Place, quoted};
+use crate::rows::{BLOCK, Rows};
+
+/// Numbers of a matrix that are read together.
+const AT_ONCE: u64 = 16 * BLOCK as u64;
+
+/// No number takes more [bytes]: room is made for as many as there are of what a file claims.
+const LARGEST_NUMBER: u64 = 16;
+
+/// Reads an HDF5 file. MATLAB keeps its matrices there by columns.
+pub(crate) fn read(file: &Path, by_columns: bool, rows: &mut Rows) -> Result<(), Error> {
+    let hdf = caught(|| File::open_streaming(file)).map_err(|e| damaged(file, Place::Whole, e.as_ref()))?;
+    let most = rows.most;
+    let open = |field| column(file, &hdf, field, by_columns, most);
+    let mut columns = rows.fields.iter().map(open).collect::<Result<Vec<_>, Error>>()?;
+    columnar::read(file, &mut columns, &mut 0, rows)
+}
+
+/// What the library complains of.
+fn damaged(file: &Path, place: Place, error: Option<&HdfError>) -> Error {
+    let why = error.map_or_else(|| "it contradicts itself".to_owned(), ToString::to_string);
+    Error::content(file, place, format!("damaged HDF5 ({why})"), "a whole HDF5 file")
+}
+
+/// One column: a vector by the path of its dataset, or a column of the only dataset by its number.
+fn column<'a>(file: &'a Path, hdf: &File, field: &'a Field, by_columns: bool, most: u64) -> Result<Column<'a>, Error> {
+    let place = || Place::Column(field.name.to_string());
+    let damaged = move |e: Option<HdfError>| damaged(file, place(), e.as_ref());
+    let wrong = |found: String, expected: &str| Err(Error::content(file, place(), found, expected));
+    let names = caught(|| hdf.root().datasets()).map_err(damaged)?;
+    let found = || format!("datasets {}", quoted(names.join(", ").as_bytes()));
+    let (name, number) = match (&field.name, names.as_slice()) {
+        (ColumnName::Name(name), _) => (name, 1),
+        (ColumnName::Number(number), [only]) => (only, *number),
+        _ => return wrong(found(), "one dataset, or [columns] by name"),
+    };
+    let Ok(dataset) = caught(|| hdf.dataset(name)) else { return wrong(found(), "a dataset of this name") };
+    let shape = caught(|| dataset.shape()).map_err(damaged)?;
+    let (rows, columns) = match shape.as_slice() {
+        [rows] | [1, rows] | [rows, 1] => (*rows, 1),
+        [columns, rows] if by_columns => (*rows, *columns),
+        [rows, columns] => (*rows, *columns),
+        _ => return wrong(format!("an array of shape {shape:?}"), "a vector or a matrix"),
+    };
+    let by_name = matches!(field.name, ColumnName::Name(_));
+    let is_asked = if by_name { columns == 1 } else { (1..=columns).contains(&(number as u64)) };
+    if !is_asked || columns > AT_ONCE || rows > most {
+        return wrong(format!("an array of shape {shape:?}"), "a vector by name, or a column of a matrix by number");
+    }
+    if let Some((found, expected)) = unreadable(&dataset).map_err(damaged)? {
+        return wrong(found, expected);
+    }
+    let size = caught(|| dataset.element_size()).map_err(damaged)?;
+    if size > LARGEST_NUMBER {
+        return wrong(format!("elements of {size} bytes"), "numbers");
+    }
+    if let Some(found) = too_large_chunk(file, &dataset, most).map_err(damaged)? {
+        return wrong(found, "chunks that the file can hold");
+    }
+    if by_columns || shape.first() == Some(&1) {
+        // A row of the file holds the whole column.
+        let mut whole = caught(|| row(&dataset, number as u64 - 1)).map_err(damaged)?.into_iter();
+        return Ok(Box::new(move |values| {
+            values.extend(whole.by_ref().take(BLOCK));
+            Ok(())
+        }));
+    }
+    let (mut start, step) = (0, AT_ONCE / columns);
+    Ok(Box::new(move |values| {
+        let end = (start + BLOCK as u64).min(rows);
+        while start < end {
+            let count = step.min(end - start);
+            let block = caught(|| dataset.read_f64_rows(start, count)).map_err(damaged)?;
+            start += count;
+            values.extend(block.iter().skip(number - 1).step_by(usize::try_from(columns).unwrap_or(usize::MAX)));
+        }
+        Ok(())
+    }))
+}
+
+/// A layout that the library does not know, and what it does.
+fn unreadable(dataset: &Dataset) -> Result<Option<(String, &'static str)>, Option<HdfError>> {
+    match caught(|| dataset.chunk_index()) {
+        Ok(Some(ChunkIndex::BTreeV2)) => Ok(Some((
+            "chunks indexed by a B-tree of version 2".to_owned(),
+            "another index: at most one unlimited dimension, or a file for earlier versions (in h5py libver=\"earliest\")",
+        ))),
+        Err(Some(HdfError::Format(FormatError::InvalidLayoutVersion(version)))) => Ok(Some((
+            format!("a data layout of version {version}"),
+            "4 or before: a file for HDF5 1.14 or earlier versions (in h5py libver=\"earliest\")",
+        ))),
+        known => known.map(|_| None),
+    }
+}
+
+/// A chunk that claims more than there can be: it is unpacked as a whole, and room is made for what it claims to take in the file
+/// before that is read.
+fn too_large_chunk(file: &Path, dataset: &Dataset, most: u64) -> Result<Option<String>, Option<HdfError>> {
+    if !dataset.is_chunked() {
+        return Ok(None);
+    }
+    let shape = caught(|| dataset.chunk_shape())?.unwrap_or_default();
+    if shape.iter().fold(1, |numbers: u64, length| numbers.saturating_mul(*length)) > most {
+        return Ok(Some(format!("chunks of shape {shape:?}")));
+    }
+    let bytes = fs::metadata(file).map_or(0, |metadata| metadata.len());
+    let stored = caught(|| dataset.chunks())?;
+    let size = stored.iter().map(|chunk| chunk.storage_size).find(|size| *size > bytes);
+    Ok(size.map(|size| format!("a chunk of {size} bytes")))
+}
+
+/// A row of a matrix, or a whole vector.
+fn row(dataset: &Dataset, row: u64) -> Result<Vec<f64>, HdfError> {
+    if dataset.shape()?.len() == 1 { dataset.read_f64() } else { dataset.read_f64_rows(row, 1) }
+}

@@ -1,0 +1,171 @@
+//! Arrays of NumPy: `.npy` files, and `.npz` archives of them.
+//!
+//! A `.npy` file opens with the magic bytes, a version, the length of the header and the header: a Python
+//! dictionary of `descr` (type of the numbers), `fortran_order` and `shape`.
+
+mod literal;
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use self::literal::Literal;
+use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
+use super::{arrays, columnar};
+use crate::error::{Error, Place, quoted};
+use crate::rows::Rows;
+
+/// Longest header [bytes].
+const LONGEST_HEADER: usize = 1 << 16;
+
+/// Reads a `.npy` file.
+pub(crate) fn read(file: &Path, input: &File, rows: &mut Rows) -> Result<(), Error> {
+    let length = input.metadata().map_err(|e| Error::reading(file, e, "a .npy file"))?.len();
+    let bytes = Bytes { packing: Packing::Plain, offset: 0, length, skip: 0 };
+    match array(file, "", bytes)? {
+        Some(array) => read_arrays(file, &[array], rows),
+        None => Err(Error::content(file, Place::Whole, "an array of another shape", "a vector, a matrix or records")),
+    }
+}
+
+/// Reads a `.npz` archive.
+pub(crate) fn read_archive(file: &Path, input: File, rows: &mut Rows) -> Result<(), Error> {
+    let damaged = |e: zip::result::ZipError| Error::content(file, Place::Whole, e.to_string(), "a .npz archive");
+    let mut archive = zip::ZipArchive::new(input).map_err(damaged)?;
+    let mut arrays = Vec::new();
+    for member in 0..archive.len() {
+        let member = archive.by_index_raw(member).map_err(damaged)?;
+        let name = member.name().map_err(damaged)?;
+        let Some(name) = name.strip_suffix(".npy") else { continue };
+        let packing = match member.compression() {
+            zip::CompressionMethod::Stored => Packing::Plain,
+            zip::CompressionMethod::Deflated => Packing::Deflate,
+            other => {
+                let place = Place::Column(name.to_owned());
+                return Err(Error::content(file, place, format!("{other} compression"), "deflate or none"));
+            }
+        };
+        let offset = member.data_start().unwrap_or(0);
+        arrays.extend(array(file, name, Bytes { packing, offset, length: member.compressed_size(), skip: 0 })?);
+    }
+    read_arrays(file, &arrays, rows)
+}
+
+fn read_arrays(file: &Path, arrays: &[Array], rows: &mut Rows) -> Result<(), Error> {
+    let mut columns = arrays::columns(file, arrays, rows.fields)?;
+    columnar::read(file, &mut columns, &mut 0, rows)
+}
+
+/// The array that starts with a header at these bytes, if it has rows and columns.
+fn array(file: &Path, name: &str, bytes: Bytes) -> Result<Option<Array>, Error> {
+    let place = || if name.is_empty() { Place::Whole } else { Place::Column(name.to_owned()) };
+    let wrong = |found: String| Error::content(file, place(), found, "the header of an array of NumPy");
+    let header = header(bytes, file).map_err(|e| wrong(format!("a damaged header ({e})")))?;
+    let literal = Literal::parse(&header.text).ok_or_else(|| wrong(quoted(header.text.trim_ascii())))?;
+    Ok(Shape::of(&literal).map(|shape| shape.array(name, Bytes { skip: header.length, ..bytes })))
+}
+
+/// The header as text, and its length with all before it.
+struct Header {
+    text: Vec<u8>,
+    length: u64,
+}
+
+fn header(bytes: Bytes, file: &Path) -> io::Result<Header> {
+    let mut input = bytes.open(file, 0)?;
+    let mut start = [0; 8];
+    input.read_exact(&mut start)?;
+    let (length, before) = match start {
+        [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _] => {
+            let mut length = [0; 2];
+            input.read_exact(&mut length)?;
+            (usize::from(u16::from_le_bytes(length)), 10)
+        }
+        [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _] => {
+            let mut length = [0; 4];
+            input.read_exact(&mut length)?;
+            (u32::from_le_bytes(length) as usize, 12)
+        }
+        _ => return Err(io::Error::other("an unknown version")),
+    };
+    if length > LONGEST_HEADER {
+        return Err(io::Error::other(format!("{length} bytes")));
+    }
+    let mut text = vec![0; length];
+    input.read_exact(&mut text)?;
+    Ok(Header { text, length: (before + length) as u64 })
+}
+
+/// What a header says.
+struct Shape {
+    rows: u64,
+    /// Columns of a matrix.
+    columns: u64,
+    by_columns: bool,
+    /// Names, places and types of the numbers of one element, and its size.
+    numbers: Vec<(String, u64, Scalar)>,
+    size: u64,
+}
+
+impl Shape {
+    fn of(header: &Literal) -> Option<Self> {
+        let shape = header.get("shape")?.list()?;
+        let (rows, columns) = match shape.iter().map(Literal::number).collect::<Option<Vec<_>>>()?.as_slice() {
+            [rows] => (*rows, 1),
+            [rows, columns] => (*rows, *columns),
+            _ => return None,
+        };
+        let by_columns = header.get("fortran_order")?.truth()?;
+        let mut numbers = Vec::new();
+        let mut size = 0_u64;
+        match header.get("descr")? {
+            Literal::Text(kind) => {
+                let (width, scalar) = scalar(kind)?;
+                numbers.extend(scalar.map(|scalar| (String::new(), 0, scalar)));
+                size = width;
+            }
+            record => {
+                for field in record.list()? {
+                    let [Literal::Text(name), Literal::Text(kind)] = field.list()? else { return None };
+                    let (width, scalar) = scalar(kind)?;
+                    numbers.extend(scalar.map(|scalar| (name.clone(), size, scalar)));
+                    size = size.checked_add(width)?;
+                }
+            }
+        }
+        (columns <= LONGEST_HEADER as u64).then_some(Self { rows, columns, by_columns, numbers, size })
+    }
+
+    fn array(self, name: &str, bytes: Bytes) -> Array {
+        let (row, column) = if self.by_columns {
+            (self.size, self.size.saturating_mul(self.rows))
+        } else {
+            (self.size.saturating_mul(self.columns), self.size)
+        };
+        let numbers = &self.numbers;
+        let place = |j: u64| {
+            numbers.iter().map(move |(name, start, scalar)| ArrayColumn {
+                name: name.clone(),
+                start: column.saturating_mul(j).saturating_add(*start),
+                scalar: *scalar,
+            })
+        };
+        let columns = (0..self.columns).flat_map(place).collect();
+        Array { name: name.to_owned(), bytes, rows: self.rows, stride: row, columns }
+    }
+}
+
+/// Size of a type such as `<f8`, and how to read it where it is a number.
+fn scalar(kind: &str) -> Option<(u64, Option<Scalar>)> {
+    let (order, letter, size) = (kind.get(..1)?, kind.get(1..2)?, kind.get(2..)?);
+    let kind = match letter {
+        "f" => ScalarKind::Float,
+        "i" => ScalarKind::Signed,
+        "u" => ScalarKind::Unsigned,
+        // Four bytes a character.
+        "U" => return Some((size.parse::<u32>().map(u64::from).ok()? * 4, None)),
+        _ => return Some((size.parse::<u32>().map(u64::from).ok()?, None)),
+    };
+    let size: u8 = size.parse().ok()?;
+    Some((size.into(), Scalar::new(kind, size.into(), order == ">")))
+}

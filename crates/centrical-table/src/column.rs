@@ -1,0 +1,59 @@
+//! The columns to read of a table.
+
+use std::fmt;
+
+/// Numbers above this have no place in a record: their squares, summed, would leave `f64`.
+pub(crate) const LARGEST: f64 = 1e100;
+
+/// How a column is found in a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ColumnName {
+    /// By its name in the header.
+    Name(String),
+    /// By its number from 1, for files without a header.
+    Number(usize),
+    /// It is not in the file: the number of the row, from 0.
+    Row,
+}
+
+/// A column to read.
+#[derive(Debug, Clone)]
+pub struct Field {
+    /// How it is found.
+    pub name: ColumnName,
+    /// What its values are, for messages: "a number in m/s^2".
+    pub expected: String,
+    /// What is asked of its values beside being numbers.
+    pub rule: Rule,
+}
+
+/// What is asked of the values of a column beside being numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rule {
+    /// Nothing.
+    Any,
+    /// They never decrease; repeated values are allowed. With `stamps`, a stamp such as `2026-10-05T10:00:00.25`
+    /// stands for its seconds since 1970.
+    Ascending {
+        /// Whether stamps are allowed beside numbers.
+        stamps: bool,
+    },
+    /// A value may be missing, and is NaN then.
+    OrMissing,
+}
+
+impl Rule {
+    pub(crate) fn ascends(self) -> bool {
+        matches!(self, Self::Ascending { .. })
+    }
+}
+
+impl fmt::Display for ColumnName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name(name) => f.write_str(name),
+            Self::Number(number) => write!(f, "column {number}"),
+            Self::Row => f.write_str("row"),
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Tables out, as CSV or Parquet.
+
+mod csv;
+mod file;
+mod lines;
+mod output;
+mod parquet;
+mod row_groups;
+mod text_lines;
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use self::csv::CsvTable;
+pub use self::file::{create_folder, write_stream, write_whole};
+use self::lines::TextTable;
+use self::output::SteadyFile;
+use self::parquet::{Layout, ParquetTable};
+use self::row_groups::RowGroups;
+pub use self::text_lines::Decimals;
+use crate::error::Error;
+
+/// How a table is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TableFormat {
+    /// Text.
+    #[default]
+    Csv,
+    /// Parquet.
+    Parquet,
+}
+
+impl TableFormat {
+    /// The format that the name of a file asks for: Parquet where it ends in `.parquet`, otherwise text.
+    pub fn of(file: &Path) -> Self {
+        let is_parquet = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"));
+        if is_parquet { Self::Parquet } else { Self::Csv }
+    }
+
+    /// How names of such files end.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Parquet => "parquet",
+        }
+    }
+}
+
+/// Writes a long table beside the file, piece by piece, and renames at the end: whoever looks sees the whole table or none.
+/// It is on the disk then. Numbers read back as they were unless they are rounded; NaN is written as such.
+pub struct TableWriter<const N: usize> {
+    file: PathBuf,
+    beside: OsString,
+    /// The table in the making; none once it is finished.
+    table: Option<Table<N>>,
+}
+
+enum Table<const N: usize> {
+    Text(TextTable<N>),
+    Parquet(RowGroups),
+}
+
+impl<const N: usize> TableWriter<N> {
+    /// Begins a table of columns with these names, in the format of the file's name. Text has numbers of the given decimals.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the folder does not take the file.
+    pub fn create(file: &Path, names: &[&str; N], decimals: [Decimals; N]) -> Result<Self, Error> {
+        let mut beside = file.as_os_str().to_owned();
+        beside.push(".tmp");
+        let failed = |error| Error::writing(file, error);
+        let output = File::create(&beside).and_then(SteadyFile::new).map_err(failed)?;
+        let table = match TableFormat::of(file) {
+            TableFormat::Csv => TextTable::new(output, names, decimals).map(Table::Text),
+            TableFormat::Parquet => RowGroups::new(output, names).map(Table::Parquet),
+        };
+        Ok(Self { file: file.to_owned(), beside, table: Some(table.map_err(failed)?) })
+    }
+
+    /// Adds rows, given as pieces of all columns, on all threads.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if they cannot be written.
+    pub fn write(&mut self, pieces: &[[&[f64]; N]]) -> Result<(), Error> {
+        let written = match &mut self.table {
+            Some(Table::Text(table)) => table.write(pieces),
+            Some(Table::Parquet(table)) => table.write(pieces),
+            None => Ok(()),
+        };
+        written.map_err(|error| Error::writing(&self.file, error))
+    }
+
+    /// Ends the table; only now the file is there.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if it cannot be written.
+    pub fn finish(mut self) -> Result<(), Error> {
+        let finished = match self.table.take() {
+            Some(Table::Text(table)) => table.finish(),
+            Some(Table::Parquet(table)) => table.finish(),
+            None => Ok(()),
+        };
+        finished.and_then(|()| fs::rename(&self.beside, &self.file)).map_err(|error| {
+            // Best effort: the first error is the one to tell.
+            let _ = fs::remove_file(&self.beside);
+            Error::writing(&self.file, error)
+        })
+    }
+}
+
+impl<const N: usize> Drop for TableWriter<N> {
+    /// Leaves nothing of a table that was not finished.
+    fn drop(&mut self) {
+        if self.table.take().is_some() {
+            let _ = fs::remove_file(&self.beside);
+        }
+    }
+}
+
+/// Writes a table that can be made again, as by [`write_stream`]: stretches of its columns in order. A number keeps nine decimals
+/// as text, and is packed in Parquet.
+///
+/// # Errors
+/// [`Error::Io`] if the folder does not take the file.
+pub fn write_table<const N: usize>(
+    file: &Path,
+    format: TableFormat,
+    names: &[&str; N],
+    mut stretches: impl Iterator<Item = [Vec<f64>; N]>,
+) -> Result<(), Error> {
+    write_stream(file, |output| match format {
+        TableFormat::Csv => {
+            let mut table = CsvTable::new(output, names)?;
+            stretches.try_for_each(|rows| table.write(&rows))
+        }
+        TableFormat::Parquet => {
+            let mut table = ParquetTable::new(output, Layout::PACKED, names)?;
+            stretches.try_for_each(|rows| table.write(&rows))?;
+            table.finish().map(|_| ())
+        }
+    })
+}
+
+/// A short table as a Parquet file.
+///
+/// # Errors
+/// If the table cannot be packed.
+pub fn parquet_bytes(names: &[&str], columns: &[Vec<f64>]) -> io::Result<Vec<u8>> {
+    let mut table = ParquetTable::new(Vec::new(), Layout::PACKED, names)?;
+    table.write(columns)?;
+    table.finish()
+}

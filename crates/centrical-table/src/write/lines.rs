@@ -1,0 +1,68 @@
+//! Tables as CSV, written behind.
+
+use std::io::{self, Write};
+
+use rayon::prelude::*;
+
+use super::csv::header;
+use super::output::{Output, Sink, SteadyFile};
+use super::text_lines::{Decimals, ROWS, write_lines};
+
+/// Pieces of lines that may wait to be written.
+const AHEAD: usize = 32;
+
+/// A CSV file in the making.
+pub(super) struct TextTable<const N: usize> {
+    output: Output<Lines>,
+    /// Of each column.
+    decimals: [Decimals; N],
+}
+
+/// Lines on their way to the file: the text from `start` on.
+#[derive(Debug, Default)]
+struct Lines {
+    text: Vec<u8>,
+    start: usize,
+}
+
+/// Where they go.
+struct TextFile(SteadyFile);
+
+impl Sink<Lines> for TextFile {
+    fn write(&mut self, lines: &mut Lines) -> io::Result<()> {
+        self.0.write_all(&lines.text[lines.start..])
+    }
+
+    fn finish(self) -> io::Result<()> {
+        self.0.finish()
+    }
+}
+
+impl<const N: usize> TextTable<N> {
+    /// Begins the file.
+    pub fn new(mut file: SteadyFile, names: &[&str; N], decimals: [Decimals; N]) -> io::Result<Self> {
+        file.write_all(header(names).as_bytes())?;
+        Ok(Self { output: Output::new(TextFile(file), AHEAD), decimals })
+    }
+
+    /// Adds rows, piece after piece, on all threads; in order, whatever their number.
+    pub fn write(&mut self, pieces: &[[&[f64]; N]]) -> io::Result<()> {
+        let rows = pieces.iter().flat_map(|columns| {
+            let count = columns[0].len();
+            (0..count).step_by(ROWS).map(move |from| columns.map(|column| &column[from..count.min(from + ROWS)]))
+        });
+        let (decimals, output) = (self.decimals, &self.output);
+        let rooms: Vec<(Lines, [&[f64]; N])> = rows.map(|rows| (output.room(), rows)).collect();
+        let written = rooms.into_par_iter().map(|(mut lines, rows)| {
+            lines.start = write_lines(&mut lines.text, decimals, rows);
+            lines
+        });
+        let written: Vec<Lines> = written.collect();
+        written.into_iter().try_for_each(|lines| self.output.send(lines))
+    }
+
+    /// Writes the rest and sees it to the disk.
+    pub fn finish(self) -> io::Result<()> {
+        self.output.finish()
+    }
+}

@@ -1,0 +1,82 @@
+//! What is wrong with a record.
+
+use std::fs;
+
+use crate::record::{named, read_record};
+
+/// The message for a record with this content.
+fn message(content: impl AsRef<[u8]>) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("m01.csv");
+    fs::write(&file, content).unwrap();
+    let error = read_record(&file, &named()).expect_err("the record is wrong");
+    error.to_string().replace(&format!("{}/", folder.path().display()), "")
+}
+
+/// Rows of `(content, message)`: all are compared.
+fn compare(cases: &[(&str, &str)]) {
+    for (content, expected) in cases {
+        assert_eq!(message(content), format!("m01.csv{expected}"));
+    }
+}
+
+#[test]
+fn what_is_no_number() {
+    compare(&[
+        ("t,f1,f2,f3\n0,1,2,3\n0.1,1,NaN(ind),3\n", r#", line 3, f2: found "NaN(ind)", expected a number in m/s^2"#),
+        ("t,f1,f2,f3\n0,1,2,nan\n", r#", line 2, f3: found "nan", expected a number in m/s^2"#),
+        ("t,f1,f2,f3\n0,1,2,-inf\n", r#", line 2, f3: found "-inf", expected a number in m/s^2"#),
+        ("t,f1,f2,f3\n0,1,2,1e999\n", r#", line 2, f3: found "1e999", expected a number in m/s^2"#),
+        ("t,f1,f2,f3\n0,1,,3\n", r#", line 2, f2: found "", expected a number in m/s^2"#),
+        ("# x\n\nt,f1,f2,f3\r\nzero,1,2,3\r\n", r#", line 4, t: found "zero", expected a number in s"#),
+        ("t,f1,f2,f3\n0,1,0x10,3\n", r#", line 2, f2: found "0x10", expected a number in m/s^2"#),
+        ("t,f1,f2,f3\n0,1,\"2\n", r#", line 2: found "\"2", expected a closing quote"#),
+    ]);
+}
+
+#[test]
+fn columns() {
+    compare(&[
+        ("t,f1,f3\n0,1,2\n", r#", line 1, f2: found columns "t, f1, f3", expected a column of this name"#),
+        ("t,f1,f2,f2,f3\n0,1,2,3,4\n", r#", line 1, f2: found two such columns in "t, f1, f2, f2, f3", expected one"#),
+        (
+            "0,1,2,3\n1,1,2,3\n",
+            r#", line 1: found "0,1,2,3", expected the names of the columns (for a file without them give [columns] by number)"#,
+        ),
+        ("t,f1,f2,f3\n0,1,2\n", r#", line 2: found 3 fields in "0,1,2", expected 4 as in the first line"#),
+        ("t,f1,f2,f3\n0,1,2,3,4\n", r#", line 2: found 5 fields in "0,1,2,3,4", expected 4 as in the first line"#),
+        (
+            "t,f1,f2,f3\n0,00,1,00,2,00,3,00\n",
+            r#", line 2: found 8 fields in "0,00,1,00,2,00,3,00", expected 4 as in the first line"#,
+        ),
+    ]);
+}
+
+#[test]
+fn time() {
+    compare(&[(
+        "t,f1,f2,f3\n0.5,1,2,3\n0.5,1,2,3\n0.25,1,2,3\n",
+        ", line 4, t: found 0.25 after 0.5, expected a time that does not run backwards",
+    )]);
+}
+
+#[test]
+fn what_is_no_table() {
+    compare(&[
+        ("", ": found an empty file, expected a record"),
+        ("\n\n", ": found a table without rows, expected a record"),
+        ("t,f1,f2,f3\n", ": found a table without rows, expected a record"),
+        (
+            "PAR1",
+            ": found damaged Parquet (EOF: Parquet file too small. Size is 4 but need 8), expected a whole Parquet file",
+        ),
+    ]);
+    assert_eq!(
+        message(b"t,f1,f2,f3,\xb0C\n0,1,2,3,20\n"),
+        "m01.csv, line 1: found byte 0xb0 after \"t,f1,f2,f3,\", expected text in UTF-8"
+    );
+    assert_eq!(
+        message(vec![b'x'; 3 << 20]),
+        "m01.csv, line 1: found a line longer than 1048576 bytes, expected a table of numbers as text"
+    );
+}

@@ -1,0 +1,229 @@
+//! Every format against the text that the same program wrote, bit by bit.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use centrical_table::ColumnName;
+
+use crate::record::{Record, named, numbered, read_record};
+
+/// A file as it is kept or, with `CENTRICAL_GENERATED`, as those programs wrote it just now into that folder.
+fn data(name: &str) -> PathBuf {
+    let kept = || Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    std::env::var_os("CENTRICAL_GENERATED").map_or_else(kept, PathBuf::from).join(name)
+}
+
+/// The reference, by the standard library's own parser.
+fn reference() -> Record {
+    let text = fs::read_to_string(data("record.csv")).unwrap();
+    let mut record = Record::default();
+    for line in text.lines().skip(1) {
+        let row: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
+        record.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+    }
+    assert_eq!(record[0].len(), 300);
+    record
+}
+
+/// The record of a file with readings in counts of 8192 to the m/s^2.
+fn read_counts(name: &str) -> Record {
+    let mut record = read_record(&data(name), &named()).unwrap();
+    record[1..].iter_mut().flatten().for_each(|count| *count /= 8192.0);
+    record
+}
+
+#[test]
+fn text_is_read_to_the_last_bit() {
+    assert_eq!(read_record(&data("record.csv"), &named()).unwrap(), reference());
+}
+
+#[test]
+fn text_of_every_kind() {
+    for name in ["record.csv.gz", "record.csv.zst", "comma.csv", "savetxt.txt", "extra.csv"] {
+        assert_eq!(read_record(&data(name), &named()).unwrap(), reference(), "{name}");
+    }
+}
+
+#[test]
+fn frames_of_pandas_and_polars() {
+    let names = [
+        "pandas.csv",
+        "pandas.parquet",
+        "pandas.feather",
+        "polars.csv",
+        "polars.parquet",
+        "polars.arrow",
+        "polars.arrows",
+    ];
+    for name in names {
+        assert_eq!(read_record(&data(name), &named()).unwrap(), reference(), "{name}");
+    }
+}
+
+#[test]
+fn arrow_files_and_streams() {
+    for name in ["uncompressed.feather", "lz4.feather", "zstd.feather", "wide.arrows", "plain.arrows"] {
+        assert_eq!(read_record(&data(name), &named()).unwrap(), reference(), "{name}");
+    }
+    assert_eq!(read_record(&data("plain.arrows"), &numbered()).unwrap(), reference());
+    assert_eq!(read_counts("counts.feather"), reference());
+}
+
+#[test]
+fn arrow_that_is_no_record() {
+    let cases = [
+        ("null.feather", ", f2: found 1 values missing, expected a value in every row"),
+        ("text.arrows", ", f2: found a column without numbers, expected a number in m/s^2"),
+    ];
+    for (name, expected) in cases {
+        let file = data(name);
+        let error = read_record(&file, &named()).unwrap_err();
+        assert_eq!(error.to_string(), format!("{}{expected}", file.display()));
+    }
+}
+
+#[test]
+fn text_without_a_header() {
+    for name in ["headerless.txt", "headerless.tsv"] {
+        assert_eq!(read_record(&data(name), &numbered()).unwrap(), reference(), "{name}");
+    }
+}
+
+#[test]
+fn arrays_with_names() {
+    for name in ["record.npy", "plain.npz", "packed.npz", "plain.mat", "packed.mat"] {
+        assert_eq!(read_record(&data(name), &named()).unwrap(), reference(), "{name}");
+    }
+}
+
+#[test]
+fn matrices() {
+    for name in ["rows.npy", "columns.npy", "big_endian.npy", "matrix.npz", "matrix.mat"] {
+        assert_eq!(read_record(&data(name), &numbered()).unwrap(), reference(), "{name}");
+    }
+}
+
+#[test]
+fn arrays_of_integer_counts() {
+    for name in ["counts.npz", "counts.mat"] {
+        assert_eq!(read_counts(name), reference(), "{name}");
+    }
+}
+
+#[test]
+#[cfg(feature = "hdf5")]
+fn hdf5() {
+    for name in ["named.h5", "v110.h5", "matlab73.mat"] {
+        assert_eq!(read_record(&data(name), &named()).unwrap(), reference(), "{name}");
+    }
+    for name in ["matrix.h5", "v110_rows.h5", "v110_early.h5", "unlimited.h5"] {
+        assert_eq!(read_record(&data(name), &numbered()).unwrap(), reference(), "{name}");
+    }
+    assert_eq!(read_counts("counts.h5"), reference());
+}
+
+/// Of what h5py writes the library has no reader for one index of chunks, nor for the form of HDF5 2.0.
+#[test]
+#[cfg(feature = "hdf5")]
+fn hdf5_that_cannot_be_read() {
+    let cases = [
+        (
+            "unlimited_v110.h5",
+            "chunks indexed by a B-tree of version 2, expected another index: at most one unlimited dimension, or a file for \
+             earlier versions (in h5py libver=\"earliest\")",
+        ),
+        (
+            "unlimited_v200.h5",
+            "a data layout of version 5, expected 4 or before: a file for HDF5 1.14 or earlier versions (in h5py \
+             libver=\"earliest\")",
+        ),
+    ];
+    for (name, expected) in cases {
+        let file = data(name);
+        let error = read_record(&file, &numbered()).unwrap_err();
+        assert_eq!(error.to_string(), format!("{}, column 1: found {expected}", file.display()));
+    }
+}
+
+#[test]
+#[cfg(not(feature = "hdf5"))]
+fn hdf5_is_a_feature() {
+    let file = data("named.h5");
+    let error = read_record(&file, &named()).unwrap_err();
+    let expected = "found HDF5, expected another format (this program was built without the feature hdf5)";
+    assert_eq!(error.to_string(), format!("{}: {expected}", file.display()));
+}
+
+#[test]
+fn arrays_that_are_no_record() {
+    let cases = [
+        (
+            "rows.npy",
+            "t: found columns \"(300 x 4)\", expected a column of this name (for a matrix give [columns] by number)",
+        ),
+        (
+            "matrix.mat",
+            "t: found columns \"data (300 x 4)\", expected a column of this name (for a matrix give [columns] by number)",
+        ),
+    ];
+    for (name, expected) in cases {
+        let file = data(name);
+        let error = read_record(&file, &named()).unwrap_err();
+        assert_eq!(error.to_string(), format!("{}, {expected}", file.display()));
+    }
+    let file = data("plain.npz");
+    let error = read_record(&file, &numbered()).unwrap_err();
+    let expected =
+        "column 1: found columns \"t, f1, f2, f3, other (no numbers)\", expected one array, or [columns] by name";
+    assert_eq!(error.to_string(), format!("{}, {expected}", file.display()));
+}
+
+#[test]
+fn time_as_stamps() {
+    // 2026-10-05T10:00:00Z, by `date -d 2026-10-05T10:00:00Z +%s`; stamps carry microseconds.
+    const START: f64 = 1_791_194_400.0;
+    for name in ["stamps.csv", "stamps.parquet", "stamps.feather"] {
+        let record = read_record(&data(name), &named()).unwrap();
+        assert_eq!(record[1..], reference()[1..], "{name}");
+        for (t, reference) in record[0].iter().zip(&reference()[0]) {
+            assert!((t - START - reference).abs() < 1.5e-6, "{name}: {t} for {reference}");
+        }
+    }
+}
+
+#[test]
+fn parquet_of_every_compression_and_encoding() {
+    for name in ["snappy", "zstd", "gzip", "lz4", "required", "split", "wide"] {
+        let record = read_record(&data(&format!("{name}.parquet")), &named()).unwrap();
+        assert_eq!(record, reference(), "{name}");
+    }
+}
+
+#[test]
+fn parquet_of_integer_counts() {
+    for name in ["counts_int32", "counts_int64"] {
+        let record = read_counts(&format!("{name}.parquet"));
+        assert_eq!(record, reference(), "{name}");
+    }
+}
+
+#[test]
+fn parquet_that_is_no_record() {
+    let cases = [
+        ("null", ", row 8, f2: found no value, expected a number in m/s^2"),
+        ("text", ", f2: found String, expected a number in m/s^2"),
+        ("nan", ", row 251, f3: found NaN, expected a number in m/s^2"),
+        ("backwards", ", row 151, t: found -9 after 0.9140625, expected a time that does not run backwards"),
+    ];
+    for (name, expected) in cases {
+        let file = data(&format!("{name}.parquet"));
+        let error = read_record(&file, &named()).unwrap_err();
+        assert_eq!(error.to_string(), format!("{}{expected}", file.display()));
+    }
+    let mut columns = named();
+    columns[2] = ColumnName::Name("g2".to_owned());
+    let file = data("snappy.parquet");
+    let error = read_record(&file, &columns).unwrap_err();
+    let expected = "g2: found columns \"t, f1, f2, f3\", expected one column of this name";
+    assert_eq!(error.to_string(), format!("{}, {expected}", file.display()));
+}

@@ -1,0 +1,87 @@
+//! Linear least squares `min |A x - b|` by Householder QR.
+//!
+//! The unknowns are counted in sizes of theirs, `x = S y` with a diagonal `S`, which takes their units out of the
+//! condition number. With `A S = Q R` the solution is `S R^-1 Q^T b`, its covariance for errors of `b` of unit variance
+//! `S R^-1 R^-T S`.
+
+use nalgebra::{DMatrix, DVector, Dyn, QR};
+
+/// Equations of full rank, at least as many as unknowns, factored.
+#[derive(Debug, Clone)]
+pub struct LeastSquares {
+    qr: QR<f64, Dyn, Dyn>,
+    r: DMatrix<f64>,
+    rows: usize,
+    sizes: DVector<f64>,
+}
+
+/// A solution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// `x`.
+    pub x: DVector<f64>,
+    /// Length of `x` in standard uncertainties, all unknowns together.
+    pub whitened_length: f64,
+}
+
+impl LeastSquares {
+    /// Factors `A S`, the equations in units of the `sizes` of the unknowns.
+    pub fn new(scaled: DMatrix<f64>, sizes: DVector<f64>) -> Self {
+        let rows = scaled.nrows();
+        let qr = scaled.qr();
+        Self { r: qr.r(), qr, rows, sizes }
+    }
+
+    /// The solution for `b`; rows that it lacks at its end are zeros.
+    pub fn solve(&self, b: DVector<f64>) -> Solution {
+        let mut rotated = b.resize_vertically(self.rows, 0.0);
+        self.qr.q_tr_mul(&mut rotated);
+        let mut x = rotated.rows(0, self.sizes.len()).into_owned();
+        let whitened_length = x.norm();
+        let solved = self.r.solve_upper_triangular_mut(&mut x);
+        debug_assert!(solved, "the equations are of full rank");
+        x.component_mul_assign(&self.sizes);
+        Solution { x, whitened_length }
+    }
+
+    /// `Q^T B`: the first rows, one per unknown, are what the unknowns follow; the others are what none of them can. Rows
+    /// that `B` lacks at its end are zeros.
+    pub fn rotated(&self, b: DMatrix<f64>) -> DMatrix<f64> {
+        let mut rotated = b.resize_vertically(self.rows, 0.0);
+        self.qr.q_tr_mul(&mut rotated);
+        rotated
+    }
+
+    /// The solutions, column by column, for the first rows of a matrix [`LeastSquares::rotated`].
+    pub fn unknowns(&self, rotated: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut unknowns = rotated.rows(0, self.sizes.len()).into_owned();
+        let solved = self.r.solve_upper_triangular_mut(&mut unknowns);
+        debug_assert!(solved, "the equations are of full rank");
+        self.in_units(unknowns)
+    }
+
+    /// `R`, in units of the sizes.
+    pub fn triangle(&self) -> &DMatrix<f64> {
+        &self.r
+    }
+
+    /// `R^-1`, in units of the sizes.
+    pub fn inverse(&self) -> DMatrix<f64> {
+        let mut inverse = DMatrix::identity(self.sizes.len(), self.sizes.len());
+        let solved = self.r.solve_upper_triangular_mut(&mut inverse);
+        debug_assert!(solved, "the equations are of full rank");
+        inverse
+    }
+
+    /// Covariance of the solution for errors of `b` of unit variance.
+    pub fn covariance(&self) -> DMatrix<f64> {
+        let inverse = self.in_units(self.inverse());
+        &inverse * inverse.transpose()
+    }
+
+    /// From units of the sizes to those of the unknowns, row by row.
+    fn in_units(&self, mut rows: DMatrix<f64>) -> DMatrix<f64> {
+        rows.row_iter_mut().zip(self.sizes.iter()).for_each(|(mut row, size)| row *= *size);
+        rows
+    }
+}

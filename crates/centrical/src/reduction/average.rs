@@ -1,0 +1,156 @@
+//! Second pass: the mean of each plateau from the samples of its window, a part at a time.
+
+mod cells;
+mod plateau_fit;
+mod samples;
+mod saturation;
+mod strips;
+mod stuck;
+
+use nalgebra::Vector3;
+
+use super::error::ReductionError;
+use super::locate::{ClockOffset, Located, Window};
+use super::plateau::LeftOut;
+use super::record::RecordSlice;
+use super::survey::Blocks;
+use super::triangle::Triangle;
+pub(super) use cells::{CELLS, Cells, Weights};
+pub use plateau_fit::PlateauFit;
+use samples::Samples;
+use saturation::{may_be_piled_up, piled_up};
+use strips::{Fitted, Strips};
+
+/// The average of a plateau whose samples are added part by part, in the order of time. Little of a judged part is kept.
+#[derive(Debug, Clone)]
+pub struct Averaging<'a> {
+    index: usize,
+    window: &'a Window,
+    blocks: &'a Blocks,
+    fitted: Fitted,
+    /// Triangle and coefficients of all samples so far.
+    fit: Option<(Triangle, Vec<Vector3<f64>>)>,
+    /// Rejected samples.
+    left_out: LeftOut,
+    /// Stamp of the last one [s].
+    last: Option<f64>,
+}
+
+/// A mounting with its plateaus located and averaged, before the noise of the session is known.
+#[derive(Debug, Clone)]
+pub struct ReducedMounting {
+    pub(super) plateaus: Vec<PlateauFit>,
+    /// Speed on each plateau by the telemetry [rad/s].
+    pub(super) speeds: Vec<Option<f64>>,
+    settling_time: Option<f64>,
+    clock_offset: Option<ClockOffset>,
+}
+
+/// Averages a plateau from the samples of its window, without the `repeated` ones that had the stamp of the one before; samples
+/// outside the window are ignored.
+///
+/// # Errors
+/// [`ReductionError`] if the samples are not steady, or do not separate the mean from the once-per-revolution term.
+pub fn average(
+    located: &Located,
+    plateau: usize,
+    samples: RecordSlice,
+    repeated: usize,
+) -> Result<PlateauFit, ReductionError> {
+    let mut averaging = Averaging::new(located, plateau);
+    for (k, part) in located.parts(plateau).into_iter().enumerate() {
+        averaging.add(part, samples, if k == 0 { repeated } else { 0 })?;
+    }
+    averaging.finish()
+}
+
+impl<'a> Averaging<'a> {
+    /// Begins with no samples.
+    pub fn new(located: &'a Located, index: usize) -> Self {
+        let (window, blocks) = (&located.windows[index], &located.blocks);
+        let (fitted, left_out) = (Fitted::default(), LeftOut::default());
+        Self { index, window, blocks, fitted, fit: None, left_out, last: None }
+    }
+
+    /// Adds the samples of the next part, from and to [s], without the `repeated` ones that had the stamp of the one before.
+    /// They are judged by the fit of all samples so far.
+    ///
+    /// # Errors
+    /// [`ReductionError`] if the samples are not steady, or do not separate the mean from the once-per-revolution term.
+    pub fn add(&mut self, part: [f64; 2], record: RecordSlice, repeated: usize) -> Result<(), ReductionError> {
+        let index = self.index;
+        let record = record.between(part);
+        if record.t.is_empty() {
+            return Ok(());
+        }
+        let samples = Samples::cut_out(record, repeated, self.window, self.blocks);
+        let mut strips = Strips::of(&samples, std::mem::take(&mut self.fitted));
+        let so_far = self.fit.take().map(|(_, coefficients)| coefficients);
+        strips.judge(&so_far.unwrap_or_else(|| samples.fit_of_medians()), false);
+        let mut once_out = false;
+        self.fit = loop {
+            let good = strips.good();
+            if 2 * good <= samples.len() {
+                return Err(samples.unsteady(index, good));
+            }
+            let (triangle, coefficients) = strips.solve().ok_or_else(|| self.aliased())?;
+            if !strips.judge(&coefficients, once_out) {
+                break Some((triangle, coefficients));
+            }
+            // From the second fit on, a rejected sample stays out: the set shrinks, and the loop ends.
+            once_out = true;
+        };
+        check_range(&samples, &strips, index)?;
+        self.left_out += samples.left_out(self.last, samples.len() - strips.good(), strips.stuck_and_unreadable());
+        self.last = samples.t.last().copied();
+        self.fitted = strips.into_fitted();
+        Ok(())
+    }
+
+    /// Ends the plateau.
+    ///
+    /// # Errors
+    /// [`ReductionError::Unsteady`] without samples.
+    pub fn finish(self) -> Result<PlateauFit, ReductionError> {
+        let (index, window) = (self.index, self.window.span);
+        let none = ReductionError::Unsteady { index, window, samples: 0, good: 0 };
+        let (triangle, coefficients) = self.fit.as_ref().ok_or(none)?;
+        Ok(PlateauFit::new(self.window, self.blocks, &self.fitted, self.left_out, coefficients, triangle))
+    }
+
+    fn aliased(&self) -> ReductionError {
+        let (omega, interval) = (self.window.shape.omega, self.blocks.interval);
+        ReductionError::RevolutionAliased { index: self.index, omega, interval }
+    }
+}
+
+impl ReducedMounting {
+    /// The mounting of located plateaus, averaged, in the order of the schedule.
+    pub fn new(located: Located, plateaus: Vec<PlateauFit>) -> Self {
+        let Located { speeds, settling_time, clock_offset, .. } = located;
+        Self { plateaus, speeds, settling_time, clock_offset }
+    }
+
+    /// Time constant of the settling after a ramp [s]; `None` if the record shows no settling.
+    pub fn settling_time(&self) -> Option<f64> {
+        self.settling_time
+    }
+
+    /// The centrifuge's clock against the unit's; `None` without telemetry, or if no ramp is in both.
+    pub fn clock_offset(&self) -> Option<ClockOffset> {
+        self.clock_offset
+    }
+}
+
+/// Refuses good readings that pile up at the end of their range: the part cut off is missing in the mean.
+fn check_range(samples: &Samples, strips: &Strips, index: usize) -> Result<(), ReductionError> {
+    let told = |axis: &usize| samples.white[*axis] > samples.digit[*axis];
+    let looked_at = (0..3).filter(told).filter(|axis| may_be_piled_up(strips.most_at_an_end(*axis)));
+    for axis in looked_at {
+        if let Some((value, piled_up)) = piled_up(strips.good_readings(axis)) {
+            let (window, samples) = (samples.window.span, samples.len());
+            return Err(ReductionError::Saturated { index, window, axis, value, samples, piled_up });
+        }
+    }
+    Ok(())
+}

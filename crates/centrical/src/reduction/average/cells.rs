@@ -1,0 +1,93 @@
+//! A window's residuals and design summed over equal cells of time: all that the slow part of the noise needs.
+
+use nalgebra::Vector3;
+
+use crate::reduction::triangle::Triangle;
+use crate::simd::lanes::product as dot;
+
+/// Cells in a window.
+pub(in crate::reduction) const CELLS: usize = 128;
+
+/// Sums over the good samples of each cell.
+#[derive(Debug, Clone)]
+pub(in crate::reduction) struct Cells {
+    /// Width of a cell [s].
+    pub width: f64,
+    /// Sampling interval [s].
+    pub interval: f64,
+    counts: Vec<f64>,
+    /// Sums of the residuals [m/s^2].
+    residuals: Vec<Vector3<f64>>,
+    /// Sums of each orthonormal column of the design; the last is the mean's: `mean = sum_i q_i y_i / mean_scale`.
+    q: Vec<Vec<f64>>,
+    mean_scale: f64,
+}
+
+/// A linear functional of a window's samples: its weights summed by cell, and the sum of their squares by sample.
+#[derive(Debug, Clone)]
+pub(in crate::reduction) struct Weights {
+    pub by_cell: Vec<f64>,
+    pub squares: f64,
+}
+
+impl Cells {
+    /// Cells without samples yet, of a fit with that triangle.
+    pub fn empty(triangle: &Triangle, terms: usize, width: f64, interval: f64) -> Self {
+        Self {
+            width,
+            interval,
+            counts: vec![0.0; CELLS],
+            residuals: vec![Vector3::zeros(); CELLS],
+            q: vec![vec![0.0; CELLS]; terms],
+            mean_scale: triangle.r[terms - 1][terms - 1],
+        }
+    }
+
+    /// Fills a cell: the number of good samples, and the sums of their residuals and orthonormal columns.
+    pub fn fill(&mut self, cell: usize, count: usize, residuals: Vector3<f64>, q: &[f64]) {
+        self.counts[cell] = count as f64;
+        self.residuals[cell] = residuals;
+        for (sums, q) in self.q.iter_mut().zip(q) {
+            sums[cell] = *q;
+        }
+    }
+
+    /// The weights of the samples in the mean.
+    pub fn mean_weights(&self) -> Weights {
+        let q = &self.q[self.q.len() - 1];
+        let squares = 1.0 / (self.mean_scale * self.mean_scale);
+        Weights { by_cell: q.iter().map(|q| q / self.mean_scale).collect(), squares }
+    }
+
+    /// The part of a slow function of time, one value a cell, that the fit does not absorb: as weights, and its product
+    /// with the readings.
+    pub fn contrast(&self, function: &[f64]) -> (Weights, Vector3<f64>) {
+        let fitted: Vec<f64> = self.q.iter().map(|q| dot(q, function)).collect();
+        let mut by_cell: Vec<f64> = function.iter().zip(&self.counts).map(|(v, n)| v * n).collect();
+        let squares = dot(&by_cell, function) - dot(&fitted, &fitted);
+        for (q, fitted) in self.q.iter().zip(&fitted) {
+            by_cell.iter_mut().zip(q).for_each(|(w, q)| *w -= q * fitted);
+        }
+        let product = function.iter().zip(&self.residuals).map(|(v, r)| r * *v).sum();
+        (Weights { by_cell, squares }, product)
+    }
+
+    /// `function` less as much of `other` as makes its contrast orthogonal to that of `other`, both slow functions of time,
+    /// one value a cell.
+    pub fn free_of(&self, function: &[f64], other: &[f64]) -> Vec<f64> {
+        let (weights, _) = self.contrast(other);
+        let share = dot(&weights.by_cell, function) / weights.squares;
+        // A function that the fit absorbs wholly has no contrast.
+        let share = if share.is_finite() { share } else { 0.0 };
+        function.iter().zip(other).map(|(f, o)| f - share * o).collect()
+    }
+
+    /// The slope of the readings [m/s^3], with the weights that give it.
+    pub fn slope(&self) -> (Weights, Vector3<f64>) {
+        let middle = 0.5 * CELLS as f64;
+        let time: Vec<f64> = (0..CELLS).map(|cell| (cell as f64 + 0.5 - middle) * self.width).collect();
+        let (weights, product) = self.contrast(&time);
+        let by_cell = weights.by_cell.iter().map(|w| w / weights.squares).collect();
+        (Weights { by_cell, squares: 1.0 / weights.squares }, product / weights.squares)
+    }
+}

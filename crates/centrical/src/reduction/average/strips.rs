@@ -1,0 +1,365 @@
+//! The samples of a window in strips that fit the fastest memory: which are good, and their information.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
+
+use super::samples::Samples;
+use super::stuck::{longest_run, may_be_longer, stuck_on_any_axis};
+use crate::reduction::triangle::{TERMS, Triangle};
+use crate::simd::lanes::{dot, largest, range, subtract, widest};
+
+/// Most samples of a strip.
+const STRIP: usize = 512;
+
+/// A part of a window's samples, judged by a fit.
+pub(super) struct Strips<'a> {
+    samples: &'a Samples<'a>,
+    /// The stuck samples, if any.
+    stuck: Option<Vec<bool>>,
+    /// With the strips of the parts before, which are fitted together with these.
+    fitted: Fitted,
+    /// The first of this part.
+    first: usize,
+}
+
+/// Strips whose samples are no longer needed.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Fitted {
+    /// Number of fitted terms.
+    terms: usize,
+    /// A value near the readings, subtracted from them to reduce rounding.
+    reference: [f64; 3],
+    each: Vec<Strip>,
+}
+
+/// Neighbours, all of one cell.
+#[derive(Debug, Clone)]
+pub(super) struct Strip {
+    pub cell: usize,
+    range: Range<usize>,
+    /// The bad samples, counted within the strip, in ascending order.
+    bad: Vec<usize>,
+    /// Of the good samples, as are the fields that follow.
+    triangle: Triangle,
+    /// Largest entry of each column of `Q`.
+    reach: [f64; TERMS],
+    /// Largest residual of the strip's own fit, and the sum of the squares [m/s^2].
+    largest: [f64; 3],
+    squares: [f64; 3],
+    /// Lowest and highest reading [m/s^2].
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+/// Sums over the good samples of a strip.
+pub(super) struct Sums {
+    pub count: usize,
+    /// Of the columns of the design.
+    pub columns: [f64; TERMS],
+    /// Of the residuals [m/s^2].
+    pub residuals: Vector3<f64>,
+    /// Of their squares [m^2/s^4].
+    pub squares: Vector3<f64>,
+}
+
+/// A fit that samples are judged by.
+struct Fit {
+    /// Of the readings less the reference [m/s^2].
+    coefficients: [[f64; 3]; TERMS],
+    /// Largest residual of a good sample [m/s^2].
+    limits: [f64; 3],
+    /// Whether bad samples stay out.
+    once_out: bool,
+}
+
+/// Working memory, aligned to cache lines.
+#[repr(align(64))]
+struct Room {
+    columns: [[f64; STRIP]; TERMS],
+    readings: [[f64; STRIP]; 3],
+}
+
+impl Room {
+    const EMPTY: Self = Self { columns: [[0.0; STRIP]; TERMS], readings: [[0.0; STRIP]; 3] };
+}
+
+impl<'a> Strips<'a> {
+    /// All samples, as if all were good, after those of the parts before.
+    pub fn of(samples: &'a Samples<'a>, mut fitted: Fitted) -> Self {
+        if fitted.each.is_empty() {
+            let near = |axis: usize| samples.f_z[axis].iter().copied().find(|f| f.is_finite()).unwrap_or(0.0);
+            (fitted.terms, fitted.reference) = (samples.window.shape.terms(), [0, 1, 2].map(near));
+        }
+        let of_cell = |(cell, all): (usize, Range<usize>)| {
+            let end = all.end;
+            all.step_by(STRIP).map(move |from| Strip::new(cell, from..(from + STRIP).min(end)))
+        };
+        let first = fitted.each.len();
+        fitted.each.extend(samples.cells().enumerate().flat_map(of_cell));
+        let mut strips = Self { samples, stuck: None, fitted, first };
+        let longest = samples.repeat_rate.map(|rate| longest_run(samples.len(), rate));
+        let mut may_be_stuck = false;
+        strips.each(|strip, strips, room| {
+            widest(Orthogonalisation { strip, strips, room });
+            // Checked while the readings are in the cache.
+            may_be_stuck =
+                may_be_stuck || (0..3).any(|axis| may_be_longer(&samples.f_z[axis], &strip.range, longest[axis]));
+        });
+        if may_be_stuck {
+            strips.stuck = stuck_on_any_axis(samples.f_z.each_ref().map(|f| &**f), &longest);
+        }
+        strips
+    }
+
+    /// The strips of the judged samples.
+    pub fn into_fitted(self) -> Fitted {
+        self.fitted
+    }
+
+    /// The fit of this part and those before.
+    pub fn solve(&self) -> Option<(Triangle, Vec<Vector3<f64>>)> {
+        self.fitted.solve()
+    }
+
+    /// Judges the samples by a fit whose last terms have these coefficients; true if the set of good samples changed. With
+    /// `once_out`, bad samples stay out.
+    pub fn judge(&mut self, coefficients: &[Vector3<f64>], once_out: bool) -> bool {
+        let limits = self.samples.limits(coefficients).into();
+        let fit = Fit { coefficients: self.fitted.less_reference(coefficients), limits, once_out };
+        let mut changed = false;
+        self.each(|strip, strips, room| changed |= widest(Judgement { strip, strips, fit: &fit, room }));
+        changed
+    }
+
+    /// Works on one strip after another.
+    fn each(&mut self, mut work: impl FnMut(&mut Strip, &Self, &mut Room)) {
+        let mut each = std::mem::take(&mut self.fitted.each);
+        let mut room = Room::EMPTY;
+        for strip in &mut each[self.first..] {
+            work(strip, self, &mut room);
+        }
+        self.fitted.each = each;
+    }
+
+    fn part(&self) -> &[Strip] {
+        &self.fitted.each[self.first..]
+    }
+
+    /// Number of good samples.
+    pub fn good(&self) -> usize {
+        self.part().iter().map(Strip::good).sum()
+    }
+
+    /// Numbers of stuck samples, and of unreadable ones among the others.
+    pub fn stuck_and_unreadable(&self) -> (usize, usize) {
+        let is_stuck = |i: &usize| self.stuck.as_ref().is_some_and(|stuck| stuck[*i]);
+        let is_readable = |i: &usize| self.samples.f_z.iter().all(|f| f[*i].is_finite());
+        let bad = || self.part().iter().flat_map(|strip| strip.bad.iter().map(|i| strip.range.start + i));
+        (bad().filter(is_stuck).count(), bad().filter(|i| !is_stuck(i) && !is_readable(i)).count())
+    }
+
+    /// The number of good samples with the lowest reading on an axis, or with the highest, whichever is larger.
+    pub fn most_at_an_end(&self, axis: usize) -> usize {
+        let low = self.part().iter().map(|strip| strip.low[axis]).fold(f64::INFINITY, f64::min);
+        let high = self.part().iter().map(|strip| strip.high[axis]).fold(f64::NEG_INFINITY, f64::max);
+        let count = |end: f64| -> usize {
+            let there = self.part().iter().filter(|strip| strip.low[axis] == end || strip.high[axis] == end);
+            there.map(|strip| strip.good_of(&self.samples.f_z[axis]).filter(|f| *f == end).count()).sum()
+        };
+        count(low).max(count(high))
+    }
+
+    /// The good readings on an axis.
+    pub fn good_readings(&self, axis: usize) -> Vec<f64> {
+        self.part().iter().flat_map(|strip| strip.good_of(&self.samples.f_z[axis])).collect()
+    }
+}
+
+impl Fitted {
+    /// Number of good samples.
+    pub fn good(&self) -> usize {
+        self.each.iter().map(Strip::good).sum()
+    }
+
+    /// Number of bad samples.
+    pub fn bad(&self) -> usize {
+        self.each.iter().map(|strip| strip.bad.len()).sum()
+    }
+
+    /// The triangle of all strips, and the coefficients.
+    pub fn solve(&self) -> Option<(Triangle, Vec<Vector3<f64>>)> {
+        let triangles: Vec<&Triangle> = self.each.iter().map(|strip| &strip.triangle).collect();
+        let triangle = Triangle::joined(&triangles, self.terms);
+        let mut coefficients = triangle.solve(self.terms)?;
+        coefficients[self.terms - 1] += Vector3::from(self.reference);
+        Some((triangle, coefficients))
+    }
+
+    /// The cell of each strip, and the sums over its good samples, of a fit with these coefficients.
+    pub fn sums(&self, coefficients: &[Vector3<f64>]) -> impl Iterator<Item = (usize, Sums)> {
+        let coefficients = self.less_reference(coefficients);
+        self.each.iter().map(move |strip| (strip.cell, strip.sums(&coefficients, self.terms)))
+    }
+
+    /// The coefficients of all terms, zero where not given, with the reference subtracted from the constant's.
+    fn less_reference(&self, coefficients: &[Vector3<f64>]) -> [[f64; 3]; TERMS] {
+        let mut all = [[0.0; 3]; TERMS];
+        let given = &mut all[self.terms - coefficients.len()..self.terms];
+        given.iter_mut().zip(coefficients).for_each(|(b, of)| *b = (*of).into());
+        all[self.terms - 1].iter_mut().zip(self.reference).for_each(|(b, reference)| *b -= reference);
+        all
+    }
+}
+
+/// A strip to be fitted on its own.
+struct Orthogonalisation<'a> {
+    strip: &'a mut Strip,
+    strips: &'a Strips<'a>,
+    room: &'a mut Room,
+}
+
+impl WithSimd for Orthogonalisation<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.strip.orthogonalise(simd, self.strips, self.room);
+    }
+}
+
+/// A strip to be judged.
+struct Judgement<'a> {
+    strip: &'a mut Strip,
+    strips: &'a Strips<'a>,
+    fit: &'a Fit,
+    room: &'a mut Room,
+}
+
+impl WithSimd for Judgement<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let Self { strip, strips, fit, room } = self;
+        !strip.is_within(strips, fit) && strip.judge(simd, strips, fit, room)
+    }
+}
+
+impl Strip {
+    fn new(cell: usize, range: Range<usize>) -> Self {
+        let (triangle, bad) = (Triangle::default(), Vec::new());
+        let (reach, zero) = ([0.0; TERMS], [0.0; 3]);
+        Self { cell, range, bad, triangle, reach, largest: zero, squares: zero, low: zero, high: zero }
+    }
+
+    fn good(&self) -> usize {
+        self.range.len() - self.bad.len()
+    }
+
+    /// The readings of the good samples, of all of the window.
+    fn good_of(&self, f: &[f64]) -> impl Iterator<Item = f64> {
+        let mut bad = self.bad.iter().peekable();
+        let is_good = move |(i, _): &(usize, f64)| bad.next_if(|bad| **bad == *i).is_none();
+        f[self.range.clone()].iter().copied().enumerate().filter(is_good).map(|(_, f)| f)
+    }
+
+    /// The strip's own fit to its good samples.
+    #[inline(always)]
+    fn orthogonalise<S: Simd>(&mut self, simd: S, strips: &Strips, room: &mut Room) {
+        let n = self.range.len();
+        let mut columns = room.columns.each_mut().map(|column| &mut column[..n]);
+        let columns = &mut columns[..strips.fitted.terms];
+        let mut readings = room.readings.each_mut().map(|reading| &mut reading[..n]);
+        strips.samples.window.shape.design(&strips.samples.t[self.range.clone()], columns);
+        for (axis, reading) in readings.iter_mut().enumerate() {
+            let (f, reference) = (&strips.samples.f_z[axis][self.range.clone()], strips.fitted.reference[axis]);
+            for (reading, f) in reading.iter_mut().zip(f) {
+                *reading = f - reference;
+            }
+            [self.low[axis], self.high[axis]] = if self.bad.is_empty() { range(f) } else { self.range_of_good(f) };
+        }
+        for i in &self.bad {
+            columns.iter_mut().chain(&mut readings).for_each(|values| values[*i] = 0.0);
+        }
+        self.triangle = Triangle::of(simd, columns, &mut readings);
+        for (reach, q) in self.reach.iter_mut().zip(columns) {
+            *reach = largest(simd, q);
+        }
+        for (axis, left) in readings.iter().enumerate() {
+            (self.largest[axis], self.squares[axis]) = (largest(simd, left), dot(simd, left, left));
+        }
+    }
+
+    /// Lowest and highest of the good readings.
+    fn range_of_good(&self, f: &[f64]) -> [f64; 2] {
+        let good = f.iter().enumerate().filter(|(i, _)| self.bad.binary_search(i).is_err()).map(|(_, f)| *f);
+        good.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], f| [low.min(f), high.max(f)])
+    }
+
+    /// Whether a bound shows all samples to be good: a residual is the sum of that of the strip's own fit and of what the
+    /// coefficients leave in the directions of `Q`.
+    #[inline(always)]
+    fn is_within(&self, strips: &Strips, fit: &Fit) -> bool {
+        let left = self.triangle.left(&fit.coefficients);
+        let is_within = |axis: usize| {
+            let of_directions: f64 = left.iter().zip(&self.reach).map(|(left, reach)| left[axis].abs() * reach).sum();
+            // Unreadable readings leave no finite sum of squares.
+            self.largest[axis] + of_directions <= fit.limits[axis] && self.squares[axis].is_finite()
+        };
+        self.bad.is_empty() && strips.stuck.is_none() && is_within(0) && is_within(1) && is_within(2)
+    }
+
+    /// Judges the samples one by one; true if the set of good samples changed.
+    #[inline(always)]
+    fn judge<S: Simd>(&mut self, simd: S, strips: &Strips, fit: &Fit, room: &mut Room) -> bool {
+        let bad = self.bad_by(strips, fit, room);
+        let changed = bad != self.bad;
+        if changed {
+            self.bad = bad;
+            self.orthogonalise(simd, strips, room);
+        }
+        changed
+    }
+
+    /// The samples that are spikes or stuck on any axis. The limits are symmetric, so that the mean of good samples is not
+    /// biased.
+    #[inline(always)]
+    fn bad_by(&self, strips: &Strips, fit: &Fit, room: &mut Room) -> Vec<usize> {
+        let (n, samples) = (self.range.len(), strips.samples);
+        let mut columns = room.columns.each_mut().map(|column| &mut column[..n]);
+        let columns = &mut columns[..strips.fitted.terms];
+        samples.window.shape.design(&samples.t[self.range.clone()], columns);
+        let mut residuals = room.readings.each_mut().map(|reading| &mut reading[..n]);
+        for (axis, residuals) in residuals.iter_mut().enumerate() {
+            let f = &samples.f_z[axis][self.range.clone()];
+            for (residual, f) in residuals.iter_mut().zip(f) {
+                *residual = f - strips.fitted.reference[axis];
+            }
+            for (column, b) in columns.iter().zip(&fit.coefficients) {
+                subtract(residuals, b[axis], column);
+            }
+        }
+        let stuck = strips.stuck.as_ref().map(|stuck| &stuck[self.range.clone()]);
+        let is_bad = |i: &usize| {
+            // Comparison with a NaN is false: an unreadable sample is bad.
+            let is_within = (0..3).all(|axis| residuals[axis][*i].abs() <= fit.limits[axis]);
+            !is_within || stuck.is_some_and(|stuck| stuck[*i]) || fit.once_out && self.bad.binary_search(i).is_ok()
+        };
+        (0..n).filter(is_bad).collect()
+    }
+
+    /// By `1^T Q`: the constant is the last column of the design, and what the strip's own fit leaves has no part in it.
+    fn sums(&self, coefficients: &[[f64; 3]; TERMS], terms: usize) -> Sums {
+        let (left, constant) = (self.triangle.left(coefficients), &self.triangle.r[terms - 1]);
+        let along_constant = |column: &[f64; TERMS]| column.iter().zip(constant).map(|(a, b)| a * b).sum();
+        let each_axis = |of: &dyn Fn(usize) -> f64| Vector3::from_fn(|axis, _| of(axis));
+        Sums {
+            count: self.good(),
+            columns: self.triangle.r.each_ref().map(along_constant),
+            residuals: each_axis(&|axis| along_constant(&left.map(|of| of[axis]))),
+            squares: each_axis(&|axis| self.squares[axis] + left.iter().map(|of| of[axis] * of[axis]).sum::<f64>()),
+        }
+    }
+}

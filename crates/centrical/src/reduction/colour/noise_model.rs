@@ -1,0 +1,335 @@
+//! The colour of the noise, pooled over all plateaus of a session.
+//!
+//! Model: white noise and first-order Markov processes, each with a 3x3 spectral density; it is the usual model
+//! of inertial sensors (IEEE Std 952), and a sum of a few follows any falling spectrum. The data are contrasts: products
+//! of the readings with cosines of whole half-periods in the window, orthogonal to the fitted terms and to the time
+//! constant of the settling. They do not depend on these, and their expectation is known exactly.
+
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, SQRT_2, TAU};
+
+use nalgebra::Matrix3;
+use pulp::{Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::reduction::average::{CELLS, Cells, PlateauFit, ReducedMounting, Weights};
+use crate::simd::lanes::{dot, widest};
+use crate::statistics::whole;
+
+/// Cosines of nearly the same frequency are pooled: groups per octave.
+const PER_OCTAVE: f64 = 4.0;
+
+/// Steps of the likelihood's ascent for a candidate, and for the final model.
+const STEPS: (usize, usize) = (100, 400);
+
+/// Noise of a unit, which gives the covariance of a mean.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoiseModel {
+    components: Vec<Component>,
+}
+
+/// One component of the noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Component {
+    /// Correlation time [s]; `None` for white noise.
+    correlation_time: Option<f64>,
+    /// Two-sided spectral density at zero frequency [m^2/s^4/Hz].
+    density: Matrix3<f64>,
+}
+
+impl NoiseModel {
+    /// Estimates the noise from all plateaus of a session.
+    ///
+    /// Components are added one by one, the likeliest first, as long as Schwarz's criterion accepts them.
+    pub fn pool<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> Self {
+        let plateaus: Vec<&PlateauFit> = mountings.into_iter().flat_map(|mounting| &mounting.plateaus).collect();
+        let times = correlation_times(&plateaus);
+        let groups = grouped_contrasts(&plateaus, &times);
+        let contrasts: f64 = groups.iter().map(|group| group.count).sum();
+        if contrasts == 0.0 {
+            return Self { components: Vec::new() };
+        }
+        // A density has six entries.
+        let penalty = 0.5 * 6.0 * contrasts.ln();
+        let mut fit = Fit::white(&groups);
+        loop {
+            let best = fit.with_best_time(times.len(), &groups);
+            if best.likelihood > fit.likelihood + penalty {
+                fit = best;
+            } else {
+                break;
+            }
+        }
+        fit.climb(&groups, STEPS.1);
+        let part = |(time, density): &(usize, Matrix3<f64>)| Component {
+            correlation_time: time.checked_sub(1).map(|time| times[time]),
+            density: *density,
+        };
+        Self { components: fit.parts.iter().map(part).collect() }
+    }
+
+    /// Two-sided spectral density at the frequency `f` [Hz]: `L_0 + sum_k L_k / (1 + (2 pi f tau_k)^2)` [m^2/s^4/Hz].
+    pub fn density(&self, f: f64) -> Matrix3<f64> {
+        let of = |component: &Component| {
+            let x = component.correlation_time.map_or(0.0, |tau| TAU * f * tau);
+            component.density / (1.0 + x * x)
+        };
+        self.components.iter().map(of).sum()
+    }
+
+    /// Covariance of a linear functional of the samples.
+    pub(super) fn covariance(&self, weights: &Weights, cells: &Cells) -> Matrix3<f64> {
+        self.components.iter().map(|part| part.density * gain(part.correlation_time, weights, cells)).sum()
+    }
+}
+
+/// Quarter-octaves from an eighth of a cell of the shortest window to a quarter of the longest: noise slower than
+/// that is drift.
+fn correlation_times(plateaus: &[&PlateauFit]) -> Vec<f64> {
+    let widths = plateaus.iter().map(|plateau| plateau.cells.width);
+    let (shortest, longest) = widths.fold((f64::INFINITY, 0.0_f64), |(a, b), width| (a.min(width), b.max(width)));
+    let mut times = Vec::new();
+    let mut time = 0.125 * shortest;
+    while time <= 0.25 * longest * CELLS as f64 {
+        times.push(time);
+        time *= SQRT_2.sqrt();
+    }
+    times
+}
+
+/// Variance of a functional under a component of unit density.
+///
+/// White: `sum w^2 / interval`. Markov: `sum_ab w_a w_b exp(-|t_a - t_b| / tau) / (2 tau)` over cells, by a recursion.
+fn gain(correlation_time: Option<f64>, weights: &Weights, cells: &Cells) -> f64 {
+    let Some(tau) = correlation_time else { return weights.squares / cells.interval };
+    widest(Gains { markov: &Markov::new(&[tau], cells.width), weights })[0]
+}
+
+/// Markov processes of several correlation times, over cells of one width.
+struct Markov {
+    /// Correlation from one cell to the next.
+    decay: Vec<f64>,
+    /// Mean correlation inside a cell, over twice the correlation time.
+    within: Vec<f64>,
+    /// Mean correlation between two cells over that of their middles, over the correlation time.
+    between: Vec<f64>,
+}
+
+impl Markov {
+    fn new(times: &[f64], width: f64) -> Self {
+        let of = |law: fn(f64) -> f64| times.iter().map(|tau| law(width / tau) / tau).collect();
+        Self {
+            decay: times.iter().map(|tau| (-width / tau).exp()).collect(),
+            within: of(|x| (x - 1.0 + (-x).exp()) / (x * x)),
+            between: of(|x| ((0.5 * x).sinh() / (0.5 * x)).powi(2)),
+        }
+    }
+}
+
+/// Variances of a functional under Markov processes of unit density.
+struct Gains<'a> {
+    markov: &'a Markov,
+    weights: &'a Weights,
+}
+
+impl WithSimd for Gains<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
+        let Markov { decay, within, between } = self.markov;
+        let by_cell = &self.weights.by_cell;
+        let mut past = vec![0.0; decay.len()];
+        let mut products = past.clone();
+        for w in by_cell {
+            for ((past, product), decay) in past.iter_mut().zip(&mut products).zip(decay) {
+                *past *= decay;
+                *product += w * *past;
+                *past += w;
+            }
+        }
+        let squares = dot(simd, by_cell, by_cell);
+        for ((product, within), between) in products.iter_mut().zip(within).zip(between) {
+            *product = within * squares + between * *product;
+        }
+        products
+    }
+}
+
+/// A contrast of one plateau, scaled to unit variance under white noise of unit density.
+struct Contrast {
+    /// `y y^T`.
+    power: Matrix3<f64>,
+    /// Variance under each Markov process of unit density.
+    gains: Vec<f64>,
+}
+
+/// Contrasts of nearly one frequency, each scaled to unit variance under white noise of unit density.
+struct Group {
+    /// Number of contrasts.
+    count: f64,
+    /// Mean of `y y^T`.
+    power: Matrix3<f64>,
+    /// Mean of the variance under each component of unit density, white first.
+    gains: Vec<f64>,
+}
+
+fn grouped_contrasts(plateaus: &[&PlateauFit], times: &[f64]) -> Vec<Group> {
+    let longest = plateaus.iter().map(|plateau| plateau.cells.width).fold(0.0, f64::max);
+    let cosines: Vec<(usize, Vec<f64>)> = half_periods().into_iter().map(|number| (number, cosine(number))).collect();
+    let of = |plateau: &&PlateauFit| -> Vec<(usize, Contrast)> {
+        let cells = &plateau.cells;
+        let markov = Markov::new(times, cells.width);
+        // The time constant of the settling is not final yet: its error is not noise.
+        let rate = plateau.settling_rate();
+        let contrast = |(number, cosine): &(usize, Vec<f64>)| {
+            let frequency = *number as f64 * longest / cells.width;
+            let group = whole((frequency.log2() * PER_OCTAVE).round());
+            let function = rate.as_ref().map(|rate| cells.free_of(cosine, rate));
+            Some((group, Contrast::of(cells, function.as_ref().unwrap_or(cosine), &markov)?))
+        };
+        cosines.iter().filter_map(contrast).collect()
+    };
+    let mut groups = BTreeMap::new();
+    for (group, contrast) in plateaus.par_iter().map(of).collect::<Vec<_>>().into_iter().flatten() {
+        let empty = || Group { count: 0.0, power: Matrix3::zeros(), gains: vec![0.0; 1 + times.len()] };
+        groups.entry(group).or_insert_with(empty).add(&contrast);
+    }
+    groups.into_values().map(Group::averaged).collect()
+}
+
+/// All of the lowest, where a mean feels the noise, and eight an octave further up.
+fn half_periods() -> Vec<usize> {
+    let next = |number: &usize| Some(number + (number / 8).max(1));
+    std::iter::successors(Some(1), next).take_while(|number| *number <= CELLS / 2).collect()
+}
+
+fn cosine(half_periods: usize) -> Vec<f64> {
+    (0..CELLS).map(|cell| (PI * half_periods as f64 * (cell as f64 + 0.5) / CELLS as f64).cos()).collect()
+}
+
+impl Contrast {
+    /// The part of a function that the fit does not absorb; `None` if it absorbs all of it.
+    fn of(cells: &Cells, function: &[f64], markov: &Markov) -> Option<Self> {
+        let (weights, y) = cells.contrast(function);
+        let white = gain(None, &weights, cells);
+        let gains = || widest(Gains { markov, weights: &weights }).into_iter().map(|gain| gain / white).collect();
+        (white > 0.0).then(|| Self { power: y * y.transpose() / white, gains: gains() })
+    }
+}
+
+impl Group {
+    fn add(&mut self, contrast: &Contrast) {
+        self.count += 1.0;
+        self.power += contrast.power;
+        self.gains[0] += 1.0;
+        for (sum, gain) in self.gains[1..].iter_mut().zip(&contrast.gains) {
+            *sum += gain;
+        }
+    }
+
+    fn averaged(mut self) -> Self {
+        let count = self.count.max(1.0);
+        self.power /= count;
+        self.gains.iter_mut().for_each(|gain| *gain /= count);
+        self
+    }
+}
+
+/// Densities by component, and their log-likelihood.
+///
+/// The densities `L_k` maximise the Gaussian likelihood of the contrasts `y_j ~ N(0, S_j)`, `S_j = sum_k B_jk L_k`, by
+/// minorisation and maximisation (Zhou, Hu, Qiao and Lange 2019, J. Comput. Graph. Stat. 28, 350), which never
+/// descends and keeps every `L_k` non-negative.
+#[derive(Clone)]
+struct Fit {
+    /// Index of the correlation time, and the density.
+    parts: Vec<(usize, Matrix3<f64>)>,
+    likelihood: f64,
+}
+
+impl Fit {
+    /// White noise alone.
+    fn white(groups: &[Group]) -> Self {
+        let count: f64 = groups.iter().map(|group| group.count).sum();
+        let power: Matrix3<f64> = groups.iter().map(|group| group.power * group.count).sum();
+        let mut fit = Self { parts: vec![(0, power / count)], likelihood: f64::NEG_INFINITY };
+        fit.likelihood = fit.log_likelihood(groups);
+        fit
+    }
+
+    /// With one component more, of the likeliest correlation time out of 1 to `times`: by octaves first, then by
+    /// neighbours.
+    fn with_best_time(&self, times: usize, groups: &[Group]) -> Self {
+        let octaves: Vec<usize> = (1..=times).step_by(4).collect();
+        let octaves: Vec<Self> = octaves.into_par_iter().map(|time| self.with(time, groups)).collect();
+        let best = octaves.into_iter().max_by(|a, b| a.likelihood.total_cmp(&b.likelihood));
+        let mut best = best.unwrap_or_else(|| self.clone());
+        for step in [2, 1] {
+            let time = best.parts[best.parts.len() - 1].0;
+            for near in [time.saturating_sub(step), time + step].into_iter().filter(|near| (1..=times).contains(near)) {
+                let candidate = self.with(near, groups);
+                if candidate.likelihood > best.likelihood {
+                    best = candidate;
+                }
+            }
+        }
+        best
+    }
+
+    /// With one component more. It starts too large: the ascent shrinks a component fast and raises one slowly.
+    fn with(&self, time: usize, groups: &[Group]) -> Self {
+        let mut fit = self.clone();
+        let largest = self.parts.iter().max_by(|a, b| a.1.trace().total_cmp(&b.1.trace()));
+        fit.parts.extend(largest.map(|(_, density)| (time, *density)));
+        fit.climb(groups, STEPS.0);
+        fit
+    }
+
+    fn climb(&mut self, groups: &[Group], steps: usize) {
+        for _ in 0..steps {
+            self.step(groups);
+        }
+        self.likelihood = self.log_likelihood(groups);
+    }
+
+    fn covariance(&self, group: &Group) -> Matrix3<f64> {
+        self.parts.iter().map(|(time, density)| density * group.gains[*time]).sum()
+    }
+
+    fn log_likelihood(&self, groups: &[Group]) -> f64 {
+        let of = |group: &Group| match self.covariance(group).cholesky() {
+            Some(factor) => -0.5 * group.count * (factor.ln_determinant() + factor.solve(&group.power).trace()),
+            None => f64::NEG_INFINITY,
+        };
+        groups.iter().map(of).sum()
+    }
+
+    /// `L_k` becomes the solution of `L A L = L_k B L_k`, `A = sum_j B_jk S_j^-1`, `B = sum_j B_jk S_j^-1 y_j y_j^T
+    /// S_j^-1`.
+    fn step(&mut self, groups: &[Group]) {
+        let mut sums = vec![(Matrix3::zeros(), Matrix3::zeros()); self.parts.len()];
+        for group in groups {
+            let Some(factor) = self.covariance(group).cholesky() else { continue };
+            let inverse = factor.inverse();
+            let seen = inverse * group.power * inverse;
+            for ((a, b), (time, _)) in sums.iter_mut().zip(&self.parts) {
+                let weight = group.gains[*time] * group.count;
+                *a += inverse * weight;
+                *b += seen * weight;
+            }
+        }
+        for ((a, b), (_, density)) in sums.iter().zip(&mut self.parts) {
+            *density = geometric_mean(a, &(*density * b * *density)).unwrap_or(*density);
+        }
+    }
+}
+
+/// The symmetric non-negative `L` with `L a L = b`: `C^-T (C^T b C)^1/2 C^-1` with `a = C C^T`.
+fn geometric_mean(a: &Matrix3<f64>, b: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    let c = a.cholesky()?.l();
+    let root = (c.transpose() * b * c).symmetric_eigen();
+    let half = root.eigenvectors * Matrix3::from_diagonal(&root.eigenvalues.map(|value| value.max(0.0).sqrt().sqrt()));
+    let left = c.transpose().solve_upper_triangular(&half)?;
+    Some(left * left.transpose())
+}

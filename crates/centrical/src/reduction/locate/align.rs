@@ -1,0 +1,78 @@
+//! The blocks of a record that belong to each scheduled plateau: by order, level and steadiness.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use super::evidence::{Candidate, Evidence};
+use super::path::Trellis;
+use super::{hypothesis, rotation};
+use crate::reduction::error::{ReductionError, Stretch};
+use crate::reduction::plateau::ScheduledPlateau;
+use crate::reduction::survey::Blocks;
+
+/// More rounds than are needed.
+const ROUNDS: usize = 8;
+
+/// The core of each scheduled plateau, in blocks; an error for a record with a recording mistake.
+pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
+    let other = |schedule: &[ScheduledPlateau]| by_schedule(blocks, schedule).ok();
+    match by_schedule(blocks, schedule) {
+        Ok(cores) => {
+            hypothesis::recognise(blocks, schedule, Some(&cores), other)?;
+            rotation::check(blocks, schedule, &cores)?;
+            Ok(cores)
+        }
+        Err(error) => {
+            hypothesis::recognise(blocks, schedule, None, other)?;
+            Err(error)
+        }
+    }
+}
+
+/// The core of each scheduled plateau, in blocks.
+fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
+    let evidence = Evidence::new(blocks);
+    let candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
+    let between = evidence.in_transition();
+    let mut trellis = Trellis::new(schedule.len(), blocks.len());
+    let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(evidence.noise(), from, density);
+    let mut cores = trellis.best_path(&between, on);
+    if let Some(index) = missing(&cores) {
+        let ScheduledPlateau { omega, nominal_z } = schedule[index];
+        let stretches = evidence.steady_stretches().into_iter();
+        let seen = stretches.map(|range| stretch(blocks, range, &cores, &candidates)).collect();
+        return Err(ReductionError::PlateauNotFound { index, count: schedule.len(), omega, level_z: nominal_z, seen });
+    }
+    // With the plateaus located, the changes on each give their own noise, far below that of a sample. This is repeated
+    // until the noise holds no part of the ramps.
+    for _ in 0..ROUNDS {
+        let own = candidates.par_iter().zip(&cores).map(|(candidate, core)| candidate.noise_of_change(core));
+        let own: Vec<Vector3<f64>> = own.collect();
+        let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(&own[k], from, density);
+        let next = trellis.best_path(&between, on);
+        if next == cores || missing(&next).is_some() {
+            break;
+        }
+        cores = next;
+    }
+    Ok(cores)
+}
+
+/// A plateau that was passed over, or matched only the turn of a ramp.
+fn missing(cores: &[Range<usize>]) -> Option<usize> {
+    cores.iter().position(|core| core.len() < 3)
+}
+
+/// A steady stretch, and the plateau it was taken for.
+fn stretch(blocks: &Blocks, range: Range<usize>, cores: &[Range<usize>], candidates: &[Candidate]) -> Stretch {
+    let half = 0.5 * blocks.width;
+    let middle = usize::midpoint(range.start, range.end);
+    Stretch {
+        window: [blocks.t[range.start] - half, blocks.t[range.end - 1] + half],
+        level_z: blocks.level(&range),
+        plateau: cores.iter().position(|core| core.contains(&middle)),
+        resembles: (0..cores.len()).filter(|k| candidates[*k].has_level(middle)).collect(),
+    }
+}

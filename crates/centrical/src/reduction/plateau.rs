@@ -1,0 +1,65 @@
+//! A plateau as scheduled, and as measured.
+
+use std::ops::AddAssign;
+
+use nalgebra::{Matrix3, Vector3};
+
+/// One plateau of a mounting's schedule.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScheduledPlateau {
+    /// Set point of the speed [rad/s]; 0 at rest.
+    pub omega: f64,
+    /// Nominal reading [K5.1], instrument axes [m/s^2].
+    pub nominal_z: Vector3<f64>,
+}
+
+/// The mean reading of one plateau.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlateauMean {
+    /// From, to, the record's clock [s].
+    pub window: [f64; 2],
+    /// Samples used.
+    pub samples: usize,
+    /// Samples of the window left out: spikes, missing and stuck readings.
+    pub rejected: usize,
+    /// The rejected samples, by kind.
+    pub left_out: LeftOut,
+    /// Mean reading, instrument axes [m/s^2].
+    pub mean: Vector3<f64>,
+    /// Covariance of the mean [m^2/s^4].
+    pub covariance: Matrix3<f64>,
+    /// Once-per-revolution term: column 0 in phase with the start of the window, column 1 a quarter turn later [m/s^2].
+    pub once_per_revolution: [Vector3<f64>; 2],
+    /// Slope of the reading over the window [m/s^3]. It does not enter the mean.
+    pub drift: Vector3<f64>,
+    /// Standard uncertainty of the slope [m/s^3].
+    pub drift_uncertainty: Vector3<f64>,
+    /// Covariance of either quadrature of the once-per-revolution term [m^2/s^4].
+    pub once_per_revolution_covariance: Matrix3<f64>,
+    /// Median speed by the telemetry [rad/s], corrected for the offset of its clock.
+    pub measured_speed: Option<f64>,
+    /// Remaining settling at the start of the window [m/s^2].
+    pub settling: Vector3<f64>,
+}
+
+/// Rejected samples of a plateau's window, by kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LeftOut {
+    /// Samples outside the noise on some axis.
+    pub spikes: usize,
+    /// Samples in runs that repeat one reading for longer than noise does.
+    pub stuck: usize,
+    /// Samples missing from the record, and readings that are not numbers.
+    pub missing: usize,
+    /// Samples with the stamp of the one before.
+    pub repeated: usize,
+}
+
+impl AddAssign for LeftOut {
+    fn add_assign(&mut self, other: Self) {
+        self.spikes += other.spikes;
+        self.stuck += other.stuck;
+        self.missing += other.missing;
+        self.repeated += other.repeated;
+    }
+}

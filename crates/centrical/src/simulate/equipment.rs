@@ -1,0 +1,234 @@
+//! The equipment of a simulated laboratory and its imperfections, with their bounds.
+
+use thiserror::Error;
+
+/// The laboratory's equipment. The default is perfect, at 100 Hz.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Equipment {
+    /// The centrifuge.
+    pub machine: Machine,
+    /// The unit's noise.
+    pub sensor: Sensor,
+    /// The recorder of the unit's samples.
+    pub recorder: Recorder,
+    /// The report of the speed.
+    pub tachometer: Tachometer,
+}
+
+/// The centrifuge's operation and its errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Machine {
+    /// Least duration of a plateau [s].
+    pub plateau: f64,
+    /// A plateau lasts up to this longer, uniformly [s]; before a rest up to a revolution more, to stop at its angle.
+    pub plateau_spread: f64,
+    /// Duration of a change of speed or angle [s], along a cubic without a jump of speed.
+    pub ramp: f64,
+    /// Standard deviation of a plateau's speed about the set point, relative.
+    pub speed_error: f64,
+    /// Excess of speed as a plateau begins, relative; it dies away exponentially.
+    pub settling: f64,
+    /// Its time constant [s].
+    pub settling_time: f64,
+}
+
+/// SensorNoise of each of the three newtonometers, alike and independent.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sensor {
+    /// Standard deviation of white noise of one sample [m/s^2].
+    pub white: f64,
+    /// SensorNoise of one correlation time.
+    pub coloured: Coloured,
+    /// Bias instability `B` (IEEE Std 952) [m/s^2]: two-sided spectrum `B^2 / (2 pi f)`, Allan deviation
+    /// `sqrt(2 ln 2 / pi) B = 0.664 B`; correlation times from 8 samples to the length of the record.
+    pub bias_instability: f64,
+    /// Random walk `K` of the bias [m/s^2 per sqrt(s)]: variance `K^2 t`, zero as a record begins.
+    pub random_walk: f64,
+    /// Standard deviation of the slope of the bias, one slope a record [m/s^3].
+    pub drift: f64,
+    /// Step of the output [m/s^2]; 0 for all digits.
+    pub quantum: f64,
+    /// Largest magnitude of the output [m/s^2]; `None` for unlimited.
+    pub range: Option<f64>,
+}
+
+/// First-order Gauss-Markov noise: AR(1) at the rate of sampling.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coloured {
+    /// Standard deviation [m/s^2].
+    pub deviation: f64,
+    /// Correlation time [s].
+    pub time: f64,
+}
+
+/// The recorder, which loses or spoils some samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recorder {
+    /// Samples per second [Hz].
+    pub rate: f64,
+    /// Errors of transmission in one newtonometer's reading.
+    pub spikes: Spikes,
+    /// Samples lost.
+    pub gaps: Losses,
+    /// Probability that a sample is recorded twice, with the same time.
+    pub repeats: f64,
+}
+
+/// Errors of transmission.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Spikes {
+    /// Probability per sample.
+    pub probability: f64,
+    /// Standard deviation of their size [m/s^2].
+    pub size: f64,
+}
+
+/// Runs of lost samples: gaps in the record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Losses {
+    /// Probability per sample that a run of losses begins.
+    pub probability: f64,
+    /// Mean length of a run [samples], geometrically distributed.
+    pub length: f64,
+}
+
+/// The centrifuge's own report of its speed. It does not see the plateaus' speed errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tachometer {
+    /// Reports per second [Hz].
+    pub rate: f64,
+    /// Its clock is at most this far from the unit's as a record begins, uniformly [s].
+    pub clock_offset: f64,
+    /// Standard deviation of its clock's rate against the unit's, relative.
+    pub clock_drift: f64,
+    /// Standard deviation of a report [rad/s].
+    pub noise: f64,
+    /// Step of the report [rad/s]; 0 for all digits.
+    pub quantum: f64,
+}
+
+impl Default for Machine {
+    fn default() -> Self {
+        Self { plateau: 10.0, plateau_spread: 0.0, ramp: 4.0, speed_error: 0.0, settling: 0.0, settling_time: 0.4 }
+    }
+}
+
+impl Default for Coloured {
+    fn default() -> Self {
+        Self { deviation: 0.0, time: 0.5 }
+    }
+}
+
+impl Default for Recorder {
+    fn default() -> Self {
+        Self { rate: 100.0, spikes: Spikes::default(), gaps: Losses::default(), repeats: 0.0 }
+    }
+}
+
+impl Default for Losses {
+    fn default() -> Self {
+        Self { probability: 0.0, length: 1.0 }
+    }
+}
+
+impl Default for Tachometer {
+    fn default() -> Self {
+        Self { rate: 20.0, clock_offset: 0.0, clock_drift: 0.0, noise: 0.0, quantum: 0.0 }
+    }
+}
+
+/// Why a session cannot be simulated.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SimulationError {
+    /// The truth belongs to another model.
+    #[error("truth: found {found} values, expected {expected}, one for each parameter")]
+    TruthLength {
+        /// Values given.
+        found: usize,
+        /// Parameters.
+        expected: usize,
+    },
+    /// A true value is not finite.
+    #[error("truth of {name}: found {found}, expected a finite number")]
+    Truth {
+        /// The parameter.
+        name: String,
+        /// Its value.
+        found: f64,
+    },
+    /// The number of durations differs from that of the plateaus.
+    #[error("durations: found {found}, expected one for each of {expected} plateaus")]
+    Durations {
+        /// Given.
+        found: usize,
+        /// Set points of the experiment.
+        expected: usize,
+    },
+    /// A setting is out of its bounds.
+    #[error("{setting}: found {found}, expected {expected}")]
+    Setting {
+        /// Its table and name.
+        setting: &'static str,
+        /// Its value.
+        found: f64,
+        /// Its bounds.
+        expected: &'static str,
+    },
+}
+
+impl Equipment {
+    /// Whether every setting is within its bounds.
+    ///
+    /// # Errors
+    /// [`SimulationError::Setting`], the first that is not.
+    pub fn check(&self) -> Result<(), SimulationError> {
+        let Self { machine, sensor, recorder, tachometer } = self;
+        above_zero("machine.plateau", machine.plateau)?;
+        not_negative("machine.plateau_spread", machine.plateau_spread)?;
+        above_zero("machine.ramp", machine.ramp)?;
+        ratio("machine.speed_error", machine.speed_error)?;
+        ratio("machine.settling", machine.settling)?;
+        above_zero("machine.settling_time", machine.settling_time)?;
+        not_negative("sensor.white", sensor.white)?;
+        not_negative("sensor.coloured.deviation", sensor.coloured.deviation)?;
+        above_zero("sensor.coloured.time", sensor.coloured.time)?;
+        not_negative("sensor.bias_instability", sensor.bias_instability)?;
+        not_negative("sensor.random_walk", sensor.random_walk)?;
+        not_negative("sensor.drift", sensor.drift)?;
+        not_negative("sensor.quantum", sensor.quantum)?;
+        sensor.range.map_or(Ok(()), |range| above_zero("sensor.range", range))?;
+        above_zero("recorder.rate", recorder.rate)?;
+        ratio("recorder.spikes.probability", recorder.spikes.probability)?;
+        not_negative("recorder.spikes.size", recorder.spikes.size)?;
+        ratio("recorder.gaps.probability", recorder.gaps.probability)?;
+        let least = |found: f64| found.is_finite() && found >= 1.0;
+        bounded("recorder.gaps.length", recorder.gaps.length, least, "a number of samples, 1 or more")?;
+        ratio("recorder.repeats", recorder.repeats)?;
+        above_zero("tachometer.rate", tachometer.rate)?;
+        not_negative("tachometer.clock_offset", tachometer.clock_offset)?;
+        ratio("tachometer.clock_drift", tachometer.clock_drift)?;
+        not_negative("tachometer.noise", tachometer.noise)?;
+        not_negative("tachometer.quantum", tachometer.quantum)
+    }
+}
+
+fn above_zero(setting: &'static str, found: f64) -> Result<(), SimulationError> {
+    bounded(setting, found, |f| f.is_finite() && f > 0.0, "a finite number above 0")
+}
+
+fn not_negative(setting: &'static str, found: f64) -> Result<(), SimulationError> {
+    bounded(setting, found, |f| f.is_finite() && f >= 0.0, "a finite number, 0 or more")
+}
+
+fn ratio(setting: &'static str, found: f64) -> Result<(), SimulationError> {
+    bounded(setting, found, |f| (0.0..1.0).contains(&f), "0 or more and below 1")
+}
+
+fn bounded(
+    setting: &'static str,
+    found: f64,
+    holds: impl Fn(f64) -> bool,
+    expected: &'static str,
+) -> Result<(), SimulationError> {
+    if holds(found) { Ok(()) } else { Err(SimulationError::Setting { setting, found, expected }) }
+}

@@ -1,0 +1,85 @@
+//! The whole analysis of one series of readings.
+
+use super::deviation::{Deviation, deviations};
+use super::error::NoiseError;
+use super::estimator::Estimator;
+use super::grid::regular_grid;
+use super::phase::{BridgedGaps, Phase};
+use super::spectrum::{Spectrum, power_spectrum};
+use super::spikes::leave_out_spikes;
+use super::terms::{NoiseTerms, fit_noise_terms};
+
+/// Level of confidence of the intervals: one standard deviation of a normal law.
+pub const CONFIDENCE: f64 = 0.683;
+
+/// The noise of a series of readings.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    /// Mean of the readings used [unit of the readings].
+    pub mean: f64,
+    /// Sampling interval [s].
+    pub interval: f64,
+    /// Readings used.
+    pub samples: usize,
+    /// Readings left out as spikes.
+    pub spikes: usize,
+    /// Samples left out as repeated.
+    pub repeated: usize,
+    /// Missing readings that were bridged, spikes among them.
+    pub gaps: BridgedGaps,
+    /// Deviations by estimator, at averaging factors 1, 2, 4, ...
+    pub deviations: Vec<(Estimator, Vec<Deviation>)>,
+    /// The spectrum, or why it could not be computed.
+    pub spectrum: Result<Spectrum, NoiseError>,
+    /// The noise terms, or why they could not be fitted.
+    pub terms: Result<NoiseTerms, NoiseError>,
+}
+
+/// Analyses the readings `y`, taken at the times `t` [s], with the given estimators.
+///
+/// # Errors
+/// [`NoiseError`] if the readings are no series: too few, or hardly any two of them evenly spaced.
+pub fn analyse(t: &[f64], y: &[f64], estimators: &[Estimator]) -> Result<Analysis, NoiseError> {
+    let mut grid = regular_grid(t, y)?;
+    let spikes = leave_out_spikes(&mut grid.readings);
+    let phase = Phase::integrate(&grid.readings, grid.interval)?;
+    let seen = || grid.readings.iter().filter(|y| y.is_finite());
+    let samples = seen().count();
+    Ok(Analysis {
+        mean: seen().sum::<f64>() / samples as f64,
+        interval: grid.interval,
+        samples,
+        spikes,
+        repeated: grid.repeated,
+        gaps: phase.gaps(),
+        deviations: estimators.iter().map(|e| Ok((*e, family(&phase, *e)?))).collect::<Result<_, NoiseError>>()?,
+        spectrum: power_spectrum(&grid.readings, grid.interval, segment(grid.readings.len())),
+        terms: fit_noise_terms(&phase),
+    })
+}
+
+impl Analysis {
+    /// The noise terms that may be quoted: those that describe the deviations.
+    pub fn quotable(&self) -> Option<&NoiseTerms> {
+        self.terms.as_ref().ok().filter(|terms| terms.is_consistent())
+    }
+}
+
+/// Deviations at 1, 2, 4, ... sampling intervals, to half the record.
+///
+/// Estimators whose work is the product of record and averaging time stop where it would take more than some seconds.
+fn family(phase: &Phase, estimator: Estimator) -> Result<Vec<Deviation>, NoiseError> {
+    /// Operations that take some seconds.
+    const WORK: usize = 1 << 32;
+    let is_product = matches!(estimator, Estimator::ModifiedTotal | Estimator::TimeTotal | Estimator::HadamardTotal);
+    let longest = if is_product { WORK / phase.points().len() } else { usize::MAX };
+    let factors: Vec<usize> = phase.octaves(2).into_iter().filter(|m| *m <= longest).collect();
+    deviations(phase, estimator, &factors, CONFIDENCE)
+}
+
+/// Length of the spectrum's segments: a power of two such that about 16 of them fit half overlapping; a density then has
+/// about 30 degrees of freedom. Segments longer than 2^17 show nothing more.
+fn segment(readings: usize) -> usize {
+    let eighth = (readings / 8).max(8);
+    1 << eighth.ilog2().min(17)
+}

@@ -1,0 +1,70 @@
+//! Spikes: readings that differ from their neighbours by more than noise.
+
+use crate::statistics::{MAD, cut, median};
+
+/// Marks the spikes among evenly spaced readings as missing (NaN) and returns their number.
+///
+/// A reading is compared with the median of the two on either side of it, which one more spike among them does not
+/// move. The limit is what fewer than one in twenty records of good readings exceed anywhere, `sqrt(2 ln 20 n)` robust
+/// standard deviations, and a digit for rounding. Noise slower than a few samples does not enter the comparison, and
+/// so is not cut.
+pub fn leave_out_spikes(readings: &mut [f64]) -> usize {
+    let residuals: Vec<f64> = (0..readings.len()).map(|i| readings[i] - median_of_neighbours(readings, i)).collect();
+    let mut sizes: Vec<f64> = residuals.iter().filter(|r| r.is_finite()).map(|r| r.abs()).collect();
+    let limit = cut(sizes.len()) * MAD * median(&mut sizes) + last_digit(readings);
+    let mut spikes = 0;
+    for (reading, residual) in readings.iter_mut().zip(&residuals) {
+        if residual.abs() > limit {
+            *reading = f64::NAN;
+            spikes += 1;
+        }
+    }
+    spikes
+}
+
+/// Last digit of the readings: the smallest step between neighbours, beyond the rounding of `f64` itself.
+fn last_digit(readings: &[f64]) -> f64 {
+    let largest = readings.iter().filter(|y| y.is_finite()).fold(0.0, |largest: f64, y| largest.max(y.abs()));
+    let steps = readings.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 1e-12 * largest);
+    steps.fold(f64::INFINITY, f64::min)
+}
+
+/// Median of up to four neighbours, two on either side; the mean of the middle two of four. NaN without neighbours.
+fn median_of_neighbours(readings: &[f64], i: usize) -> f64 {
+    let near = [i.wrapping_sub(2), i.wrapping_sub(1), i + 1, i + 2];
+    let mut values = near.map(|j| readings.get(j).copied().unwrap_or(f64::NAN));
+    values.sort_by(f64::total_cmp);
+    // NaN of either sign stands at one of the ends.
+    let from = values.iter().position(|value| value.is_finite()).unwrap_or(0);
+    let seen = values.iter().filter(|value| value.is_finite()).count();
+    match seen {
+        0 => f64::NAN,
+        n => 0.5 * (values[from + (n - 1) / 2] + values[from + n / 2]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::leave_out_spikes;
+
+    #[test]
+    fn spikes_go_and_the_rest_stays() {
+        let mut readings: Vec<f64> =
+            (0..2000).map(|i| f64::from(i * 7919 % 131) * 1e-3 + f64::from(i) * 1e-2).collect();
+        readings[700] = f64::NAN;
+        for (i, size) in [(0, 5.0), (500, -2.0), (501, 3.0), (1999, 9.0)] {
+            readings[i] += size;
+        }
+        assert_eq!(leave_out_spikes(&mut readings), 4);
+        let missing: Vec<usize> = (0..2000).filter(|i| readings[*i].is_nan()).collect();
+        assert_eq!(missing, [0, 500, 501, 700, 1999]);
+    }
+
+    #[test]
+    fn constant_or_coarse_readings_have_no_spikes() {
+        assert_eq!(leave_out_spikes(&mut [3.0; 100]), 0);
+        let mut coarse: Vec<f64> = (0..1000).map(|i| if i * i % 97 > 80 { 1.0 } else { 0.0 }).collect();
+        assert_eq!(leave_out_spikes(&mut coarse), 0);
+        assert_eq!(leave_out_spikes(&mut []), 0);
+    }
+}

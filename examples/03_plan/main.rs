@@ -1,0 +1,28 @@
+//! Finds the best schedule for six hours: `cargo run --example 03_plan`.
+
+use std::error::Error;
+use std::path::Path;
+
+use centrical_session::{PlanRequest, read_planning};
+
+/// The schedule with the smallest uncertainty, and how far from the optimum it can be.
+///
+/// # Errors
+/// If the plan file is wrong, or no plan fits its time.
+pub fn main() -> Result<(), Box<dyn Error>> {
+    let mut planning = read_planning(Path::new("examples/03_plan/plan.toml"))?;
+    let plan = planning.plan(false)?;
+    let request = PlanRequest { frontier: Vec::new(), levels: Vec::new(), coverage: 0.95 };
+    let report = planning.report(&plan, &request)?;
+
+    for mounting in &report.mountings {
+        println!("position {} at {} m: {} plateaus", mounting.position, mounting.radius, mounting.plateaus.len());
+    }
+    println!(
+        "{:.1} h; uncertainty {:.3e} m/s^2, no plan below {:.3e}",
+        report.time / 3600.0,
+        report.value,
+        report.bound
+    );
+    Ok(())
+}
