@@ -4,16 +4,35 @@ use std::fmt::Write;
 
 use centrical::uncertainty::{Budget, Cleaned, CurvePoint, Degrees, Pattern, Validity, coverage_factor};
 use centrical::{Experiment, Fit, MeasurementModel, Parameters, STANDARD_GRAVITY};
-use centrical_session::{Follows, PatternSummary};
+use centrical_session::{Assessment, Follows, PatternSummary};
 
 use crate::customary::customary;
 
 /// A pattern with a family-wise probability below this is told.
 const TOLD: f64 = 0.05;
 
+/// The whole assessment, expanded uncertainties for a probability of `coverage`; the correlations if they are wanted.
+pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: bool) -> String {
+    let Assessment { model, fit, cleaned, budget, validity, patterns, prediction } = assessment;
+    let mut text = cleaned.as_ref().map_or(String::new(), |cleaned| outliers_text(model, fit, cleaned));
+    text.push_str(&budget_table(model.parameters(), budget, coverage));
+    text.push('\n');
+    if correlations {
+        text.push_str(&correlation_table(model.parameters(), budget));
+        text.push('\n');
+    }
+    text.push_str(&validity_text(model.experiment(), validity, patterns));
+    text.push('\n');
+    match prediction {
+        Some(curves) => text.push_str(&prediction_table(curves)),
+        None => text.push_str("PREDICTION  none: not all parameters of the instrument are determined\n"),
+    }
+    text
+}
+
 /// The budget: parameter by source, in customary units, with combined and expanded uncertainty for a probability of
 /// `coverage`; then what to improve first.
-pub fn budget_table(parameters: &Parameters, budget: &Budget, coverage: f64) -> String {
+fn budget_table(parameters: &Parameters, budget: &Budget, coverage: f64) -> String {
     let mut text = String::from("UNCERTAINTY BUDGET  standard uncertainty that each source leaves\n");
     let mut heading = format!("  {:<12}{:<9}", "", "unit");
     for (n, contribution) in budget.contributions().iter().enumerate() {
@@ -70,7 +89,7 @@ fn improvements(text: &mut String, parameters: &Parameters, budget: &Budget) {
 }
 
 /// Correlations of the parameters of the instrument, the lower triangle with two decimals.
-pub fn correlation_table(parameters: &Parameters, budget: &Budget) -> String {
+fn correlation_table(parameters: &Parameters, budget: &Budget) -> String {
     let own: Vec<usize> = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument()).collect();
     let mut text = String::from("CORRELATION  of the parameters of the instrument\n");
     for (n, &i) in own.iter().enumerate() {
@@ -92,7 +111,7 @@ pub fn correlation_table(parameters: &Parameters, budget: &Budget) -> String {
 }
 
 /// chi^2, plateaus that stand out, hold-out by mounting, and patterns in words.
-pub fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[Pattern]) -> String {
+fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[Pattern]) -> String {
     let mut text = String::from("VALIDITY\n");
     let _ = writeln!(text, "  chi^2: a value as large or larger has a probability of {:.3}", validity.probability);
     text.push_str("  largest standardised residuals:\n");
@@ -139,7 +158,7 @@ pub fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[P
 }
 
 /// Which plateaus were left out and what it changed against the fit `before`.
-pub fn outliers_text(model: &MeasurementModel, before: &Fit, cleaned: &Cleaned) -> String {
+fn outliers_text(model: &MeasurementModel, before: &Fit, cleaned: &Cleaned) -> String {
     let after = &cleaned.fit;
     if cleaned.left_out.is_empty() {
         return "OUTLIERS  no plateau stands out\n\n".to_owned();
@@ -202,7 +221,7 @@ pub fn pattern_in_words(pattern: &PatternSummary) -> String {
 }
 
 /// Standard uncertainty of a compensated reading along each instrument axis, as a table.
-pub fn prediction_table(curves: &[Vec<CurvePoint>; 3]) -> String {
+fn prediction_table(curves: &[Vec<CurvePoint>; 3]) -> String {
     let mut text = String::from(
         "PREDICTION  standard uncertainty of a compensated reading, calibration alone, in ug\n  specific force  along axis 1  along axis 2  along axis 3\n",
     );

@@ -1,4 +1,5 @@
-//! What a calibration leaves on paper and screen. Pure functions from data to text; no files, no network.
+//! What a calibration leaves on paper and screen. Pure functions from data to text, and the
+//! files that a command writes of it.
 //!
 //! Everything is made from a [`centrical_session::CalibrationResult`], and what a certificate says beside it from a
 //! [`centrical_session::Laboratory`]. The same data give the same bytes.
@@ -6,12 +7,14 @@
 mod assessment;
 mod certificate;
 pub mod codegen;
+mod compensate;
 mod conformity;
 mod customary;
 mod dcc;
 mod equation;
 mod expanded;
 mod figures;
+mod files;
 mod groups;
 mod html;
 mod language;
@@ -29,20 +32,20 @@ mod trials;
 mod verdict;
 mod watch;
 
-pub use assessment::{
-    budget_table, correlation_table, outliers_text, pattern_in_words, prediction_table, validity_text,
-};
+pub use assessment::assessment_text;
 pub use certificate::pdf_certificate;
+pub use compensate::compensation_text;
 pub use customary::{customary, with_uncertainty};
 pub use dcc::digital_certificate;
 pub use figures::{Figure, figures, history_figure};
+pub use files::{DocumentRequest, write_all_documents, write_documents, write_history_plot, write_noise};
 pub use html::{html_report, html_report_with};
 pub use language::Language;
 pub use noise::{noise_plots, noise_table, noise_warnings};
 pub use observation::observation_text;
-pub use plan::{frontier_plot, plan_text, prediction_text};
+pub use plan::{frontier_plot, plan_text};
 pub use positions_figure::positions_figure;
 pub use terminal::{terminal_table, verdict_text};
-pub use trials::{comparison_table, monte_carlo_table, selection_table};
+pub use trials::{comparison_table, monte_carlo_text, selection_table};
 pub use verdict::{Objection, objections};
-pub use watch::{WatchView, WatchedTest, states_text, watch_table};
+pub use watch::{states_text, watch_table};

@@ -27,6 +27,8 @@ pub fn plan_text(report: &PlanReport) -> String {
     text.push('\n');
     text.push_str(&prediction_text(&report.prediction));
     frontier(&mut text, report);
+    scenarios(&mut text, report);
+    floors(&mut text, report);
     text
 }
 
@@ -244,6 +246,32 @@ fn frontier(text: &mut String, report: &PlanReport) {
 /// From a value of the criterion to what is shown.
 fn scale(report: &PlanReport) -> f64 {
     if report.criterion == "I" { 1e6 / STANDARD_GRAVITY } else { 1.0 }
+}
+
+/// What the plan reaches in each scenario, and how they count.
+fn scenarios(text: &mut String, report: &PlanReport) {
+    if report.by_scenario.is_empty() {
+        return;
+    }
+    let (scale, unit) = if report.criterion == "I" { (1e6 / STANDARD_GRAVITY, " ug") } else { (1.0, "") };
+    let values: Vec<String> = report.by_scenario.iter().map(|value| format!("{:.4}", scale * value)).collect();
+    let _ = writeln!(
+        text,
+        "\nSCENARIOS  the expected one first, then those of [robust]; the {} counts\n  {}{unit}",
+        report.against,
+        values.join(", ")
+    );
+}
+
+/// What the stated type B alone leaves of each goal.
+fn floors(text: &mut String, report: &PlanReport) {
+    let mut heading = "\nTYPE B  what is stated under [uncertainty] leaves this much, and no plan lowers it by much; noise and speeds have the rest\n";
+    for goal in &report.goals {
+        if let Some(floor) = goal.type_b.filter(|floor| *floor > 0.0) {
+            let _ = writeln!(text, "{heading}  {}: {:.1} % of its goal", goal.name, 100.0 * floor / goal.wanted);
+            heading = "";
+        }
+    }
 }
 
 /// Time against uncertainty as a plot.

@@ -4,14 +4,17 @@ use std::fmt::Write;
 
 use centrical::Parameters;
 use centrical::uncertainty::{Comparison, MonteCarlo, Selection};
+use centrical_session::{CalibrationResult, MonteCarloCase};
 
 use crate::assessment::short;
 use crate::customary::customary;
 
-/// What the runs show beside what was stated; `coverage` is the probability that the intervals are to cover.
-pub fn monte_carlo_table(parameters: &Parameters, monte_carlo: &MonteCarlo, coverage: f64) -> String {
-    let mut text =
-        format!("MONTE CARLO  {} calibrations, {} did not converge\n", monte_carlo.runs, monte_carlo.failures);
+/// For which unit the readings were drawn where that is not the one of the data, and what the runs show beside what was
+/// stated; `coverage` is the probability that the intervals are to cover.
+pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverage: f64) -> String {
+    let parameters = case.model.parameters();
+    let mut text = drawn_unit(parameters, &case.truth).to_owned();
+    let _ = writeln!(text, "MONTE CARLO  {} calibrations, {} did not converge", monte_carlo.runs, monte_carlo.failures);
     let percent = 100.0 * coverage;
     let _ = writeln!(
         text,
@@ -57,6 +60,16 @@ pub fn monte_carlo_table(parameters: &Parameters, monte_carlo: &MonteCarlo, cove
         );
     }
     text
+}
+
+fn drawn_unit(parameters: &Parameters, truth: &[f64]) -> &'static str {
+    if truth.iter().all(|value| *value == 0.0) {
+        "A unit without errors, as it is predicted; --typical draws for one of typical errors\n"
+    } else if truth == parameters.typical_in_turn() {
+        "A unit of typical errors, signs in turn\n"
+    } else {
+        ""
+    }
 }
 
 /// The rivals in one table, the recommendation and its reason, the terms one by one.
@@ -140,19 +153,15 @@ fn reason(selection: &Selection) -> String {
     text
 }
 
-/// Two calibrations of one unit. `customary_of` gives factor and unit of a parameter by name; `years` lie between them,
-/// where known.
-pub fn comparison_table(
-    comparison: &Comparison,
-    customary_of: &dyn Fn(&str) -> (f64, String),
-    years: Option<f64>,
-) -> String {
+/// Two calibrations of one unit, the `first` and a second one; `years` lie between them, where known.
+pub fn comparison_table(first: &CalibrationResult, comparison: &Comparison, years: Option<f64>) -> String {
+    let years = years.filter(|years| *years != 0.0);
     let mut text =
         String::from("COMPARISON  second less first; E_n with expanded uncertainties, k = 2: beyond 1 they disagree\n");
     let drift = if years.is_some() { "per year" } else { "" };
     let _ = writeln!(text, "  {:<12}{:<9}{:>12}{:>10}{:>8}{drift:>12}", "", "unit", "difference", "u", "E_n");
     for d in &comparison.differences {
-        let (factor, unit) = customary_of(&d.name);
+        let (factor, unit) = first.parameter(&d.name).map_or((1.0, ""), |p| customary(&p.unit, &p.group));
         let (difference, u) = (short(d.difference * factor), short(d.standard_uncertainty * factor));
         let drift = years.map_or(String::new(), |years| short(d.difference * factor / years));
         let mark = if d.e_n.abs() > 1.0 { "  DISAGREE" } else { "" };

@@ -1,69 +1,40 @@
 //! A session on the way, as a table for the terminal: what is known by now, and what the next plateau will bring.
 
+use std::f64::consts::PI;
 use std::fmt::Write;
 
 use centrical::fit::recursive::{Lives, Progress};
 use centrical::{MeasurementModel, Parameter};
-use centrical_session::InnovationSummary;
+use centrical_session::{InnovationSummary, PlateauName, Session, WatchProgress, WatchedPlateau};
 
 use crate::customary::customary;
 
-/// What is shown after a plateau.
-#[derive(Debug)]
-pub struct WatchView<'a> {
-    /// Title of the session.
-    pub title: &'a str,
-    /// The unknowns.
-    pub model: &'a MeasurementModel,
-    /// Plateaus that have come, and those of the whole schedule.
-    pub plateaus: (usize, usize),
-    /// The last one, and those that do not fit.
-    pub tests: &'a [WatchedTest],
-    /// What is known.
-    pub now: &'a Progress,
-    /// The next plateau, and what will be known after it.
-    pub next: Option<(String, &'a Progress)>,
-    /// What each plateau that remains would bring, the best first: its name, and the mean uncertainty of the compensated
-    /// reading with it over that without.
-    pub best: Vec<(String, f64)>,
-    /// Wanted standard uncertainties: group, and value in its customary unit.
-    pub targets: &'a [(String, f64)],
-}
+/// Wanted standard uncertainties: group, and value in its customary unit.
+type Targets = [(String, f64)];
 
-/// The test of a plateau.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WatchedTest {
-    /// The plateau: "4:3, 189.2 rpm".
-    pub plateau: String,
-    /// Its outcome.
-    pub innovation: InnovationSummary,
-    /// Whether the plateau does not fit.
-    pub alarm: bool,
-    /// Whether it was held out.
-    pub held_out: bool,
-}
-
-/// The table: a line per group of unknowns with its largest standard uncertainty.
-pub fn watch_table(view: &WatchView) -> String {
+/// The table: a line per group of unknowns with its largest standard uncertainty, beside the wanted one.
+pub fn watch_table(view: &WatchProgress, targets: &Targets) -> String {
     let mut text = String::new();
-    let (come, all) = view.plateaus;
+    let (arrived, all) = (view.plateaus.len(), view.session.experiment.set_points.len());
     let columns = view.model.parameters().len();
-    let _ = writeln!(text, "{}\nPLATEAU {come} of {all}   RANK {} of {columns}", view.title, view.now.rank);
-    for test in view.tests.iter().take(view.tests.len().saturating_sub(1)).filter(|test| test.alarm) {
-        outcome(&mut text, test);
+    let _ = writeln!(text, "{}\nPLATEAU {arrived} of {all}   RANK {} of {columns}", view.session.title, view.now.rank);
+    for (n, plateau) in (1..).zip(view.plateaus) {
+        if plateau.alarm || n == arrived {
+            outcome(&mut text, view.session, plateau);
+        }
     }
-    view.tests.last().iter().for_each(|test| outcome(&mut text, test));
-    let heading = view.next.as_ref().map_or(String::new(), |(plateau, _)| format!("with {plateau}"));
+    let label = |set_point: usize| label(view.session, set_point);
+    let heading = view.next.as_ref().map_or(String::new(), |(next, _)| format!("with {}", label(*next)));
     row(&mut text, ["group", "unit", "determined", "largest u", "target", &heading]);
-    let groups = groups(view.model);
-    for group in &groups {
-        group_row(&mut text, view, group);
+    for group in groups(view.model) {
+        group_row(&mut text, view, group, targets);
     }
     if !view.best.is_empty() {
-        let shown: Vec<String> = view.best.iter().map(|(name, factor)| format!("{name} (x {factor:.3})")).collect();
+        let shown: Vec<String> =
+            view.best.iter().map(|gain| format!("{} (x {:.3})", label(gain.set_point), gain.factor)).collect();
         let _ = writeln!(text, "BEST NEXT for the compensated reading's mean uncertainty: {}", shown.join("; "));
     }
-    if !view.targets.is_empty() && view.targets.iter().all(|(group, target)| is_met(view, group, *target)) {
+    if !targets.is_empty() && targets.iter().all(|(group, target)| is_met(view, group, *target)) {
         text.push_str("Every target is met.\n");
     }
     text
@@ -96,8 +67,20 @@ fn groups(model: &MeasurementModel) -> Vec<&'static str> {
     groups
 }
 
-fn outcome(text: &mut String, test: &WatchedTest) {
-    let WatchedTest { plateau, innovation, alarm, held_out } = test;
+/// `4:3, 189.2 rpm`.
+fn label(session: &Session, set_point: usize) -> String {
+    let PlateauName { mounting, plateau } = PlateauName::of(session, set_point);
+    let set = &session.experiment.set_points[set_point];
+    if set.is_rest() {
+        format!("{mounting}:{plateau}, rest at {:.0} deg", set.angle.to_degrees())
+    } else {
+        format!("{mounting}:{plateau}, {:.1} rpm", set.omega * 30.0 / PI)
+    }
+}
+
+fn outcome(text: &mut String, session: &Session, plateau: &WatchedPlateau) {
+    let WatchedPlateau { set_point, innovation, alarm, held_out, .. } = plateau;
+    let plateau = label(session, *set_point);
     let InnovationSummary { squared, degrees_of_freedom, probability } = innovation;
     let _ = match degrees_of_freedom {
         0 => write!(text, "{plateau}: nothing to test it by yet"),
@@ -111,12 +94,12 @@ fn outcome(text: &mut String, test: &WatchedTest) {
     text.push_str(if *held_out { ", held out\n" } else { "\n" });
 }
 
-fn group_row(text: &mut String, view: &WatchView, group: &str) {
+fn group_row(text: &mut String, view: &WatchProgress, group: &str, targets: &Targets) {
     let of_group: Vec<&Parameter> = view.model.parameters().iter().filter(|p| p.group == group).collect();
     let unit = of_group.first().map_or("", |p| customary(&p.unit, group).1);
-    let (determined, now) = largest(view.model, view.now, group);
+    let (determined, now) = largest(view.model, &view.now, group);
     let next = view.next.as_ref().and_then(|(_, next)| largest(view.model, next, group).1);
-    let target = view.targets.iter().find(|(name, _)| name == group);
+    let target = targets.iter().find(|(name, _)| name == group);
     let met = target.map_or(String::new(), |(_, target)| {
         format!("{target} {}", if is_met(view, group, *target) { "met" } else { "-" })
     });
@@ -133,8 +116,8 @@ fn largest(model: &MeasurementModel, progress: &Progress, group: &str) -> (usize
 }
 
 /// Whether all of a group are determined, and to its target.
-fn is_met(view: &WatchView, group: &str, target: f64) -> bool {
-    let (determined, largest) = largest(view.model, view.now, group);
+fn is_met(view: &WatchProgress, group: &str, target: f64) -> bool {
+    let (determined, largest) = largest(view.model, &view.now, group);
     let all = view.model.parameters().iter().filter(|p| p.group == group).count();
     determined == all && largest.is_some_and(|u| u <= target)
 }

@@ -1,7 +1,11 @@
 //! The whole jobs, a file a command: what the binary, a fleet's worker and a notebook all call.
 
+mod assess;
 mod calibrate;
+mod compare;
 mod compensate;
+mod models;
+mod montecarlo;
 mod noise;
 mod observe;
 mod plan;
@@ -10,12 +14,16 @@ mod reduced_session;
 mod simulate;
 mod watch;
 
+pub use self::assess::{Assessment, AssessmentRequest, assess};
 pub use self::calibrate::{Method, Problem, calibrate, calibrate_without};
-pub use self::compensate::{Compensated, FirstOutside, compensate_record};
-pub use self::noise::{Series, analyse_noise};
+pub use self::compare::{ComparedResults, compare_results};
+pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
+pub use self::models::select_model;
+pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
+pub use self::noise::{NoiseRequest, Series, noise_of};
 pub use self::observe::subject;
-pub use self::plan::{PlanRequest, USUAL_LEVELS, plan, read_plan, read_planning};
+pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, read_plan, read_planning};
 pub use self::reduce::{reduce, reduce_without_inputs};
 pub use self::reduced_session::write_reduced;
 pub use self::simulate::simulate_session;
-pub use self::watch::Watch;
+pub use self::watch::{Following, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest};

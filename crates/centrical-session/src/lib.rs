@@ -39,7 +39,9 @@ mod record_writer;
 mod reduced;
 mod truth;
 
+pub use centrical::STANDARD_GRAVITY;
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+pub use centrical::stability::Estimator;
 pub use centrical_table::{ColumnName, TableFormat, create_folder, write_whole};
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
@@ -54,13 +56,15 @@ pub use document::{
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, MountingFiles, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
-    earlier_result, read_plateaus, write_plateaus,
+    ExpectedValues, MountingFiles, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session, earlier_result,
+    read_plateaus, write_plateaus,
 };
 pub use job::{
-    Compensated, FirstOutside, Method, PlanRequest, Problem, Series, USUAL_LEVELS, Watch, analyse_noise, calibrate,
-    calibrate_without, compensate_record, plan, read_plan, read_planning, reduce, reduce_without_inputs, simulate_session,
-    subject, write_reduced,
+    Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following, Method,
+    MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series, USUAL_LEVELS, USUAL_TIMES, Watch,
+    WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess, calibrate, calibrate_without, compare_results,
+    compensate, compensate_record, noise_of, plan, read_plan, read_planning, reduce, reduce_without_inputs,
+    select_model, simulate_session, subject, write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,

@@ -3,11 +3,8 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use centrical::uncertainty::{Budget, Compensated, Validity, patterns, without_outliers};
-use centrical::{Fit, FitError, MeasurementModel, Observation, STANDARD_GRAVITY, fit, linear};
-use centrical_report::{budget_table, correlation_table, outliers_text, prediction_table, validity_text};
-use centrical_session::{Error, Problem, Session};
-use nalgebra::{DMatrix, Vector3};
+use centrical_report::assessment_text;
+use centrical_session::{AssessmentRequest, Error, STANDARD_GRAVITY, Session, assess};
 
 use crate::{Outcome, progress};
 
@@ -42,61 +39,15 @@ pub fn probability(text: &str) -> Result<f64, String> {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
+    let request = AssessmentRequest {
+        without_outliers: arguments.without_outliers,
+        scale_by_residuals: arguments.scale_by_residuals,
+        range: arguments.range.map(|g| g * STANDARD_GRAVITY),
+    };
     let bar = progress::reading(&session);
-    let problem = Problem::of(&session, &|bytes| bar.inc(bytes))?;
+    let assessment = assess(&session, &request, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
-    let text =
-        assess(arguments, &session, &problem).map_err(|source| Error::Fit { file: session.file.clone(), source })?;
+    let text = assessment_text(&assessment, arguments.coverage, arguments.correlations);
     let _ = io::stdout().write_all(text.as_bytes());
     Ok(Outcome::Done)
-}
-
-fn assess(arguments: &Arguments, session: &Session, problem: &Problem) -> Result<String, FitError> {
-    let model = &problem.model;
-    let mut observations = problem.reduced.observations();
-    let mut fit = fit::exact(model, &observations)?;
-    let mut text = String::new();
-    if let Some(alpha) = arguments.without_outliers {
-        let cleaned = without_outliers(model, &observations, alpha)?;
-        text.push_str(&outliers_text(model, &fit, &cleaned));
-        (fit, observations) = (cleaned.fit, cleaned.observations);
-    }
-    let mut budget = Budget::new(&fit, model, &observations, &session.type_b)?;
-    if arguments.scale_by_residuals {
-        budget = budget.scaled_by_residuals(&fit);
-    }
-    let validity = Validity::of(&fit, model, &observations)?;
-    let patterns = patterns(&fit, model, &observations)?;
-    text.push_str(&budget_table(model.parameters(), &budget, arguments.coverage));
-    text.push('\n');
-    if arguments.correlations {
-        text.push_str(&correlation_table(model.parameters(), &budget));
-        text.push('\n');
-    }
-    text.push_str(&validity_text(model.experiment(), &validity, &patterns));
-    text.push('\n');
-    let range = arguments.range.map_or_else(|| highest(model, &observations), |g| g * STANDARD_GRAVITY);
-    text.push_str(&prediction(model, &fit, &budget, range));
-    Ok(text)
-}
-
-/// Highest nominal specific force of the plateaus [m/s^2].
-fn highest(model: &MeasurementModel, observations: &[Observation]) -> f64 {
-    let experiment = model.experiment();
-    let force = |o: &Observation| linear::nominal(experiment, &experiment.set_points[o.set_point]).amax();
-    observations.iter().map(force).fold(0.0, f64::max)
-}
-
-fn prediction(model: &MeasurementModel, fit: &Fit, budget: &Budget, range: f64) -> String {
-    const POINTS: usize = 21;
-    let terms: Vec<usize> =
-        (0..model.parameters().len()).filter(|&j| model.parameters()[j].is_of_instrument()).collect();
-    let values: Option<Vec<f64>> = terms.iter().map(|&j| fit.value(j)).collect();
-    let covariance = |a: usize, b: usize| budget.covariance(terms[a], terms[b]).unwrap_or(f64::NAN);
-    let covariance = DMatrix::from_fn(terms.len(), terms.len(), covariance);
-    let compensated = values.and_then(|v| Compensated::new(model.error_model().with_coefficients(&v), covariance));
-    let Some(compensated) = compensated else {
-        return "PREDICTION  none: not all parameters of the instrument are determined\n".to_owned();
-    };
-    prediction_table(&[0, 1, 2].map(|axis| compensated.curve(&Vector3::ith(axis, 1.0), range, POINTS)))
 }

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use centrical_report::{Objection, objections, states_text, terminal_table, verdict_text};
+use centrical_report::{Objection, objections, states_text, terminal_table, verdict_text, write_all_documents};
 use centrical_session::{CalibrationResult, Error, Method, PlateauName, Session, calibrate_without, create_folder};
 
 use crate::command::report::Documents;
@@ -68,7 +68,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         result.write(file)?;
     }
     if let Some(folder) = &arguments.out {
-        arguments.documents.write_all(&result, folder)?;
+        let Documents { laboratory, language } = &arguments.documents;
+        write_all_documents(&result, laboratory.as_deref(), (*language).into(), folder)?;
     }
     let objections = objections(&result);
     let text = if arguments.json { result.to_json()? } else { report(&result, &objections, file.as_deref()) };

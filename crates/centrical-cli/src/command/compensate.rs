@@ -1,12 +1,9 @@
 //! `centrical compensate RESULT RECORD --out FILE`: from readings to specific force.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use centrical::STANDARD_GRAVITY;
-use centrical_compensate::{Certificate, Compensation};
-use centrical_session::{
-    CalibrationResult, Columns, Compensated, Dimension, Error, NotThatQuantity, Quantity, Session, compensate_record,
-};
+use centrical_report::compensation_text;
+use centrical_session::{CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate};
 
 use crate::Outcome;
 
@@ -31,46 +28,15 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let result = CalibrationResult::read(&arguments.result)?;
-    let file = || arguments.result.clone();
-    let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
-    let compensation = (arguments.range.map_or_else(|| result.compensation_range(&terms), Ok))
-        .and_then(|range| Compensation::new(&terms, range))
-        .map_err(|source| Error::NotInvertible { file: file(), source })?;
-    let columns = match &arguments.session {
-        Some(session) => Session::read(session)?.columns,
-        None => Columns::default(),
-    };
-    let compensated = compensate_record(&compensation, &arguments.record, &columns, &arguments.out)?;
-    tell(&compensated, compensation.certificate(), &arguments.out);
+    let (compensated, certificate) = compensate(&CompensationRequest {
+        result: arguments.result.clone(),
+        record: arguments.record.clone(),
+        out: arguments.out.clone(),
+        session: arguments.session.clone(),
+        range: arguments.range,
+    })?;
+    print!("{}", compensation_text(&compensated, &certificate, &arguments.out));
     Ok(if compensated.outside == 0 { Outcome::Done } else { Outcome::NotAcceptable })
-}
-
-fn tell(compensated: &Compensated, certificate: &Certificate, out: &Path) {
-    let g = |f: f64| format!("{:.6} g", f / STANDARD_GRAVITY);
-    let Certificate { range, margin, .. } = *certificate;
-    let farthest = if margin.is_finite() {
-        format!("up to {:.0} g", margin * range / STANDARD_GRAVITY)
-    } else {
-        "anywhere".to_owned()
-    };
-    println!(
-        "{} readings compensated, range {} on each axis; the inverse is unique there, and could be asked for {farthest}",
-        compensated.readings,
-        g(range)
-    );
-    if let Some(first) = &compensated.first_outside {
-        let reading = first.reading.map(g).join(", ");
-        println!(
-            "NOT ACCEPTABLE  {} readings come from beyond the range and are nan, the first at t = {} s: {reading}",
-            compensated.outside, first.t
-        );
-    }
-    let out = out.display();
-    match compensated.decimals {
-        Some(count) => println!("Written to {out}, specific forces to {count} decimals of a m/s^2"),
-        None => println!("Written to {out}"),
-    }
 }
 
 /// "200 g", or a plain number in m/s^2.

@@ -3,9 +3,8 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use centrical::uncertainty::{rivals_of, select};
 use centrical_report::selection_table;
-use centrical_session::{Error, Problem, Session};
+use centrical_session::{Error, Session, select_model};
 
 use crate::{Outcome, progress};
 
@@ -20,10 +19,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
     let bar = progress::reading(&session);
-    let problem = Problem::of(&session, &|bytes| bar.inc(bytes))?;
+    let selection = select_model(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
-    let selection = select(&rivals_of(&problem.model), &problem.reduced.observations())
-        .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
     let _ = io::stdout().write_all(selection_table(&selection).as_bytes());
     Ok(Outcome::Done)
 }

@@ -3,12 +3,8 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use centrical::plan::unit_of;
-use centrical::uncertainty::{Method, MonteCarlo, Settings, TypeB, monte_carlo};
-use centrical::{FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight, fit};
-use centrical_report::monte_carlo_table;
-use centrical_session::{Error, Plan, Problem, Session, read_plan};
-use nalgebra::Vector3;
+use centrical_report::monte_carlo_text;
+use centrical_session::{Error, MonteCarloCase, MonteCarloRequest, Session, read_plan};
 
 use super::assess::probability;
 use crate::{Outcome, progress};
@@ -43,77 +39,30 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let inside = arguments.session.join("experiment.toml");
     let file = if arguments.session.is_dir() { &inside } else { &arguments.session };
-    let failed = |source| Error::Fit { file: file.clone(), source };
     let mut case = match read_plan(file)? {
-        Some(plan) => Case::planned(plan, arguments.noise).map_err(failed)?,
-        None => Case::measured(&Session::read(file)?)?,
+        Some(plan) => MonteCarloCase::planned(plan, arguments.noise)?,
+        None => measured(&Session::read(file)?)?,
     };
     if arguments.typical {
-        case.truth = case.model.parameters().typical_in_turn();
+        case = case.of_typical_unit();
     }
-    let monte_carlo = draw(arguments, &case).map_err(failed)?;
-    let text = monte_carlo_table(case.model.parameters(), &monte_carlo, arguments.coverage);
-    let _ = io::stdout().write_all(format!("{}{text}", case.unit()).as_bytes());
-    Ok(Outcome::Done)
-}
-
-/// What is drawn from.
-struct Case {
-    model: MeasurementModel,
-    /// Their means are not used.
-    observations: Vec<Observation>,
-    truth: Vec<f64>,
-    stated: TypeB,
-}
-
-impl Case {
-    /// A session: the estimates of its own calibration are true.
-    fn measured(session: &Session) -> Result<Self, Error> {
-        let bar = progress::reading(session);
-        let Problem { model, reduced } = Problem::of(session, &|bytes| bar.inc(bytes))?;
-        bar.finish_and_clear();
-        let observations = reduced.observations();
-        let fit =
-            fit::exact(&model, &observations).map_err(|source| Error::Fit { file: session.file.clone(), source })?;
-        let truth = fit.state().to_vec();
-        Ok(Self { model, observations, truth, stated: session.type_b })
-    }
-
-    /// A plan: the unit that it is predicted for.
-    fn planned(plan: Plan, noise: Option<f64>) -> Result<Self, FitError> {
-        let Plan { model, nominal, weights, type_b, .. } = plan;
-        let truth = unit_of(&model, &weights, &nominal)?;
-        let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
-        let weights = noise.map_or_else(|| weights.clone(), equal);
-        let observation =
-            |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
-        let observations = weights.into_iter().map(observation).collect();
-        Ok(Self { model, observations, truth, stated: type_b })
-    }
-
-    /// Says for which unit is drawn, where that is not what was found of it.
-    fn unit(&self) -> &'static str {
-        if self.truth.iter().all(|value| *value == 0.0) {
-            "A unit without errors, as it is predicted; --typical draws for one of typical errors\n"
-        } else if self.truth == self.model.parameters().typical_in_turn() {
-            "A unit of typical errors, signs in turn\n"
-        } else {
-            ""
-        }
-    }
-}
-
-fn draw(arguments: &Arguments, case: &Case) -> Result<MonteCarlo, FitError> {
-    let settings = Settings {
+    let request = MonteCarloRequest {
         runs: arguments.runs,
         seed: arguments.seed,
         coverage: arguments.coverage,
-        method: if arguments.linear { Method::Linear } else { Method::Exact },
-        stated: case.stated,
+        linear: arguments.linear,
     };
     let bar = progress::calibrations(arguments.runs);
-    let done = |count: usize| bar.inc(count as u64);
-    let outcome = monte_carlo(&case.model, &case.truth, &case.observations, &settings, &done);
+    let monte_carlo = case.run(&request, &|count| bar.inc(count as u64))?;
     bar.finish_and_clear();
-    outcome
+    let text = monte_carlo_text(&case, &monte_carlo, arguments.coverage);
+    let _ = io::stdout().write_all(text.as_bytes());
+    Ok(Outcome::Done)
+}
+
+fn measured(session: &Session) -> Result<MonteCarloCase, Error> {
+    let bar = progress::reading(session);
+    let case = MonteCarloCase::measured(session, &|bytes| bar.inc(bytes))?;
+    bar.finish_and_clear();
+    Ok(case)
 }

@@ -1,13 +1,11 @@
 //! `centrical noise FILE`: deviations of the Allan family, spectrum and noise terms of a record.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use centrical::stability::Estimator;
-use centrical_report::{noise_plots, noise_table, noise_warnings};
+use centrical_report::{noise_table, noise_warnings, write_noise};
 use centrical_session::{
-    Column, ColumnName, Columns, Dimension, Error, NotThatQuantity, PlateauName, Quantity, Scale, Series, Session,
-    analyse_noise, create_folder, write_whole,
+    ColumnName, Dimension, Error, Estimator, NoiseRequest, NotThatQuantity, PlateauName, Quantity, noise_of,
 };
 
 use crate::Outcome;
@@ -58,20 +56,19 @@ struct Estimators(Vec<Estimator>);
 
 /// Runs the command. Not acceptable: noise terms do not describe a column of readings.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let (series, plateau) = series(arguments)?;
-    let mut estimators: Vec<Estimator> = Vec::new();
-    for estimator in arguments.estimators.iter().flat_map(|some| &some.0) {
-        if !estimators.contains(estimator) {
-            estimators.push(*estimator);
-        }
-    }
-    let analysis = analyse_noise(&series, &estimators)?;
+    let (analysis, plateau) = noise_of(&NoiseRequest {
+        file: arguments.file.clone(),
+        plateau: arguments.plateau,
+        session: arguments.session.clone(),
+        time: arguments.time.clone(),
+        rate: arguments.rate,
+        readings: arguments.readings.clone(),
+        unit: arguments.unit.clone(),
+        window: [arguments.from.unwrap_or(f64::NEG_INFINITY), arguments.to.unwrap_or(f64::INFINITY)],
+        estimators: arguments.estimators.iter().flat_map(|some| some.0.clone()).collect(),
+    })?;
     if let Some(folder) = &arguments.out {
-        create_folder(folder)?;
-        analysis.write(&folder.join("noise.json"))?;
-        for (name, plot) in noise_plots(&analysis) {
-            write_whole(&folder.join(name), plot.to_svg().as_bytes())?;
-        }
+        write_noise(&analysis, folder)?;
     }
     let warnings = noise_warnings(&analysis);
     let text = if arguments.json {
@@ -86,44 +83,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     // A reader that has seen enough (`| head`) is no failure.
     let _ = io::stdout().write_all(text.as_bytes());
     Ok(if warnings.is_empty() { Outcome::Done } else { Outcome::NotAcceptable })
-}
-
-/// The readings to analyse, and the plateau that they are of.
-fn series(arguments: &Arguments) -> Result<(Series, Option<PlateauName>), Error> {
-    if is_session(&arguments.file) {
-        let session = Session::read(&arguments.file)?;
-        let (series, name) = Series::of_plateau(&session, arguments.plateau)?;
-        return Ok((series, Some(name)));
-    }
-    let (time, readings) = match &arguments.session {
-        Some(session) => {
-            let Columns { time, f, .. } = Session::read(session)?.columns;
-            (time, f.to_vec())
-        }
-        None => columns(arguments),
-    };
-    let window = [arguments.from.unwrap_or(f64::NEG_INFINITY), arguments.to.unwrap_or(f64::INFINITY)];
-    let series = Series::read(&arguments.file, &time, &readings, window)?;
-    Ok((series, None))
-}
-
-/// A folder, or an experiment file.
-fn is_session(file: &Path) -> bool {
-    file.is_dir() || file.extension().is_some_and(|extension| extension == "toml")
-}
-
-fn columns(arguments: &Arguments) -> (Column, Vec<Column>) {
-    let column = |name: &ColumnName, unit: &str, factor| Column {
-        name: name.clone(),
-        unit: unit.to_owned(),
-        scale: Scale::factor(factor),
-    };
-    let time = match arguments.rate {
-        Some(rate) => column(&ColumnName::Row, "samples", 1.0 / rate),
-        None => column(&arguments.time, "s", 1.0),
-    };
-    let factor = Dimension::Acceleration.factor(&arguments.unit).unwrap_or(1.0);
-    (time, arguments.readings.iter().map(|name| column(name, &arguments.unit, factor)).collect())
 }
 
 /// A number from 1, or a name.

@@ -28,6 +28,5 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let text = if arguments.json { report.to_json()? } else { observation_text(&report) };
     // A reader that has seen enough (`| head`) is no failure.
     let _ = io::stdout().write_all(text.as_bytes());
-    let is_lost = report.parameters.iter().any(|p| p.of_instrument && !p.estimable);
-    Ok(if is_lost || report.doubtful { Outcome::NotAcceptable } else { Outcome::Done })
+    Ok(if report.is_acceptable() { Outcome::Done } else { Outcome::NotAcceptable })
 }

@@ -3,9 +3,8 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use centrical::STANDARD_GRAVITY;
 use centrical_report::{frontier_plot, plan_text};
-use centrical_session::{Error, PlanReport, PlanRequest, USUAL_LEVELS, plan, write_whole};
+use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, write_whole};
 
 use super::assess::probability;
 use crate::Outcome;
@@ -39,14 +38,11 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Times of the frontier over that of the plan.
-const FACTORS: [f64; 8] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0];
-
 /// Runs the command. Not acceptable: a parameter of the instrument is not determined, or a goal is missed.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let request = PlanRequest {
         certify: arguments.certify,
-        frontier: if arguments.frontier { FACTORS.to_vec() } else { Vec::new() },
+        frontier: if arguments.frontier { USUAL_TIMES.to_vec() } else { Vec::new() },
         levels: arguments.levels.clone(),
         coverage: arguments.coverage,
     };
@@ -57,42 +53,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if let Some(file) = &arguments.svg {
         write_whole(file, frontier_plot(&report).as_bytes())?;
     }
-    let text =
-        if arguments.json { report.to_json()? } else { plan_text(&report) + &scenarios(&report) + &floors(&report) };
+    let text = if arguments.json { report.to_json()? } else { plan_text(&report) };
     // A reader that has seen enough (`| head`) is no failure.
     let _ = io::stdout().write_all(text.as_bytes());
-    let is_missed = report.goals.iter().any(|goal| goal.combined.is_none_or(|u| u > goal.wanted * (1.0 + 1e-6)));
-    Ok(if is_missed || report.prediction.reading.is_none() { Outcome::NotAcceptable } else { Outcome::Done })
-}
-
-/// What the plan reaches in each scenario, and how they count.
-fn scenarios(report: &PlanReport) -> String {
-    if report.by_scenario.is_empty() {
-        return String::new();
-    }
-    let scale = if report.criterion == "I" { 1e6 / STANDARD_GRAVITY } else { 1.0 };
-    let values: Vec<String> = report.by_scenario.iter().map(|value| format!("{:.4}", scale * value)).collect();
-    let unit = if report.criterion == "I" { " ug" } else { "" };
-    format!(
-        "\nSCENARIOS  the expected one first, then those of [robust]; the {} counts\n  {}{unit}\n",
-        report.against,
-        values.join(", ")
-    )
-}
-
-/// What the stated type B alone leaves of each goal.
-fn floors(report: &PlanReport) -> String {
-    let parts: Vec<String> = report
-        .goals
-        .iter()
-        .filter_map(|goal| Some((goal, goal.type_b.filter(|b| *b > 0.0)?)))
-        .map(|(goal, b)| format!("  {}: {:.1} % of its goal\n", goal.name, 100.0 * b / goal.wanted))
-        .collect();
-    if parts.is_empty() {
-        return String::new();
-    }
-    let heading = "\nTYPE B  what is stated under [uncertainty] leaves this much, and no plan lowers it by much; noise and speeds have the rest\n";
-    heading.to_owned() + &parts.concat()
+    Ok(if report.is_acceptable() { Outcome::Done } else { Outcome::NotAcceptable })
 }
 
 fn level(text: &str) -> Result<f64, String> {

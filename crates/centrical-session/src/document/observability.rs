@@ -240,6 +240,11 @@ pub struct CombinationReport {
 }
 
 impl ObservabilityReport {
+    /// Whether every parameter of the instrument is estimable and the rank beyond doubt.
+    pub fn is_acceptable(&self) -> bool {
+        !self.doubtful && self.parameters.iter().all(|p| p.estimable || !p.of_instrument)
+    }
+
     /// Studies a design, and the combinations that are asked for.
     ///
     /// # Errors

@@ -130,6 +130,12 @@ pub struct FrontierRow {
 }
 
 impl PlanReport {
+    /// Whether all coefficients of the instrument are determined and every goal is met.
+    pub fn is_acceptable(&self) -> bool {
+        let is_missed = |goal: &GoalReport| goal.combined.is_none_or(|u| u > goal.wanted * (1.0 + 1e-6));
+        self.prediction.reading.is_some() && !self.goals.iter().any(is_missed)
+    }
+
     /// The text of the document.
     ///
     /// # Errors

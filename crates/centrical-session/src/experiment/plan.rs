@@ -97,10 +97,8 @@ impl Plan {
         let table = form.plan.as_ref();
         let of_table = |key: fn(&PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
         let (noise, usual) = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;
-        let durations = schedule::durations(file, &form.mounting)?
-            .into_iter()
-            .map(|duration| duration.unwrap_or(usual))
-            .collect();
+        let durations =
+            schedule::durations(file, &form.mounting)?.into_iter().map(|duration| duration.unwrap_or(usual)).collect();
         let model = session.model()?;
         Ok(Self {
             file: file.to_owned(),

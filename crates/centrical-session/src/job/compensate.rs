@@ -1,13 +1,15 @@
 //! From a record of readings to a record of specific forces, in memory that does not grow with it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use centrical::reduction::RecordSlice;
-use centrical_compensate::Compensation;
+use centrical_compensate::{Certificate, Compensation};
 use centrical_table::Block;
 use rayon::prelude::*;
 
+use crate::document::CalibrationResult;
 use crate::error::{Error, Place};
+use crate::experiment::Session;
 use crate::record::{Columns, scan_blocks, stretch};
 use crate::record_writer::RecordWriter;
 
@@ -31,6 +33,40 @@ pub struct FirstOutside {
     pub t: f64,
     /// The reading [m/s^2].
     pub reading: [f64; 3],
+}
+
+/// What is compensated, and how far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompensationRequest {
+    /// The result of a calibration.
+    pub result: PathBuf,
+    /// The record.
+    pub record: PathBuf,
+    /// File for the specific forces.
+    pub out: PathBuf,
+    /// The session that says columns and units of the record.
+    pub session: Option<PathBuf>,
+    /// Largest specific force on each axis [m/s^2]; `None` for what the calibration allows.
+    pub range: Option<f64>,
+}
+
+/// Compensates a record by the result of a calibration, and says where the inverse is unique.
+///
+/// # Errors
+/// As [`compensate_record`]; and if the result has no error model that can be inverted.
+pub fn compensate(request: &CompensationRequest) -> Result<(Compensated, Certificate), Error> {
+    let result = CalibrationResult::read(&request.result)?;
+    let file = || request.result.clone();
+    let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
+    let compensation = (request.range.map_or_else(|| result.compensation_range(&terms), Ok))
+        .and_then(|range| Compensation::new(&terms, range))
+        .map_err(|source| Error::NotInvertible { file: file(), source })?;
+    let columns = match &request.session {
+        Some(session) => Session::read(session)?.columns,
+        None => Columns::default(),
+    };
+    let compensated = compensate_record(&compensation, &request.record, &columns, &request.out)?;
+    Ok((compensated, *compensation.certificate()))
 }
 
 /// Compensates the record in `input` into `output`, CSV or Parquet by its name. The same bytes on any machine.
@@ -61,7 +97,7 @@ fn on_this_thread(
     let mut written = Ok(());
     scan_blocks(input, columns, &mut |blocks| {
         let mut write = || {
-            let compensated = blocks.par_iter_mut().map(|block| compensate(compensation, input, block));
+            let compensated = blocks.par_iter_mut().map(|block| compensate_block(compensation, input, block));
             for block in compensated.collect::<Vec<_>>() {
                 sum.add(&block?);
             }
@@ -79,7 +115,7 @@ fn on_this_thread(
 }
 
 /// Compensates the readings of a block in place.
-fn compensate(compensation: &Compensation, input: &Path, block: &mut Block) -> Result<Compensated, Error> {
+fn compensate_block(compensation: &Compensation, input: &Path, block: &mut Block) -> Result<Compensated, Error> {
     let [t, f @ ..] = block.as_mut_slice() else { return Ok(Compensated::default()) };
     let readings = f.to_vec();
     let mut columns = f.iter_mut();

@@ -1,7 +1,8 @@
 //! The noise of a record, or of one plateau of a session.
 
 mod analysis;
+mod request;
 mod series;
 
-pub use self::analysis::analyse_noise;
+pub use self::request::{NoiseRequest, noise_of};
 pub use self::series::Series;

@@ -10,7 +10,7 @@ use std::path::Path;
 
 pub use self::read::{read_plan, read_planning};
 use self::report::report;
-pub use self::request::{PlanRequest, USUAL_LEVELS};
+pub use self::request::{PlanRequest, USUAL_LEVELS, USUAL_TIMES};
 use crate::document::PlanReport;
 use crate::error::Error;
 

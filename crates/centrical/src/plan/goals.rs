@@ -107,8 +107,7 @@ impl Task {
         let (experiment, weights) = self.candidates.experiment_of(schedule);
         let scenario = &self.candidates.scenarios[0];
         let model = scenario.model.in_experiment(experiment);
-        let expected =
-            |p: &Parameter| scenario.model.parameters().find(&p.name).map_or(0.0, |j| scenario.nominal[j]);
+        let expected = |p: &Parameter| scenario.model.parameters().find(&p.name).map_or(0.0, |j| scenario.nominal[j]);
         let nominal: Vec<f64> = model.parameters().iter().map(expected).collect();
         predict(&model, &weights, &self.type_b, &nominal)
     }

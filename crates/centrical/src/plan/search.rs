@@ -9,8 +9,8 @@ mod shortest;
 mod tree;
 
 pub use self::incumbent::Plan;
-pub(super) use self::problem::Problem;
 pub use self::problem::Effort;
+pub(super) use self::problem::Problem;
 use self::shortest::Shortest;
 use self::tree::Tree;
 use super::candidates::Candidates;

@@ -22,6 +22,6 @@ pub fn analyse_noise(series: &Series, estimators: &[Estimator]) -> Result<NoiseA
         file: series.file.clone(),
         window: [series.t.first(), series.t.last()].map(|t| t.copied().unwrap_or(f64::NAN)),
         confidence: CONFIDENCE,
-        readings: analysed.collect::<Result<_, _>>()?,
+        readings: analysed.collect::<Result<_, Error>>()?,
     })
 }

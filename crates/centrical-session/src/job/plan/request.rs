@@ -3,6 +3,9 @@
 /// Levels `m` of [K5.5] on the frontier unless others are given.
 pub const USUAL_LEVELS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 
+/// Times of the frontier over that of the plan unless others are given.
+pub const USUAL_TIMES: [f64; 8] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0];
+
 /// The parts of a plan that are asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanRequest {

@@ -38,9 +38,8 @@ pub(super) struct Point<'a> {
 impl<'a> Objective<'a> {
     /// The factors of a design, by scenario.
     pub fn factors(&self, w: &[f64]) -> Vec<Factor> {
-        let factor = |scenario: &LinearisedScenario| {
-            scenario.factor(&scenario.information(self.polytope.atoms, |x| w[x]))
-        };
+        let factor =
+            |scenario: &LinearisedScenario| scenario.factor(&scenario.information(self.polytope.atoms, |x| w[x]));
         self.scenarios.all.iter().map(factor).collect()
     }
 

@@ -177,8 +177,7 @@ impl<'a> Heuristics<'a> {
     fn affordable(&self, node: &Node) -> Option<Vec<bool>> {
         let times = node.times(self.problem);
         let decisions = times.iter().zip(&node.mountings);
-        let mut set: Vec<bool> =
-            decisions.map(|(time, decided)| decided.unwrap_or(*time > 2e-3 * self.time)).collect();
+        let mut set: Vec<bool> = decisions.map(|(time, decided)| decided.unwrap_or(*time > 2e-3 * self.time)).collect();
         loop {
             let set_up = self.problem.candidates.set_up_time(&set);
             if set_up < self.time && set.contains(&true) {

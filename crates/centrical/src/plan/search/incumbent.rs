@@ -41,7 +41,13 @@ impl Plan {
     }
 
     /// The plan of a schedule of which `bound` is a bound of all others (logarithms).
-    pub(super) fn new(problem: &Problem, best: &IntegerSchedule, continuous: Relaxed, bound: f64, nodes: usize) -> Self {
+    pub(super) fn new(
+        problem: &Problem,
+        best: &IntegerSchedule,
+        continuous: Relaxed,
+        bound: f64,
+        nodes: usize,
+    ) -> Self {
         Self {
             schedule: problem.candidates.schedule(best.list(problem.candidates)),
             criterion: best.value.exp(),

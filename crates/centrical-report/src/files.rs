@@ -1,0 +1,166 @@
+//! The files of a command: which documents are made of a result, and what they are called.
+
+use std::path::{Path, PathBuf};
+
+use centrical::MeasurementModel;
+use centrical_session::{
+    CalibrationResult, Error, Laboratory, NoiseAnalysis, Place, create_folder, read_history, write_whole,
+};
+
+use crate::certificate::pdf_certificate;
+use crate::codegen::{NamedTerm, compensation_source, heading};
+use crate::dcc::digital_certificate;
+use crate::figures::{figures, history_figure};
+use crate::html::{html_report, html_report_with};
+use crate::language::Language;
+use crate::noise::noise_plots;
+
+/// The documents that are made of a result.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DocumentRequest {
+    /// The result of a calibration.
+    pub result: PathBuf,
+    /// File for the report.
+    pub html: Option<PathBuf>,
+    /// History of a watch, shown in the report.
+    pub history: Option<PathBuf>,
+    /// File for the certificate; needs a laboratory.
+    pub pdf: Option<PathBuf>,
+    /// Result before the unit was adjusted, shown in the certificate.
+    pub before: Option<PathBuf>,
+    /// File for the digital certificate; needs a laboratory.
+    pub dcc: Option<PathBuf>,
+    /// Folder for the compensation as source code.
+    pub code: Option<PathBuf>,
+    /// What the certificates say of the laboratory.
+    pub laboratory: Option<PathBuf>,
+    /// Language of the documents.
+    pub language: Language,
+}
+
+/// Writes the documents and returns the result that they are made of.
+///
+/// # Errors
+/// [`Error`] when a file cannot be read or written, or does not go with the result.
+pub fn write_documents(request: &DocumentRequest) -> Result<CalibrationResult, Error> {
+    let result = CalibrationResult::read(&request.result)?;
+    let laboratory = read_laboratory(request.laboratory.as_deref(), &result)?;
+    let language = request.language;
+    if let Some(file) = &request.html {
+        let history = request.history.as_deref().map(read_history).transpose()?.unwrap_or_default();
+        let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group.as_str());
+        let further = history_figure(&history, &group_of, language);
+        write_whole(file, html_report_with(&result, further.as_slice(), language).as_bytes())?;
+    }
+    if let Some(laboratory) = laboratory {
+        if let Some(file) = &request.pdf {
+            let before = request.before.as_deref().map(|file| before(file, &result, &laboratory)).transpose()?;
+            write_whole(file, &pdf_certificate(&result, before.as_ref(), &laboratory, language))?;
+        }
+        if let Some(file) = &request.dcc {
+            write_whole(file, digital_certificate(&result, &laboratory, language).as_bytes())?;
+        }
+    }
+    if let Some(folder) = &request.code {
+        write_source(&result, &request.result, folder)?;
+    }
+    Ok(result)
+}
+
+/// Writes the report and its plots to a folder, and the certificates if the data of the laboratory are given.
+///
+/// # Errors
+/// [`Error`] when the laboratory's file is wrong or the folder does not take the documents.
+pub fn write_all_documents(
+    result: &CalibrationResult,
+    laboratory: Option<&Path>,
+    language: Language,
+    folder: &Path,
+) -> Result<(), Error> {
+    let laboratory = read_laboratory(laboratory, result)?;
+    write_whole(&folder.join("report.html"), html_report(result, language).as_bytes())?;
+    if let Some(laboratory) = laboratory {
+        write_whole(&folder.join("certificate.pdf"), &pdf_certificate(result, None, &laboratory, language))?;
+        let dcc = digital_certificate(result, &laboratory, language);
+        write_whole(&folder.join("certificate.xml"), dcc.as_bytes())?;
+    }
+    let plots = folder.join("plots");
+    create_folder(&plots)?;
+    for figure in figures(result, language) {
+        let is_one = figure.drawings.len() == 1;
+        for (n, drawing) in (1..).zip(&figure.drawings) {
+            let name = if is_one { format!("{}.svg", figure.name) } else { format!("{}-{n:02}.svg", figure.name) };
+            write_whole(&plots.join(name), drawing.as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes the analysis of noise and its plots to a folder.
+///
+/// # Errors
+/// [`Error::Io`] when the folder does not take them.
+pub fn write_noise(analysis: &NoiseAnalysis, folder: &Path) -> Result<(), Error> {
+    create_folder(folder)?;
+    analysis.write(&folder.join("noise.json"))?;
+    for (name, plot) in noise_plots(analysis) {
+        write_whole(&folder.join(name), plot.to_svg().as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Draws the history in a folder beside it, if it holds one.
+///
+/// # Errors
+/// [`Error`] when the history cannot be read or the folder does not take the plot.
+pub fn write_history_plot(model: &MeasurementModel, folder: &Path) -> Result<(), Error> {
+    let history = folder.join("watch-history.jsonl");
+    if !history.exists() {
+        return Ok(());
+    }
+    let parameters = model.parameters();
+    let group_of = |name: &str| parameters.find(name).map(|j| parameters[j].group);
+    if let Some(figure) = history_figure(&read_history(&history)?, &group_of, Language::English) {
+        write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes())?;
+    }
+    Ok(())
+}
+
+/// What the laboratory says, its limits those of parameters of the result.
+fn read_laboratory(file: Option<&Path>, result: &CalibrationResult) -> Result<Option<Laboratory>, Error> {
+    let Some(file) = file else { return Ok(None) };
+    let laboratory = Laboratory::read(file)?;
+    laboratory.check_limits(file, result)?;
+    Ok(Some(laboratory))
+}
+
+/// The result before an adjustment, which has to be of the same unit, and the laboratory has to say what it adjusted.
+fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Result<CalibrationResult, Error> {
+    let before = CalibrationResult::read(file)?;
+    let unit = |result: &CalibrationResult| format!("{} {}", result.session.unit_model, result.session.unit_serial);
+    let refuse = |found: String, expected: String| Err(Error::content(file, Place::Whole, found, expected));
+    if unit(&before) != unit(after) {
+        return refuse(format!("a result of {}", unit(&before)), format!("one of {}", unit(after)));
+    }
+    if laboratory.item.adjustment.is_none() {
+        let expected = "[item] adjustment in the laboratory's file, what was adjusted between the two calibrations";
+        return refuse("a result before an adjustment".to_owned(), expected.to_owned());
+    }
+    Ok(before)
+}
+
+/// Writes the compensation as source code.
+fn write_source(result: &CalibrationResult, file: &Path, folder: &Path) -> Result<(), Error> {
+    let file = || file.to_owned();
+    let no_model = |source| Error::ErrorModel { file: file(), source };
+    let terms = NamedTerm::of(result).map_err(no_model)?;
+    let plain = result.error_terms().map_err(no_model)?;
+    let sources = (result.compensation_range(&plain))
+        .and_then(|range| compensation_source(&heading(result), &terms, range))
+        .map_err(|source| Error::NotInvertible { file: file(), source })?;
+    create_folder(folder)?;
+    for source in sources {
+        write_whole(&folder.join(source.name), source.text.as_bytes())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,91 @@
+//! How far the calibration of a session can be trusted: budget, validity, residual patterns, prediction.
+
+use centrical::uncertainty::{Budget, Cleaned, Compensated, CurvePoint, Pattern, Validity, patterns, without_outliers};
+use centrical::{Fit, FitError, MeasurementModel, Observation, fit, linear};
+use nalgebra::{DMatrix, Vector3};
+
+use super::calibrate::Problem;
+use crate::error::Error;
+use crate::experiment::Session;
+
+/// Points of a curve of the prediction.
+const POINTS: usize = 21;
+
+/// What an assessment is to use.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AssessmentRequest {
+    /// Family-wise error at which outlying plateaus are left out; `None` leaves all in.
+    pub without_outliers: Option<f64>,
+    /// Whether the noise and the speed of the plateaus are scaled by the residuals.
+    pub scale_by_residuals: bool,
+    /// Range of the specific force of the prediction [m/s^2]; `None` for the highest of the session.
+    pub range: Option<f64>,
+}
+
+/// How far a calibration can be trusted.
+#[derive(Debug)]
+pub struct Assessment {
+    /// The model.
+    pub model: MeasurementModel,
+    /// The fit of all plateaus.
+    pub fit: Fit,
+    /// The fit without outlying plateaus, if it was asked for; what follows is of it then.
+    pub cleaned: Option<Cleaned>,
+    /// What each source of uncertainty leaves.
+    pub budget: Budget,
+    /// Whether the residuals are those of a true model.
+    pub validity: Validity,
+    /// Patterns in the residuals.
+    pub patterns: Vec<Pattern>,
+    /// Uncertainty of a compensated reading along each instrument axis; `None` while a coefficient is not determined.
+    pub prediction: Option<[Vec<CurvePoint>; 3]>,
+}
+
+/// Reads, reduces, fits and assesses a session. `progress` is called with the number of bytes read, from any thread; most
+/// bytes are read twice.
+///
+/// # Errors
+/// [`Error`] naming the file, the place, what was found and what was expected.
+pub fn assess(
+    session: &Session,
+    request: &AssessmentRequest,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<Assessment, Error> {
+    let problem = Problem::of(session, progress)?;
+    of_problem(session, problem, request).map_err(|source| Error::Fit { file: session.file.clone(), source })
+}
+
+fn of_problem(session: &Session, problem: Problem, request: &AssessmentRequest) -> Result<Assessment, FitError> {
+    let Problem { model, reduced } = problem;
+    let all = reduced.observations();
+    let fit = fit::exact(&model, &all)?;
+    let cleaned = request.without_outliers.map(|alpha| without_outliers(&model, &all, alpha));
+    let cleaned = cleaned.transpose()?;
+    let (used, observations) = cleaned.as_ref().map_or((&fit, &all), |c| (&c.fit, &c.observations));
+    let mut budget = Budget::new(used, &model, observations, &session.type_b)?;
+    if request.scale_by_residuals {
+        budget = budget.scaled_by_residuals(used);
+    }
+    let validity = Validity::of(used, &model, observations)?;
+    let patterns = patterns(used, &model, observations)?;
+    let range = request.range.unwrap_or_else(|| highest(&model, observations));
+    let prediction = prediction(&model, used, &budget, range);
+    Ok(Assessment { model, fit, cleaned, budget, validity, patterns, prediction })
+}
+
+/// Highest nominal specific force of the plateaus [m/s^2].
+fn highest(model: &MeasurementModel, observations: &[Observation]) -> f64 {
+    let experiment = model.experiment();
+    let force = |o: &Observation| linear::nominal(experiment, &experiment.set_points[o.set_point]).amax();
+    observations.iter().map(force).fold(0.0, f64::max)
+}
+
+fn prediction(model: &MeasurementModel, fit: &Fit, budget: &Budget, range: f64) -> Option<[Vec<CurvePoint>; 3]> {
+    let terms: Vec<usize> =
+        (0..model.parameters().len()).filter(|&j| model.parameters()[j].is_of_instrument()).collect();
+    let values: Option<Vec<f64>> = terms.iter().map(|&j| fit.value(j)).collect();
+    let covariance = |a: usize, b: usize| budget.covariance(terms[a], terms[b]).unwrap_or(f64::NAN);
+    let covariance = DMatrix::from_fn(terms.len(), terms.len(), covariance);
+    let compensated = Compensated::new(model.error_model().with_coefficients(&values?), covariance)?;
+    Some([0, 1, 2].map(|axis| compensated.curve(&Vector3::ith(axis, 1.0), range, POINTS)))
+}

@@ -1,0 +1,92 @@
+//! The whole calibration repeated on drawn readings, of a session or of a plan.
+
+use std::path::PathBuf;
+
+use centrical::plan::unit_of;
+use centrical::uncertainty::{Method, MonteCarlo, Settings, TypeB, monte_carlo};
+use centrical::{MeasurementModel, Observation, STANDARD_GRAVITY, Weight, fit};
+use nalgebra::Vector3;
+
+use super::calibrate::Problem;
+use crate::error::Error;
+use crate::experiment::{Plan, Session};
+
+/// How often what is repeated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MonteCarloRequest {
+    /// Calibrations.
+    pub runs: usize,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Probability that the intervals are to cover, in (0, 1).
+    pub coverage: f64,
+    /// Whether the linear fit of [K5.3] alone is repeated.
+    pub linear: bool,
+}
+
+/// What is drawn from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MonteCarloCase {
+    /// The model.
+    pub model: MeasurementModel,
+    /// True values of the unknowns, SI.
+    pub truth: Vec<f64>,
+    file: PathBuf,
+    /// Their means are not used.
+    observations: Vec<Observation>,
+    stated: TypeB,
+}
+
+impl MonteCarloCase {
+    /// A session: the estimates of its own calibration are true. `progress` is called with the number of bytes read, from
+    /// any thread; most bytes are read twice.
+    ///
+    /// # Errors
+    /// [`Error`] naming the file, the place, what was found and what was expected.
+    pub fn measured(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
+        let Problem { model, reduced } = Problem::of(session, progress)?;
+        let (observations, file) = (reduced.observations(), session.file.clone());
+        let fit = fit::exact(&model, &observations).map_err(|source| Error::Fit { file: file.clone(), source })?;
+        let truth = fit.state().to_vec();
+        Ok(Self { model, truth, file, observations, stated: session.type_b })
+    }
+
+    /// A plan: the unit that it is predicted for. `noise` is the white noise of every mean in micro-g, in place of the
+    /// plan's own.
+    ///
+    /// # Errors
+    /// [`Error::Fit`] when a weight is invalid.
+    pub fn planned(plan: Plan, noise: Option<f64>) -> Result<Self, Error> {
+        let Plan { file, model, nominal, weights, type_b, .. } = plan;
+        let truth = unit_of(&model, &weights, &nominal).map_err(|source| Error::Fit { file: file.clone(), source })?;
+        let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
+        let weights = noise.map_or_else(|| weights.clone(), equal);
+        let observation =
+            |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
+        let observations = weights.into_iter().map(observation).collect();
+        Ok(Self { model, truth, file, observations, stated: type_b })
+    }
+
+    /// Takes a unit of typical errors with alternating signs for the true one.
+    #[must_use]
+    pub fn of_typical_unit(mut self) -> Self {
+        self.truth = self.model.parameters().typical_in_turn();
+        self
+    }
+
+    /// Repeats the calibration. `done` is called with the number of calibrations that a batch brought.
+    ///
+    /// # Errors
+    /// [`Error::Fit`] when a weight is invalid.
+    pub fn run(&self, request: &MonteCarloRequest, done: &dyn Fn(usize)) -> Result<MonteCarlo, Error> {
+        let settings = Settings {
+            runs: request.runs,
+            seed: request.seed,
+            coverage: request.coverage,
+            method: if request.linear { Method::Linear } else { Method::Exact },
+            stated: self.stated,
+        };
+        monte_carlo(&self.model, &self.truth, &self.observations, &settings, done)
+            .map_err(|source| Error::Fit { file: self.file.clone(), source })
+    }
+}

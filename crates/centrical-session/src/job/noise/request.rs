@@ -1,0 +1,82 @@
+//! Which readings are analysed, and how.
+
+use std::path::PathBuf;
+
+use centrical::stability::Estimator;
+use centrical_table::ColumnName;
+
+use super::analysis::analyse_noise;
+use super::series::Series;
+use crate::document::NoiseAnalysis;
+use crate::error::Error;
+use crate::experiment::{PlateauName, Session};
+use crate::quantity::Dimension;
+use crate::record::{Column, Columns, Scale};
+
+/// Which readings are analysed, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoiseRequest {
+    /// A record, or a session.
+    pub file: PathBuf,
+    /// Plateau of the session; `None` for the longest at rest.
+    pub plateau: Option<PlateauName>,
+    /// The session that says columns and units of the record, in place of the four fields below.
+    pub session: Option<PathBuf>,
+    /// Column of time [s].
+    pub time: ColumnName,
+    /// Sampling rate of a record without a column of time [Hz].
+    pub rate: Option<f64>,
+    /// Columns of readings.
+    pub readings: Vec<ColumnName>,
+    /// Unit of the readings.
+    pub unit: String,
+    /// From, to on the clock of the record [s].
+    pub window: [f64; 2],
+    /// Estimators; one that is named twice counts once.
+    pub estimators: Vec<Estimator>,
+}
+
+/// Analyses the noise of a record or of a plateau of a session, which is named then.
+///
+/// # Errors
+/// [`Error`] naming the file, the place, what was found and what was expected.
+pub fn noise_of(request: &NoiseRequest) -> Result<(NoiseAnalysis, Option<PlateauName>), Error> {
+    let (series, plateau) = series(request)?;
+    let mut estimators: Vec<Estimator> = Vec::new();
+    for estimator in &request.estimators {
+        if !estimators.contains(estimator) {
+            estimators.push(*estimator);
+        }
+    }
+    Ok((analyse_noise(&series, &estimators)?, plateau))
+}
+
+fn series(request: &NoiseRequest) -> Result<(Series, Option<PlateauName>), Error> {
+    let NoiseRequest { file, .. } = request;
+    if file.is_dir() || file.extension().is_some_and(|extension| extension == "toml") {
+        let (series, name) = Series::of_plateau(&Session::read(file)?, request.plateau)?;
+        return Ok((series, Some(name)));
+    }
+    let (time, readings) = match &request.session {
+        Some(session) => {
+            let Columns { time, f, .. } = Session::read(session)?.columns;
+            (time, f.to_vec())
+        }
+        None => columns(request),
+    };
+    Ok((Series::read(file, &time, &readings, request.window)?, None))
+}
+
+fn columns(request: &NoiseRequest) -> (Column, Vec<Column>) {
+    let column = |name: &ColumnName, unit: &str, factor| Column {
+        name: name.clone(),
+        unit: unit.to_owned(),
+        scale: Scale::factor(factor),
+    };
+    let time = match request.rate {
+        Some(rate) => column(&ColumnName::Row, "samples", 1.0 / rate),
+        None => column(&request.time, "s", 1.0),
+    };
+    let factor = Dimension::Acceleration.factor(&request.unit).unwrap_or(1.0);
+    (time, request.readings.iter().map(|name| column(name, &request.unit, factor)).collect())
+}

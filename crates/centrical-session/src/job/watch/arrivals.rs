@@ -1,0 +1,188 @@
+//! Which plateaus of a session folder have arrived while it is being filled.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, SystemTime};
+
+use centrical::reduction::{NoiseModel, ReducedMounting, ReductionError, ScheduledPlateau, plateau_means, reduce};
+use centrical::{Observation, SetPoint, linear};
+
+use crate::error::Error;
+use crate::experiment::{PlateauMean, Session};
+use crate::record::read_growing_record;
+
+/// A session folder that is looked into again and again.
+///
+/// A plateau has come when the next one of its schedule has begun, or when the record of its mounting is finished: it has
+/// been left alone for the time called quiet, or one of a later mounting is there and it shows its whole schedule.
+#[derive(Debug)]
+pub struct Watch<'s> {
+    session: &'s Session,
+    quiet: Duration,
+    /// Mountings of which every plateau has come.
+    finished: Vec<ReducedMounting>,
+    /// Plateaus of the mounting after them that have come.
+    come: usize,
+    /// What the record of that mounting looked like the last time.
+    seen: Option<Look>,
+    note: Option<String>,
+}
+
+/// What a record looks like from outside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Look {
+    bytes: u64,
+    changed: Option<SystemTime>,
+    /// Unchanged for the time called quiet: what it is now it stays.
+    left_alone: bool,
+    /// A later mounting has a record: this one grows no more, but what was written may still be on its way.
+    followed: bool,
+}
+
+impl<'s> Watch<'s> {
+    /// Before the first look at the records of `session`.
+    pub fn new(session: &'s Session, quiet: Duration) -> Self {
+        Self { session, quiet, finished: Vec::new(), come: 0, seen: None, note: None }
+    }
+
+    /// Whether all plateaus of the schedule have come.
+    pub fn is_complete(&self) -> bool {
+        self.session.plateaus.is_some() && self.come > 0 || self.finished.len() == self.session.mountings.len()
+    }
+
+    /// What is waited for, if something is.
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    /// Plateaus that have come since the last look, in the order of the schedule, each with the noise of its own and the
+    /// earlier mountings as far as it was known.
+    ///
+    /// A record that cannot be made out and has not been left alone yet is waited for, with a [`Watch::note`].
+    ///
+    /// # Errors
+    /// [`Error`] when a record that has been left alone is wrong.
+    pub fn look(&mut self) -> Result<Vec<Observation>, Error> {
+        if let Some(table) = &self.session.plateaus {
+            let fresh = table.rows.iter().enumerate().skip(self.come);
+            let observation = |(set_point, row): (usize, &PlateauMean)| Observation {
+                set_point,
+                mean: row.mean,
+                covariance: row.covariance,
+            };
+            let arrivals: Vec<_> = fresh.map(observation).collect();
+            self.come += arrivals.len();
+            return Ok(arrivals);
+        }
+        let mut arrivals = Vec::new();
+        while self.finished.len() < self.session.mountings.len() && self.look_at_current(&mut arrivals)? {}
+        Ok(arrivals)
+    }
+
+    /// Looks at the record of the first mounting that is not finished; whether it is now.
+    fn look_at_current(&mut self, arrivals: &mut Vec<Observation>) -> Result<bool, Error> {
+        let mounting = self.finished.len();
+        let Some(file) = self.session.mountings[mounting].record.as_deref() else {
+            // The error of a session that names no record.
+            return self.session.record(mounting).map(|_| false);
+        };
+        let Some(look) = self.look_of(mounting, file) else {
+            self.note = Some(format!("waiting for {}", file.display()));
+            return Ok(false);
+        };
+        if self.seen == Some(look) {
+            return Ok(false);
+        }
+        self.seen = Some(look);
+        self.note = None;
+        let finished = look.left_alone || look.followed;
+        let reduced = if finished { self.whole(mounting, file, look).map(Some) } else { self.begun(mounting, file) };
+        match reduced {
+            Err(error) if !look.left_alone => self.note = Some(format!("not yet: {error}")),
+            Err(error) => return Err(error),
+            Ok(None) => {}
+            Ok(Some((reduced, complete))) => {
+                self.arrive(mounting, &reduced, complete, arrivals);
+                if finished {
+                    self.finished.push(reduced);
+                    (self.come, self.seen) = (0, None);
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// `None` while there is no record.
+    fn look_of(&self, mounting: usize, file: &Path) -> Option<Look> {
+        let metadata = fs::metadata(file).ok()?;
+        let changed = metadata.modified().ok();
+        let left_alone = changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= self.quiet);
+        let mut later = self.session.mountings[mounting + 1..].iter().filter_map(|m| m.record.as_deref());
+        Some(Look { bytes: metadata.len(), changed, left_alone, followed: later.any(Path::exists) })
+    }
+
+    /// All plateaus of a finished mounting. Unless it has been left alone a last line without end is not read: it may have
+    /// come in part.
+    fn whole(&self, mounting: usize, file: &Path, look: Look) -> Result<(ReducedMounting, usize), Error> {
+        let schedule = self.schedule(mounting);
+        let record = if look.left_alone {
+            self.session.record(mounting)?
+        } else {
+            read_growing_record(file, &self.session.columns)?
+        };
+        let reduced = reduce(&record, None, &schedule).map_err(|source| self.refused(mounting, source))?;
+        Ok((reduced, schedule.len()))
+    }
+
+    /// The plateaus that a growing record shows, and how many of them have come to their end.
+    fn begun(&self, mounting: usize, file: &Path) -> Result<Option<(ReducedMounting, usize)>, Error> {
+        let schedule = self.schedule(mounting);
+        let record = read_growing_record(file, &self.session.columns)?;
+        let mut count = schedule.len();
+        while count > 0 {
+            match reduce(&record, None, &schedule[..count]) {
+                Ok(reduced) => return Ok(Some((reduced, count - 1))),
+                Err(
+                    ReductionError::PlateauNotFound { index, .. }
+                    | ReductionError::PlateauTooShort { index, .. }
+                    | ReductionError::Unsteady { index, .. },
+                ) => count = index.min(count - 1),
+                Err(ReductionError::TooShort { .. }) => return Ok(None),
+                Err(source) => return Err(self.refused(mounting, source)),
+            }
+        }
+        Ok(None)
+    }
+
+    /// Notes the plateaus among the first `complete` that have not come before.
+    fn arrive(&mut self, mounting: usize, reduced: &ReducedMounting, complete: usize, arrivals: &mut Vec<Observation>) {
+        if complete <= self.come {
+            return;
+        }
+        let so_far: Vec<ReducedMounting> = self.finished.iter().chain([reduced]).cloned().collect();
+        let means = plateau_means(reduced, &NoiseModel::pool(&so_far));
+        let set_points = self.session.experiment.set_points.iter().enumerate();
+        let there = set_points.filter(|(_, set_point)| set_point.mounting == mounting).map(|(index, _)| index);
+        let fresh = there.zip(means).take(complete).skip(self.come);
+        let observation = |(set_point, plateau): (usize, centrical::reduction::PlateauMean)| Observation {
+            set_point,
+            mean: plateau.mean,
+            covariance: plateau.covariance,
+        };
+        arrivals.extend(fresh.map(observation));
+        self.come = complete;
+    }
+
+    fn schedule(&self, mounting: usize) -> Vec<ScheduledPlateau> {
+        let experiment = &self.session.experiment;
+        let there = experiment.set_points.iter().filter(|set_point| set_point.mounting == mounting);
+        let scheduled = |s: &SetPoint| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) };
+        there.map(scheduled).collect()
+    }
+
+    fn refused(&self, mounting: usize, source: ReductionError) -> Error {
+        let file = self.session.mountings[mounting].record.clone().unwrap_or_default();
+        Error::Reduction { file, mounting: mounting + 1, source: Box::new(source) }
+    }
+}

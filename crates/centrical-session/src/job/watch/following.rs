@@ -1,0 +1,244 @@
+//! A session that is watched: every plateau is tested, taken up or held out, and kept; the calibration when all have arrived.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use centrical::fit::recursive::{Follower, Progress};
+use centrical::plan::{Benefit, Criterion, ReadingRange, next_best};
+use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linear};
+
+use super::arrivals::Watch;
+use crate::document::{
+    CalibrationResult, HistoryEntry, HistoryEstimate, WatchState, WatchedPlateau, append_history, keep_history,
+};
+use crate::error::{Error, Place};
+use crate::experiment::{PlateauName, Session};
+use crate::job::calibrate::{Method, calibrate_without};
+
+/// How a session is watched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WatchRequest {
+    /// Folder for the state, the history and the result.
+    pub out: PathBuf,
+    /// Probability that a good session raises an alarm.
+    pub false_alarm: f64,
+    /// Plateaus that are held out whatever their test says.
+    pub hold_out: Vec<PlateauName>,
+    /// Whether plateaus that raise an alarm are held out.
+    pub hold_out_alarms: bool,
+    /// Groups of parameters for which an uncertainty is wanted.
+    pub groups: Vec<String>,
+    /// Time between two looks at the folder.
+    pub interval: Duration,
+    /// Time without change after which a record counts as finished.
+    pub quiet: Duration,
+    /// Whether one look is enough.
+    pub once: bool,
+}
+
+/// What happens while a session is watched.
+#[derive(Debug)]
+pub enum WatchEvent<'a> {
+    /// A plateau was taken up or held out.
+    Plateau(WatchProgress<'a>),
+    /// What is waited for.
+    Waiting(&'a str),
+}
+
+/// What is known after a plateau.
+#[derive(Debug)]
+pub struct WatchProgress<'a> {
+    /// The session.
+    pub session: &'a Session,
+    /// The unknowns.
+    pub model: &'a MeasurementModel,
+    /// Plateaus that have arrived, in their order.
+    pub plateaus: &'a [WatchedPlateau],
+    /// What is known.
+    pub now: Progress,
+    /// The next set point of the schedule, and what will be known after it.
+    pub next: Option<(usize, Progress)>,
+    /// The most useful plateau that remains in the mounting on the arm, and that of the other mountings: by the mean
+    /// uncertainty of the compensated reading with it over that without.
+    pub best: Vec<Benefit>,
+}
+
+/// How a watch ends.
+#[derive(Debug)]
+pub enum WatchEnd {
+    /// Stopped; the state on disk is whole.
+    Stopped {
+        /// Plateaus that have arrived.
+        plateaus: usize,
+    },
+    /// The schedule is complete: the calibration of the session, from its files anew.
+    Complete(Box<CalibrationResult>),
+}
+
+/// A session that is watched: the estimates, and where they are kept.
+#[derive(Debug)]
+pub struct Following<'a> {
+    request: &'a WatchRequest,
+    session: &'a Session,
+    model: &'a MeasurementModel,
+    follower: Follower<'a>,
+    state: WatchState,
+    /// Plateaus that the user holds out, as set points.
+    held_out: Vec<usize>,
+}
+
+impl<'a> Following<'a> {
+    /// Begins, or goes on from the state in the folder.
+    ///
+    /// # Errors
+    /// [`Error`] when the request names an unknown group or plateau, or the folder holds the state of another session.
+    pub fn resume(request: &'a WatchRequest, session: &'a Session, model: &'a MeasurementModel) -> Result<Self, Error> {
+        check_groups(&request.groups, session, model)?;
+        let held_out: Vec<usize> =
+            request.hold_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
+        let mut state = WatchState::resume(session, &request.out.join(STATE_FILE))?;
+        keep_history(&request.out.join(HISTORY_FILE), state.plateaus.len())?;
+        // One that has been taken up before is held out from now on.
+        state.plateaus.iter_mut().for_each(|plateau| plateau.held_out |= held_out.contains(&plateau.set_point));
+        let follower = Follower::resume(model, state.taken(), &state.point)
+            .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
+        Ok(Self { request, session, model, follower, state, held_out })
+    }
+
+    /// Looks at the session again and again, until its schedule is complete or `stop` is raised.
+    ///
+    /// # Errors
+    /// [`Error`] when a finished record is wrong, or the folder does not take the state.
+    pub fn run(&mut self, stop: &AtomicBool, report: &mut dyn FnMut(WatchEvent)) -> Result<WatchEnd, Error> {
+        let mut watch = Watch::new(self.session, self.request.quiet);
+        let mut note = None;
+        loop {
+            for observation in watch.look()? {
+                if stop.load(Ordering::Relaxed) {
+                    return Ok(self.stopped());
+                }
+                if let Some(progress) = self.arrived(&observation)? {
+                    report(WatchEvent::Plateau(progress));
+                }
+            }
+            if watch.is_complete() {
+                return self.finish();
+            }
+            if watch.note() != note.as_deref() {
+                note = watch.note().map(str::to_owned);
+                note.as_deref().into_iter().for_each(|note| report(WatchEvent::Waiting(note)));
+            }
+            if stop.load(Ordering::Relaxed) || self.request.once {
+                return Ok(self.stopped());
+            }
+            thread::sleep(self.request.interval);
+        }
+    }
+
+    /// Tests a plateau, takes it up or holds it out, and keeps what is known then.
+    fn arrived(&mut self, observation: &Observation) -> Result<Option<WatchProgress<'_>>, Error> {
+        let set_point = observation.set_point;
+        if self.has(set_point) {
+            return Ok(None);
+        }
+        let innovation = self.fitted(self.follower.test(observation))?;
+        let alarm = innovation.is_alarm(self.request.false_alarm, self.session.experiment.set_points.len());
+        let held_out = self.held_out.contains(&set_point) || alarm && self.request.hold_out_alarms;
+        if !held_out {
+            let taken = self.follower.take(observation.clone());
+            self.fitted(taken)?;
+        }
+        self.state.plateaus.push(WatchedPlateau::new(observation, innovation.into(), alarm, held_out));
+        self.state.point = self.follower.point().to_vec();
+        if self.follower.taken().is_empty() {
+            self.state.write(&self.request.out.join(STATE_FILE))?;
+            return Ok(None);
+        }
+        let now = self.fitted(self.follower.progress())?;
+        let entry = HistoryEntry {
+            plateau: self.state.plateaus.len(),
+            set_point,
+            innovation: innovation.into(),
+            alarm,
+            held_out,
+            rank: now.rank,
+            estimates: HistoryEstimate::all(self.model, &now),
+        };
+        append_history(&self.request.out.join(HISTORY_FILE), &entry)?;
+        self.state.write(&self.request.out.join(STATE_FILE))?;
+        self.progress(now, observation).map(Some)
+    }
+
+    fn progress(&self, now: Progress, last: &Observation) -> Result<WatchProgress<'_>, Error> {
+        let next = (0..self.session.experiment.set_points.len()).find(|&set_point| !self.has(set_point));
+        let expected = |next| self.follower.expected(next, last.covariance).map(|progress| (next, progress));
+        Ok(WatchProgress {
+            session: self.session,
+            model: self.model,
+            plateaus: &self.state.plateaus,
+            now,
+            next: self.fitted(next.map(expected).transpose())?,
+            best: self.best_next(last)?,
+        })
+    }
+
+    /// The best of the plateaus that remain in the mounting on the arm, and of those of later mountings, by what they would
+    /// bring if they were as noisy as the last one.
+    fn best_next(&self, last: &Observation) -> Result<Vec<Benefit>, Error> {
+        let experiment = &self.session.experiment;
+        let remaining: Vec<Weight> = (0..experiment.set_points.len())
+            .filter(|&set_point| !self.has(set_point))
+            .map(|set_point| Weight { set_point, covariance: last.covariance })
+            .collect();
+        let taken: Vec<Weight> = self.follower.taken().iter().map(Weight::from).collect();
+        let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
+        let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
+        let criterion = Criterion::Reading(ReadingRange { force });
+        let benefits = next_best(self.model, &criterion, &taken, &remaining)
+            .map_err(|source| Error::Planning { file: self.session.file.clone(), source })?;
+        let on_the_arm = experiment.set_points[last.set_point].mounting;
+        let is_here = |benefit: &&Benefit| experiment.set_points[benefit.set_point].mounting == on_the_arm;
+        let here = benefits.iter().find(is_here);
+        let elsewhere = benefits.iter().find(|benefit| !is_here(benefit));
+        Ok(here.into_iter().chain(elsewhere).copied().collect())
+    }
+
+    fn has(&self, set_point: usize) -> bool {
+        self.state.plateaus.iter().any(|plateau| plateau.set_point == set_point)
+    }
+
+    fn stopped(&self) -> WatchEnd {
+        WatchEnd::Stopped { plateaus: self.state.plateaus.len() }
+    }
+
+    fn finish(&self) -> Result<WatchEnd, Error> {
+        let held_out = self.state.plateaus.iter().filter(|plateau| plateau.held_out);
+        let held_out: Vec<_> = held_out.map(|plateau| PlateauName::of(self.session, plateau.set_point)).collect();
+        let result = calibrate_without(self.session, &held_out, Method::Recursive, &|_| {})?;
+        result.write(&self.request.out.join("result.json"))?;
+        Ok(WatchEnd::Complete(Box::new(result)))
+    }
+
+    fn fitted<T>(&self, outcome: Result<T, FitError>) -> Result<T, Error> {
+        outcome.map_err(|source| Error::Fit { file: self.session.file.clone(), source })
+    }
+}
+
+/// Refuses a group that the model does not have.
+fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) -> Result<(), Error> {
+    let mut groups: Vec<&str> = model.parameters().iter().map(|parameter| parameter.group).collect();
+    groups.dedup();
+    match wanted.iter().find(|group| !groups.contains(&group.as_str())) {
+        None => Ok(()),
+        Some(unknown) => {
+            let expected = format!("one of the groups {}", groups.join(", "));
+            Err(Error::content(&session.file, Place::Whole, format!("a target for {unknown:?}"), expected))
+        }
+    }
+}
+
+const STATE_FILE: &str = "watch.json";
+
+const HISTORY_FILE: &str = "watch-history.jsonl";
