@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-use centrical::fit::recursive::Follower;
+use centrical::fit::Follower;
 use centrical_session::{Session, Watch};
 
 /// Rank and uncertainty of one coefficient after each plateau, and a test of the plateau before it is used.

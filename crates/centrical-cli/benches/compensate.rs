@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use centrical_compensate::{Compensation, Term};
-use centrical_session::{Columns, RecordSlice, RecordWriter, compensate_record, scan_record};
+use centrical_session::{Columns, RecordReader, RecordSlice, RecordWriter, compensate_record, stretch};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use tempfile::TempDir;
@@ -57,7 +57,10 @@ fn kozlov() -> Vec<Term> {
 fn reader_alone(bencher: Bencher, name: &str) {
     let file = records().join(name);
     bencher.counter(ItemsCount::new(rows())).bench_local(|| {
-        scan_record(&file, &Columns::default(), &mut |block| _ = black_box(block)).unwrap();
+        let mut record = RecordReader::open(&file, &Columns::default()).unwrap();
+        while let Some(batch) = record.next_batch().unwrap() {
+            batch.iter().for_each(|rows| _ = black_box(stretch(rows)));
+        }
     });
 }
 

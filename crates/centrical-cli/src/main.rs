@@ -4,11 +4,14 @@
 
 mod command;
 mod format;
+mod outcome;
 mod progress;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use outcome::Outcome;
 
 /// Calibrate newtonometer (accelerometer) triads on a precision centrifuge.
 #[derive(Debug, Parser)]
@@ -36,15 +39,6 @@ enum Command {
     Observe(command::observe::Arguments),
     Plan(command::plan::Arguments),
     Watch(command::watch::Arguments),
-}
-
-/// How a command ended that completed its work.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Outcome {
-    /// Done.
-    Done,
-    /// Done, but the result is not acceptable; the reason was printed.
-    NotAcceptable,
 }
 
 fn main() -> ExitCode {

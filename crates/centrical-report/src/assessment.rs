@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use centrical::uncertainty::{Budget, Cleaned, CurvePoint, Degrees, Pattern, Validity, coverage_factor};
+use centrical::uncertainty::{Budget, CurvePoint, Degrees, Pattern, Validity, coverage_factor};
 use centrical::{Experiment, Fit, MeasurementModel, Parameters, STANDARD_GRAVITY};
 use centrical_session::{Assessment, Follows, PatternSummary};
 
@@ -14,7 +14,8 @@ const TOLD: f64 = 0.05;
 /// The whole assessment, expanded uncertainties for a probability of `coverage`; the correlations if they are wanted.
 pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: bool) -> String {
     let Assessment { model, fit, cleaned, budget, validity, patterns, prediction } = assessment;
-    let mut text = cleaned.as_ref().map_or(String::new(), |cleaned| outliers_text(model, fit, cleaned));
+    let mut text =
+        cleaned.as_ref().map_or(String::new(), |(after, left_out)| outliers_text(model, [fit, after], left_out));
     text.push_str(&budget_table(model.parameters(), budget, coverage));
     text.push('\n');
     if correlations {
@@ -157,14 +158,13 @@ fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[Patte
     text
 }
 
-/// Which plateaus were left out and what it changed against the fit `before`.
-fn outliers_text(model: &MeasurementModel, before: &Fit, cleaned: &Cleaned) -> String {
-    let after = &cleaned.fit;
-    if cleaned.left_out.is_empty() {
+/// Which plateaus were left out, and what changed between the fits before and after.
+fn outliers_text(model: &MeasurementModel, [before, after]: [&Fit; 2], left_out: &[(usize, f64)]) -> String {
+    if left_out.is_empty() {
         return "OUTLIERS  no plateau stands out\n\n".to_owned();
     }
-    let mut text = format!("OUTLIERS  {} plateaus left out\n", cleaned.left_out.len());
-    for (set_point, probability) in &cleaned.left_out {
+    let mut text = format!("OUTLIERS  {} plateaus left out\n", left_out.len());
+    for (set_point, probability) in left_out {
         let _ = writeln!(text, "  {}, probability {probability:.1e}", plateau(model.experiment(), *set_point));
     }
     let _ = writeln!(

@@ -183,7 +183,7 @@ pub fn prediction_text(prediction: &PredictionReport) -> String {
         let _ = write!(text, "  {:<12}{unit:<9}", p.name);
         let _ = match (p.type_a, p.combined, p.expanded) {
             (Some(a), Some(all), Some(expanded)) => {
-                let note = if p.leans_on_lost { LEANING } else { "" };
+                let note = if p.is_affected_by_null_space { LEANING } else { "" };
                 let [a, all, expanded] = [a, all, expanded].map(|u| digits(u * factor));
                 writeln!(text, "{a:>10}{all:>10}{expanded:>10}{note}")
             }

@@ -36,7 +36,7 @@ pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverag
             s.standard_deviation / s.stated,
             s.bias / s.stated,
             100.0 * s.coverage,
-            if s.leans_on_lost { crate::plan::LEANING } else { "" }
+            if s.is_affected_by_null_space { crate::plan::LEANING } else { "" }
         );
     }
     let chance = 2.0 * (percent * (100.0 - percent) / monte_carlo.runs.max(1) as f64).sqrt();
@@ -65,7 +65,7 @@ pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverag
 fn drawn_unit(parameters: &Parameters, truth: &[f64]) -> &'static str {
     if truth.iter().all(|value| *value == 0.0) {
         "A unit without errors, as it is predicted; --typical draws for one of typical errors\n"
-    } else if truth == parameters.typical_in_turn() {
+    } else if truth == parameters.typical_alternating() {
         "A unit of typical errors, signs in turn\n"
     } else {
         ""

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use centrical::fit::recursive::{Lives, Progress};
+use centrical::fit::Progress;
+use centrical::fit::filter::Lifetimes;
 use centrical::{MeasurementModel, Parameter};
 use centrical_session::{InnovationSummary, PlateauName, Session, WatchProgress, WatchedPlateau};
 
@@ -42,14 +43,15 @@ pub fn watch_table(view: &WatchProgress, targets: &Targets) -> String {
 
 /// How many states a filter carries at a time for `order`, and what an order costs that does not keep positions together.
 pub fn states_text(model: &MeasurementModel, order: &[usize]) -> String {
-    let lives = Lives::new(model, order);
-    let mut text = format!("{} states of {} unknowns at a time\n", lives.states(), lives.unknowns());
-    if lives.cost() > 0 {
-        let waiting: Vec<&str> = lives.waiting(model).iter().map(|&j| model.parameters()[j].name.as_str()).collect();
+    let lifetimes = Lifetimes::new(model, order);
+    let mut text = format!("{} states of {} unknowns at a time\n", lifetimes.states(), lifetimes.unknowns());
+    if lifetimes.cost() > 0 {
+        let waiting: Vec<&str> =
+            lifetimes.waiting(model).iter().map(|&j| model.parameters()[j].name.as_str()).collect();
         let _ = writeln!(
             text,
             "The order does not keep positions together, which costs {} states; waiting at the fullest: {}",
-            lives.cost(),
+            lifetimes.cost(),
             waiting.join(", ")
         );
     }

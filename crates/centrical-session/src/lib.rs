@@ -15,18 +15,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # Formats of records and telemetry
-//! | format | columns |
-//! |---|---|
-//! | text, also in gzip or Zstandard: any delimiter, decimal commas, comments | by name, or by number without a header |
-//! | Parquet (uncompressed, snappy, gzip, lz4, zstd) | by name or number |
-//! | Arrow IPC: files (Feather) and streams, plain, lz4 or zstd | by name or number |
-//! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number |
-//! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
-//! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
-//!
-//! The first bytes decide the format. Time is a number in a unit, a count of samples at a rate, or (text and
-//! Parquet) a stamp. It never decreases; it may stand still.
+//! Records and telemetry are tables in any format of [`centrical_table`]. Time is a number in a unit, a count of samples at
+//! a rate, or (text and Parquet) a stamp. It never decreases; it may stand still.
 
 mod document;
 mod error;
@@ -72,7 +62,8 @@ pub use laboratory::{
 };
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
 pub use record::{
-    Column, Columns, Input, RecordOverview, Scale, read_growing_record, read_record, read_telemetry, scan_record,
+    Column, Columns, Input, RecordOverview, RecordReader, Scale, read_growing_record, read_record, read_telemetry,
+    stretch,
 };
 pub use record_writer::RecordWriter;
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};

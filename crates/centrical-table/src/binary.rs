@@ -1,11 +1,77 @@
-//! Binary formats: columns of numbers, a block of rows of each at a time.
+//! Binary formats: columns of numbers, some rows of each at a time.
 
 mod arrays;
-pub(crate) mod arrow;
+mod arrow;
 mod columnar;
 #[cfg(feature = "hdf5")]
-pub(crate) mod hdf5;
-pub(crate) mod mat;
-pub(crate) mod npy;
+mod hdf5;
+mod mat;
+mod npy;
 mod panics;
-pub(crate) mod parquet;
+mod parquet;
+
+use std::fs::File;
+use std::path::Path;
+
+pub(crate) use self::columnar::ColumnReader;
+use crate::column::Field;
+use crate::error::{Error, Place};
+
+/// The binary formats, told by their first bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum BinaryFormat {
+    Parquet,
+    /// Arrow IPC, as a file or a stream.
+    Arrow,
+    /// An array of NumPy.
+    Npy,
+    /// An archive of such arrays.
+    Npz,
+    /// MATLAB, version 5.
+    Mat,
+    Hdf5,
+    /// MATLAB, version 7.3: HDF5 after a header of its own.
+    MatHdf5,
+}
+
+impl BinaryFormat {
+    /// The format of a file that starts like this, if it is one of them.
+    pub fn of(magic: &[u8]) -> Option<Self> {
+        const MAGIC: [(&[u8], BinaryFormat); 8] = [
+            (b"PAR1", BinaryFormat::Parquet),
+            (b"ARROW1", BinaryFormat::Arrow),
+            (&arrow::CONTINUATION, BinaryFormat::Arrow),
+            (b"\x93NUMPY", BinaryFormat::Npy),
+            (b"PK\x03\x04", BinaryFormat::Npz),
+            (b"MATLAB 5", BinaryFormat::Mat),
+            (b"\x89HDF\r\n\x1a\n", BinaryFormat::Hdf5),
+            (b"MATLAB 7", BinaryFormat::MatHdf5),
+        ];
+        MAGIC.into_iter().find(|(start, _)| magic.starts_with(start)).map(|(_, format)| format)
+    }
+
+    /// Reads `fields` of a file of this format, which can hold `most` rows.
+    pub fn open(self, file: &Path, input: File, fields: Vec<Field>, most: u64) -> Result<ColumnReader, Error> {
+        let columns = match self {
+            Self::Parquet => {
+                let parts = parquet::parts(file, &input, &fields)?;
+                return Ok(ColumnReader::new(file, fields, parts, most));
+            }
+            Self::Arrow => {
+                let parts = arrow::parts(file, input, &fields)?;
+                return Ok(ColumnReader::new(file, fields, parts, most));
+            }
+            Self::Npy => npy::columns(file, &input, &fields)?,
+            Self::Npz => npy::archive_columns(file, input, &fields)?,
+            Self::Mat => mat::columns(file, &input, &fields)?,
+            #[cfg(feature = "hdf5")]
+            Self::Hdf5 | Self::MatHdf5 => hdf5::columns(file, self == Self::MatHdf5, &fields, most)?,
+            #[cfg(not(feature = "hdf5"))]
+            Self::Hdf5 | Self::MatHdf5 => {
+                let expected = "another format (this program was built without the feature hdf5)";
+                return Err(Error::content(file, Place::Whole, "HDF5", expected));
+            }
+        };
+        Ok(ColumnReader::whole(file, fields, columns, most))
+    }
+}

@@ -1,6 +1,6 @@
 //! Tables of numbers in any format, in and out.
 //!
-//! Columns are chosen by name or number and handed over in blocks of rows of bounded size, whatever the format and length of
+//! Columns are chosen by name or number and read in batches of rows of bounded size, whatever the format and length of
 //! the file. Files are of any make: nothing in one can make this crate panic, hang or fill the memory. What is wrong with a
 //! file is an [`Error`] with the file, the place, what was found and what was expected.
 //!
@@ -15,20 +15,41 @@
 //! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
 //!
 //! The format is told by the first bytes. Written are CSV and Parquet.
+//!
+//! # The mean of a column
+//! ```
+//! use std::path::Path;
+//!
+//! use centrical_table::{ColumnName, Extent, Field, Rule, TableReader};
+//!
+//! let name = ColumnName::Name("f1".into());
+//! let fields = [Field { name, expected: "a number in m/s^2".into(), rule: Rule::Any }];
+//! let (mut sum, mut count) = (0.0, 0);
+//! let file = Path::new("../../examples/ta-200/records/m01.csv");
+//! let mut table = TableReader::open(file, Extent::Whole, &fields, "a record")?;
+//! while let Some(batch) = table.next_batch()? {
+//!     for rows in batch {
+//!         sum += rows[0].iter().sum::<f64>();
+//!         count += rows[0].len();
+//!     }
+//! }
+//! assert!(count > 1000 && (sum / count as f64).abs() < 2000.0);
+//! # Ok::<(), centrical_table::Error>(())
+//! ```
 
 mod binary;
 mod column;
 mod error;
+mod reader;
 mod rows;
 mod stamp;
-mod table;
 mod text;
 mod write;
 
 pub use column::{ColumnName, Field, Rule};
 pub use error::{Error, Place, quoted};
-pub use rows::{Block, Visitor};
-pub use table::{Extent, read, read_batches, rows_at_a_glance};
+pub use reader::{Extent, TableReader, estimate_rows};
+pub use rows::Rows;
 pub use text::{Index, Reread};
 pub use write::{
     Decimals, TableFormat, TableWriter, create_folder, parquet_bytes, write_stream, write_table, write_whole,

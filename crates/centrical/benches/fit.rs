@@ -3,8 +3,8 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
+use centrical::PairRelation;
 use centrical::position::ThirdPosition;
-use centrical::{PairRelation, fit};
 
 fn main() {
     divan::main();
@@ -16,7 +16,7 @@ fn fit_49_parameters_108_plateaus(bencher: divan::Bencher) {
     let model = common::kozlov(common::experiment(ThirdPosition::AxisOneUp, PairRelation::Common, &[1.0, 0.5]));
     let truth = common::truth(&model, 1.0, &mut common::Random::new(1));
     let observations = common::observations(&model, &truth);
-    bencher.bench(|| fit::exact(&model, &observations));
+    bencher.bench(|| crate::common::exact(&model, &observations));
 }
 
 /// The same by the linear model [K5.3] alone.
@@ -25,5 +25,5 @@ fn linear_fit_49_parameters_108_plateaus(bencher: divan::Bencher) {
     let model = common::kozlov(common::experiment(ThirdPosition::AxisOneUp, PairRelation::Common, &[1.0, 0.5]));
     let truth = common::truth(&model, 1.0, &mut common::Random::new(1));
     let observations = common::observations(&model, &truth);
-    bencher.bench(|| fit::linear(&model, &observations));
+    bencher.bench(|| crate::common::linear(&model, &observations));
 }

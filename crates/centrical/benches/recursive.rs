@@ -4,9 +4,9 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use centrical::fit::recursive::{Factor, Filter, Lives, Readings};
+use centrical::fit::filter::{Factor, Filter, Lifetimes, Readings};
 use centrical::position::ThirdPosition;
-use centrical::{MeasurementModel, PairRelation, fit};
+use centrical::{Calibration, Data, MeasurementModel, PairRelation};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 fn main() {
@@ -29,8 +29,8 @@ fn one_plateau(bencher: divan::Bencher) {
     let model = model();
     let readings = readings(&model);
     let order: Vec<usize> = (0..readings.len()).collect();
-    let lives = Lives::new(&model, &order);
-    let mut filter = Filter::new(&lives);
+    let lifetimes = Lifetimes::new(&model, &order);
+    let mut filter = Filter::new(&lifetimes);
     readings.iter().enumerate().for_each(|(place, readings)| _ = filter.update(place, readings).unwrap());
     assert_eq!(filter.carried().len(), 30);
     let last = readings.len() - 1;
@@ -59,8 +59,8 @@ fn one_joseph_update_30_states_3_readings(bencher: divan::Bencher) {
 fn one_innovation(bencher: divan::Bencher) {
     let model = model();
     let readings = readings(&model);
-    let lives = Lives::new(&model, &(0..readings.len()).collect::<Vec<_>>());
-    let mut filter = Filter::new(&lives);
+    let lifetimes = Lifetimes::new(&model, &(0..readings.len()).collect::<Vec<_>>());
+    let mut filter = Filter::new(&lifetimes);
     readings.iter().enumerate().for_each(|(place, readings)| _ = filter.update(place, readings).unwrap());
     let last = readings.len() - 1;
     bencher.bench_local(|| filter.innovation(last, &readings[last]));
@@ -71,7 +71,8 @@ fn one_innovation(bencher: divan::Bencher) {
 fn iterated_filter_49_parameters_108_plateaus(bencher: divan::Bencher) {
     let model = model();
     let data = common::observations(&model, &common::truth(&model, 1.0, &mut common::Random::new(1)));
-    bencher.bench(|| fit::recursive::exact(&model, &data));
+    let data = Data::new(&model, data).unwrap();
+    bencher.bench(|| Calibration::recursive(&data));
 }
 
 fn full_rows() -> (Vec<(usize, Vector3<f64>)>, Vector3<f64>) {

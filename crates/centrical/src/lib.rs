@@ -15,7 +15,7 @@
 //!
 //! ```
 //! use centrical::plan::Normalised;
-//! use centrical::{ErrorModel, MeasurementModel, Observation, PairRelation, Weight, fit};
+//! use centrical::{Calibration, Data, ErrorModel, MeasurementModel, Observation, PairRelation, Weight};
 //!
 //! let experiment = Normalised { pair_relation: PairRelation::Common, ..Normalised::default() }.experiment();
 //! let model = MeasurementModel::new(experiment, ErrorModel::kozlov_2017(), &[]);
@@ -31,30 +31,21 @@
 //! };
 //! let observations: Vec<Observation> = Weight::equal(set_points.len(), 1e-4).into_iter().map(read).collect();
 //!
-//! let fit = fit::exact(&model, &observations)?;
-//! let (value, u) = (fit.value(scale), fit.standard_uncertainty(scale));
+//! let data = Data::new(&model, observations)?;
+//! let calibration = Calibration::exact(&data)?;
+//! let (value, u) = (calibration.value("G0_11"), calibration.fit().standard_uncertainty(scale));
 //! assert!(value.is_some_and(|value| (value - 1e-3).abs() < 1e-9) && u.is_some_and(|u| u < 1e-4));
 //! # Ok::<(), centrical::FitError>(())
 //! ```
 
-mod convergence;
-mod design;
-mod error;
-mod error_model;
-mod experiment;
 /// Estimation from plateau means.
 pub mod fit;
-mod frame;
 mod linalg;
-mod measurement;
+mod model;
 /// What an experiment can see, why not more, and what would help.
 pub mod observability;
-mod parameter;
 /// Plans of experiments.
 pub mod plan;
-/// The positions of the unit on the arm.
-pub mod position;
-mod prior;
 mod random;
 /// Reduction of continuous records to plateau means.
 pub mod reduction;
@@ -68,19 +59,12 @@ mod statistics;
 pub mod uncertainty;
 
 pub use centrical_compensate::Monomial;
-pub use convergence::{Checkpoint, convergence};
-pub use design::{Observation, Weight};
-pub use error::FitError;
-pub use error_model::{ErrorModel, Extra, Term};
-pub use experiment::{
-    Centrifuge, EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint,
-    Site, Unit,
-};
-pub use fit::{Fit, Termination};
-pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
+pub use fit::{Calibration, Checkpoint, Data, Fit, Termination};
 pub use linalg::least_squares::{LeastSquares, Solution};
-pub use measurement::{ArmMotion, Linearisation, MeasurementModel, linear};
+pub use model::{
+    ArmMotion, Centrifuge, EARTH_RATE, ErrorModel, Experiment, Extension, Extra, FitError, Kind, Law, Linearisation,
+    MeasurementModel, Mounting, NULL_HOLD, Observation, PairRelation, Parameter, Parameters, Position, Prior,
+    PriorError, PriorUse, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint, Site, Term, Unit, Weight, carousel,
+    hat, is_rotation, linear, position, rotation, rotation_rate,
+};
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};
-pub use parameter::{Extension, Kind, Law, NULL_HOLD, Parameter, Parameters};
-pub use position::Position;
-pub use prior::{Prior, PriorError, PriorUse};

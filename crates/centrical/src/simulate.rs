@@ -23,9 +23,7 @@ pub use motion::TruePlateau;
 pub use record::Records;
 pub use telemetry::Telemetry;
 
-use crate::experiment::SetPoint;
-use crate::measurement::MeasurementModel;
-use crate::parameter::Parameters;
+use crate::model::{MeasurementModel, Parameters, SetPoint};
 use draw::Draw;
 use motion::Motion;
 use record::Physics;

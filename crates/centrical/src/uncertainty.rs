@@ -2,8 +2,8 @@
 //!
 //! - [`Budget`]: what each source of uncertainty leaves in each parameter (GUM, JCGM 100:2008);
 //! - [`monte_carlo`]: the whole calibration repeated on drawn readings and drawn type B errors, to check the budget;
-//! - [`Validity`], [`without_outliers`], [`patterns`]: whether the residuals are those of a true model;
-//! - [`tilt_while_spinning`]: the tilt of the axis by the once-per-revolution terms, which the fit does not use;
+//! - [`Validity`], [`Cleaned`], [`Pattern`]: whether the residuals are those of a true model;
+//! - [`TiltComparison`]: the tilt of the axis by the once-per-revolution terms, which the fit does not use;
 //! - [`select`]: which of several models the data speak for;
 //! - [`Compensated`]: the uncertainty of a compensated reading;
 //! - [`compare`]: two calibrations of one unit.
@@ -16,8 +16,10 @@ mod budget;
 mod comparison;
 mod compensated;
 mod coverage;
+mod drift;
 mod monte_carlo;
 mod pattern;
+mod repeats;
 mod selection;
 mod source;
 mod tilt;
@@ -27,9 +29,11 @@ pub use budget::{Budget, Contribution, Improvement};
 pub use comparison::{Comparison, Difference, Estimates, compare};
 pub use compensated::{Compensated, CurvePoint};
 pub use coverage::{Degrees, chi_squared_tail, coverage_factor, effective_degrees_of_freedom};
+pub use drift::{PlateauDrift, SessionDrift, Slope};
 pub use monte_carlo::{Method, MonteCarlo, ParameterStatistics, Settings, WeightedSquare, monte_carlo};
-pub use pattern::{Pattern, Trend, patterns, trends_of};
+pub use pattern::{Pattern, Trend};
+pub use repeats::{Repeat, repeats};
 pub use selection::{Candidate, NestedTest, Rival, Selection, TermVerdict, rivals_of, select};
 pub use source::{Source, TypeB};
-pub use tilt::{OncePerRevolution, TiltComparison, tilt_while_spinning};
-pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity, f_tail, without_outliers};
+pub use tilt::{OncePerRevolution, TiltComparison};
+pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity, f_tail};

@@ -1,12 +1,12 @@
 //! `centrical assess SESSION`: uncertainty budget and checks of a session's calibration.
 
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical_report::assessment_text;
 use centrical_session::{AssessmentRequest, Error, STANDARD_GRAVITY, Session, assess};
 
-use crate::{Outcome, progress};
+use crate::outcome::{Outcome, print};
+use crate::progress;
 
 /// Uncertainty budget, validity, residual patterns and prediction of a session's calibration.
 #[derive(Debug, clap::Args)]
@@ -48,6 +48,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let assessment = assess(&session, &request, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
     let text = assessment_text(&assessment, arguments.coverage, arguments.correlations);
-    let _ = io::stdout().write_all(text.as_bytes());
+    print(&text);
     Ok(Outcome::Done)
 }

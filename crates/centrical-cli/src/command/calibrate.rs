@@ -1,13 +1,13 @@
 //! `centrical calibrate SESSION`: from a session folder to calibrated parameters.
 
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use centrical_report::{Objection, objections, states_text, terminal_table, verdict_text, write_all_documents};
 use centrical_session::{CalibrationResult, Error, Method, PlateauName, Session, calibrate_without, create_folder};
 
 use crate::command::report::Documents;
-use crate::{Outcome, progress};
+use crate::outcome::{Outcome, print};
+use crate::progress;
 
 /// Calibrate a unit from a session folder: plateau means, fit, result.json.
 #[derive(Debug, clap::Args)]
@@ -73,9 +73,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     let objections = objections(&result);
     let text = if arguments.json { result.to_json()? } else { report(&result, &objections, file.as_deref()) };
-    // A reader that has seen enough (`| head`) is no failure.
-    let _ = io::stdout().write_all(text.as_bytes());
-    Ok(if objections.is_empty() { Outcome::Done } else { Outcome::NotAcceptable })
+    print(&text);
+    Ok(Outcome::acceptable(objections.is_empty()))
 }
 
 fn report(result: &CalibrationResult, objections: &[Objection], file: Option<&Path>) -> String {

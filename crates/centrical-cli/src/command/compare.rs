@@ -1,12 +1,11 @@
 //! `centrical compare A.json B.json`: two calibrations of one unit.
 
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical_report::comparison_table;
 use centrical_session::{CalibrationResult, Error, compare_results};
 
-use crate::Outcome;
+use crate::outcome::{Outcome, print};
 
 /// Compare two calibrations of one unit: differences over their uncertainties, drift, and a joint test.
 #[derive(Debug, clap::Args)]
@@ -25,6 +24,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let (first, second) = (CalibrationResult::read(&arguments.first)?, CalibrationResult::read(&arguments.second)?);
     let compared = compare_results(&first, &second);
     let text = comparison_table(&first, &compared.comparison, arguments.years);
-    let _ = io::stdout().write_all(text.as_bytes());
-    Ok(if compared.agree { Outcome::Done } else { Outcome::NotAcceptable })
+    print(&text);
+    Ok(Outcome::acceptable(compared.agree))
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use centrical_report::compensation_text;
 use centrical_session::{CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate};
 
-use crate::Outcome;
+use crate::outcome::{Outcome, print};
 
 /// Convert a record of readings to specific force with a calibration result.
 #[derive(Debug, clap::Args)]
@@ -35,8 +35,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         session: arguments.session.clone(),
         range: arguments.range,
     })?;
-    print!("{}", compensation_text(&compensated, &certificate, &arguments.out));
-    Ok(if compensated.outside == 0 { Outcome::Done } else { Outcome::NotAcceptable })
+    print(&compensation_text(&compensated, &certificate, &arguments.out));
+    Ok(Outcome::acceptable(compensated.outside == 0))
 }
 
 /// "200 g", or a plain number in m/s^2.

@@ -1,12 +1,12 @@
 //! `centrical models SESSION`: which error model the data support.
 
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical_report::selection_table;
 use centrical_session::{Error, Session, select_model};
 
-use crate::{Outcome, progress};
+use crate::outcome::{Outcome, print};
+use crate::progress;
 
 /// Fit rival models to a session and compare them by F test, BIC and hold-out.
 #[derive(Debug, clap::Args)]
@@ -21,6 +21,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let bar = progress::reading(&session);
     let selection = select_model(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
-    let _ = io::stdout().write_all(selection_table(&selection).as_bytes());
+    print(&selection_table(&selection));
     Ok(Outcome::Done)
 }

@@ -1,13 +1,13 @@
 //! `centrical montecarlo SESSION`: the whole calibration repeated on simulated readings.
 
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical_report::monte_carlo_text;
 use centrical_session::{Error, MonteCarloCase, MonteCarloRequest, Session, read_plan};
 
 use super::assess::probability;
-use crate::{Outcome, progress};
+use crate::outcome::{Outcome, print};
+use crate::progress;
 
 /// Repeat the calibration on simulated noise and type B errors, and check the stated uncertainties.
 #[derive(Debug, clap::Args)]
@@ -56,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let monte_carlo = case.run(&request, &|count| bar.inc(count as u64))?;
     bar.finish_and_clear();
     let text = monte_carlo_text(&case, &monte_carlo, arguments.coverage);
-    let _ = io::stdout().write_all(text.as_bytes());
+    print(&text);
     Ok(Outcome::Done)
 }
 

@@ -1,6 +1,5 @@
 //! `centrical noise FILE`: deviations of the Allan family, spectrum and noise terms of a record.
 
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical_report::{noise_table, noise_warnings, write_noise};
@@ -8,7 +7,7 @@ use centrical_session::{
     ColumnName, Dimension, Error, Estimator, NoiseRequest, NotThatQuantity, PlateauName, Quantity, noise_of,
 };
 
-use crate::Outcome;
+use crate::outcome::{Outcome, print};
 
 /// Analyse the noise of a record: deviations of the Allan family with intervals, spectrum, noise terms.
 #[derive(Debug, clap::Args)]
@@ -80,9 +79,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         lines.extend(arguments.out.iter().map(|folder| format!("Written to {}\n", folder.display())));
         lines.concat()
     };
-    // A reader that has seen enough (`| head`) is no failure.
-    let _ = io::stdout().write_all(text.as_bytes());
-    Ok(if warnings.is_empty() { Outcome::Done } else { Outcome::NotAcceptable })
+    print(&text);
+    Ok(Outcome::acceptable(warnings.is_empty()))
 }
 
 /// A number from 1, or a name.

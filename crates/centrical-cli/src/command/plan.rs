@@ -1,13 +1,12 @@
 //! `centrical plan PLAN.toml`: the best schedule for a time, or the shortest for target uncertainties.
 
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 use centrical_report::{frontier_plot, plan_text};
 use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, write_whole};
 
 use super::assess::probability;
-use crate::Outcome;
+use crate::outcome::{Outcome, print};
 
 /// Find the schedule with the smallest uncertainty in the time available, or the shortest one that meets target
 /// uncertainties.
@@ -54,9 +53,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         write_whole(file, frontier_plot(&report).as_bytes())?;
     }
     let text = if arguments.json { report.to_json()? } else { plan_text(&report) };
-    // A reader that has seen enough (`| head`) is no failure.
-    let _ = io::stdout().write_all(text.as_bytes());
-    Ok(if report.is_acceptable() { Outcome::Done } else { Outcome::NotAcceptable })
+    print(&text);
+    Ok(Outcome::acceptable(report.is_acceptable()))
 }
 
 fn level(text: &str) -> Result<f64, String> {

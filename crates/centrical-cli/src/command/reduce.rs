@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use centrical_session::{Error, Session, reduce_without_inputs, write_reduced};
 
 use crate::format::Format;
-use crate::{Outcome, progress};
+use crate::outcome::Outcome;
+use crate::progress;
 
 /// Reduce a session's records to plateau means: a session of a few kilobytes, calibrated to the same numbers.
 #[derive(Debug, clap::Args)]

@@ -6,7 +6,7 @@ use centrical_report::{DocumentRequest, Language, objections, verdict_text, writ
 use centrical_session::Error;
 use clap::ValueEnum;
 
-use crate::Outcome;
+use crate::outcome::{Outcome, print};
 
 /// Write the documents of a calibration from its result.json.
 #[derive(Debug, clap::Args)]
@@ -79,9 +79,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         language: arguments.documents.language.into(),
     })?;
     let objections = objections(&result);
-    if objections.is_empty() {
-        return Ok(Outcome::Done);
+    if !objections.is_empty() {
+        print(&verdict_text(&objections));
     }
-    print!("{}", verdict_text(&objections));
-    Ok(Outcome::NotAcceptable)
+    Ok(Outcome::acceptable(objections.is_empty()))
 }

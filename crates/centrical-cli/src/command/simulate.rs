@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use centrical_session::{Error, Session, Truth, simulate_session};
 
 use crate::format::Format;
-use crate::{Outcome, progress};
+use crate::outcome::Outcome;
+use crate::progress;
 
 /// Simulate a session: records, telemetry and experiment.toml, with truth.json beside them.
 #[derive(Debug, clap::Args)]

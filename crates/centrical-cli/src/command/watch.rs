@@ -1,6 +1,6 @@
 //! `centrical watch SESSION`: monitors a session folder while records arrive.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,7 +9,7 @@ use std::time::Duration;
 use centrical_report::{objections, states_text, terminal_table, verdict_text, watch_table, write_history_plot};
 use centrical_session::{Error, Following, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, create_folder};
 
-use crate::Outcome;
+use crate::outcome::{Outcome, print};
 
 /// Monitor a session folder while the laboratory is still adding records: after each plateau the uncertainties and the
 /// benefit of the next; the calibration when the schedule is complete. After Ctrl-C it resumes when started again.
@@ -74,8 +74,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             let file = arguments.out.join("result.json");
             let written = format!("\nThe schedule is complete. Written to {}\n", file.display());
             let text = terminal_table(&result) + &verdict_text(&objections) + &written;
-            let _ = io::stdout().write_all(text.as_bytes());
-            Ok(if objections.is_empty() { Outcome::Done } else { Outcome::NotAcceptable })
+            print(&text);
+            Ok(Outcome::acceptable(objections.is_empty()))
         }
     }
 }
@@ -86,8 +86,7 @@ fn show(event: &WatchEvent, targets: &[(String, f64)]) {
         WatchEvent::Plateau(progress) => {
             // On a terminal the table stays in its place.
             let clear = if io::stdout().is_terminal() { "\x1b[2J\x1b[H" } else { "" };
-            // A reader that has seen enough (`| head`) is no failure.
-            let _ = writeln!(io::stdout(), "{clear}{}", watch_table(progress, targets));
+            print(&format!("{clear}{}\n", watch_table(progress, targets)));
         }
     }
 }

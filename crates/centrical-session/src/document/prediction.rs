@@ -43,7 +43,7 @@ pub struct PredictedParameter {
     /// Effective degrees of freedom; null when infinite.
     pub degrees_of_freedom: Option<f64>,
     /// Whether lost combinations of unknowns leave doubt in it that is not in its uncertainties.
-    pub leans_on_lost: bool,
+    pub is_affected_by_null_space: bool,
 }
 
 impl PredictionReport {
@@ -65,7 +65,7 @@ impl PredictionReport {
                     Degrees::Finite(nu) => Some(nu),
                     Degrees::Infinite => None,
                 }),
-                leans_on_lost: combined.is_some() && prediction.leans_on_lost(j),
+                is_affected_by_null_space: combined.is_some() && prediction.is_affected_by_null_space(j),
             }
         };
         // The curve is symmetric but for rounding: the half from 0 on is shown.

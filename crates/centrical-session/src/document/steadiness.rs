@@ -1,11 +1,8 @@
 //! How steady the readings were: over a plateau, over the session, over a revolution; and what was left out.
 
 use centrical::reduction::LeftOut;
-use centrical::uncertainty::{
-    OncePerRevolution, TiltComparison, Trend, chi_squared_tail, tilt_while_spinning, trends_of,
-};
-use centrical::{Fit, MeasurementModel, Termination};
-use nalgebra::Vector3;
+use centrical::uncertainty::{OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, repeats};
+use centrical::{Calibration, FitError, Observation};
 use serde::{Deserialize, Serialize};
 
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
@@ -119,78 +116,68 @@ impl From<TiltComparison> for TiltSummary {
     }
 }
 
-/// The tilts of a session; none for one that came already averaged.
-pub(crate) fn tilt(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Option<TiltSummary> {
-    let term = |(set_point, plateau): (usize, &ReducedPlateau)| {
-        let Steadiness { quadratures, quadrature_covariance: covariance, .. } = plateau.steadiness?;
-        let spins = !model.experiment().set_points[set_point].is_rest();
-        spins.then_some(OncePerRevolution { set_point, quadratures, covariance })
-    };
-    let terms: Vec<OncePerRevolution> = reduced.plateaus.iter().enumerate().filter_map(term).collect();
-    tilt_while_spinning(fit, model, &terms).map(TiltSummary::from)
-}
-
-/// The drift of a session; none for one that came already averaged.
-pub(crate) fn drift(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Option<DriftSummary> {
-    let steadiness: Vec<Steadiness> =
-        reduced.plateaus.iter().map(|plateau| plateau.steadiness).collect::<Option<_>>()?;
-    let (mut weights, mut sums, mut chi_squared) = (Vector3::zeros(), Vector3::zeros(), 0.0);
-    for Steadiness { drift, drift_uncertainty, .. } in &steadiness {
-        let weight = drift_uncertainty.map(|u| 1.0 / (u * u));
-        weights += weight;
-        sums += weight.component_mul(drift);
-        chi_squared += drift.component_div(drift_uncertainty).norm_squared();
+impl TiltSummary {
+    /// The tilts of a session; none for one that came already averaged.
+    pub(crate) fn of(calibration: &Calibration, reduced: &Reduced) -> Option<Self> {
+        let set_points = &calibration.data().model().experiment().set_points;
+        let term = |(set_point, plateau): (usize, &ReducedPlateau)| {
+            let Steadiness { quadratures, quadrature_covariance: covariance, .. } = plateau.steadiness?;
+            let spins = !set_points[set_point].is_rest();
+            spins.then_some(OncePerRevolution { set_point, quadratures, covariance })
+        };
+        let terms: Vec<OncePerRevolution> = reduced.plateaus.iter().enumerate().filter_map(term).collect();
+        calibration.tilt_while_spinning(&terms).map(Self::from)
     }
-    let degrees_of_freedom = 3 * steadiness.len();
-    Some(DriftSummary {
-        slope: sums.component_div(&weights).into(),
-        slope_uncertainty: weights.map(|weight| 1.0 / weight.sqrt()).into(),
-        chi_squared,
-        degrees_of_freedom,
-        probability: chi_squared_tail(chi_squared, degrees_of_freedom),
-        over_session: over_session(model, reduced, fit),
-        repeats: repeats(model, reduced, fit),
-    })
 }
 
-fn over_session(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<SessionTrend> {
-    // A linear fit leaves its second-order terms in the residuals.
-    if fit.termination == Termination::Linear {
-        return Vec::new();
+impl DriftSummary {
+    /// The drift of a session; none for one that came already averaged.
+    pub(crate) fn of(calibration: &Calibration, reduced: &Reduced) -> Result<Option<Self>, FitError> {
+        let slope = |steadiness: Steadiness| Slope {
+            slope: steadiness.drift,
+            standard_uncertainty: steadiness.drift_uncertainty,
+        };
+        let slopes = reduced.plateaus.iter().map(|plateau| plateau.steadiness.map(slope));
+        let Some(slopes) = slopes.collect::<Option<Vec<Slope>>>() else { return Ok(None) };
+        let drift = PlateauDrift::of(&slopes);
+        let trends = calibration.drift_over_session()?;
+        Ok(Some(Self {
+            slope: drift.mean.slope.into(),
+            slope_uncertainty: drift.mean.standard_uncertainty.into(),
+            chi_squared: drift.chi_squared,
+            degrees_of_freedom: drift.degrees_of_freedom,
+            probability: drift.probability,
+            over_session: trends.into_iter().map(SessionTrend::from).collect(),
+            repeats: repeated(calibration, reduced),
+        }))
     }
-    let found = trends_of(fit, model, &reduced.observations(), &[Trend::Time]);
-    let trend = |pattern: &centrical::uncertainty::Pattern| SessionTrend {
-        axis: pattern.axis + 1,
-        // The pattern's largest entry is half of the way from the first plateau to the last.
-        change: 2.0 * pattern.amplitude,
-        standard_uncertainty: 2.0 * pattern.standard_uncertainty,
-        probability: pattern.probability,
-    };
-    let mut trends: Vec<SessionTrend> = found.unwrap_or_default().iter().map(trend).collect();
-    trends.sort_by_key(|trend| trend.axis);
-    trends
 }
 
-/// Every plateau against the first of the same set point in the same mounting.
-fn repeats(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<RepeatedPlateau> {
+impl From<SessionDrift> for SessionTrend {
+    fn from(SessionDrift { axis, change, standard_uncertainty, probability }: SessionDrift) -> Self {
+        Self { axis: axis + 1, change, standard_uncertainty, probability }
+    }
+}
+
+fn repeated(calibration: &Calibration, reduced: &Reduced) -> Vec<RepeatedPlateau> {
+    let model = calibration.data().model();
     let set_points = &model.experiment().set_points;
-    let first_of = |m: usize| set_points.iter().position(|s| s.mounting == m).unwrap_or(0);
-    let repeat = |second: usize| {
-        let set_point = &set_points[second];
-        let first = set_points[..second].iter().position(|other| other == set_point)?;
-        let [one, two] = [first, second].map(|n| &reduced.plateaus[n]);
-        let along = model.linearise(set_point, fit.state()).speed_error;
-        let difference = two.mean - one.mean;
-        let covariance = one.covariance + two.covariance + 2.0 * along * along.transpose();
-        let chi_squared = difference.dot(&covariance.cholesky()?.solve(&difference));
-        let start = first_of(set_point.mounting);
-        Some(RepeatedPlateau {
-            mounting: set_point.mounting + 1,
-            indices: [first - start, second - start],
-            difference: difference.into(),
-            chi_squared,
-            probability: chi_squared_tail(chi_squared, 3),
-        })
+    let plateau = |(set_point, plateau): (usize, &ReducedPlateau)| Observation {
+        set_point,
+        mean: plateau.mean,
+        covariance: plateau.covariance,
     };
-    (0..set_points.len()).filter_map(repeat).collect()
+    let plateaus: Vec<Observation> = reduced.plateaus.iter().enumerate().map(plateau).collect();
+    let summary = |repeat: Repeat| {
+        let mounting = set_points[repeat.set_points[0]].mounting;
+        let start = set_points.iter().position(|s| s.mounting == mounting).unwrap_or(0);
+        RepeatedPlateau {
+            mounting: mounting + 1,
+            indices: repeat.set_points.map(|set_point| set_point - start),
+            difference: repeat.difference.into(),
+            chi_squared: repeat.chi_squared,
+            probability: repeat.probability,
+        }
+    };
+    repeats(model, calibration.fit().state(), &plateaus).into_iter().map(summary).collect()
 }

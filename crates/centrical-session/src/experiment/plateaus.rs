@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use centrical::{Rotation, SetPoint};
-use centrical_table::{ColumnName, Field, Rule, parquet_bytes, write_whole};
+use centrical_table::{ColumnName, Extent, Field, Rule, TableReader, parquet_bytes, write_whole};
 use nalgebra::{Matrix3, Vector3};
 
 use super::schedule::FASTEST;
@@ -93,11 +93,12 @@ pub fn read_plateaus(file: &Path, mountings: usize) -> Result<Vec<PlateauMean>, 
     };
     let fields: Vec<Field> = COLUMNS.iter().enumerate().map(field).collect();
     let mut rows: Vec<[f64; COLUMNS.len()]> = Vec::new();
-    centrical_table::read(file, &fields, "a table of plateaus", &mut |block| {
-        for r in 0..block[0].len() {
-            rows.push(std::array::from_fn(|k| block[k][r]));
+    let mut table = TableReader::open(file, Extent::Whole, &fields, "a table of plateaus")?;
+    while let Some(batch) = table.next_batch()? {
+        for columns in batch {
+            rows.extend((0..columns[0].len()).map(|row| std::array::from_fn(|k| columns[k][row])));
         }
-    })?;
+    }
     (1..).zip(&rows).map(|(number, row)| plateau(file, number, row, mountings)).collect()
 }
 

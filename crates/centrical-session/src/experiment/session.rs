@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+use centrical::reduction::{Record, SpeedTrace};
 use centrical::uncertainty::TypeB;
 use centrical::{
     Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
@@ -16,7 +16,7 @@ use super::toml_path::TomlPath;
 use super::{attitude, columns, schedule, terms, uncertainty, unit};
 use crate::error::{Error, Place, quoted};
 use crate::quantity::{Dimension, Quantity};
-use crate::record::{Columns, read_record, read_telemetry, scan_record};
+use crate::record::{Columns, read_record, read_telemetry};
 
 /// Name of the experiment file in a session folder.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
@@ -151,23 +151,15 @@ impl Session {
     /// Reads the whole record of a mounting, by its index.
     ///
     /// # Errors
-    /// If the mounting has no record, or as [`scan_record`].
+    /// If the mounting has no record, or as [`read_record`].
     pub fn record(&self, mounting: usize) -> Result<Record, Error> {
         read_record(self.record_file(mounting)?, &self.columns)
-    }
-
-    /// Hands the record of a mounting to `visit` block by block, in memory that does not grow with the record.
-    ///
-    /// # Errors
-    /// If the mounting has no record, or as [`scan_record`].
-    pub fn scan_record(&self, mounting: usize, visit: &mut dyn FnMut(RecordSlice)) -> Result<(), Error> {
-        scan_record(self.record_file(mounting)?, &self.columns, visit)
     }
 
     /// Reads the telemetry of a mounting, if it has any.
     ///
     /// # Errors
-    /// As [`scan_record`].
+    /// As [`read_record`].
     pub fn telemetry(&self, mounting: usize) -> Result<Option<SpeedTrace>, Error> {
         let file = self.mountings.get(mounting).and_then(|m| m.telemetry.as_ref());
         file.map(|file| read_telemetry(file, &self.columns)).transpose()

@@ -1,7 +1,7 @@
 //! How far the calibration of a session can be trusted: budget, validity, residual patterns, prediction.
 
-use centrical::uncertainty::{Budget, Cleaned, Compensated, CurvePoint, Pattern, Validity, patterns, without_outliers};
-use centrical::{Fit, FitError, MeasurementModel, Observation, fit, linear};
+use centrical::uncertainty::{Budget, Compensated, CurvePoint, Pattern, Validity};
+use centrical::{Calibration, Data, Fit, FitError, MeasurementModel, Observation, linear};
 use nalgebra::{DMatrix, Vector3};
 
 use super::calibrate::Problem;
@@ -29,8 +29,9 @@ pub struct Assessment {
     pub model: MeasurementModel,
     /// The fit of all plateaus.
     pub fit: Fit,
-    /// The fit without outlying plateaus, if it was asked for; what follows is of it then.
-    pub cleaned: Option<Cleaned>,
+    /// If it was asked for, the fit without outlying plateaus, on which what follows rests then; and these, by set point, each
+    /// with its probability at the time.
+    pub cleaned: Option<(Fit, Vec<(usize, f64)>)>,
     /// What each source of uncertainty leaves.
     pub budget: Budget,
     /// Whether the residuals are those of a true model.
@@ -57,27 +58,29 @@ pub fn assess(
 
 fn of_problem(session: &Session, problem: Problem, request: &AssessmentRequest) -> Result<Assessment, FitError> {
     let Problem { model, reduced } = problem;
-    let all = reduced.observations();
-    let fit = fit::exact(&model, &all)?;
-    let cleaned = request.without_outliers.map(|alpha| without_outliers(&model, &all, alpha));
-    let cleaned = cleaned.transpose()?;
-    let (used, observations) = cleaned.as_ref().map_or((&fit, &all), |c| (&c.fit, &c.observations));
-    let mut budget = Budget::new(used, &model, observations, &session.type_b)?;
+    let all = Data::new(&model, reduced.observations())?;
+    let whole = Calibration::exact(&all)?;
+    let cleaned = request.without_outliers.map(|alpha| all.without_outliers(alpha)).transpose()?;
+    let without = cleaned.as_ref().map(|cleaned| Calibration::exact(&cleaned.data)).transpose()?;
+    let used = without.as_ref().unwrap_or(&whole);
+    let mut budget = used.budget(&session.type_b)?;
     if request.scale_by_residuals {
-        budget = budget.scaled_by_residuals(used);
+        budget = budget.scaled_by_residuals(used.fit());
     }
-    let validity = Validity::of(used, &model, observations)?;
-    let patterns = patterns(used, &model, observations)?;
-    let range = request.range.unwrap_or_else(|| highest(&model, observations));
-    let prediction = prediction(&model, used, &budget, range);
-    Ok(Assessment { model, fit, cleaned, budget, validity, patterns, prediction })
+    let (validity, patterns) = (used.validity()?, used.patterns()?);
+    let range = request.range.unwrap_or_else(|| highest(used.data()));
+    let prediction = prediction(&model, used.fit(), &budget, range);
+    let cleaned = cleaned.as_ref().zip(without.as_ref());
+    let cleaned = cleaned.map(|(cleaned, without)| (without.fit().clone(), cleaned.left_out.clone()));
+    let fit = whole.into_fit();
+    Ok(Assessment { fit, cleaned, budget, validity, patterns, prediction, model })
 }
 
 /// Highest nominal specific force of the plateaus [m/s^2].
-fn highest(model: &MeasurementModel, observations: &[Observation]) -> f64 {
-    let experiment = model.experiment();
+fn highest(data: &Data) -> f64 {
+    let experiment = data.model().experiment();
     let force = |o: &Observation| linear::nominal(experiment, &experiment.set_points[o.set_point]).amax();
-    observations.iter().map(force).fold(0.0, f64::max)
+    data.observations().iter().map(force).fold(0.0, f64::max)
 }
 
 fn prediction(model: &MeasurementModel, fit: &Fit, budget: &Budget, range: f64) -> Option<[Vec<CurvePoint>; 3]> {

@@ -1,6 +1,6 @@
 //! The whole job for one session: what the command, a fleet's worker and a notebook all call.
 
-use centrical::{MeasurementModel, fit};
+use centrical::{Calibration, Data, MeasurementModel};
 
 use super::reduce::reduce;
 use crate::document::CalibrationResult;
@@ -67,18 +67,12 @@ pub fn calibrate_without(
 ) -> Result<CalibrationResult, Error> {
     let Problem { model, mut reduced } = Problem::of(session, progress)?;
     reduced.held_out = held_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
-    let estimate = match method {
-        Method::Exact => fit::exact,
-        Method::Recursive => fit::recursive::exact,
-        Method::Linear => fit::linear,
-    };
-    let observations = reduced.observations();
     let failed = |source| Error::Fit { file: session.file.clone(), source };
-    let fit = estimate(&model, &observations).map_err(failed)?;
-    let result = CalibrationResult::new(session, &model, &reduced, &fit);
-    let mut result = result.with_trust(session, &model, &observations, &fit).map_err(failed)?;
-    if method == Method::Recursive {
-        "exact, recursive filter".clone_into(&mut result.fit.method);
-    }
-    Ok(result)
+    let data = Data::new(&model, reduced.observations()).map_err(failed)?;
+    let calibration = match method {
+        Method::Exact => Calibration::exact(&data),
+        Method::Recursive => Calibration::recursive(&data),
+        Method::Linear => Calibration::linear(&data),
+    };
+    calibration.and_then(|calibration| CalibrationResult::from(&calibration, session, &reduced)).map_err(failed)
 }

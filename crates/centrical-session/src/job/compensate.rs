@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::RecordSlice;
 use centrical_compensate::{Certificate, Compensation};
-use centrical_table::Block;
+use centrical_table::Rows;
 use rayon::prelude::*;
 
 use crate::document::CalibrationResult;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
-use crate::record::{Columns, scan_blocks, stretch};
+use crate::record::{Columns, RecordReader, stretch};
 use crate::record_writer::RecordWriter;
 
 /// What became of a record.
@@ -75,7 +75,7 @@ pub fn compensate(request: &CompensationRequest) -> Result<(Compensated, Certifi
 /// most `10^-12` of the range ([`RecordWriter::create_rounded`]).
 ///
 /// # Errors
-/// As [`scan_record`] for `input` and [`RecordWriter`] for `output`, which is not touched then.
+/// As [`RecordReader`] for `input` and [`RecordWriter`] for `output`, which is not touched then.
 pub fn compensate_record(
     compensation: &Compensation,
     input: &Path,
@@ -94,29 +94,22 @@ fn on_this_thread(
 ) -> Result<Compensated, Error> {
     let mut writer = RecordWriter::create_rounded(output, compensation.certificate().range)?;
     let mut sum = Compensated { decimals: writer.decimals(), ..Compensated::default() };
-    let mut written = Ok(());
-    scan_blocks(input, columns, &mut |blocks| {
-        let mut write = || {
-            let compensated = blocks.par_iter_mut().map(|block| compensate_block(compensation, input, block));
-            for block in compensated.collect::<Vec<_>>() {
-                sum.add(&block?);
-            }
-            let stretches: Vec<RecordSlice> = blocks.iter().map(stretch).collect();
-            writer.write_all(&stretches)
-        };
-        // A writer that has failed is not asked again; its error is told below.
-        if written.is_ok() {
-            written = write();
+    let mut record = RecordReader::open(input, columns)?;
+    while let Some(batch) = record.next_batch()? {
+        let compensated = batch.par_iter_mut().map(|rows| compensate_rows(compensation, input, rows));
+        for rows in compensated.collect::<Vec<_>>() {
+            sum.add(&rows?);
         }
-    })?;
-    written?;
+        let stretches: Vec<RecordSlice> = batch.iter().map(stretch).collect();
+        writer.write_all(&stretches)?;
+    }
     writer.finish()?;
     Ok(sum)
 }
 
-/// Compensates the readings of a block in place.
-fn compensate_block(compensation: &Compensation, input: &Path, block: &mut Block) -> Result<Compensated, Error> {
-    let [t, f @ ..] = block.as_mut_slice() else { return Ok(Compensated::default()) };
+/// Compensates readings in place.
+fn compensate_rows(compensation: &Compensation, input: &Path, rows: &mut Rows) -> Result<Compensated, Error> {
+    let [t, f @ ..] = rows.as_mut_slice() else { return Ok(Compensated::default()) };
     let readings = f.to_vec();
     let mut columns = f.iter_mut();
     let f = [(); 3].map(|()| columns.next().map_or_else(Default::default, Vec::as_mut_slice));

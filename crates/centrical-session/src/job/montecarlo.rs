@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use centrical::plan::unit_of;
 use centrical::uncertainty::{Method, MonteCarlo, Settings, TypeB, monte_carlo};
-use centrical::{MeasurementModel, Observation, STANDARD_GRAVITY, Weight, fit};
+use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight};
 use nalgebra::Vector3;
 
 use super::calibrate::Problem;
@@ -46,8 +46,8 @@ impl MonteCarloCase {
     pub fn measured(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
         let Problem { model, reduced } = Problem::of(session, progress)?;
         let (observations, file) = (reduced.observations(), session.file.clone());
-        let fit = fit::exact(&model, &observations).map_err(|source| Error::Fit { file: file.clone(), source })?;
-        let truth = fit.state().to_vec();
+        let truth =
+            estimated(&model, observations.clone()).map_err(|source| Error::Fit { file: file.clone(), source })?;
         Ok(Self { model, truth, file, observations, stated: session.type_b })
     }
 
@@ -70,7 +70,7 @@ impl MonteCarloCase {
     /// Takes a unit of typical errors with alternating signs for the true one.
     #[must_use]
     pub fn of_typical_unit(mut self) -> Self {
-        self.truth = self.model.parameters().typical_in_turn();
+        self.truth = self.model.parameters().typical_alternating();
         self
     }
 
@@ -86,7 +86,13 @@ impl MonteCarloCase {
             method: if request.linear { Method::Linear } else { Method::Exact },
             stated: self.stated,
         };
-        monte_carlo(&self.model, &self.truth, &self.observations, &settings, done)
+        Data::new(&self.model, self.observations.clone())
+            .and_then(|data| monte_carlo(&data, &self.truth, &settings, done))
             .map_err(|source| Error::Fit { file: self.file.clone(), source })
     }
+}
+
+fn estimated(model: &MeasurementModel, observations: Vec<Observation>) -> Result<Vec<f64>, FitError> {
+    let data = Data::new(model, observations)?;
+    Ok(Calibration::exact(&data)?.fit().state().to_vec())
 }

@@ -3,307 +3,195 @@
 
 use std::path::Path;
 
-use centrical::reduction::{Record, RecordSlice, Survey};
-use centrical_table::{Block, Extent, Index};
+use centrical::reduction::{Averaging, Located, PlateauFit, Record, RecordSlice, ReductionError, Survey};
 use rayon::prelude::*;
 
-use super::kept::Kept;
-use super::{Columns, Wanted, stretch};
+use super::columns::Columns;
+use super::reader::{RecordIndex, RecordReader, stretch};
+use super::sample_cache::SampleCache;
 use crate::error::Error;
 
-/// Samples of the windows that are averaged at a time, however many threads there are: their times are written out, 8 bytes each, and
-/// what is judged one by one is copied.
-const AT_A_TIME: usize = 1_500_000;
+/// Samples of the plateaus that are averaged at a time, whatever the number of threads: their times are written out, 8 bytes each,
+/// and what is judged one by one is copied.
+const SAMPLES_AT_A_TIME: usize = 1_500_000;
 
-/// What is done with the samples of windows.
-pub(crate) trait Windows: Sync {
-    /// A window that is under way, and what comes of it.
-    type Window: Send;
-    type Mean: Send;
-
-    /// Windows, in ascending order, each in parts that are easily held: from and to [s].
-    fn parts(&self) -> Vec<Vec<[f64; 2]>>;
-
-    /// Begins a window.
-    fn begin(&self, window: usize) -> Self::Window;
-
-    /// Takes the samples of the next part; so many with the stamp of the one before are not among them.
-    fn add(&self, window: &mut Self::Window, part: [f64; 2], samples: RecordSlice, repeated: usize);
-
-    /// Ends a window.
-    fn end(&self, window: Self::Window) -> Self::Mean;
-}
+/// The mean of a plateau, or why there is none.
+type Mean = Result<PlateauFit, ReductionError>;
 
 /// The record in a file.
 pub(crate) struct RecordFile<'a> {
-    file: &'a Path,
-    wanted: Wanted<'a>,
+    pub file: &'a Path,
+    columns: &'a Columns,
     /// Told of bytes as they are read.
     progress: &'a (dyn Fn(u64) + Sync),
 }
 
 impl<'a> RecordFile<'a> {
     pub fn new(file: &'a Path, columns: &'a Columns, progress: &'a (dyn Fn(u64) + Sync)) -> Self {
-        Self { file, wanted: columns.of_record(), progress }
+        Self { file, columns, progress }
     }
 
-    pub fn file(&self) -> &'a Path {
-        self.file
-    }
-
-    /// First pass: all of the record, its stretches condensed on all threads, and its samples kept if they are not too
+    /// First pass: surveys the record, its stretches condensed on all threads, and keeps its samples if they are not too
     /// many.
-    pub fn survey(&self, kept: &mut Kept) -> Result<Survey, Error> {
+    pub fn survey(&self, cache: &mut SampleCache) -> Result<Survey, Error> {
+        let mut record = RecordReader::open(self.file, self.columns)?;
         let mut beginning = Record::default();
         let mut survey: Option<Survey> = None;
-        kept.begin();
-        kept.index = self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks: &mut [Block]| {
+        cache.begin();
+        while let Some(batch) = record.next_batch()? {
             if let Some(survey) = &mut survey {
-                let condense = || blocks.par_iter().map(|block| survey.condense(stretch(block))).collect();
-                let keep = || blocks.iter().for_each(|block| kept.extend(stretch(block)));
+                let condense = || batch.par_iter().map(|rows| survey.condense(stretch(rows))).collect();
+                let keep = || batch.iter().for_each(|rows| cache.extend(stretch(rows)));
                 let (condensed, ()): (Vec<_>, ()) = rayon::join(condense, keep);
-                for stretch in condensed {
-                    survey.append(stretch);
-                }
+                condensed.into_iter().for_each(|stretch| survey.append(stretch));
             } else {
-                for block in blocks {
-                    kept.extend(stretch(block));
-                    beginning.extend(stretch(block));
+                for rows in batch {
+                    cache.extend(stretch(rows));
+                    beginning.extend(stretch(rows));
                 }
                 if beginning.t.len() >= Survey::BEGINNING {
                     survey = Some(begin(&std::mem::take(&mut beginning)));
                 }
             }
-        })?;
+            (self.progress)(record.newly_read());
+        }
+        (self.progress)(record.newly_read());
+        cache.index = record.into_index();
         let mut survey = survey.unwrap_or_else(|| begin(&beginning));
         survey.finish();
         Ok(survey)
     }
 
-    /// Second pass: what comes of the windows. Of a record that is not kept, a part of a window at a time is held.
-    pub fn windows<W: Windows>(&self, kept: &Kept, windows: &W) -> Result<Vec<W::Mean>, Error> {
-        let parts = windows.parts();
-        if kept.is_whole {
-            (self.progress)(std::fs::metadata(self.file).map_or(0, |file| file.len()));
-            return Ok(kept_windows(kept, windows, &parts));
-        }
-        match &kept.index {
-            Some(index) => self.windows_reread(index, windows, &parts),
-            None => self.windows_in_order(windows, &parts),
+    /// Second pass: the means of the plateaus. Of a record that is not kept, a part of a plateau at a time is held.
+    pub fn means(&self, cache: &SampleCache, located: &Located) -> Result<Vec<Mean>, Error> {
+        let plateaus: Vec<PlateauInParts> =
+            (0..located.windows().len()).map(|k| PlateauInParts::new(located, k)).collect();
+        match &cache.index {
+            _ if cache.is_whole => {
+                (self.progress)(std::fs::metadata(self.file).map_or(0, |file| file.len()));
+                Ok(means_of_cache(cache, plateaus))
+            }
+            Some(index) => self.means_reread(index, plateaus),
+            None => self.means_in_order(plateaus),
         }
     }
 
     /// Part after part: while one is worked on, the next is read.
-    fn windows_reread<W: Windows>(
-        &self,
-        index: &Index,
-        windows: &W,
-        parts: &[Vec<[f64; 2]>],
-    ) -> Result<Vec<W::Mean>, Error> {
-        let fields = self.wanted.fields();
-        let mut record = index.reread(self.file, &fields)?;
+    fn means_reread(&self, index: &RecordIndex, mut plateaus: Vec<PlateauInParts>) -> Result<Vec<Mean>, Error> {
+        let mut record = index.parts();
         let mut read = |part: [f64; 2], samples: &mut Record| {
-            let raw = self.raw_range(part);
-            samples.clear();
-            record.read(raw, &mut |first_row, block| {
-                self.wanted.to_si(first_row, block);
-                samples.extend(stretch(block).between(part));
-                self.wanted.give_back(block);
-            })?;
-            (self.progress)(index.bytes(raw));
+            (self.progress)(record.read(part, samples)?);
             Ok::<(), Error>(())
         };
-        let steps: Vec<(usize, [f64; 2])> =
-            (parts.iter().enumerate()).flat_map(|(k, parts)| parts.iter().map(move |part| (k, *part))).collect();
+        let parts: Vec<(usize, [f64; 2])> = (plateaus.iter().enumerate())
+            .flat_map(|(k, plateau)| plateau.parts.iter().map(move |part| (k, *part)))
+            .collect();
         let [mut samples, mut next] = [Record::default(), Record::default()];
-        steps.first().map_or(Ok(()), |(_, part)| read(*part, &mut samples))?;
-        let mut means = Vec::with_capacity(parts.len());
-        let mut window = None;
-        for (i, (k, part)) in steps.iter().enumerate() {
-            let following = steps.get(i + 1);
-            let window_of_part = window.get_or_insert_with(|| windows.begin(*k));
+        parts.first().map_or(Ok(()), |(_, part)| read(*part, &mut samples))?;
+        for (i, (k, _)) in parts.iter().enumerate() {
             let ((), was_read) = rayon::join(
-                || windows.add(window_of_part, *part, samples.as_slice(), 0),
-                || following.map_or(Ok(()), |(_, part)| read(*part, &mut next)),
+                || plateaus[*k].add(samples.as_slice(), 0),
+                || parts.get(i + 1).map_or(Ok(()), |(_, part)| read(*part, &mut next)),
             );
             was_read?;
             std::mem::swap(&mut samples, &mut next);
-            if following.is_none_or(|(next, _)| next != k) {
-                means.extend(window.take().map(|window| windows.end(window)));
-            }
         }
-        Ok(means)
+        Ok(plateaus.into_iter().map(|plateau| plateau.finish(Record::default().as_slice())).collect())
     }
 
-    /// What the first column has in a window. The rounding of its scale is made up for by a part in 10^12.
-    fn raw_range(&self, window: [f64; 2]) -> [f64; 2] {
-        let [from, to] = window.map(|t| self.wanted.columns[0].scale.raw(t));
-        let slack = 1e-12 * from.abs().max(to.abs());
-        [from - slack, to + slack]
-    }
-
-    fn windows_in_order<W: Windows>(&self, windows: &W, parts: &[Vec<[f64; 2]>]) -> Result<Vec<W::Mean>, Error> {
-        let begin =
-            |k: usize| UnderWay { window: Some(windows.begin(k)), added: 0, samples: Record::default(), mean: None };
-        let mut under_way: Vec<UnderWay<W>> = (0..parts.len()).map(begin).collect();
-        let mut visit = |stretch: RecordSlice| {
-            for (of, parts) in under_way.iter_mut().zip(parts) {
-                while let Some(part) = parts.get(of.added) {
-                    of.samples.extend(stretch.between(*part));
-                    // A part is full once a later sample has come.
-                    if stretch.t.last().is_none_or(|last| *last <= part[1]) {
-                        break;
+    /// All of the record once more, where it can only be read from its start.
+    fn means_in_order(&self, mut plateaus: Vec<PlateauInParts>) -> Result<Vec<Mean>, Error> {
+        let mut record = RecordReader::open(self.file, self.columns)?;
+        let mut gathered: Vec<Record> = plateaus.iter().map(|_| Record::default()).collect();
+        while let Some(batch) = record.next_batch()? {
+            for stretch in batch.iter().map(stretch) {
+                for (plateau, samples) in plateaus.iter_mut().zip(&mut gathered) {
+                    while let Some(part) = plateau.next_part() {
+                        samples.extend(stretch.between(part));
+                        // A part is full once a later sample has come.
+                        if stretch.t.last().is_none_or(|last| *last <= part[1]) {
+                            break;
+                        }
+                        plateau.add(samples.as_slice(), 0);
+                        samples.clear();
                     }
-                    of.add(windows, parts);
+                    if plateau.next_part().is_none() {
+                        *samples = Record::default();
+                    }
                 }
             }
-        };
-        self.wanted.read(self.file, Extent::Whole, self.progress, &mut |blocks| {
-            for block in blocks {
-                visit(stretch(block));
-            }
-        })?;
-        let end = |(mut of, parts): (UnderWay<W>, &Vec<[f64; 2]>)| {
-            while of.added < parts.len() {
-                of.add(windows, parts);
-            }
-            of.mean
-        };
-        Ok(under_way.into_iter().zip(parts).filter_map(end).collect())
+            (self.progress)(record.newly_read());
+        }
+        (self.progress)(record.newly_read());
+        let plateaus = plateaus.into_iter().zip(gathered);
+        Ok(plateaus.map(|(plateau, samples)| plateau.finish(samples.as_slice())).collect())
     }
 }
 
-/// A window whose samples come in the order of the record.
-struct UnderWay<W: Windows> {
-    window: Option<W::Window>,
-    /// Parts that are added, and the samples of the next.
-    added: usize,
-    samples: Record,
-    /// What came of it, after the last part.
-    mean: Option<W::Mean>,
-}
-
-impl<W: Windows> UnderWay<W> {
-    /// Adds the next of its parts.
-    fn add(&mut self, windows: &W, parts: &[[f64; 2]]) {
-        if let Some(window) = &mut self.window {
-            windows.add(window, parts[self.added], self.samples.as_slice(), 0);
-        }
-        self.samples.clear();
-        self.added += 1;
-        if self.added == parts.len() {
-            self.samples = Record::default();
-            self.mean = self.window.take().map(|window| windows.end(window));
-        }
-    }
-}
-
-/// What comes of windows of a record that is kept.
-fn kept_windows<W: Windows>(kept: &Kept, windows: &W, parts: &[Vec<[f64; 2]>]) -> Vec<W::Mean> {
-    let of = |(k, parts): (usize, &Vec<[f64; 2]>)| {
-        let mut window = windows.begin(k);
-        for part in parts {
-            kept.between(*part, |samples, repeated| windows.add(&mut window, *part, samples, repeated));
-        }
-        windows.end(window)
-    };
-    let numbered: Vec<(usize, &Vec<[f64; 2]>)> = parts.iter().enumerate().collect();
-    let mut averaged = Vec::with_capacity(parts.len());
-    let mut rest = numbered.as_slice();
-    while !rest.is_empty() {
+/// The means of the plateaus of a record that is kept.
+fn means_of_cache(cache: &SampleCache, mut plateaus: Vec<PlateauInParts>) -> Vec<Mean> {
+    let mut means = Vec::with_capacity(plateaus.len());
+    while !plateaus.is_empty() {
         let mut samples = 0;
-        let is_beyond = |(_, parts): &(usize, &Vec<[f64; 2]>)| {
-            samples += parts.iter().map(|part| kept.samples_in(*part)).max().unwrap_or(0);
-            samples > AT_A_TIME
+        let is_beyond = |plateau: &PlateauInParts| {
+            samples += plateau.parts.iter().map(|part| cache.samples_in(*part)).max().unwrap_or(0);
+            samples > SAMPLES_AT_A_TIME
         };
-        let (together, later) = rest.split_at(rest.iter().position(is_beyond).unwrap_or(rest.len()).max(1));
-        averaged.par_extend(together.par_iter().copied().map(of));
-        rest = later;
+        let later = plateaus.split_off(plateaus.iter().position(is_beyond).unwrap_or(plateaus.len()).max(1));
+        // Times are written to the same memory again and again: memory that is asked for anew is faulted in anew, page by page.
+        means.par_extend(plateaus.into_par_iter().map_init(Vec::new, |times, mut plateau| {
+            while let Some(part) = plateau.next_part() {
+                let (samples, repeated) = cache.between(part, times);
+                plateau.add(samples, repeated);
+            }
+            plateau.finish(Record::default().as_slice())
+        }));
+        plateaus = later;
     }
-    averaged
+    means
+}
+
+/// A plateau that is averaged part by part.
+struct PlateauInParts<'a> {
+    /// From and to [s], in ascending order.
+    parts: Vec<[f64; 2]>,
+    /// How many of them are added.
+    added: usize,
+    plateau: Result<Averaging<'a>, ReductionError>,
+}
+
+impl<'a> PlateauInParts<'a> {
+    fn new(located: &'a Located, plateau: usize) -> Self {
+        Self { parts: located.parts(plateau), added: 0, plateau: Ok(Averaging::new(located, plateau)) }
+    }
+
+    /// The part whose samples are to be added next.
+    fn next_part(&self) -> Option<[f64; 2]> {
+        self.parts.get(self.added).copied()
+    }
+
+    /// Adds the samples of the next part, from which `repeated` ones with the stamp of the one before are left out.
+    fn add(&mut self, samples: RecordSlice, repeated: usize) {
+        let part = self.parts[self.added];
+        self.added += 1;
+        if let Ok(plateau) = &mut self.plateau
+            && let Err(error) = plateau.add(part, samples, repeated)
+        {
+            self.plateau = Err(error);
+        }
+    }
+
+    /// The mean, once the samples of the parts that are still open are added.
+    fn finish(mut self, samples: RecordSlice) -> Mean {
+        while self.next_part().is_some() {
+            self.add(samples, 0);
+        }
+        self.plateau.and_then(Averaging::finish)
+    }
 }
 
 fn begin(beginning: &Record) -> Survey {
     let mut survey = Survey::new(&beginning.t);
     survey.append(survey.condense(beginning.as_slice()));
     survey
-}
-
-#[cfg(test)]
-mod tests {
-    use std::fs::{self, File};
-    use std::io::Write;
-
-    use flate2::{Compression, write::GzEncoder};
-
-    use super::super::kept::Room;
-    use super::*;
-
-    /// The number of a window, its samples without those with the stamp of the one before, and how many these are.
-    type Gathering = (usize, Record, usize);
-
-    /// Windows whose samples are gathered.
-    struct Gathered;
-
-    impl Windows for Gathered {
-        type Window = Gathering;
-        type Mean = Gathering;
-
-        fn parts(&self) -> Vec<Vec<[f64; 2]>> {
-            // The second in two parts, the last in three; the third begins before the second ends.
-            let second = vec![[3.5, 10.0], [10.0_f64.next_up(), 17.25]];
-            let last = vec![[20.0, 20.0], [20.0_f64.next_up(), 20.5], [20.5_f64.next_up(), 39.5]];
-            vec![vec![[0.0, 3.0]], second, vec![[17.2, 17.3]], last]
-        }
-
-        fn begin(&self, window: usize) -> Gathering {
-            (window, Record::default(), 0)
-        }
-
-        fn add(
-            &self,
-            (_, record, all_repeated): &mut Gathering,
-            part: [f64; 2],
-            samples: RecordSlice,
-            left_out: usize,
-        ) {
-            let samples = samples.between(part);
-            let repeated = samples.repeated(f64::NEG_INFINITY);
-            record.extend(samples.without(&repeated).as_slice());
-            *all_repeated += left_out + repeated.len();
-        }
-
-        fn end(&self, window: Gathering) -> Gathering {
-            window
-        }
-    }
-
-    /// The samples of windows, of records read once, again by its index, and again from start to end.
-    #[test]
-    fn a_window_is_the_same_kept_or_read_again() {
-        let folder = tempfile::tempdir().unwrap();
-        let (plain, packed) = (folder.path().join("record.csv"), folder.path().join("record.csv.gz"));
-        // Every thousandth stamp is that of the one before.
-        let t = |i: i32| f64::from(i - i32::from(i % 1000 == 999)) * 1e-3;
-        let rows = (0..40_000).map(|i| format!("{},{},-{}.5,{}e-3\n", t(i), i % 977, i % 11, i * i % 1009));
-        let text: String = std::iter::once("t,f1,f2,f3\n".to_owned()).chain(rows).collect();
-        fs::write(&plain, &text).unwrap();
-        let mut encoder = GzEncoder::new(File::create(&packed).unwrap(), Compression::fast());
-        encoder.write_all(text.as_bytes()).unwrap();
-        encoder.finish().unwrap();
-        let samples = |file: &Path, most: usize| -> Vec<Gathering> {
-            let (columns, room) = (Columns::default(), Room::of(most));
-            let mut kept = Kept::new(&room);
-            let record = RecordFile::new(file, &columns, &|_| {});
-            record.survey(&mut kept).unwrap();
-            assert_eq!(kept.is_whole, most > 0);
-            record.windows(&kept, &Gathered).unwrap()
-        };
-        let all = 40_000 * 32;
-        let expected = samples(&plain, all);
-        let counts: Vec<(usize, usize)> =
-            expected.iter().map(|(_, record, repeated)| (record.t.len(), *repeated)).collect();
-        assert_eq!(counts, [(2998, 3), (13_737, 14), (101, 0), (19_482, 19)]);
-        assert!(samples(&plain, 0) == expected && samples(&packed, 0) == expected && samples(&packed, all) == expected);
-    }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::plan::predict;
 use centrical::uncertainty::{Method, Settings, TypeB, monte_carlo};
-use centrical::{MeasurementModel, Observation, Weight};
+use centrical::{Data, MeasurementModel, Observation, Weight};
 use centrical_session::{Plan, read_plan, read_planning};
 use nalgebra::Vector3;
 
@@ -80,7 +80,8 @@ impl Case {
             |w: &Weight| Observation { set_point: w.set_point, mean: Vector3::zeros(), covariance: w.covariance };
         let observations: Vec<Observation> = self.weights.iter().map(observation).collect();
         let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact, stated };
-        let shown = monte_carlo(&self.model, truth, &observations, &settings, &|_| {}).unwrap();
+        let data = Data::new(&self.model, observations).unwrap();
+        let shown = monte_carlo(&data, truth, &settings, &|_| {}).unwrap();
         let mut compared = Vec::new();
         for (j, statistics) in shown.parameters.iter().enumerate() {
             let parameter = &self.model.parameters()[j].name;
@@ -91,15 +92,18 @@ impl Case {
                 "{name}, {parameter}: determined by one of them only"
             );
             let (Some(statistics), Some(predicted)) = (statistics, predicted) else { continue };
-            let leans_on_lost = prediction.leans_on_lost(j);
-            assert_eq!(statistics.leans_on_lost, leans_on_lost, "{name}, {parameter}: leans by one of them only");
+            let is_affected_by_null_space = prediction.is_affected_by_null_space(j);
+            assert_eq!(
+                statistics.is_affected_by_null_space, is_affected_by_null_space,
+                "{name}, {parameter}: leans by one of them only"
+            );
             let ratio = statistics.standard_deviation / predicted;
-            compared.push(Compared { parameter: parameter.clone(), ratio, leans_on_lost });
+            compared.push(Compared { parameter: parameter.clone(), ratio, is_affected_by_null_space });
         }
         let mut ratios: Vec<&Compared> = compared.iter().collect();
         ratios.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
         let (least, most) = (ratios[0], ratios[ratios.len() - 1]);
-        let leaning = ratios.iter().filter(|c| c.leans_on_lost).count();
+        let leaning = ratios.iter().filter(|c| c.is_affected_by_null_space).count();
         println!(
             "{name}: {} parameters, {leaning} lean, {} failures, {:.4} ({}) to {:.4} ({})",
             ratios.len(),
@@ -117,7 +121,7 @@ impl Case {
 struct Compared {
     parameter: String,
     ratio: f64,
-    leans_on_lost: bool,
+    is_affected_by_null_space: bool,
 }
 
 #[test]
@@ -166,7 +170,8 @@ fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
         .collect();
     let settings = Settings { runs: 4000, seed: 3, coverage: 0.95, method: Method::Exact, stated: TypeB::default() };
     let zero = quiet.truth(0.0);
-    let shown = monte_carlo(model, &zero, &observations, &settings, &|_| {}).unwrap();
+    let data = Data::new(model, observations).unwrap();
+    let shown = monte_carlo(&data, &zero, &settings, &|_| {}).unwrap();
     let statistics = shown.parameters[j].unwrap();
     let ratio = statistics.standard_deviation / statistics.stated;
     println!("[K5.5] as printed, at zero, a hundredth of the noise: delta_2[3] {ratio:.4}");
@@ -181,17 +186,20 @@ fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
 fn every_parameter_of_four_positions_scatters_as_predicted() {
     let four = Case::of("four-positions.toml", "opposite");
     let compared = four.compared("four positions, type A", &four.truth(1.0), TypeB::default());
-    for Compared { parameter, ratio, leans_on_lost } in &compared {
-        println!("  {parameter:<14}{ratio:.4}{}", if *leans_on_lost { "  leans on what is lost" } else { "" });
+    for Compared { parameter, ratio, is_affected_by_null_space } in &compared {
+        println!(
+            "  {parameter:<14}{ratio:.4}{}",
+            if *is_affected_by_null_space { "  leans on what is lost" } else { "" }
+        );
     }
     let names = |leaning: bool| {
-        let there = compared.iter().filter(move |c| c.leans_on_lost == leaning);
+        let there = compared.iter().filter(move |c| c.is_affected_by_null_space == leaning);
         there.map(|c| c.parameter.as_str()).collect::<Vec<_>>()
     };
     assert!(!names(true).is_empty() && names(false).len() >= 12, "{:?}", names(true));
     assert!(compared.iter().all(|c| c.parameter != "G2_33"), "predicted 300 typical magnitudes");
-    for Compared { parameter, ratio, leans_on_lost } in &compared {
-        let agree = if *leans_on_lost { AGREE_LEANING } else { AGREE_BESIDE_UNTOLD };
+    for Compared { parameter, ratio, is_affected_by_null_space } in &compared {
+        let agree = if *is_affected_by_null_space { AGREE_LEANING } else { AGREE_BESIDE_UNTOLD };
         assert!((ratio - 1.0).abs() < agree, "{parameter}: scatter over prediction {ratio}");
     }
 }

@@ -10,7 +10,7 @@ use lz4_flex::frame::FrameDecoder;
 use super::columnar::Column;
 use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place, quoted};
-use crate::rows::BLOCK;
+use crate::rows::ROWS;
 
 /// Longest row of an array [bytes]: thousands of columns.
 const LONGEST_ROW: u64 = 1 << 16;
@@ -80,7 +80,7 @@ pub(super) enum ScalarKind {
 ///
 /// A name is that of an array of one column, or of a column of an array; a number counts the columns of the only
 /// array.
-pub(super) fn columns<'a>(file: &'a Path, arrays: &[Array], fields: &'a [Field]) -> Result<Vec<Column<'a>>, Error> {
+pub(super) fn columns(file: &Path, arrays: &[Array], fields: &[Field]) -> Result<Vec<Column>, Error> {
     fields.iter().map(|field| column(file, find(file, arrays, field)?, field)).collect()
 }
 
@@ -127,17 +127,13 @@ fn contents(arrays: &[Array]) -> String {
 }
 
 /// A reader of one column.
-pub(super) fn column<'a>(
-    file: &'a Path,
-    (array, place): (&Array, &ArrayColumn),
-    field: &'a Field,
-) -> Result<Column<'a>, Error> {
+pub(super) fn column(file: &Path, (array, place): (&Array, &ArrayColumn), field: &Field) -> Result<Column, Error> {
+    let (name, path) = (Place::Column(field.name.to_string()), file.to_owned());
     let failed = move |e: io::Error| {
-        let place = Place::Column(field.name.to_string());
         let expected = "an array as long as it says";
         match e.kind() {
-            io::ErrorKind::NotFound | io::ErrorKind::PermissionDenied => Error::reading(file, e, expected),
-            _ => Error::content(file, place, format!("a damaged array ({e})"), expected),
+            io::ErrorKind::NotFound | io::ErrorKind::PermissionDenied => Error::reading(&path, e, expected),
+            _ => Error::content(&path, name.clone(), format!("a damaged array ({e})"), expected),
         }
     };
     let (scalar, mut left) = (place.scalar, array.rows);
@@ -145,15 +141,15 @@ pub(super) fn column<'a>(
     if array.stride > LONGEST_ROW || scalar.size > stride {
         return Err(failed(io::Error::other(format!("{} bytes a row", array.stride))));
     }
-    let mut input = array.bytes.open(file, place.start).map_err(failed)?;
+    let mut input = array.bytes.open(file, place.start).map_err(&failed)?;
     let mut buffer = Vec::new();
     Ok(Box::new(move |values| {
-        let rows = usize::try_from(left.min(BLOCK as u64)).unwrap_or(BLOCK);
+        let rows = usize::try_from(left.min(ROWS as u64)).unwrap_or(ROWS);
         left -= rows as u64;
         // The last row ends with its number, not with its stride.
         let length = (rows * stride).saturating_sub(if left == 0 { stride - scalar.size } else { 0 });
         buffer.resize(length, 0);
-        input.read_exact(&mut buffer).map_err(failed)?;
+        input.read_exact(&mut buffer).map_err(&failed)?;
         values.extend(buffer.chunks(stride).map(|row| scalar.read(&row[..scalar.size])));
         Ok(())
     }))

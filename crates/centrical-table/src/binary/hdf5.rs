@@ -5,25 +5,22 @@ use std::path::Path;
 
 use hdf5_pure::{ChunkIndex, Dataset, Error as HdfError, File, FormatError};
 
-use super::columnar::{self, Column};
+use super::columnar::Column;
 use super::panics::caught;
 use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place, quoted};
-use crate::rows::{BLOCK, Rows};
+use crate::rows::ROWS;
 
 /// Numbers of a matrix that are read together.
-const AT_ONCE: u64 = 16 * BLOCK as u64;
+const AT_ONCE: u64 = 16 * ROWS as u64;
 
 /// No number takes more [bytes]: room is made for as many as there are of what a file claims.
 const LARGEST_NUMBER: u64 = 16;
 
-/// Reads an HDF5 file. MATLAB keeps its matrices there by columns.
-pub(crate) fn read(file: &Path, by_columns: bool, rows: &mut Rows) -> Result<(), Error> {
+/// The columns of an HDF5 file that can hold `most` rows. MATLAB keeps its matrices there by columns.
+pub(super) fn columns(file: &Path, by_columns: bool, fields: &[Field], most: u64) -> Result<Vec<Column>, Error> {
     let hdf = caught(|| File::open_streaming(file)).map_err(|e| damaged(file, Place::Whole, e.as_ref()))?;
-    let most = rows.most;
-    let open = |field| column(file, &hdf, field, by_columns, most);
-    let mut columns = rows.fields.iter().map(open).collect::<Result<Vec<_>, Error>>()?;
-    columnar::read(file, &mut columns, &mut 0, rows)
+    fields.iter().map(|field| column(file, &hdf, field, by_columns, most)).collect()
 }
 
 /// What the library complains of.
@@ -33,11 +30,12 @@ fn damaged(file: &Path, place: Place, error: Option<&HdfError>) -> Error {
 }
 
 /// One column: a vector by the path of its dataset, or a column of the only dataset by its number.
-fn column<'a>(file: &'a Path, hdf: &File, field: &'a Field, by_columns: bool, most: u64) -> Result<Column<'a>, Error> {
+fn column(file: &Path, hdf: &File, field: &Field, by_columns: bool, most: u64) -> Result<Column, Error> {
     let place = || Place::Column(field.name.to_string());
-    let damaged = move |e: Option<HdfError>| damaged(file, place(), e.as_ref());
+    let (path, name) = (file.to_owned(), place());
+    let damaged = move |e: Option<HdfError>| damaged(&path, name.clone(), e.as_ref());
     let wrong = |found: String, expected: &str| Err(Error::content(file, place(), found, expected));
-    let names = caught(|| hdf.root().datasets()).map_err(damaged)?;
+    let names = caught(|| hdf.root().datasets()).map_err(&damaged)?;
     let found = || format!("datasets {}", quoted(names.join(", ").as_bytes()));
     let (name, number) = match (&field.name, names.as_slice()) {
         (ColumnName::Name(name), _) => (name, 1),
@@ -45,7 +43,7 @@ fn column<'a>(file: &'a Path, hdf: &File, field: &'a Field, by_columns: bool, mo
         _ => return wrong(found(), "one dataset, or [columns] by name"),
     };
     let Ok(dataset) = caught(|| hdf.dataset(name)) else { return wrong(found(), "a dataset of this name") };
-    let shape = caught(|| dataset.shape()).map_err(damaged)?;
+    let shape = caught(|| dataset.shape()).map_err(&damaged)?;
     let (rows, columns) = match shape.as_slice() {
         [rows] | [1, rows] | [rows, 1] => (*rows, 1),
         [columns, rows] if by_columns => (*rows, *columns),
@@ -57,30 +55,30 @@ fn column<'a>(file: &'a Path, hdf: &File, field: &'a Field, by_columns: bool, mo
     if !is_asked || columns > AT_ONCE || rows > most {
         return wrong(format!("an array of shape {shape:?}"), "a vector by name, or a column of a matrix by number");
     }
-    if let Some((found, expected)) = unreadable(&dataset).map_err(damaged)? {
+    if let Some((found, expected)) = unreadable(&dataset).map_err(&damaged)? {
         return wrong(found, expected);
     }
-    let size = caught(|| dataset.element_size()).map_err(damaged)?;
+    let size = caught(|| dataset.element_size()).map_err(&damaged)?;
     if size > LARGEST_NUMBER {
         return wrong(format!("elements of {size} bytes"), "numbers");
     }
-    if let Some(found) = too_large_chunk(file, &dataset, most).map_err(damaged)? {
+    if let Some(found) = too_large_chunk(file, &dataset, most).map_err(&damaged)? {
         return wrong(found, "chunks that the file can hold");
     }
     if by_columns || shape.first() == Some(&1) {
         // A row of the file holds the whole column.
-        let mut whole = caught(|| row(&dataset, number as u64 - 1)).map_err(damaged)?.into_iter();
+        let mut whole = caught(|| row(&dataset, number as u64 - 1)).map_err(&damaged)?.into_iter();
         return Ok(Box::new(move |values| {
-            values.extend(whole.by_ref().take(BLOCK));
+            values.extend(whole.by_ref().take(ROWS));
             Ok(())
         }));
     }
     let (mut start, step) = (0, AT_ONCE / columns);
     Ok(Box::new(move |values| {
-        let end = (start + BLOCK as u64).min(rows);
+        let end = (start + ROWS as u64).min(rows);
         while start < end {
             let count = step.min(end - start);
-            let block = caught(|| dataset.read_f64_rows(start, count)).map_err(damaged)?;
+            let block = caught(|| dataset.read_f64_rows(start, count)).map_err(&damaged)?;
             start += count;
             values.extend(block.iter().skip(number - 1).step_by(usize::try_from(columns).unwrap_or(usize::MAX)));
         }

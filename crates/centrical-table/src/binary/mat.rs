@@ -8,10 +8,11 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use super::arrays;
 use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
-use super::{arrays, columnar};
+use super::columnar::Column;
+use crate::column::Field;
 use crate::error::{Error, Place};
-use crate::rows::Rows;
 
 /// Length of the header; its last two bytes are `IM` where the numbers start with the low byte.
 const HEADER: u64 = 128;
@@ -23,13 +24,11 @@ const PACKED: u32 = 15;
 /// Longest name of a variable, and most columns of a matrix.
 const MOST: u64 = 1 << 16;
 
-/// Reads a MATLAB file.
-pub(crate) fn read(file: &Path, input: &File, rows: &mut Rows) -> Result<(), Error> {
+/// The columns of a MATLAB file.
+pub(super) fn columns(file: &Path, input: &File, fields: &[Field]) -> Result<Vec<Column>, Error> {
     let damaged = |e: io::Error| Error::content(file, Place::Whole, format!("damaged ({e})"), "a MATLAB file");
     let length = input.metadata().map_err(damaged)?.len();
-    let arrays = arrays(file, length).map_err(damaged)?;
-    let mut columns = arrays::columns(file, &arrays, rows.fields)?;
-    columnar::read(file, &mut columns, &mut 0, rows)
+    arrays::columns(file, &arrays(file, length).map_err(damaged)?, fields)
 }
 
 /// The matrices of numbers in the file.

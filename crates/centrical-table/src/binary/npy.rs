@@ -10,26 +10,27 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use self::literal::Literal;
+use super::arrays;
 use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
-use super::{arrays, columnar};
+use super::columnar::Column;
+use crate::column::Field;
 use crate::error::{Error, Place, quoted};
-use crate::rows::Rows;
 
 /// Longest header [bytes].
 const LONGEST_HEADER: usize = 1 << 16;
 
-/// Reads a `.npy` file.
-pub(crate) fn read(file: &Path, input: &File, rows: &mut Rows) -> Result<(), Error> {
+/// The columns of a `.npy` file.
+pub(super) fn columns(file: &Path, input: &File, fields: &[Field]) -> Result<Vec<Column>, Error> {
     let length = input.metadata().map_err(|e| Error::reading(file, e, "a .npy file"))?.len();
     let bytes = Bytes { packing: Packing::Plain, offset: 0, length, skip: 0 };
     match array(file, "", bytes)? {
-        Some(array) => read_arrays(file, &[array], rows),
+        Some(array) => arrays::columns(file, &[array], fields),
         None => Err(Error::content(file, Place::Whole, "an array of another shape", "a vector, a matrix or records")),
     }
 }
 
-/// Reads a `.npz` archive.
-pub(crate) fn read_archive(file: &Path, input: File, rows: &mut Rows) -> Result<(), Error> {
+/// The columns of a `.npz` archive.
+pub(super) fn archive_columns(file: &Path, input: File, fields: &[Field]) -> Result<Vec<Column>, Error> {
     let damaged = |e: zip::result::ZipError| Error::content(file, Place::Whole, e.to_string(), "a .npz archive");
     let mut archive = zip::ZipArchive::new(input).map_err(damaged)?;
     let mut arrays = Vec::new();
@@ -48,12 +49,7 @@ pub(crate) fn read_archive(file: &Path, input: File, rows: &mut Rows) -> Result<
         let offset = member.data_start().unwrap_or(0);
         arrays.extend(array(file, name, Bytes { packing, offset, length: member.compressed_size(), skip: 0 })?);
     }
-    read_arrays(file, &arrays, rows)
-}
-
-fn read_arrays(file: &Path, arrays: &[Array], rows: &mut Rows) -> Result<(), Error> {
-    let mut columns = arrays::columns(file, arrays, rows.fields)?;
-    columnar::read(file, &mut columns, &mut 0, rows)
+    arrays::columns(file, &arrays, fields)
 }
 
 /// The array that starts with a header at these bytes, if it has rows and columns.

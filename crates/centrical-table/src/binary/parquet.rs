@@ -1,4 +1,4 @@
-//! Tables in Parquet files, a block of rows at a time.
+//! Tables in Parquet files, some rows at a time.
 
 mod pages;
 
@@ -14,30 +14,27 @@ use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 use parquet::schema::types::ColumnDescPtr;
 
 use self::pages::{Checked, Source};
-use super::columnar::{self, Column, MISSING};
+use super::columnar::{Column, MISSING, Parts};
 use super::panics::caught;
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
-use crate::rows::{BLOCK, Rows};
+use crate::rows::ROWS;
 
-/// Reads the table of `file`.
-pub(crate) fn read(file: &Path, input: &File, rows: &mut Rows) -> Result<(), Error> {
+/// The row groups of `file`.
+pub(super) fn parts(file: &Path, input: &File, fields: &[Field]) -> Result<Parts, Error> {
     let metadata = caught(|| ParquetMetaDataReader::new().parse_and_finish(input));
     let metadata = metadata.map_err(|e| damaged(file, e.as_ref()))?;
-    let columns: Vec<usize> =
-        rows.fields.iter().map(|field| find(file, &metadata, field)).collect::<Result<_, Error>>()?;
+    let columns: Vec<usize> = fields.iter().map(|field| find(file, &metadata, field)).collect::<Result<_, Error>>()?;
     // Columns are read at the same time, and a file has one place that is read next: each column opens it for itself.
     let open = |_: &usize| File::open(file).map(|input| Arc::new(Source(input)));
     let sources: Vec<Arc<Source>> =
         columns.iter().map(open).collect::<std::io::Result<_>>().map_err(|e| Error::reading(file, e, "Parquet"))?;
-    let mut first_row = 0;
-    for group in 0..metadata.num_row_groups() {
-        let open = |(c, source): (&usize, &Arc<Source>)| column(file, source, &metadata, group, *c);
+    let file = file.to_owned();
+    Ok(Box::new((0..metadata.num_row_groups()).map(move |group| {
+        let open = |(c, source): (&usize, &Arc<Source>)| column(&file, source, &metadata, group, *c);
         let columns = columns.iter().zip(&sources).map(open).collect::<ParquetResult<Vec<_>>>();
-        let mut columns = columns.map_err(|e| damaged(file, Some(&e)))?;
-        columnar::read(file, &mut columns, &mut first_row, rows)?;
-    }
-    Ok(())
+        columns.map_err(|e| damaged(&file, Some(&e)))
+    })))
 }
 
 /// What the parquet library complains of.
@@ -93,23 +90,24 @@ fn stamp_unit(column: &ColumnDescPtr) -> f64 {
 }
 
 /// One column of one row group.
-fn column<'a>(
-    file: &'a Path,
+fn column(
+    file: &Path,
     source: &Arc<Source>,
     metadata: &ParquetMetaData,
     group: usize,
     column: usize,
-) -> ParquetResult<Column<'a>> {
+) -> ParquetResult<Column> {
     let pages = Checked::new(source, metadata.row_group(group), column)?;
     let description = metadata.file_metadata().schema_descr().column(column);
     let unit = stamp_unit(&description);
     let whole = description.max_def_level();
     let mut reader = get_column_reader(description, Box::new(pages));
+    let file = file.to_owned();
     Ok(Box::new(move |values| {
         let read = caught(|| match &mut reader {
             // As they are, if there is one in every row.
             ColumnReader::DoubleColumnReader(reader) if whole == 0 => {
-                reader.read_records(BLOCK, None, None, values).map(|_| ())
+                reader.read_records(ROWS, None, None, values).map(|_| ())
             }
             ColumnReader::DoubleColumnReader(reader) => numbers(reader, values, |v| v),
             ColumnReader::FloatColumnReader(reader) => numbers(reader, values, f64::from),
@@ -117,18 +115,18 @@ fn column<'a>(
             ColumnReader::Int64ColumnReader(reader) => numbers(reader, values, |v| v as f64 * unit),
             _ => Err(ParquetError::General("a column without numbers".to_owned())),
         });
-        read.map_err(|e| damaged(file, e.as_ref()))
+        read.map_err(|e| damaged(&file, e.as_ref()))
     }))
 }
 
-/// Reads the next block of one column.
+/// Reads the next values of one column.
 fn numbers<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     values: &mut Vec<f64>,
     convert: impl Fn(T::T) -> f64,
 ) -> ParquetResult<()> {
-    let (mut levels, mut raw) = (Vec::new(), Vec::with_capacity(BLOCK));
-    let (rows, present, _) = reader.read_records(BLOCK, Some(&mut levels), None, &mut raw)?;
+    let (mut levels, mut raw) = (Vec::new(), Vec::with_capacity(ROWS));
+    let (rows, present, _) = reader.read_records(ROWS, Some(&mut levels), None, &mut raw)?;
     let mut raw = raw.into_iter().map(convert);
     if present == rows {
         values.extend(raw);

@@ -8,7 +8,7 @@ use super::batch::{Batch, ROWS};
 use super::number::plain;
 use crate::column::{ColumnName, Field, LARGEST, Rule};
 use crate::error::quoted;
-use crate::rows::Block;
+use crate::rows::Rows;
 use crate::stamp;
 
 /// What stands wrong in a line.
@@ -153,7 +153,7 @@ impl Layout {
         separators: &[u32],
         ends: &[u32],
         batch: &mut Batch,
-        block: &mut Block,
+        rows: &mut Rows,
     ) -> Option<()> {
         let all = &text[from..*separators.last()? as usize];
         // A delimiter within quotes divides nothing.
@@ -166,7 +166,7 @@ impl Layout {
         if with_return && !ends.iter().all(is_return) {
             return None;
         }
-        let before = block[0].len();
+        let before = rows[0].len();
         batch.column.begin(u32::try_from(from).ok()?, ends);
         for (column, field) in self.wanted.iter().enumerate() {
             batch.column.go_on(separators.chunks_exact(self.wanted.len()).map(|line| line[column]));
@@ -174,7 +174,7 @@ impl Layout {
             // If each line's last separator ends it, no other one does.
             let mut is_plain = !is_last || batch.column.ends_at(ends);
             if let Some(field) = field {
-                let values = &mut block[*field];
+                let values = &mut rows[*field];
                 values.resize(before + ROWS, 0.0);
                 let left_out = u32::from(is_last && with_return);
                 let numbers = values[before..].first_chunk_mut();
@@ -182,7 +182,7 @@ impl Layout {
                 values.truncate(before + ends.len());
             }
             if !is_plain {
-                for values in block.iter_mut() {
+                for values in rows.iter_mut() {
                     values.truncate(before);
                 }
                 return None;

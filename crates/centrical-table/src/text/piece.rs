@@ -1,226 +1,199 @@
-//! A text in pieces of whole lines: of a file any piece by its number, of a packed one each after the other.
+//! A piece of text: from its lines to rows of numbers, up to the first fault.
 
-use std::fs::File;
-use std::io::{self, Read};
-use std::ops::{Deref, Range};
-use std::path::{Path, PathBuf};
+use memchr::memchr;
 
-use memchr::{memchr, memchr_iter, memrchr};
+use super::batch::{self, Batch, ROWS};
+use super::layout::{Fault, Layout, Prologue};
+use super::lines::{self, Text};
+use super::separators::Separators;
+use crate::column::Field;
+use crate::rows::{ASCENDING, Rows, runs_backwards};
 
-use super::Piece;
-use crate::error::{Error, quoted};
-
-/// Bytes in a piece, more or less a line: several make up a plateau, and each is worth the way to it.
-pub(super) const SIZE: u64 = 1 << 17;
-
-/// The longest line [bytes].
-const LONGEST_LINE: usize = 1 << 20;
-
-/// Whole lines, within bytes that were read together.
+/// A piece on its way from the file to the rows.
 #[derive(Default)]
-pub(crate) struct Text {
-    bytes: Vec<u8>,
-    lines: Range<usize>,
+pub(super) struct Piece {
+    pub text: Text,
+    /// Lines read without a fault.
+    pub lines: u64,
+    /// The line of the first row, counted within the piece from 0.
+    pub first_row: u64,
+    /// What stands wrong, and in which line of the piece.
+    pub fault: Option<(u64, Fault)>,
+    separators: Separators,
+    batch: Batch,
 }
 
-impl Deref for Text {
-    type Target = [u8];
-
-    fn deref(&self) -> &[u8] {
-        &self.bytes[self.lines.clone()]
-    }
-}
-
-impl Text {
-    /// Leaves out a mark of the byte order.
-    fn skip_mark(&mut self) {
-        let mark = "\u{feff}".as_bytes();
-        if self.starts_with(mark) {
-            self.lines.start += mark.len();
+impl Piece {
+    /// Reads the rows of the text after its first `skipped` lines, up to the first fault.
+    pub fn read(&mut self, layout: &Layout, skipped: u64, fields: &[Field], rows: &mut Rows) {
+        rows.iter_mut().for_each(Vec::clear);
+        let whole = std::mem::take(&mut self.text);
+        let mut text = &*whole;
+        for _ in 0..skipped {
+            text = split_line(text).1;
         }
-    }
-}
-
-/// A text that comes in pieces.
-pub(crate) trait Lines {
-    /// Fills pieces from the one of that number on, or leaves it to whoever has use for them; how many there are.
-    fn fill(&mut self, number: u64, pieces: &mut [Piece]) -> Result<usize, Error>;
-
-    /// Who fills the pieces that were left, each for itself and in any order.
-    fn any_piece(&self) -> Option<&Plain> {
-        None
-    }
-}
-
-/// A text in an ordinary file. A piece has the lines that begin in its range of bytes.
-pub(crate) struct Plain {
-    file: PathBuf,
-    input: File,
-    length: u64,
-}
-
-/// A text that is read from its start to its end.
-pub(crate) struct Packed<'a> {
-    file: &'a Path,
-    input: Box<dyn Read + 'a>,
-    /// Begin of a line that goes on.
-    rest: Vec<u8>,
-    at_end: bool,
-}
-
-impl Plain {
-    /// Opens a file, as long as it is now.
-    pub fn open(file: &Path) -> io::Result<Self> {
-        let input = File::open(file)?;
-        let length = input.metadata()?.len();
-        Ok(Self { file: file.to_owned(), input, length })
-    }
-
-    /// The same, ending after so many bytes.
-    pub fn up_to(mut self, length: u64) -> Self {
-        self.length = length;
-        self
-    }
-
-    /// Reads the piece of that number; any thread may read any piece.
-    pub(super) fn read(&self, number: u64, text: &mut Text) -> Result<(), Error> {
-        self.try_read(number, text).map_err(|e| Error::reading(&self.file, e, TABLE))
-    }
-
-    fn try_read(&self, number: u64, text: &mut Text) -> io::Result<()> {
-        /// Where the last line most likely ends.
-        const BEYOND: usize = 512;
-        // The byte before: if it ends a line, the next line begins here.
-        let from = (number * SIZE).saturating_sub(1);
-        let size = usize::try_from(((number + 1) * SIZE).min(self.length).saturating_sub(from)).unwrap_or(0);
-        let mut read = self.fill(&mut text.bytes, 0, size + BEYOND, from)?;
-        let size = size.min(read);
-        let begin = if number == 0 { Some(0) } else { memchr(b'\n', &text.bytes[..size]).map(|end| end + 1) };
-        text.lines = 0..0;
-        let Some(begin) = begin.filter(|begin| *begin < size) else { return Ok(()) };
-        // The rest of the last line.
-        let mut end = size;
-        while text.bytes[end - 1] != b'\n' && end - size <= LONGEST_LINE {
-            if let Some(line_end) = memchr(b'\n', &text.bytes[end..read]) {
-                end += line_end + 1;
-                break;
-            }
-            end = read;
-            read = self.fill(&mut text.bytes, read, 2 * BEYOND.max(read - size), from)?;
-            if read == end {
-                break;
-            }
+        (self.lines, self.first_row, self.fault) = (skipped, skipped, None);
+        let is_ascii = layout.delimiter().is_some_and(|delimiter| self.separators.find(text, delimiter));
+        if !is_ascii && let Err((at, column, found)) = lines::check_utf8(text) {
+            self.fault = Some((skipped + at, Fault { column, found, expected: "text in UTF-8".to_owned() }));
+            text = &text[..lines::before_line(text, at)];
         }
-        text.lines = begin..end;
-        if number == 0 {
-            text.skip_mark();
+        if let Some((at, found)) = lines::endless_line(text) {
+            self.fault = Some((skipped + at, Fault::no_table(found)));
+            text = &text[..lines::before_line(text, at)];
+        }
+        self.fault = self.read_batches(text, layout, fields, rows).err().or(self.fault.take());
+        self.text = whole;
+        self.check_times(skipped, fields, rows);
+    }
+
+    /// Reads rows of bare numbers, many at a time, and others one by one, up to the first fault.
+    fn read_batches(
+        &mut self,
+        text: &[u8],
+        layout: &Layout,
+        fields: &[Field],
+        rows: &mut Rows,
+    ) -> Result<(), (u64, Fault)> {
+        if layout.delimiter().is_none() {
+            return self.read_rows(text, layout, fields, rows);
+        }
+        let of_text = std::mem::take(&mut self.separators);
+        let [mut separators, mut ends] = of_text.places();
+        let mut from = 0;
+        let read = loop {
+            // A number is taken with what is before it: the first ones of all are left to be read one by one.
+            let most = if from < batch::REACH { 1 } else { ROWS };
+            let count = most.min(separators.len() / layout.fields()).min(ends.len());
+            let (of_batch, ends_of_batch) = (&separators[..count * layout.fields()], &ends[..count]);
+            // Of a text that is read up to a fault, some are beyond it.
+            if of_batch.last().is_none_or(|last| *last as usize >= text.len()) {
+                break self.read_rows(&text[from..], layout, fields, rows);
+            }
+            if layout.batch(text, from, of_batch, ends_of_batch, &mut self.batch, rows).is_some() {
+                self.lines += count as u64;
+                from = of_batch[of_batch.len() - 1] as usize + 1;
+                (separators, ends) = (&separators[of_batch.len()..], &ends[count..]);
+                continue;
+            }
+            // As many lines: one may have more separators than it should, or fewer.
+            let rest = text.len().min(ends_of_batch[count - 1] as usize + 1);
+            if let Err(fault) = self.read_rows(&text[from..rest], layout, fields, rows) {
+                break Err(fault);
+            }
+            let left = |places: &[u32]| places.partition_point(|place| (*place as usize) < rest);
+            (separators, ends) = (&separators[left(separators)..], &ends[left(ends)..]);
+            from = rest;
+        };
+        self.separators = of_text;
+        read
+    }
+
+    /// Reads the rows of a text one by one, up to the first fault.
+    fn read_rows(
+        &mut self,
+        mut text: &[u8],
+        layout: &Layout,
+        fields: &[Field],
+        rows: &mut Rows,
+    ) -> Result<(), (u64, Fault)> {
+        let mut row = vec![0.0; fields.len()];
+        while !text.is_empty() {
+            let (line, rest) = split_line(text);
+            if let Some(length) = layout.plain_row(text, &mut row) {
+                text = &text[length..];
+            } else if is_data(line) {
+                layout.row(line, &mut row, fields).map_err(|fault| (self.lines, fault))?;
+                text = rest;
+            } else {
+                self.first_row += u64::from(rows[0].is_empty());
+                self.lines += 1;
+                text = rest;
+                continue;
+            }
+            self.lines += 1;
+            rows.iter_mut().zip(&row).for_each(|(column, value)| column.push(*value));
         }
         Ok(())
     }
 
-    /// Reads up to `count` more bytes behind the first `filled`, which stand at `from` in the file; how many there are then.
-    fn fill(&self, bytes: &mut Vec<u8>, mut filled: usize, count: usize, from: u64) -> io::Result<usize> {
-        let left = self.length.saturating_sub(from + filled as u64);
-        let most = filled + usize::try_from(left).unwrap_or(usize::MAX).min(count);
-        bytes.resize(bytes.len().max(most), 0);
-        while filled < most {
-            match read_at(&self.input, &mut bytes[filled..most], from + filled as u64) {
-                Ok(0) => break,
-                Ok(read) => filled += read,
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                Err(error) => return Err(error),
+    /// Sees that what should ascend does, row after row.
+    fn check_times(&mut self, skipped: u64, fields: &[Field], rows: &Rows) {
+        for (field, column) in fields.iter().zip(rows).filter(|(field, _)| field.rule.ascends()) {
+            if runs_backwards(column)
+                && let Some(row) = column.windows(2).position(|pair| pair[1] < pair[0])
+            {
+                let found = format!("{} after {}", column[row + 1], column[row]);
+                let fault = Fault { column: Some(field.name.to_string()), found, expected: ASCENDING.to_owned() };
+                self.fault = Some((self.line_of(row + 1, skipped), fault));
             }
         }
-        Ok(filled)
-    }
-}
-
-/// Reads at a place in a file, wherever others read.
-#[cfg(unix)]
-fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
-    std::os::unix::fs::FileExt::read_at(file, bytes, place)
-}
-
-/// Reads at a place in a file, wherever others read.
-#[cfg(windows)]
-fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
-    std::os::windows::fs::FileExt::seek_read(file, bytes, place)
-}
-
-impl Lines for Plain {
-    fn fill(&mut self, number: u64, pieces: &mut [Piece]) -> Result<usize, Error> {
-        let left = self.length.div_ceil(SIZE).saturating_sub(number);
-        Ok(usize::try_from(left).unwrap_or(usize::MAX).min(pieces.len()))
     }
 
-    fn any_piece(&self) -> Option<&Plain> {
-        Some(self)
-    }
-}
-
-impl<'a> Packed<'a> {
-    /// The text that `input` gives.
-    pub fn new(file: &'a Path, input: impl Read + 'a) -> Self {
-        Self { file, input: Box::new(input), rest: Vec::new(), at_end: false }
-    }
-
-    fn read(&mut self, first: bool, text: &mut Text) -> Result<(), Error> {
-        let bytes = &mut text.bytes;
-        bytes.clear();
-        bytes.append(&mut self.rest);
-        let mut end = None;
-        while end.is_none() && !self.at_end && bytes.len() <= LONGEST_LINE {
-            let before = bytes.len();
-            let read = (&mut self.input).take(SIZE).read_to_end(bytes);
-            let read = read.map_err(|e| Error::unpacking(self.file, e, TABLE))?;
-            self.at_end = (read as u64) < SIZE;
-            end = memrchr(b'\n', &bytes[before..]).map(|end| before + end + 1);
+    /// The line of a row, both counted from 0.
+    #[cold]
+    fn line_of(&self, row: usize, skipped: u64) -> u64 {
+        let (mut text, mut line) = (&*self.text, 0);
+        let mut left = row;
+        while !text.is_empty() {
+            let (this, rest) = split_line(text);
+            if line >= skipped && is_data(this) {
+                if left == 0 {
+                    break;
+                }
+                left -= 1;
+            }
+            (text, line) = (rest, line + 1);
         }
-        if !self.at_end {
-            self.rest.extend_from_slice(&bytes[end.unwrap_or(bytes.len())..]);
-            bytes.truncate(end.unwrap_or(bytes.len()));
-        }
-        text.lines = 0..bytes.len();
-        if first {
-            text.skip_mark();
-        }
-        Ok(())
+        line
     }
 }
 
-impl Lines for Packed<'_> {
-    fn fill(&mut self, number: u64, pieces: &mut [Piece]) -> Result<usize, Error> {
-        let mut count = 0;
-        while count < pieces.len() && !(self.at_end && self.rest.is_empty()) {
-            self.read(number == 0 && count == 0, &mut pieces[count].text)?;
-            count += 1;
-        }
-        Ok(count)
+impl Fault {
+    pub fn no_table(found: String) -> Self {
+        Self { column: None, found, expected: lines::TABLE.to_owned() }
     }
 }
 
-/// What a text is expected to be.
-pub(super) const TABLE: &str = "a table of numbers as text";
-
-/// The last line, counted from 0, if it goes on and on: what has such lines is no table.
-pub(super) fn endless_line(text: &[u8]) -> Option<(u64, String)> {
-    let start = memrchr(b'\n', &text[..text.len().saturating_sub(1)]).map_or(0, |end| end + 1);
-    let line = || memchr_iter(b'\n', &text[..start]).count() as u64;
-    (text.len() - start > LONGEST_LINE).then(|| (line(), format!("a line longer than {LONGEST_LINE} bytes")))
+impl Prologue {
+    /// Reads the lines before the first row: the layout of the rows and how many lines to skip; no layout if there are
+    /// only comments.
+    pub fn read(&mut self, text: &[u8], fields: &[Field]) -> Result<(Option<Layout>, u64), (u64, Fault)> {
+        let mut rest = text;
+        let mut number = 0;
+        while !rest.is_empty() {
+            let line;
+            (line, rest) = split_line(rest);
+            if is_data(line) {
+                if let Err((_, column, found)) = lines::check_utf8(line) {
+                    return Err((number, Fault { column, found, expected: "text in UTF-8".to_owned() }));
+                }
+                let first = self.first_line(line, fields).map_err(|fault| (number, fault))?;
+                return Ok((Some(first.layout), number + u64::from(first.is_header)));
+            }
+            self.comment(line);
+            number += 1;
+        }
+        Ok((None, number))
+    }
 }
 
-/// Text must be UTF-8: in any other encoding the names of columns would not be found. Of text that is not: the line,
-/// counted from 0, and what was found there.
-pub(super) fn check_utf8(text: &[u8]) -> Result<(), (u64, Option<String>, String)> {
-    let Err(error) = std::str::from_utf8(text) else { return Ok(()) };
-    let bad = error.valid_up_to();
-    let line = memchr_iter(b'\n', &text[..bad]).count() as u64;
-    let start = memrchr(b'\n', &text[..bad]).map_or(0, |end| end + 1);
-    Err((line, None, format!("byte 0x{:02x} after {}", text[bad], quoted(&text[start..bad]))))
+/// The first line without its end, and the rest.
+#[inline]
+fn split_line(text: &[u8]) -> (&[u8], &[u8]) {
+    let (line, rest) = match memchr(b'\n', text) {
+        Some(end) => (&text[..end], &text[end + 1..]),
+        None => (text, &text[text.len()..]),
+    };
+    (line.strip_suffix(b"\r").unwrap_or(line), rest)
 }
 
-/// Length of the first `count` lines.
-pub(super) fn before_line(text: &[u8], count: u64) -> usize {
-    let last = usize::try_from(count).ok().and_then(|count| count.checked_sub(1));
-    last.and_then(|last| memchr_iter(b'\n', text).nth(last)).map_or(0, |end| end + 1)
+/// Whether a line is neither blank nor a comment.
+#[inline]
+fn is_data(line: &[u8]) -> bool {
+    match line.first() {
+        None | Some(b'#') => false,
+        Some(b' ' | b'\t') => !matches!(line.trim_ascii_start().first(), None | Some(b'#')),
+        Some(_) => true,
+    }
 }

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use centrical_table::{ColumnName, Error, Extent, Field, Rule, Visitor, read_batches};
+use centrical_table::{ColumnName, Error, Extent, Field, Rule, TableReader};
 
 /// Time and readings, a column each.
 pub type Record = [Vec<f64>; 4];
@@ -37,11 +37,11 @@ fn read(file: &Path, extent: Extent, columns: &[ColumnName; 4]) -> Result<Record
     };
     let fields: Vec<Field> = columns.iter().enumerate().map(field).collect();
     let mut record = Record::default();
-    let mut visit = |batch: &mut [Vec<Vec<f64>>]| {
+    let mut table = TableReader::open(file, extent, &fields, "a record")?;
+    while let Some(batch) = table.next_batch()? {
         for rows in batch {
             record.iter_mut().zip(rows).for_each(|(column, values)| column.extend_from_slice(values));
         }
-    };
-    read_batches(file, extent, &fields, "a record", &mut Visitor { visit: &mut visit, progress: &|_| {} })?;
+    }
     Ok(record)
 }

@@ -3,83 +3,61 @@
 //! With the whitened design `W J = Q R` at the estimate, a change `dy` of the readings moves the estimates by
 //! `K dy`, `K = R^-1 Q^T W`. `K` is applied by reflections and back substitution and never formed.
 
-use nalgebra::{DMatrix, DVector, Dyn, QR};
+use nalgebra::{DMatrix, DVector};
 
-use super::{Fit, Structure};
-use crate::design::{Design, Observation, Whitener};
-use crate::error::FitError;
-use crate::measurement::{Linearisation, MeasurementModel};
-use crate::parameter::NULL_HOLD;
+use super::assembly::Assembly;
+use super::data::Data;
+use super::estimates::Fit;
+use super::structure::Structure;
+use crate::linalg::least_squares::LeastSquares;
+use crate::model::whitening::Whitener;
+use crate::model::{FitError, NULL_HOLD};
 
 /// The factored design at the estimate of a fit.
 #[derive(Debug, Clone)]
 pub struct Gain {
-    qr: QR<f64, Dyn, Dyn>,
+    /// Three equations per observation, one per prior, one per null direction.
+    equations: LeastSquares,
     whiteners: Vec<Whitener>,
-    /// Rows of the factored design: three per observation, one per prior, one per null direction.
-    rows: usize,
     /// Whitened residuals of the observations and the priors.
     residuals: DVector<f64>,
-    typical: DVector<f64>,
 }
 
 impl Gain {
-    /// Gain of `fit`, which was made of `observations` of `model`.
-    ///
-    /// # Errors
-    /// [`FitError`] when an observation cannot be one.
-    pub fn of(fit: &Fit, model: &MeasurementModel, observations: &[Observation]) -> Result<Self, FitError> {
-        let structure = Structure::of(model, observations)?;
-        let set_points = &model.experiment().set_points;
-        let linearisations: Vec<Linearisation> =
-            observations.iter().map(|o| model.linearise(&set_points[o.set_point], fit.state())).collect();
-        let design = Design::at(fit.state(), model, observations, &linearisations)?;
-        let pairs = observations.iter().zip(&linearisations);
+    /// Gain of the fit of `data`, whose design has that structure.
+    pub(super) fn of(data: &Data, structure: &Structure, fit: &Fit) -> Result<Self, FitError> {
+        let linearisations = data.linearised(fit.state());
+        let design = Assembly::Batch.design(data, fit.state(), &linearisations)?;
+        let pairs = data.observations().iter().zip(&linearisations);
         let whiteners = pairs.map(|(o, l)| Whitener::new(&o.into(), &l.speed_error)).collect::<Result<_, _>>()?;
-        let hold = if fit.null_directions_held { 1.0 / NULL_HOLD } else { 0.0 };
-        let equations = structure.equations(&design, &DVector::from_column_slice(fit.state()), hold);
-        let (rows, qr) = (equations.rows.nrows(), equations.rows.qr());
-        Ok(Self { qr, whiteners, rows, residuals: design.misfit, typical: structure.typical })
+        let null_weight = if fit.null_directions_held { 1.0 / NULL_HOLD } else { 0.0 };
+        let (equations, _) = structure.equations(&design, &DVector::from_column_slice(fit.state()), null_weight);
+        Ok(Self { equations, whiteners, residuals: design.misfit })
     }
 
     /// Changes of the estimates, `p x m` [units of the parameters], that `m` changes of the readings make,
     /// `3 n x m` [m/s^2], three rows per observation.
     pub fn apply(&self, readings: &DMatrix<f64>) -> DMatrix<f64> {
-        self.estimates(&self.rotated(readings))
+        self.equations.unknowns(&self.rotated(readings))
     }
 
     /// Changes of the estimates, `p x m`, that each of the `m` priors makes when it is off by one standard uncertainty.
     pub(crate) fn apply_priors(&self) -> DMatrix<f64> {
         let (data, all) = (3 * self.whiteners.len(), self.residuals.len());
-        let mut rotated = DMatrix::zeros(self.rows, all - data);
-        rotated.rows_mut(data, all - data).fill_with_identity();
-        self.qr.q_tr_mul(&mut rotated);
-        self.estimates(&rotated)
-    }
-
-    /// Back substitution, and from typical to physical units.
-    fn estimates(&self, rotated: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut estimates = rotated.rows(0, self.typical.len()).into_owned();
-        // Held null directions leave no zero on the diagonal of `R`.
-        let solved = self.qr.r().solve_upper_triangular_mut(&mut estimates);
-        debug_assert!(solved, "the held equations are of full rank");
-        estimates.row_iter_mut().zip(self.typical.iter()).for_each(|(mut row, typical)| row *= *typical);
-        estimates
+        let mut priors = DMatrix::zeros(all, all - data);
+        priors.rows_mut(data, all - data).fill_with_identity();
+        self.equations.unknowns(&self.equations.rotated(priors))
     }
 
     /// The part of `m` changes of the readings, `3 n x m` [m/s^2], that no change of the unknowns can follow: whitened,
     /// in `rows - p` independent coordinates of unit variance.
     pub fn redundant(&self, readings: &DMatrix<f64>) -> DMatrix<f64> {
-        let p = self.typical.len();
-        self.rotated(readings).rows(p, self.rows - p).into_owned()
+        self.rotated(readings).rows_range(self.equations.columns()..).into_owned()
     }
 
-    /// The residuals in the same coordinates: all that they can tell.
+    /// The residuals in the same coordinates: their testable part.
     pub fn redundant_residuals(&self) -> DVector<f64> {
-        let p = self.typical.len();
-        let mut rotated = self.residuals.clone().resize_vertically(self.rows, 0.0);
-        self.qr.q_tr_mul(&mut rotated);
-        rotated.rows(p, self.rows - p).into_owned()
+        self.equations.redundant(&self.residuals)
     }
 
     /// Whitened residuals, three per observation.
@@ -90,10 +68,9 @@ impl Gain {
     /// The share of each whitened reading in its own fitted value and those of the others: `Q Q^T` of the orthonormal
     /// columns, `3 n x 3 n`. Its trace is the number of unknowns determined.
     pub(crate) fn hat(&self) -> DMatrix<f64> {
-        let p = self.typical.len();
-        let mut rotated = DMatrix::identity(self.rows, 3 * self.whiteners.len());
-        self.qr.q_tr_mul(&mut rotated);
-        let q = rotated.rows(0, p);
+        let data = 3 * self.whiteners.len();
+        let rotated = self.equations.rotated(DMatrix::identity(data, data));
+        let q = rotated.rows_range(..self.equations.columns());
         q.transpose() * q
     }
 
@@ -111,8 +88,6 @@ impl Gain {
 
     /// `Q^T W` times changes of the readings.
     fn rotated(&self, readings: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut rotated = self.whitened(readings).resize_vertically(self.rows, 0.0);
-        self.qr.q_tr_mul(&mut rotated);
-        rotated
+        self.equations.rotated(self.whitened(readings))
     }
 }

@@ -36,7 +36,7 @@ impl LeastSquares {
     pub fn solve(&self, b: DVector<f64>) -> Solution {
         let mut rotated = b.resize_vertically(self.rows, 0.0);
         self.qr.q_tr_mul(&mut rotated);
-        let mut x = rotated.rows(0, self.sizes.len()).into_owned();
+        let mut x = rotated.rows_range(..self.columns()).into_owned();
         let whitened_length = x.norm();
         let solved = self.r.solve_upper_triangular_mut(&mut x);
         debug_assert!(solved, "the equations are of full rank");
@@ -54,10 +54,23 @@ impl LeastSquares {
 
     /// The solutions, column by column, for the first rows of a matrix [`LeastSquares::rotated`].
     pub fn unknowns(&self, rotated: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut unknowns = rotated.rows(0, self.sizes.len()).into_owned();
+        let mut unknowns = rotated.rows_range(..self.columns()).into_owned();
         let solved = self.r.solve_upper_triangular_mut(&mut unknowns);
         debug_assert!(solved, "the equations are of full rank");
         self.in_units(unknowns)
+    }
+
+    /// The part of `b`, rotated, that no unknown can follow: its squares are those of the residuals. Rows that it lacks at
+    /// its end are zeros.
+    pub fn redundant(&self, b: &DVector<f64>) -> DVector<f64> {
+        let mut rotated = b.clone().resize_vertically(self.rows, 0.0);
+        self.qr.q_tr_mul(&mut rotated);
+        rotated.rows_range(self.columns()..).into_owned()
+    }
+
+    /// Number of unknowns.
+    pub fn columns(&self) -> usize {
+        self.sizes.len()
     }
 
     /// `R`, in units of the sizes.
@@ -67,7 +80,7 @@ impl LeastSquares {
 
     /// `R^-1`, in units of the sizes.
     pub fn inverse(&self) -> DMatrix<f64> {
-        let mut inverse = DMatrix::identity(self.sizes.len(), self.sizes.len());
+        let mut inverse = DMatrix::identity(self.columns(), self.columns());
         let solved = self.r.solve_upper_triangular_mut(&mut inverse);
         debug_assert!(solved, "the equations are of full rank");
         inverse
@@ -77,6 +90,11 @@ impl LeastSquares {
     pub fn covariance(&self) -> DMatrix<f64> {
         let inverse = self.in_units(self.inverse());
         &inverse * inverse.transpose()
+    }
+
+    /// Standard uncertainties of the solution for errors of `b` of unit variance: lengths of the rows of `S R^-1`.
+    pub fn standard_uncertainties(&self) -> Vec<f64> {
+        self.inverse().row_iter().zip(self.sizes.iter()).map(|(row, size)| row.norm() * size).collect()
     }
 
     /// From units of the sizes to those of the unknowns, row by row.

@@ -4,11 +4,8 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::Study;
-use crate::design::Weight;
-use crate::error::FitError;
-use crate::experiment::{Experiment, Mounting, PairRelation, SetPoint};
-use crate::position::Position;
+use super::study::Study;
+use crate::model::{Experiment, FitError, Mounting, PairRelation, Position, SetPoint, Weight};
 
 /// One addition to an experiment.
 ///

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::parameter::Parameters;
+use crate::model::Parameters;
 
 /// A linear combination of parameters.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,11 +6,10 @@
 
 use nalgebra::Matrix3;
 
+use super::addition::Addition;
 use super::remedy::{axis_attitudes, new_angle, new_id, new_radius, new_speed};
-use super::{Addition, Study};
-use crate::experiment::SetPoint;
-use crate::parameter::Kind;
-use crate::position::Position;
+use super::study::Study;
+use crate::model::{Kind, Position, SetPoint};
 
 /// "An order of magnitude or more" above gravity.
 const LOAD_RATIO: f64 = 10.0;

@@ -2,8 +2,6 @@
 
 use nalgebra::DMatrix;
 
-use super::Observability;
-
 /// Correlation from which two estimates count as one: the standard uncertainty of each is then seven times
 /// (`1 / sqrt(1 - 0.99^2)`) what it would be if the other were known.
 pub const STRONG_CORRELATION: f64 = 0.99;
@@ -25,24 +23,22 @@ pub struct CorrelatedGroup {
     pub pairs: Vec<(usize, usize, f64)>,
 }
 
-/// Connected components, by shared variance, of the collinear parameters.
-pub(super) fn groups(observability: &Observability) -> Vec<CorrelatedGroup> {
-    let root = observability.root();
-    let covariance = &root * root.transpose();
-    let mut left: Vec<usize> = (0..observability.columns())
-        .filter(|&j| observability.is_estimable(j) && multiple(&covariance, j) >= STRONG_CORRELATION)
-        .collect();
+/// Connected components, by shared variance, of the collinear parameters among the estimable ones; `covariance` is that of
+/// unknowns in units of the lengths of their columns.
+pub(super) fn groups(covariance: &DMatrix<f64>, is_estimable: impl Fn(usize) -> bool) -> Vec<CorrelatedGroup> {
+    let mut left: Vec<usize> =
+        (0..covariance.ncols()).filter(|&j| is_estimable(j) && multiple(covariance, j) >= STRONG_CORRELATION).collect();
     let mut groups = Vec::new();
     while !left.is_empty() {
         let mut members = vec![left.remove(0)];
         let mut next = 0;
         while let Some(&member) = members.get(next) {
-            let shares = |j: &mut usize| pair(&covariance, member, *j).powi(2) >= SHARED_VARIANCE;
+            let shares = |j: &mut usize| pair(covariance, member, *j).powi(2) >= SHARED_VARIANCE;
             members.extend(left.extract_if(.., shares));
             next += 1;
         }
         members.sort_unstable();
-        groups.push(group(&covariance, members));
+        groups.push(group(covariance, members));
     }
     groups.retain(|group| group.parameters.len() > 1);
     groups

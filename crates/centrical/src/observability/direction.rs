@@ -2,15 +2,17 @@
 
 use nalgebra::{DMatrix, DVector, SVD};
 
-use super::TAKES_PART;
 use super::combination::sum_text;
-use crate::parameter::Parameters;
+use crate::model::Parameters;
 
 /// Largest whole number that a ratio of the geometry is taken for.
 const LARGEST_WHOLE: f64 = 12.0;
 
 /// Some tens of components, each below rounding, together stay below this multiple of it.
 const ZEROS: f64 = 10.0;
+
+/// Components of a null vector above this are never taken for rounding, however small the gap.
+pub(super) const TAKES_PART: f64 = 1e-6;
 
 /// Longest sum that is still read.
 const READABLE: usize = 8;

@@ -3,11 +3,12 @@
 
 use nalgebra::DVector;
 
-use super::addition::positions_text;
+use super::addition::{Addition, positions_text};
 use super::combination::sum_text;
+use super::direction::NullDirection;
 use super::remedy::{new_angle, new_radius, new_speed};
-use super::{Addition, NullDirection, Study};
-use crate::measurement::{Linearisation, MeasurementModel};
+use super::study::Study;
+use crate::model::{Linearisation, MeasurementModel};
 
 /// A change of a reading below this part of the largest change by a single term is rounding: null directions are known
 /// to 1e-7 (see `TAKES_PART`).

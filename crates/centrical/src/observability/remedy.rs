@@ -5,11 +5,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Addition, Observability, Study};
-use crate::experiment::PairRelation;
-use crate::parameter::Kind;
-use crate::position::Position;
-use crate::rotation;
+use super::addition::Addition;
+use super::rank::Observability;
+use super::study::Study;
+use crate::model::{Kind, PairRelation, Position, rotation};
 
 /// Two angles, speeds or radii closer than this part of the largest are one: a schedule's "180 deg" is no new angle
 /// beside 3.1416 rad.

@@ -1,11 +1,11 @@
 //! A design under study: a session, a plan or the normalised experiment, with the weights of its plateaus.
 
-use crate::design::{Weight, whitened_rows};
-use crate::error::FitError;
-use crate::measurement::{Linearisation, MeasurementModel};
-use crate::prior::{self, PriorUse};
+use crate::model::prior;
+use crate::model::whitening::whitened_rows;
+use crate::model::{FitError, Linearisation, MeasurementModel, PriorUse, Weight};
 
-use super::{Combination, Observability};
+use super::combination::Combination;
+use super::rank::Observability;
 
 /// What a design can see, with all that is needed to say why, and what would help.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,9 +5,7 @@ use nalgebra::Matrix3;
 use super::atom::Atoms;
 use super::criterion::Robustness;
 use super::error::PlanError;
-use crate::design::Weight;
-use crate::experiment::Experiment;
-use crate::measurement::MeasurementModel;
+use crate::model::{Experiment, MeasurementModel, Weight};
 
 /// White noise down to a floor: the variance of the mean of a plateau of duration `T` is `density^2 / 2T + floor^2`.
 #[derive(Debug, Clone, Copy, PartialEq)]

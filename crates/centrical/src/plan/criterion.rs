@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::error::PlanError;
-use crate::measurement::MeasurementModel;
+use crate::model::MeasurementModel;
 
 /// What a plan makes small.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::error::FitError;
+use crate::model::FitError;
 
 /// Why there is no plan.
 #[derive(Debug, Clone, PartialEq, Error)]

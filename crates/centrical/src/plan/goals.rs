@@ -8,9 +8,7 @@ use super::criterion::{Criterion, Goal};
 use super::error::PlanError;
 use super::prediction::{Prediction, predict};
 use super::search::{Effort, Plan, best_for_time, shortest_for_goals};
-use crate::error::FitError;
-use crate::measurement::MeasurementModel;
-use crate::parameter::Parameter;
+use crate::model::{FitError, MeasurementModel, Parameter};
 use crate::uncertainty::TypeB;
 
 /// The assumed type B exceeds that of the plan before by this factor, so that the next plan keeps within it.
@@ -84,7 +82,7 @@ impl Task {
             }
         }
         for scenario in &mut self.candidates.scenarios {
-            scenario.nominal = scenario.model.parameters().typical_in_turn();
+            scenario.nominal = scenario.model.parameters().typical_alternating();
         }
         self.search(effort)
     }

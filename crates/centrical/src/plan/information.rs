@@ -5,18 +5,15 @@
 //! is never formed. A change `dN` at candidate `c` changes it by `-C J^T Q J C`, `Q = dN (E + A dN)^-1`, `A = J C J^T`, so a
 //! goal `r = sum |P^T k|^2` changes by `-tr(Q G)`, `G = sum (J C k)(J C k)^T`: all in 3x3.
 
-mod triangle;
-
 use nalgebra::{Cholesky, DMatrix, Matrix3, MatrixXx3, Vector3};
 
 use super::atom::Atoms;
 use super::candidates::{Candidates, Scenario};
 use super::criterion::{Columns, Criterion};
 use super::error::PlanError;
-use crate::design::{Weight, total_covariance};
-use crate::experiment::SetPoint;
-use crate::measurement::{Linearisation, MeasurementModel};
-use crate::parameter::NULL_HOLD;
+use crate::linalg::fold::fold;
+use crate::model::whitening::total_covariance;
+use crate::model::{Linearisation, MeasurementModel, NULL_HOLD, SetPoint, Weight};
 
 /// Candidates whose rows are folded in at once: as many as stay in the nearest cache with the triangle.
 const AT_ONCE: usize = 16;
@@ -140,7 +137,7 @@ impl LinearisedScenario {
                     rows.fixed_view_mut::<3, 1>(3 * n, *column).copy_from(&(half * derivative));
                 }
             }
-            triangle::fold(&mut triangle, &mut rows);
+            fold(&mut triangle, &mut rows);
         }
         let mut root = DMatrix::identity(p, p);
         // The hold leaves no zero on the diagonal.

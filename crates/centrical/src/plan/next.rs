@@ -5,8 +5,7 @@ use nalgebra::Matrix3;
 use super::criterion::Criterion;
 use super::error::PlanError;
 use super::information::{Factor, LinearisedScenario, precision};
-use crate::design::Weight;
-use crate::measurement::MeasurementModel;
+use crate::model::{MeasurementModel, Weight};
 
 /// How much the next plateau would improve the criterion.
 #[derive(Debug, Clone, Copy, PartialEq)]

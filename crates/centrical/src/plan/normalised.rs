@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::experiment::{
+use crate::model::position::{ThirdPosition, kozlov_2017};
+use crate::model::{
     Centrifuge, Experiment, Mounting, PairRelation, ReferencePoint, STANDARD_GRAVITY, SetPoint, Site, Unit,
 };
-use crate::position::{ThirdPosition, kozlov_2017};
 
 /// The normalised experiment [K5.5]: six positions, `R* Omega*^2 / g = 10`, speeds `Omega* sqrt(m)`.
 #[derive(Debug, Clone, PartialEq)]

@@ -17,11 +17,8 @@ use nalgebra::{DMatrix, Vector3};
 
 use super::candidates::{Candidates, Schedule, Visit};
 use super::criterion::ReadingRange;
-use crate::design::{Observation, Weight};
-use crate::error::FitError;
-use crate::experiment::{Experiment, Mounting};
-use crate::fit::{self, Structure};
-use crate::measurement::MeasurementModel;
+use crate::fit::{Calibration, Data, Structure};
+use crate::model::{Experiment, FitError, MeasurementModel, Mounting, Observation, Weight};
 use crate::uncertainty::{Budget, Compensated, CurvePoint, TypeB};
 
 /// The uncertainties that are expected of a plan.
@@ -29,8 +26,8 @@ use crate::uncertainty::{Budget, Compensated, CurvePoint, TypeB};
 pub struct Prediction {
     model: MeasurementModel,
     budget: Budget,
-    /// By parameter: whether lost combinations of unknowns affect it.
-    leans: Vec<bool>,
+    /// By parameter: whether the null space affects it.
+    affected: Vec<bool>,
 }
 
 /// Predicts the budget of a calibration of `model` with the plateaus' `weights`, for the unknowns `truth` (in the order of the
@@ -45,11 +42,11 @@ pub fn predict(
     truth: &[f64],
 ) -> Result<Prediction, FitError> {
     let (truth, structure) = unit_with_structure(model, weights, truth)?;
-    let perfect = readings(model, weights, &truth);
-    let fit = fit::exact_with(&structure, model, &perfect)?;
-    let budget = Budget::new(&fit, model, &perfect, stated)?;
-    let leans = (0..truth.len()).map(|j| budget.leans_on_lost(&fit, j)).collect();
-    Ok(Prediction { model: model.clone(), budget, leans })
+    let perfect = Data::new(model, readings(model, weights, &truth))?;
+    let calibration = Calibration::with_structure(structure, &perfect)?;
+    let budget = calibration.budget(stated)?;
+    let affected = (0..truth.len()).map(|j| budget.is_affected_by_null_space(calibration.fit(), j)).collect();
+    Ok(Prediction { model: model.clone(), budget, affected })
 }
 
 /// The unknowns that a plan is predicted for, and its calibrations are drawn for: those expected, or where none is and the
@@ -66,10 +63,10 @@ fn unit_with_structure(
     weights: &[Weight],
     expected: &[f64],
 ) -> Result<(Vec<f64>, Structure), FitError> {
-    let structure = Structure::of(model, &readings(model, weights, expected))?;
+    let structure = Structure::of(&Data::new(model, readings(model, weights, expected))?)?;
     let is_short = structure.observability().rank() < expected.len();
     let expects_none = expected.iter().all(|value| *value == 0.0);
-    let unit = if expects_none && is_short { model.parameters().typical_in_turn() } else { expected.to_vec() };
+    let unit = if expects_none && is_short { model.parameters().typical_alternating() } else { expected.to_vec() };
     Ok((unit, structure))
 }
 
@@ -95,14 +92,14 @@ impl Prediction {
     }
 
     /// Combined standard uncertainty of parameter `j`, if it is determined and told by it
-    /// ([`crate::Parameter::is_told_by`]) [its unit].
+    /// ([`crate::Parameter::is_informative`]) [its unit].
     pub fn standard_uncertainty(&self, j: usize) -> Option<f64> {
-        self.budget.standard_uncertainty(j).filter(|u| self.model.parameters()[j].is_told_by(*u))
+        self.budget.standard_uncertainty(j).filter(|u| self.model.parameters()[j].is_informative(*u))
     }
 
-    /// Whether lost combinations leave doubt in parameter `j` that is not in its uncertainty: see [`Budget::leans_on_lost`].
-    pub fn leans_on_lost(&self, j: usize) -> bool {
-        self.leans[j]
+    /// Whether lost combinations leave doubt in parameter `j` that is not in its uncertainty: see [`Budget::is_affected_by_null_space`].
+    pub fn is_affected_by_null_space(&self, j: usize) -> bool {
+        self.affected[j]
     }
 
     /// Standard uncertainty of parameter `j` by what the fit weighs alone, noise, speeds and priors, if it is determined

@@ -15,8 +15,9 @@ use super::plateau::LeftOut;
 use super::record::RecordSlice;
 use super::survey::Blocks;
 use super::triangle::Triangle;
-pub(super) use cells::{CELLS, Cells, Weights};
+pub(super) use cells::{Cells, Weights};
 pub use plateau_fit::PlateauFit;
+pub(super) use samples::CELLS;
 use samples::Samples;
 use saturation::{may_be_piled_up, piled_up};
 use strips::{Fitted, Strips};
@@ -112,10 +113,25 @@ impl<'a> Averaging<'a> {
     /// # Errors
     /// [`ReductionError::Unsteady`] without samples.
     pub fn finish(self) -> Result<PlateauFit, ReductionError> {
-        let (index, window) = (self.index, self.window.span);
-        let none = ReductionError::Unsteady { index, window, samples: 0, good: 0 };
-        let (triangle, coefficients) = self.fit.as_ref().ok_or(none)?;
-        Ok(PlateauFit::new(self.window, self.blocks, &self.fitted, self.left_out, coefficients, triangle))
+        let Self { window: Window { span: window, shape }, blocks, fitted, left_out, .. } = self;
+        let none = ReductionError::Unsteady { index: self.index, window: *window, samples: 0, good: 0 };
+        let (triangle, coefficients) = self.fit.ok_or(none)?;
+        let (good, terms, zero) = (fitted.good(), coefficients.len(), Vector3::zeros());
+        let squares: Vector3<f64> = fitted.sums(&coefficients).map(|(_, sums)| sums.squares).sum();
+        let width = (window[1] - window[0]) / CELLS as f64;
+        Ok(PlateauFit {
+            window: *window,
+            samples: good,
+            rejected: fitted.bad(),
+            left_out,
+            mean: coefficients[terms - 1],
+            once_per_revolution: if shape.omega == 0.0 { [zero; 2] } else { [coefficients[0], coefficients[1]] },
+            settling: shape.settling.map_or(zero, |_| coefficients[terms - 2]),
+            shape: *shape,
+            digit: blocks.digit,
+            variance: squares / good as f64,
+            cells: Cells::gather(fitted.sums(&coefficients), &triangle, terms, width, blocks.interval),
+        })
     }
 
     fn aliased(&self) -> ReductionError {
@@ -144,8 +160,8 @@ impl ReducedMounting {
 
 /// Refuses good readings that pile up at the end of their range: the part cut off is missing in the mean.
 fn check_range(samples: &Samples, strips: &Strips, index: usize) -> Result<(), ReductionError> {
-    let told = |axis: &usize| samples.white[*axis] > samples.digit[*axis];
-    let looked_at = (0..3).filter(told).filter(|axis| may_be_piled_up(strips.most_at_an_end(*axis)));
+    let is_noisy = |axis: &usize| samples.white[*axis] > samples.digit[*axis];
+    let looked_at = (0..3).filter(is_noisy).filter(|axis| may_be_piled_up(strips.most_at_an_end(*axis)));
     for axis in looked_at {
         if let Some((value, piled_up)) = piled_up(strips.good_readings(axis)) {
             let (window, samples) = (samples.window.span, samples.len());

@@ -5,7 +5,7 @@ use std::fmt;
 use nalgebra::{Matrix3, Vector3};
 
 use super::plateau::ScheduledPlateau;
-use crate::experiment::STANDARD_GRAVITY;
+use crate::model::STANDARD_GRAVITY;
 
 /// How the readings of a record differ from the expected ones: `found = factor permutation expected`.
 #[derive(Debug, Clone, Copy, PartialEq)]

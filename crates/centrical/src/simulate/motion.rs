@@ -5,8 +5,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::equipment::Machine;
-use crate::experiment::SetPoint;
-use crate::measurement::ArmMotion;
+use crate::model::{ArmMotion, SetPoint};
 use crate::random::Random;
 
 /// The motion of the arm from the beginning of a record to its end.

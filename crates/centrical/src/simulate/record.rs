@@ -7,7 +7,7 @@ use super::equipment::Equipment;
 use super::motion::Motion;
 use super::response::Response;
 use super::sensor_noise::{Sampling, SensorNoise};
-use crate::measurement::{ArmMotion, Carried, MeasurementModel};
+use crate::model::{ArmMotion, MeasurementModel, MountedUnit};
 use crate::reduction::Record;
 
 /// Samples in a stretch: a few hundred kilobytes.
@@ -89,13 +89,13 @@ pub(super) struct Physics<'a> {
     mounting: usize,
     response: Response,
     /// The unit on the arm at any speed, unless speed deforms it.
-    rigid: Option<Carried>,
+    rigid: Option<MountedUnit>,
 }
 
 impl<'a> Physics<'a> {
     pub fn new(model: &'a MeasurementModel, truth: &'a [f64], mounting: usize) -> Self {
         let response = Response::new(model.error_model(), model.parameters().coefficients(truth));
-        let rigid = (!model.deforms()).then(|| model.carried(mounting, truth, 0.0));
+        let rigid = (!model.deforms()).then(|| model.mounted_unit(mounting, truth, 0.0));
         Self { model, truth, mounting, response, rigid }
     }
 
@@ -103,7 +103,7 @@ impl<'a> Physics<'a> {
     fn reading(&self, motion: &ArmMotion) -> Vector3<f64> {
         let f = match &self.rigid {
             Some(carried) => carried.specific_force(motion),
-            None => self.model.carried(self.mounting, self.truth, motion.speed).specific_force(motion),
+            None => self.model.mounted_unit(self.mounting, self.truth, motion.speed).specific_force(motion),
         };
         self.response.reading(&f)
     }

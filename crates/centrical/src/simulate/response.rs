@@ -3,7 +3,7 @@
 use centrical_compensate::Monomial;
 use nalgebra::Vector3;
 
-use crate::error_model::ErrorModel;
+use crate::model::ErrorModel;
 
 /// Highest power gathered into the polynomials.
 const DEGREE: usize = 3;

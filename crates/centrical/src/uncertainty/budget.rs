@@ -7,15 +7,13 @@
 
 use nalgebra::DMatrix;
 
-use super::coverage::{Degrees, coverage_factor, effective_degrees_of_freedom};
+use super::coverage::{Degrees, effective_degrees_of_freedom};
 use super::source::{Influence, Quantity, Source, TypeB, influences};
-use crate::design::Observation;
-use crate::error::FitError;
-use crate::fit::{Fit, Gain};
-use crate::measurement::MeasurementModel;
+use crate::fit::{Calibration, Fit};
+use crate::model::{FitError, MeasurementModel, Observation};
 
-/// Part of its variance by which a parameter leans on lost combinations.
-const LEANING: f64 = 0.1;
+/// A parameter is affected by the null space when that leaves more than this part of its variance.
+const AFFECTED: f64 = 0.1;
 
 /// What every source leaves in every parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,18 +56,13 @@ struct ResidualScale {
     degrees_of_freedom: usize,
 }
 
-impl Budget {
-    /// Budget of `fit`, which was made of `observations` of `model`, and what is `stated`.
+impl Calibration<'_> {
+    /// The budget of the estimates with what the laboratory states.
     ///
     /// # Errors
-    /// [`FitError`] when an observation cannot be one.
-    pub fn new(
-        fit: &Fit,
-        model: &MeasurementModel,
-        observations: &[Observation],
-        stated: &TypeB,
-    ) -> Result<Self, FitError> {
-        let gain = Gain::of(fit, model, observations)?;
+    /// [`FitError`] when numbers overflow.
+    pub fn budget(&self, stated: &TypeB) -> Result<Budget, FitError> {
+        let (gain, model, observations) = (self.gain()?, self.data().model(), self.data().observations());
         let influences = influences(model.experiment(), stated);
         let of_type_b =
             if stated.doubt > 0.0 { Degrees::Finite(0.5 / (stated.doubt * stated.doubt)) } else { Degrees::Infinite };
@@ -79,7 +72,7 @@ impl Budget {
                 Source::Noise => gain.apply(&noise(observations)?),
                 Source::Priors => gain.apply_priors(),
                 Source::Resolution => gain.apply(&resolution(stated.resolution, observations.len())),
-                _ => gain.apply(&effects_of(source, &influences, model, fit.state(), observations)),
+                _ => gain.apply(&effects_of(source, &influences, model, self.fit().state(), observations)),
             };
             if changes.ncols() > 0 {
                 let degrees = if source.is_weighed() { Degrees::Infinite } else { of_type_b };
@@ -88,10 +81,12 @@ impl Budget {
         }
         let p = model.parameters().len();
         let covariance = total(&contributions, p);
-        let estimable = (0..p).map(|j| fit.value(j).is_some()).collect();
-        Ok(Self { contributions, estimable, covariance, residual_scale: None })
+        let estimable = (0..p).map(|j| self.fit().value(j).is_some()).collect();
+        Ok(Budget { contributions, estimable, covariance, residual_scale: None })
     }
+}
 
+impl Budget {
     /// The budget with what the fit weighs, noise, speed of each plateau and priors, scaled by the residuals of `fit`: times
     /// `sqrt(chi^2 / nu)`, with `nu` degrees of freedom instead of infinitely many. For weights that are known up to a
     /// factor only. Unchanged if nothing is redundant.
@@ -125,12 +120,12 @@ impl Budget {
         self.covariance(j, j).map(f64::sqrt)
     }
 
-    /// Whether the lost combinations of unknowns leave more doubt in parameter `j` than a tenth of the variance of what `fit`, of
-    /// which this is the budget, weighs: products of two unknowns let them in, and only the hold keeps them
-    /// ([`crate::NULL_HOLD`] typical magnitudes), which is no source of the budget.
-    pub fn leans_on_lost(&self, fit: &Fit, j: usize) -> bool {
+    /// Whether the null space leaves more doubt in parameter `j` than a tenth of the variance that `fit` weighs. Products of two
+    /// unknowns let the lost combinations in, and only the hold keeps them ([`crate::NULL_HOLD`] typical magnitudes), which is
+    /// not a source of the budget. `fit` is the fit of this budget.
+    pub fn is_affected_by_null_space(&self, fit: &Fit, j: usize) -> bool {
         let weighed: f64 = self.contributions.iter().filter(|c| c.source.is_weighed()).map(|c| c.variance(j)).sum();
-        fit.covariance(j, j).is_some_and(|all| all > (1.0 + LEANING) * weighed)
+        fit.covariance(j, j).is_some_and(|all| all > (1.0 + AFFECTED) * weighed)
     }
 
     /// Correlation of the estimates of parameters `i` and `j`, if both are determined.
@@ -149,11 +144,6 @@ impl Budget {
         let mut list = vec![(weights.sqrt(), of_residuals)];
         list.extend(others.map(|c| (c.standard_uncertainty(j), c.degrees)));
         self.estimable[j].then(|| effective_degrees_of_freedom(&list))
-    }
-
-    /// Expanded uncertainty of parameter `j` for a probability of `coverage`, if it is determined [its unit].
-    pub fn expanded_uncertainty(&self, j: usize, coverage: f64) -> Option<f64> {
-        Some(coverage_factor(coverage, self.degrees_of_freedom(j)?) * self.standard_uncertainty(j)?)
     }
 
     /// What each source costs the `parameters` considered, the costliest first: which one to improve, and what it

@@ -11,10 +11,8 @@ use super::budget::Budget;
 use super::comparison::weighted_square;
 use super::coverage::{Degrees, chi_squared_tail, coverage_factor};
 use super::source::{Influence, TypeB, influences};
-use crate::design::Observation;
-use crate::error::FitError;
-use crate::fit::{self, Fit, Structure, Termination};
-use crate::measurement::MeasurementModel;
+use crate::fit::{Calibration, Data, Fit, Structure, Termination};
+use crate::model::{FitError, MeasurementModel, Observation};
 use crate::random::Random;
 
 /// What to draw, and how often.
@@ -35,9 +33,9 @@ pub struct Settings {
 /// The fit that is repeated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
-    /// [`fit::exact`].
+    /// Gauss-Newton on the exact model.
     Exact,
-    /// [`fit::linear`], on readings of the exact model.
+    /// The linear fit, on readings of the exact model.
     Linear,
 }
 
@@ -48,8 +46,8 @@ pub struct MonteCarlo {
     pub runs: usize,
     /// Runs that did not.
     pub failures: usize,
-    /// By parameter; `None` for those that the data do not determine, or of which what is stated tells nothing
-    /// ([`crate::Parameter::is_told_by`]).
+    /// By parameter; `None` for those that the data do not determine, or for which what is stated is not informative
+    /// ([`crate::Parameter::is_informative`]).
     pub parameters: Vec<Option<ParameterStatistics>>,
     /// `e^T C^-1 e` of the determined parameters with the covariance stated in each run.
     pub weighted_square: WeightedSquare,
@@ -68,8 +66,8 @@ pub struct ParameterStatistics {
     pub stated: f64,
     /// Part of the runs whose interval covers the truth.
     pub coverage: f64,
-    /// Whether lost combinations leave doubt in it that is not in `stated`: see [`Budget::leans_on_lost`].
-    pub leans_on_lost: bool,
+    /// Whether the null space leaves doubt in it that is not in `stated`: see [`Budget::is_affected_by_null_space`].
+    pub is_affected_by_null_space: bool,
 }
 
 /// A quadratic form over all runs, beside the chi^2 distribution it should have.
@@ -88,19 +86,18 @@ pub struct WeightedSquare {
 /// Runs handed to the threads at a time: enough to keep any number busy, few enough for a smooth progress bar.
 const BATCH: usize = 256;
 
-/// Repeats the calibration of `model` with unknowns `truth` and the weights of `observations` (their means are not
-/// used). `done` is told how many runs a batch brought.
+/// Repeats the calibration of `data` for a unit with unknowns `truth`. The means of `data` are not used, only their weights.
+/// `done` is called with the number of runs of each batch.
 ///
 /// # Errors
-/// [`FitError`] when an observation cannot be one.
+/// [`FitError`] when numbers overflow.
 pub fn monte_carlo(
-    model: &MeasurementModel,
+    data: &Data,
     truth: &[f64],
-    observations: &[Observation],
     settings: &Settings,
     done: &dyn Fn(usize),
 ) -> Result<MonteCarlo, FitError> {
-    let laboratory = Laboratory::new(model, truth, observations, settings)?;
+    let laboratory = Laboratory::new(data, truth, settings)?;
     let mut tally = Tally::new(&laboratory);
     for first in (0..settings.runs).step_by(BATCH) {
         let batch = first..settings.runs.min(first + BATCH);
@@ -116,17 +113,16 @@ pub fn monte_carlo(
 
 /// Everything that does not change from run to run.
 struct Laboratory<'a> {
-    model: &'a MeasurementModel,
+    data: &'a Data<'a>,
     truth: &'a [f64],
-    observations: &'a [Observation],
     noise_factors: Vec<Matrix3<f64>>,
     influences: Vec<Influence>,
     structure: Structure,
     /// Indices of the parameters that the data determine.
     determined: Vec<usize>,
     budget: Budget,
-    /// By parameter: whether it leans on what is lost.
-    leans: Vec<bool>,
+    /// By parameter: whether the null space affects it.
+    affected: Vec<bool>,
     /// Combined covariance of type B, of the determined parameters.
     type_b: DMatrix<f64>,
     coverage_factor: f64,
@@ -145,30 +141,24 @@ struct Run {
 }
 
 impl<'a> Laboratory<'a> {
-    fn new(
-        model: &'a MeasurementModel,
-        truth: &'a [f64],
-        observations: &'a [Observation],
-        settings: &'a Settings,
-    ) -> Result<Self, FitError> {
-        let structure = Structure::of(model, observations)?;
-        let perfect = readings_of(model, truth, observations);
-        let fit = fit::exact_with(&structure, model, &perfect)?;
-        let budget = Budget::new(&fit, model, observations, &settings.stated)?;
+    fn new(data: &'a Data<'a>, truth: &'a [f64], settings: &'a Settings) -> Result<Self, FitError> {
+        let (model, observations) = (data.model(), data.observations());
+        let perfect = Data::new(model, readings_of(model, truth, observations))?;
+        let calibration = Calibration::exact(&perfect)?;
+        let (budget, fit) = (calibration.budget(&settings.stated)?, calibration.fit());
         let determined: Vec<usize> = (0..truth.len()).filter(|&j| fit.value(j).is_some()).collect();
         let beyond_weights = budget.contributions().iter().filter(|c| !c.source.is_weighed());
         let type_b = beyond_weights.fold(DMatrix::zeros(truth.len(), truth.len()), |sum, c| sum + c.covariance());
         let noise_factors = observations.iter().map(Observation::noise_factor).collect::<Result<_, _>>()?;
         Ok(Self {
-            model,
+            data,
             truth,
-            observations,
             noise_factors,
             influences: influences(model.experiment(), &settings.stated),
-            structure,
+            structure: calibration.structure().clone(),
             type_b: type_b.select_rows(&determined).select_columns(&determined),
             determined,
-            leans: (0..truth.len()).map(|j| budget.leans_on_lost(&fit, j)).collect(),
+            affected: (0..truth.len()).map(|j| budget.is_affected_by_null_space(fit, j)).collect(),
             budget,
             coverage_factor: coverage_factor(settings.coverage, Degrees::Infinite),
             settings,
@@ -180,18 +170,18 @@ impl<'a> Laboratory<'a> {
         let mut random = Random::stream(self.settings.seed, n as u64);
         let truth = self.draw_truth(&mut random);
         let drawn = self.draw(&truth, &mut random);
-        let method = match self.settings.method {
-            Method::Exact => fit::exact_with,
-            Method::Linear => fit::linear_with,
+        let drawn = Data::new(self.data.model(), drawn)?;
+        let fit = match self.settings.method {
+            Method::Exact => self.structure.exact(&drawn)?,
+            Method::Linear => self.structure.linear(&drawn)?,
         };
-        let fit = method(&self.structure, self.model, &drawn)?;
         Ok(self.judge(&fit, &truth))
     }
 
     /// The unknowns, those with a prior drawn from it.
     fn draw_truth(&self, random: &mut Random) -> Vec<f64> {
         let mut truth = self.truth.to_vec();
-        for prior in self.model.priors() {
+        for prior in self.data.model().priors() {
             truth[prior.parameter] = prior.standard_uncertainty * random.normal();
         }
         truth
@@ -199,11 +189,11 @@ impl<'a> Laboratory<'a> {
 
     /// Readings with everything drawn.
     fn draw(&self, truth: &[f64], random: &mut Random) -> Vec<Observation> {
-        let mut experiment = self.model.experiment().clone();
+        let mut experiment = self.data.model().experiment().clone();
         for influence in &self.influences {
             influence.apply(&mut experiment, random.normal());
         }
-        let mut drawn = readings_of(&self.model.in_experiment(experiment), truth, self.observations);
+        let mut drawn = readings_of(&self.data.model().in_experiment(experiment), truth, self.data.observations());
         for (observation, factor) in drawn.iter_mut().zip(&self.noise_factors) {
             let noise = nalgebra::Vector3::from_fn(|_, _| random.normal());
             observation.mean += factor * noise;
@@ -292,13 +282,13 @@ impl Tally {
         let mut parameters = vec![None; laboratory.truth.len()];
         for (a, &j) in laboratory.determined.iter().enumerate() {
             let stated = laboratory.budget.standard_uncertainty(j);
-            let told = stated.filter(|stated| laboratory.model.parameters()[j].is_told_by(*stated));
-            parameters[j] = told.map(|stated| ParameterStatistics {
+            let informative = stated.filter(|stated| laboratory.data.model().parameters()[j].is_informative(*stated));
+            parameters[j] = informative.map(|stated| ParameterStatistics {
                 bias: self.mean[a],
                 standard_deviation: (self.squares[a] / (self.runs.max(2) - 1) as f64).sqrt(),
                 stated,
                 coverage: self.covered[a] as f64 / self.runs.max(1) as f64,
-                leans_on_lost: laboratory.leans[j],
+                is_affected_by_null_space: laboratory.affected[j],
             });
         }
         MonteCarlo {
@@ -318,11 +308,6 @@ impl WeightedSquare {
         let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
         values.sort_by(f64::total_cmp);
         Self { degrees_of_freedom, mean, standard_deviation: (squares / (count - 1.0)).sqrt(), sorted: values }
-    }
-
-    /// Part of the runs at or below `value`.
-    pub fn part_below(&self, value: f64) -> f64 {
-        self.sorted.partition_point(|v| *v <= value) as f64 / self.sorted.len() as f64
     }
 
     /// Largest distance of the distribution of the runs from that of chi^2 (Kolmogorov): beyond `1.36/sqrt(runs)` by

@@ -8,11 +8,8 @@
 use nalgebra::DMatrix;
 
 use super::validity::f_tail;
-use crate::design::Observation;
-use crate::error::FitError;
-use crate::experiment::{Experiment, SetPoint};
-use crate::fit::{Fit, Gain};
-use crate::measurement::MeasurementModel;
+use crate::fit::Calibration;
+use crate::model::{Experiment, FitError, Observation, SetPoint};
 
 /// What the residuals of one newtonometer could follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,46 +50,43 @@ pub struct Pattern {
 /// A pattern is untestable when less than this part of it is redundant: the unknowns follow the rest.
 const REDUNDANT: f64 = 1e-3;
 
-/// All patterns of `fit`, which was made of `observations` of `model`, the likeliest to be real
-/// first. Patterns that the unknowns can follow are left out: the model has them already.
-///
-/// # Errors
-/// [`FitError`] when an observation cannot be one.
-pub fn patterns(fit: &Fit, model: &MeasurementModel, observations: &[Observation]) -> Result<Vec<Pattern>, FitError> {
-    trends_of(fit, model, observations, &trends(model.experiment()))
-}
-
-/// Those of the patterns `trends` alone.
-///
-/// # Errors
-/// As [`patterns`].
-pub fn trends_of(
-    fit: &Fit,
-    model: &MeasurementModel,
-    observations: &[Observation],
-    trends: &[Trend],
-) -> Result<Vec<Pattern>, FitError> {
-    let gain = Gain::of(fit, model, observations)?;
-    let e = gain.redundant_residuals();
-    let candidates: Vec<(usize, Trend)> = trends.iter().flat_map(|t| (0..3).map(move |axis| (axis, *t))).collect();
-    let columns = columns(&candidates, model.experiment(), observations);
-    let (whitened, redundant) = (gain.whitened(&columns), gain.redundant(&columns));
-    let mut list = Vec::new();
-    for (n, (axis, trend)) in candidates.into_iter().enumerate() {
-        let (z, size) = (redundant.column(n), redundant.column(n).norm());
-        if size > REDUNDANT * whitened.column(n).norm() {
-            let amplitude = z.dot(&e) / (size * size);
-            let square = (amplitude * size).powi(2);
-            let left = fit.degrees_of_freedom.saturating_sub(1);
-            let f = square / ((fit.chi_squared - square).max(0.0) / left as f64);
-            let probability = f_tail(f, 1, left);
-            let standard_uncertainty = 1.0 / size;
-            list.push(Pattern { axis, trend, amplitude, standard_uncertainty, probability, family_wise: 1.0 });
-        }
+impl Calibration<'_> {
+    /// All patterns of the residuals, the likeliest to be real first. Patterns that the unknowns can follow are left out: the
+    /// model has them already.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn patterns(&self) -> Result<Vec<Pattern>, FitError> {
+        self.patterns_of(&trends(self.data().model().experiment()))
     }
-    list.sort_by(|a, b| a.probability.total_cmp(&b.probability));
-    holm(&mut list);
-    Ok(list)
+
+    /// Those of the patterns `trends` alone.
+    ///
+    /// # Errors
+    /// As [`Calibration::patterns`].
+    pub fn patterns_of(&self, trends: &[Trend]) -> Result<Vec<Pattern>, FitError> {
+        let gain = self.gain()?;
+        let e = gain.redundant_residuals();
+        let candidates: Vec<(usize, Trend)> = trends.iter().flat_map(|t| (0..3).map(move |axis| (axis, *t))).collect();
+        let columns = columns(&candidates, self.data().model().experiment(), self.data().observations());
+        let (whitened, redundant) = (gain.whitened(&columns), gain.redundant(&columns));
+        let mut list = Vec::new();
+        for (n, (axis, trend)) in candidates.into_iter().enumerate() {
+            let (z, size) = (redundant.column(n), redundant.column(n).norm());
+            if size > REDUNDANT * whitened.column(n).norm() {
+                let amplitude = z.dot(&e) / (size * size);
+                let square = (amplitude * size).powi(2);
+                let left = self.fit().degrees_of_freedom.saturating_sub(1);
+                let f = square / ((self.fit().chi_squared - square).max(0.0) / left as f64);
+                let probability = f_tail(f, 1, left);
+                let standard_uncertainty = 1.0 / size;
+                list.push(Pattern { axis, trend, amplitude, standard_uncertainty, probability, family_wise: 1.0 });
+            }
+        }
+        list.sort_by(|a, b| a.probability.total_cmp(&b.probability));
+        holm(&mut list);
+        Ok(list)
+    }
 }
 
 /// Holm's step-down probabilities of a list that rises in probability.

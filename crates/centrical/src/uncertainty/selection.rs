@@ -10,13 +10,9 @@ use centrical_compensate::Monomial;
 use nalgebra::DMatrix;
 
 use super::coverage::chi_squared_tail;
-use super::validity::{Validity, f_tail};
-use crate::design::Observation;
-use crate::error::FitError;
-use crate::error_model::{ErrorModel, Extra, Term};
-use crate::fit::{self, Fit, Gain, Termination};
-use crate::measurement::MeasurementModel;
-use crate::parameter::{Extension, Kind, Law, Parameter};
+use super::validity::f_tail;
+use crate::fit::{Calibration, Data, Termination};
+use crate::model::{ErrorModel, Extension, Extra, FitError, Kind, Law, MeasurementModel, Observation, Parameter, Term};
 
 /// A model that could be meant.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,36 +118,35 @@ pub fn rivals_of(model: &MeasurementModel) -> Vec<Candidate> {
 /// # Errors
 /// [`FitError`] when an observation cannot be one, or when there is no candidate ([`FitError::Empty`]).
 pub fn select(candidates: &[Candidate], observations: &[Observation]) -> Result<Selection, FitError> {
-    let mut fits = Vec::with_capacity(candidates.len());
-    let mut rivals: Vec<Rival> = Vec::with_capacity(candidates.len());
-    for candidate in candidates {
-        let fit = fit::exact(&candidate.model, observations)?;
-        rivals.push(rival(candidate, &fit, observations)?);
-        fits.push(fit);
-    }
+    let data: Vec<Data> = (candidates.iter())
+        .map(|candidate| Data::new(&candidate.model, observations.to_vec()))
+        .collect::<Result<_, _>>()?;
+    let calibrations: Vec<Calibration> = data.iter().map(Calibration::exact).collect::<Result<_, _>>()?;
+    let named = candidates.iter().zip(&calibrations);
+    let mut rivals: Vec<Rival> = named.map(|(c, calibration)| rival(&c.name, calibration)).collect::<Result<_, _>>()?;
     for n in 0..rivals.len() {
         rivals[n].against = nested_test(candidates, &rivals, n);
     }
     let converged = (0..rivals.len()).filter(|&n| rivals[n].converged);
     let recommended = converged.min_by(|&a, &b| rivals[a].bic.total_cmp(&rivals[b].bic)).ok_or(FitError::Empty)?;
-    let best = Best { model: &candidates[recommended].model, fit: &fits[recommended], observations };
+    let best = Best(&calibrations[recommended]);
     let mut terms = best.own_terms();
     terms.extend(best.further_terms(candidates)?);
     Ok(Selection { rivals, recommended, terms })
 }
 
-fn rival(candidate: &Candidate, fit: &Fit, observations: &[Observation]) -> Result<Rival, FitError> {
+fn rival(name: &str, calibration: &Calibration) -> Result<Rival, FitError> {
+    let (fit, data) = (calibration.fit(), calibration.data());
     let rank = fit.observability().rank();
-    let validity = Validity::of(fit, &candidate.model, observations)?;
     Ok(Rival {
-        name: candidate.name.clone(),
+        name: name.to_owned(),
         rank,
-        unknowns: candidate.model.parameters().len(),
+        unknowns: data.model().parameters().len(),
         converged: fit.termination == Termination::Converged,
         chi_squared: fit.chi_squared,
         degrees_of_freedom: fit.degrees_of_freedom,
-        bic: fit.chi_squared + rank as f64 * (3.0 * observations.len() as f64).ln(),
-        hold_out_score: validity.hold_out_score(),
+        bic: fit.chi_squared + rank as f64 * (3.0 * data.observations().len() as f64).ln(),
+        hold_out_score: calibration.validity()?.hold_out_score(),
         against: None,
     })
 }
@@ -169,24 +164,28 @@ fn nested_test(candidates: &[Candidate], rivals: &[Rival], n: usize) -> Option<N
     Some(NestedTest { nested, f, further, probability: f_tail(f, further, left) })
 }
 
-/// The recommended model and its fit.
-struct Best<'a> {
-    model: &'a MeasurementModel,
-    fit: &'a Fit,
-    observations: &'a [Observation],
-}
+/// The calibration with the recommended model.
+struct Best<'a>(&'a Calibration<'a>);
 
 impl Best<'_> {
     /// What one more unknown has to lower chi^2 by.
     fn threshold(&self) -> f64 {
-        (3.0 * self.observations.len() as f64).ln()
+        (3.0 * self.0.data().observations().len() as f64).ln()
     }
 
     /// The terms of the model that could be left out, each by its own uncertainty.
     fn own_terms(&self) -> Vec<TermVerdict> {
-        let optional = self.model.parameters().iter().enumerate().filter(|(_, p)| can_go(self.model, p.kind));
+        let optional = self
+            .0
+            .data()
+            .model()
+            .parameters()
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| can_go(self.0.data().model(), p.kind));
         let verdict = optional.map(|(j, parameter)| {
-            let significance = self.fit.value(j).zip(self.fit.standard_uncertainty(j)).map(|(value, u)| value / u);
+            let significance =
+                self.0.fit().value(j).zip(self.0.fit().standard_uncertainty(j)).map(|(value, u)| value / u);
             let kept = significance.is_some_and(|t| t * t > self.threshold());
             TermVerdict { name: parameter.name.clone(), significance, kept }
         });
@@ -197,7 +196,7 @@ impl Best<'_> {
     /// redundant of its column in the readings and of the residuals. So many are tried that each has to pass a
     /// family-wise error of 5 % as well.
     fn further_terms(&self, candidates: &[Candidate]) -> Result<Vec<TermVerdict>, FitError> {
-        let gain = Gain::of(self.fit, self.model, self.observations)?;
+        let gain = self.0.gain()?;
         let e = gain.redundant_residuals();
         let mut terms: Vec<TermVerdict> = Vec::new();
         for richer in candidates.iter().map(|c| &c.model) {
@@ -222,15 +221,16 @@ impl Best<'_> {
     /// estimate; none if `richer` lacks any of the model's own.
     fn further_columns(&self, richer: &MeasurementModel) -> Vec<(String, DMatrix<f64>)> {
         let mut x = vec![0.0; richer.parameters().len()];
-        for (parameter, value) in self.model.parameters().iter().zip(self.fit.state()) {
+        for (parameter, value) in self.0.data().model().parameters().iter().zip(self.0.fit().state()) {
             let Some(j) = richer.parameters().find(&parameter.name) else { return Vec::new() };
             x[j] = *value;
         }
-        let is_further = |p: &Parameter| self.model.parameters().find(&p.name).is_none() && can_go(richer, p.kind);
+        let is_further =
+            |p: &Parameter| self.0.data().model().parameters().find(&p.name).is_none() && can_go(richer, p.kind);
         let further = richer.parameters().iter().enumerate().filter(|(_, p)| is_further(p));
         let mut columns: Vec<(usize, DMatrix<f64>)> =
-            further.map(|(j, _)| (j, DMatrix::zeros(3 * self.observations.len(), 1))).collect();
-        for (n, observation) in self.observations.iter().enumerate() {
+            further.map(|(j, _)| (j, DMatrix::zeros(3 * self.0.data().observations().len(), 1))).collect();
+        for (n, observation) in self.0.data().observations().iter().enumerate() {
             let set_point = &richer.experiment().set_points[observation.set_point];
             let derivatives = richer.linearise(set_point, &x).columns;
             for (j, column) in &mut columns {

@@ -3,8 +3,7 @@
 
 use nalgebra::Vector3;
 
-use crate::experiment::Experiment;
-use crate::frame::rotation;
+use crate::model::{Experiment, rotation};
 
 /// Standard uncertainties that the data cannot show (GUM type B), SI; zero where there is none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -11,9 +11,9 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Complex, Matrix2, Matrix3, Vector2, Vector3};
 
-use super::chi_squared_tail;
-use crate::fit::Fit;
-use crate::measurement::{ArmMotion, MeasurementModel};
+use super::coverage::chi_squared_tail;
+use crate::fit::{Calibration, Fit};
+use crate::model::{ArmMotion, MeasurementModel};
 
 /// The once-per-revolution term of a plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,42 +51,45 @@ pub struct TiltComparison {
     pub probability: f64,
 }
 
-/// Compares them. `None` without a term of any plateau, or if the fit does not determine the tilt.
-pub fn tilt_while_spinning(fit: &Fit, model: &MeasurementModel, terms: &[OncePerRevolution]) -> Option<TiltComparison> {
-    let alpha = [model.parameters().find("alpha_1")?, model.parameters().find("alpha_2")?];
-    let known = [fit.value(alpha[0])?, fit.value(alpha[1])?];
-    let tilt = Vector2::from(known);
-    let covariance = Matrix2::from_fn(|i, j| fit.covariance(alpha[i], alpha[j]).unwrap_or(f64::NAN));
-    let seen: Vec<Seen> = terms.iter().filter_map(|term| Seen::of(fit, model, alpha, term)).collect();
-    if seen.is_empty() {
-        return None;
+impl Calibration<'_> {
+    /// Compares the two tilts. `None` without a term of any plateau, or if the fit does not determine the tilt.
+    pub fn tilt_while_spinning(&self, terms: &[OncePerRevolution]) -> Option<TiltComparison> {
+        let (fit, model) = (self.fit(), self.data().model());
+        let alpha = [model.parameters().find("alpha_1")?, model.parameters().find("alpha_2")?];
+        let known = [fit.value(alpha[0])?, fit.value(alpha[1])?];
+        let tilt = Vector2::from(known);
+        let covariance = Matrix2::from_fn(|i, j| fit.covariance(alpha[i], alpha[j]).unwrap_or(f64::NAN));
+        let seen: Vec<Seen> = terms.iter().filter_map(|term| Seen::of(fit, model, alpha, term)).collect();
+        if seen.is_empty() {
+            return None;
+        }
+        // The fit's own uncertainty adds to the square of the tilt as noise adds to that of an amplitude.
+        let rest = tilt.norm_squared() - covariance.trace();
+        let rest_variance = 4.0 * tilt.dot(&(covariance * tilt)) + 2.0 * (covariance * covariance).trace();
+        let variance = |one: &Seen| 4.0 * rest.max(0.0) * one.variance + 4.0 * one.variance * one.variance;
+        let weight: f64 = seen.iter().map(|one| 1.0 / variance(one)).sum();
+        let mean = |of: fn(&Seen) -> f64| seen.iter().map(|one| of(one) / variance(one)).sum::<f64>() / weight;
+        let (spinning, reversed) = (mean(|one| one.square), mean(|one| one.reversed));
+        let scatter_chi_squared = seen.iter().map(|one| (one.square - spinning).powi(2) / variance(one)).sum();
+        let chi_squared = (spinning - rest).powi(2) / (1.0 / weight + rest_variance);
+        // u(A) = u(A^2) / 2A, and where that is more than A itself, sqrt(u(A^2)).
+        let uncertainty = |square: f64, variance: f64| {
+            let size = square.max(0.0).sqrt().max(0.5 * variance.sqrt().sqrt());
+            variance.sqrt() / (2.0 * size)
+        };
+        Some(TiltComparison {
+            at_rest: tilt.norm(),
+            at_rest_uncertainty: uncertainty(tilt.norm_squared(), rest_variance),
+            spinning: spinning.max(0.0).sqrt(),
+            spinning_uncertainty: uncertainty(spinning, 1.0 / weight),
+            reversed: reversed.max(0.0).sqrt(),
+            plateaus: seen.len(),
+            scatter_chi_squared,
+            scatter_probability: chi_squared_tail(scatter_chi_squared, seen.len() - 1),
+            chi_squared,
+            probability: chi_squared_tail(chi_squared, 1),
+        })
     }
-    // The fit's own uncertainty adds to the square of the tilt as noise adds to that of an amplitude.
-    let rest = tilt.norm_squared() - covariance.trace();
-    let rest_variance = 4.0 * tilt.dot(&(covariance * tilt)) + 2.0 * (covariance * covariance).trace();
-    let variance = |one: &Seen| 4.0 * rest.max(0.0) * one.variance + 4.0 * one.variance * one.variance;
-    let weight: f64 = seen.iter().map(|one| 1.0 / variance(one)).sum();
-    let mean = |of: fn(&Seen) -> f64| seen.iter().map(|one| of(one) / variance(one)).sum::<f64>() / weight;
-    let (spinning, reversed) = (mean(|one| one.square), mean(|one| one.reversed));
-    let scatter_chi_squared = seen.iter().map(|one| (one.square - spinning).powi(2) / variance(one)).sum();
-    let chi_squared = (spinning - rest).powi(2) / (1.0 / weight + rest_variance);
-    // u(A) = u(A^2) / 2A, and where that is more than A itself, sqrt(u(A^2)).
-    let uncertainty = |square: f64, variance: f64| {
-        let size = square.max(0.0).sqrt().max(0.5 * variance.sqrt().sqrt());
-        variance.sqrt() / (2.0 * size)
-    };
-    Some(TiltComparison {
-        at_rest: tilt.norm(),
-        at_rest_uncertainty: uncertainty(tilt.norm_squared(), rest_variance),
-        spinning: spinning.max(0.0).sqrt(),
-        spinning_uncertainty: uncertainty(spinning, 1.0 / weight),
-        reversed: reversed.max(0.0).sqrt(),
-        plateaus: seen.len(),
-        scatter_chi_squared,
-        scatter_probability: chi_squared_tail(scatter_chi_squared, seen.len() - 1),
-        chi_squared,
-        probability: chi_squared_tail(chi_squared, 1),
-    })
 }
 
 /// What one plateau shows.

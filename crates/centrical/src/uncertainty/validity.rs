@@ -12,10 +12,8 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use statrs::function::beta::beta_reg;
 
 use super::coverage::chi_squared_tail;
-use crate::design::Observation;
-use crate::error::FitError;
-use crate::fit::{self, Fit, Gain};
-use crate::measurement::MeasurementModel;
+use crate::fit::{Calibration, Data};
+use crate::model::FitError;
 
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
 const REDUNDANT: f64 = 1e-8;
@@ -68,37 +66,44 @@ pub struct Prediction {
     pub probability: f64,
 }
 
-/// A fit without outlying plateaus.
+/// Data without outlying plateaus.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cleaned {
-    /// The fit of what is left.
-    pub fit: Fit,
-    /// The observations left.
-    pub observations: Vec<Observation>,
+pub struct Cleaned<'m> {
+    /// The data that remain.
+    pub data: Data<'m>,
     /// Set points left out, the most outlying first, each with its probability at the time.
     pub left_out: Vec<(usize, f64)>,
 }
 
-impl Validity {
-    /// Checks `fit`, which was made of `observations` of `model`.
+impl Calibration<'_> {
+    /// The checks of the fit.
     ///
     /// # Errors
-    /// [`FitError`] when an observation cannot be one.
-    pub fn of(fit: &Fit, model: &MeasurementModel, observations: &[Observation]) -> Result<Self, FitError> {
-        let blocks = Blocks::of(fit, model, observations)?;
-        let set_points = &model.experiment().set_points;
-        let mounting_of = |n: usize| set_points[observations[n].set_point].mounting;
-        let mountings = (0..model.experiment().mountings.len()).filter_map(|mounting| {
+    /// [`FitError`] when numbers overflow.
+    pub fn validity(&self) -> Result<Validity, FitError> {
+        let gain = self.gain()?;
+        let (fit, experiment) = (self.fit(), self.data().model().experiment());
+        let observations = self.data().observations();
+        let blocks = Blocks {
+            residuals: gain.whitened_residuals(),
+            hat: gain.hat(),
+            chi_squared: fit.chi_squared,
+            degrees_of_freedom: fit.degrees_of_freedom,
+        };
+        let mounting_of = |n: usize| experiment.set_points[observations[n].set_point].mounting;
+        let mountings = (0..experiment.mountings.len()).filter_map(|mounting| {
             let members: Vec<usize> = (0..observations.len()).filter(|&n| mounting_of(n) == mounting).collect();
             (!members.is_empty()).then(|| MountingCheck { mounting, prediction: blocks.predict(&members) })
         });
-        Ok(Self {
+        Ok(Validity {
             probability: chi_squared_tail(fit.chi_squared, fit.degrees_of_freedom),
             plateaus: (0..observations.len()).map(|n| blocks.plateau(n, observations[n].set_point)).collect(),
             mountings: mountings.collect(),
         })
     }
+}
 
+impl Validity {
     /// The plateau that stands out most, if it does so at the family-wise error `alpha` over all plateaus (Bonferroni):
     /// its place among the observations.
     pub fn outlier(&self, alpha: f64) -> Option<usize> {
@@ -118,28 +123,23 @@ impl Validity {
     }
 }
 
-/// Fits, leaves out the plateau that stands out most at the family-wise error `alpha`, and fits again, until none does.
-/// Never more than a tenth of the plateaus: beyond that it is not plateaus that are wrong.
-///
-/// # Errors
-/// [`FitError`] when an observation cannot be one.
-pub fn without_outliers(
-    model: &MeasurementModel,
-    observations: &[Observation],
-    alpha: f64,
-) -> Result<Cleaned, FitError> {
-    let mut observations = observations.to_vec();
-    let mut left_out = Vec::new();
-    let most = observations.len() / 10;
-    loop {
-        let fit = fit::exact(model, &observations)?;
-        let validity = Validity::of(&fit, model, &observations)?;
-        match validity.outlier(alpha).filter(|_| left_out.len() < most) {
-            Some(n) => {
-                left_out.push((observations[n].set_point, validity.plateaus[n].prediction.probability));
-                observations.remove(n);
-            }
-            None => return Ok(Cleaned { fit, observations, left_out }),
+impl<'m> Data<'m> {
+    /// Fits, leaves out the plateau that stands out most at the family-wise error `alpha`, and fits again, until none does.
+    /// Never more than a tenth of the plateaus: beyond that it is not plateaus that are wrong.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn without_outliers(&self, alpha: f64) -> Result<Cleaned<'m>, FitError> {
+        let mut data = self.clone();
+        let mut left_out = Vec::new();
+        let most = data.observations().len() / 10;
+        loop {
+            let validity = Calibration::exact(&data)?.validity()?;
+            let Some(n) = validity.outlier(alpha).filter(|_| left_out.len() < most) else {
+                return Ok(Cleaned { data, left_out });
+            };
+            left_out.push((validity.plateaus[n].set_point, validity.plateaus[n].prediction.probability));
+            data = data.without(n)?;
         }
     }
 }
@@ -162,16 +162,6 @@ struct Blocks {
 }
 
 impl Blocks {
-    fn of(fit: &Fit, model: &MeasurementModel, observations: &[Observation]) -> Result<Self, FitError> {
-        let gain = Gain::of(fit, model, observations)?;
-        Ok(Self {
-            residuals: gain.whitened_residuals(),
-            hat: gain.hat(),
-            chi_squared: fit.chi_squared,
-            degrees_of_freedom: fit.degrees_of_freedom,
-        })
-    }
-
     fn plateau(&self, n: usize, set_point: usize) -> PlateauCheck {
         let standardised = Vector3::from_fn(|i, _| {
             let free = 1.0 - self.hat[(3 * n + i, 3 * n + i)];

@@ -7,7 +7,10 @@ pub mod rank_table;
 
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
-use centrical::{ErrorModel, Experiment, Extension, Law, LeastSquares, MeasurementModel, Observation, PairRelation};
+use centrical::{
+    Calibration, Data, ErrorModel, Experiment, Extension, Fit, FitError, Law, LeastSquares, MeasurementModel,
+    Observation, PairRelation,
+};
 use nalgebra::{DMatrix, DVector, Matrix3};
 pub use random::Random;
 pub use rank_table::spread;
@@ -86,10 +89,19 @@ impl Regression {
         let (n, p) = a.shape();
         let sizes = DVector::from_iterator(p, a.column_iter().map(|column| column.norm().recip()));
         let equations = LeastSquares::new(a * DMatrix::from_diagonal(&sizes), sizes);
-        let rotated = equations.rotated(DMatrix::from_column_slice(n, 1, b.as_slice()));
-        let sum_of_squares = rotated.rows(p, n - p).norm_squared();
+        let sum_of_squares = equations.redundant(b).norm_squared();
         let variance = sum_of_squares / (n - p) as f64;
         let covariance = equations.covariance() * variance;
         Self { x: equations.solve(b.clone()).x, covariance, sum_of_squares, variance }
     }
+}
+
+/// The fit of plateau means on the exact model.
+pub fn exact(model: &MeasurementModel, observations: &[Observation]) -> Result<Fit, FitError> {
+    Ok(Calibration::exact(&Data::new(model, observations.to_vec())?)?.into_fit())
+}
+
+/// The fit of plateau means on the linear model.
+pub fn linear(model: &MeasurementModel, observations: &[Observation]) -> Result<Fit, FitError> {
+    Ok(Calibration::linear(&Data::new(model, observations.to_vec())?)?.into_fit())
 }

@@ -1,5 +1,5 @@
+use centrical::ErrorModel;
 use centrical::uncertainty::{Compensated, Estimates, chi_squared_tail, compare};
-use centrical::{ErrorModel, fit};
 use centrical_compensate::gain;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
@@ -10,7 +10,7 @@ const INSTRUMENT: std::ops::Range<usize> = 28..49;
 
 fn calibrate(x: &[f64], random: &mut Random) -> Estimates {
     let model = source_model();
-    let fit = fit::exact(&model, &session(&model, x, random)).unwrap();
+    let fit = crate::common::exact(&model, &session(&model, x, random)).unwrap();
     let covariance = DMatrix::from_fn(21, 21, |i, j| fit.covariance(28 + i, 28 + j).unwrap());
     let names = INSTRUMENT.map(|j| model.parameters()[j].name.clone()).collect();
     Estimates { names, values: INSTRUMENT.map(|j| fit.value(j).unwrap()).collect(), covariance }

@@ -6,7 +6,7 @@ use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, Sch
 use centrical::simulate::{
     Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes, Tachometer, draw_truth,
 };
-use centrical::{Fit, MeasurementModel, Observation, PairRelation, fit, linear};
+use centrical::{Fit, MeasurementModel, Observation, PairRelation, linear};
 use nalgebra::{DVector, Matrix3};
 
 use crate::common::kozlov;
@@ -103,7 +103,7 @@ fn calibrated(
         covariance: covariance(mean),
     };
     let observations: Vec<Observation> = means.iter().enumerate().map(observation).collect();
-    fit::exact(model, &observations).expect("the session determines everything")
+    crate::common::exact(model, &observations).expect("the session determines everything")
 }
 
 /// Squared error of all parameters over their stated covariance: as many as there are parameters, on average.

@@ -1,5 +1,5 @@
 use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
-use centrical::{FitError, PairRelation, STANDARD_GRAVITY, Termination, fit};
+use centrical::{Calibration, Data, FitError, PairRelation, STANDARD_GRAVITY, Termination};
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
 
@@ -20,7 +20,7 @@ fn noise_free_means_are_recovered() {
                 let model = kozlov(experiment(third, relation, radii));
                 let x = truth(&model, 1.0, &mut random);
                 let data = observations(&model, &x);
-                let exact = fit::exact(&model, &data).unwrap();
+                let exact = crate::common::exact(&model, &data).unwrap();
                 assert_eq!(exact.termination, Termination::Converged);
                 assert_eq!(exact.observability().rank(), rank);
                 assert_eq!((0..49).filter(|&j| exact.value(j).is_some()).count(), estimable);
@@ -28,7 +28,7 @@ fn noise_free_means_are_recovered() {
                 assert!(!exact.null_directions_held);
                 let error = worst(&model, &exact, &x);
                 assert!(error < 1e-10, "{relation:?} {third:?} {radii:?}: {error:e}");
-                let linear = worst(&model, &fit::linear(&model, &data).unwrap(), &x);
+                let linear = worst(&model, &crate::common::linear(&model, &data).unwrap(), &x);
                 assert!(linear > 1e-3, "the linear fit should be off to second order, found {linear:e}");
             }
         }
@@ -44,7 +44,7 @@ fn linear_fit_shows_the_second_order_error() {
     experiment.centrifuge.speed_uncertainty = 0.0;
     let model = kozlov(experiment);
     let x = truth(&model, 0.5, &mut random);
-    let linear = fit::linear(&model, &observations(&model, &x)).unwrap();
+    let linear = crate::common::linear(&model, &observations(&model, &x)).unwrap();
     let squares: f64 = linear.residuals.iter().map(nalgebra::Matrix::norm_squared).sum();
     let rms = (squares / (3 * linear.residuals.len()) as f64).sqrt() / (1e-6 * STANDARD_GRAVITY);
     assert!((5.0..80.0).contains(&rms), "{rms} ug");
@@ -54,7 +54,7 @@ fn linear_fit_shows_the_second_order_error() {
 #[test]
 fn a_perfect_unit_is_no_trouble() {
     let model = kozlov(experiment(AxisOneUp, PairRelation::Opposite, &[1.0, 0.5]));
-    let fit = fit::exact(&model, &observations(&model, &[0.0; 49])).unwrap();
+    let fit = crate::common::exact(&model, &observations(&model, &[0.0; 49])).unwrap();
     assert_eq!(fit.termination, Termination::Converged);
     assert!(fit.null_directions_held);
     assert!(worst(&model, &fit, &[0.0; 49]) < 1e-12);
@@ -66,9 +66,10 @@ fn uncertainties_converge_to_those_of_the_fit() {
     let mut random = Random::new(5);
     let model = kozlov(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]));
     let data = observations(&model, &truth(&model, 1.0, &mut random));
-    let fit = fit::exact(&model, &data).unwrap();
-    let stages = centrical::convergence(&model, &data, &fit, 30);
-    assert!(stages.len() <= 30 && stages.last().unwrap().plateaus == data.len());
+    let data = Data::new(&model, data).unwrap();
+    let calibration = Calibration::exact(&data).unwrap();
+    let (fit, stages) = (calibration.fit(), calibration.convergence(30));
+    assert!(stages.len() <= 30 && stages.last().unwrap().plateaus == data.observations().len());
     for pair in stages.windows(2) {
         for (before, after) in pair[0].standard_uncertainty.iter().zip(&pair[1].standard_uncertainty) {
             assert!(*after <= before * (1.0 + 1e-9), "{before} {after}");
@@ -86,14 +87,14 @@ fn uncertainties_converge_to_those_of_the_fit() {
 fn bad_observations_are_refused() {
     let model = kozlov(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]));
     let good = observations(&model, &[0.0; 49]);
-    assert_eq!(fit::exact(&model, &[]), Err(FitError::Empty));
+    assert_eq!(crate::common::exact(&model, &[]), Err(FitError::Empty));
     let mut bad = good.clone();
     bad[7].mean[1] = f64::NAN;
-    assert_eq!(fit::exact(&model, &bad), Err(FitError::NotFinite { set_point: 7 }));
+    assert_eq!(crate::common::exact(&model, &bad), Err(FitError::NotFinite { set_point: 7 }));
     let mut bad = good.clone();
     bad[5].covariance[(0, 0)] = -1e-8;
-    assert!(matches!(fit::exact(&model, &bad), Err(FitError::Covariance { set_point: 5, .. })));
+    assert!(matches!(crate::common::exact(&model, &bad), Err(FitError::Covariance { set_point: 5, .. })));
     let mut bad = good;
     bad[0].set_point = 1000;
-    assert_eq!(fit::linear(&model, &bad), Err(FitError::Unknown { set_point: 1000, count: 108 }));
+    assert_eq!(crate::common::linear(&model, &bad), Err(FitError::Unknown { set_point: 1000, count: 108 }));
 }

@@ -7,8 +7,8 @@ use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, plateau_means, 
 use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
 use centrical::uncertainty::{Compensated, Method, Settings, TypeB, monte_carlo};
 use centrical::{
-    Centrifuge, ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, NULL_HOLD, Observation,
-    PairRelation, ReferencePoint, SetPoint, Site, Term, Unit, Weight, fit, linear,
+    Centrifuge, Data, ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, NULL_HOLD,
+    Observation, PairRelation, ReferencePoint, SetPoint, Site, Term, Unit, Weight, linear,
 };
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
@@ -329,7 +329,8 @@ fn predictions_are_what_monte_carlo_shows() {
         })
         .collect();
     let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact, stated: STATED };
-    let shown = monte_carlo(&model, &zero, &observations, &settings, &|_| {}).unwrap();
+    let data = Data::new(&model, observations).unwrap();
+    let shown = monte_carlo(&data, &zero, &settings, &|_| {}).unwrap();
     let mut ratios = Vec::new();
     for (j, statistics) in shown.parameters.iter().enumerate() {
         let (Some(statistics), Some(u)) = (statistics, prediction.budget().standard_uncertainty(j)) else { continue };
@@ -377,7 +378,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let mut weighted = 0.0;
     for seed in 0..SESSIONS {
         let observations = calibration_means(&model, &truth, &settings, seed);
-        let fit = fit::exact(&model, &observations).unwrap();
+        let fit = crate::common::exact(&model, &observations).unwrap();
         let error = nalgebra::DVector::from_fn(p, |j, _| (fit.value(j).unwrap() - truth[j]) / scale[j]);
         squares += error.component_mul(&error) / SESSIONS as f64;
         weighted += factor.solve(&error).dot(&error);

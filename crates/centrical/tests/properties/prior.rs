@@ -2,7 +2,7 @@
 
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::{
-    Combination, ErrorModel, Extension, Extra, Law, MeasurementModel, PairRelation, PriorError, Study, Weight, fit,
+    Combination, ErrorModel, Extension, Extra, Law, MeasurementModel, PairRelation, PriorError, Study, Weight,
 };
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
@@ -24,7 +24,7 @@ fn what_rests_on_a_prior_is_said() {
     // Two combinations of geometry come from the prior: the truth has the proof masses where the drawing has them.
     x[index(&model, "drho_22")] = 0.0;
     x[index(&model, "drho_33")] = 0.0;
-    let fit = fit::exact(&model, &observations(&model, &x)).unwrap();
+    let fit = crate::common::exact(&model, &observations(&model, &x)).unwrap();
     assert_eq!(fit.observability().rank(), 49);
     let resting: Vec<&str> =
         (0..49).filter(|&j| fit.rests_on_prior(j)).map(|j| model.parameters()[j].name.as_str()).collect();
@@ -49,11 +49,11 @@ fn a_prior_is_one_more_measurement() {
     let model = kozlov(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]));
     let x = truth(&model, 0.1, &mut random);
     let data = observations(&model, &x);
-    let without = fit::linear(&model, &data).unwrap();
+    let without = crate::common::linear(&model, &data).unwrap();
     let k = index(&model, "drho_22");
     let spread = without.standard_uncertainty(k).unwrap();
     for (sigma, share) in [(1e3 * spread, 0.0), (spread, 0.5), (1e-3 * spread, 1.0)] {
-        let with = fit::linear(&model.clone().with_prior("drho_22", sigma).unwrap(), &data).unwrap();
+        let with = crate::common::linear(&model.clone().with_prior("drho_22", sigma).unwrap(), &data).unwrap();
         for i in 0..49 {
             for j in 0..49 {
                 let c = |a: usize, b: usize| without.covariance(a, b).unwrap();
@@ -76,7 +76,7 @@ fn study_predicts_the_fit() {
     let model = opposite().with_prior("drho", 1e-4).unwrap();
     let zero = vec![0.0; 49];
     let data = observations(&model, &zero);
-    let fit = fit::linear(&model, &data).unwrap();
+    let fit = crate::common::linear(&model, &data).unwrap();
     let study = Study::at_zero(model.clone(), data.iter().map(Weight::from).collect()).unwrap();
     for j in 0..49 {
         let (predicted, found) = (study.standard_uncertainty(j).unwrap(), fit.standard_uncertainty(j).unwrap());
@@ -123,7 +123,7 @@ fn optional_groups_are_recovered() {
         let model = MeasurementModel::new(experiment, error_model, &extensions);
         // Null space and estimability are tested elsewhere: here every estimable parameter must come back.
         let x = truth(&model, 0.5, &mut random);
-        let fit = fit::exact(&model, &observations(&model, &x)).unwrap();
+        let fit = crate::common::exact(&model, &observations(&model, &x)).unwrap();
         for (j, parameter) in model.parameters().iter().enumerate() {
             if let Some(value) = fit.value(j) {
                 let error = (value - x[j]).abs() / parameter.typical;

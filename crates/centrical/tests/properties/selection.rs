@@ -1,5 +1,5 @@
 use centrical::uncertainty::{Candidate, rivals_of, select};
-use centrical::{ErrorModel, MeasurementModel, Monomial, Term, fit};
+use centrical::{ErrorModel, MeasurementModel, Monomial, Term};
 use rayon::prelude::*;
 
 use crate::common::{Random, observations, truth};
@@ -30,7 +30,7 @@ fn five_sigma_is_kept_and_nothing_is_rejected() {
         let j = larger.parameters().find(term).unwrap();
         let size = {
             let x = truth(larger, 0.0, &mut Random::new(1));
-            let fit = fit::exact(larger, &observations(larger, &x)).unwrap();
+            let fit = crate::common::exact(larger, &observations(larger, &x)).unwrap();
             5.0 * fit.standard_uncertainty(j).unwrap()
         };
         for present in [true, false] {

@@ -4,8 +4,8 @@ use centrical::PairRelation;
 use centrical::position::ThirdPosition;
 use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
 use centrical::simulate::{Equipment, Machine, Sensor, Simulation, draw_truth};
-use centrical::uncertainty::{OncePerRevolution, TiltComparison, tilt_while_spinning};
-use centrical::{MeasurementModel, Observation, fit, linear};
+use centrical::uncertainty::{OncePerRevolution, TiltComparison};
+use centrical::{Calibration, Data, MeasurementModel, Observation, linear};
 use nalgebra::Vector3;
 
 use crate::common::{experiment, kozlov};
@@ -45,7 +45,8 @@ fn comparison(tilt: [f64; 2], seed: u64, change: impl Fn(&mut [Vector3<f64>; 2])
     let observation =
         |(set_point, m): (usize, &PlateauMean)| Observation { set_point, mean: m.mean, covariance: m.covariance };
     let observations: Vec<Observation> = means.iter().enumerate().map(observation).collect();
-    let fit = fit::exact(&model, &observations).expect("the session determines everything");
+    let data = Data::new(&model, observations).expect("sound plateaus");
+    let calibration = Calibration::exact(&data).expect("the session determines everything");
     let spins = |set_point: &usize| !model.experiment().set_points[*set_point].is_rest();
     let terms: Vec<OncePerRevolution> = (0..means.len())
         .filter(spins)
@@ -55,7 +56,7 @@ fn comparison(tilt: [f64; 2], seed: u64, change: impl Fn(&mut [Vector3<f64>; 2])
             OncePerRevolution { set_point, quadratures, covariance: means[set_point].once_per_revolution_covariance }
         })
         .collect();
-    tilt_while_spinning(&fit, &model, &terms).expect("the tilt is determined")
+    calibration.tilt_while_spinning(&terms).expect("the tilt is determined")
 }
 
 /// Over sessions of large, small and no tilt: both chi^2 as they should be, the Earth's rotation and the unit's errors

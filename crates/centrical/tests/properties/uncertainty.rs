@@ -1,6 +1,6 @@
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::uncertainty::{Budget, Degrees, Method, MonteCarlo, Settings, Source, TypeB, monte_carlo};
-use centrical::{Experiment, Fit, MeasurementModel, Observation, PairRelation, fit, rotation};
+use centrical::{Calibration, Data, Experiment, Fit, MeasurementModel, Observation, PairRelation, rotation};
 use nalgebra::Vector3;
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
@@ -36,17 +36,23 @@ impl Case {
     }
 
     fn fit(&self) -> Fit {
-        fit::exact(&self.model, &self.observations).unwrap()
+        crate::common::exact(&self.model, &self.observations).unwrap()
     }
 
     fn budget(&self, stated: &TypeB) -> Budget {
-        Budget::new(&self.fit(), &self.model, &self.observations, stated).unwrap()
+        budget_of(&self.model, &self.observations, stated)
     }
 
     pub fn monte_carlo(&self, runs: usize, stated: TypeB, method: Method) -> MonteCarlo {
         let settings = Settings { runs, seed: 1, coverage: 0.95, method, stated };
-        monte_carlo(&self.model, &self.truth, &self.observations, &settings, &|_| {}).unwrap()
+        let data = Data::new(&self.model, self.observations.clone()).unwrap();
+        monte_carlo(&data, &self.truth, &settings, &|_| {}).unwrap()
     }
+}
+
+fn budget_of(model: &MeasurementModel, observations: &[Observation], stated: &TypeB) -> Budget {
+    let data = Data::new(model, observations.to_vec()).unwrap();
+    Calibration::exact(&data).unwrap().budget(stated).unwrap()
 }
 
 /// With nothing stated the budget is the covariance of the fit, split into noise and speed.
@@ -132,7 +138,7 @@ fn contributions_are_what_a_refit_shows() {
             let mut experiment = case.model.experiment().clone();
             change(&mut experiment, sign);
             let readings = observations(&case.model.in_experiment(experiment), &case.truth);
-            fit::exact(&case.model, &readings).unwrap().state().to_vec()
+            crate::common::exact(&case.model, &readings).unwrap().state().to_vec()
         };
         estimate(1.0).iter().zip(estimate(-1.0)).map(|(up, down)| 0.5 * (up - down)).collect()
     };
@@ -206,8 +212,8 @@ fn degrees_of_freedom_follow_what_is_known() {
     for o in &mut noisy {
         o.mean += nalgebra::Vector3::from_fn(|_, _| 1e-4 * random.normal());
     }
-    let fit = fit::exact(&case.model, &noisy).unwrap();
-    let budget = |stated: &TypeB| Budget::new(&fit, &case.model, &noisy, stated).unwrap();
+    let fit = crate::common::exact(&case.model, &noisy).unwrap();
+    let budget = |stated: &TypeB| budget_of(&case.model, &noisy, stated);
     assert_eq!(budget(&STATED).degrees_of_freedom(30), Some(Degrees::Infinite));
     let scaled = budget(&TypeB::default()).scaled_by_residuals(&fit);
     let Some(Degrees::Finite(nu)) = scaled.degrees_of_freedom(30) else { panic!("finite") };
@@ -234,7 +240,8 @@ fn monte_carlo_does_not_depend_on_threads() {
     assert_eq!(one.parameters.iter().flatten().count(), 43);
     assert_eq!(one, on(3));
     let settings = Settings { runs: 300, seed: 2, coverage: 0.95, method: Method::Exact, stated: STATED };
-    let other = monte_carlo(&case.model, &case.truth, &case.observations, &settings, &|_| {}).unwrap();
+    let data = Data::new(&case.model, case.observations.clone()).unwrap();
+    let other = monte_carlo(&data, &case.truth, &settings, &|_| {}).unwrap();
     assert_ne!(one, other);
 }
 

@@ -1,6 +1,6 @@
 use centrical::position::ThirdPosition::AxisOneUp;
-use centrical::uncertainty::{Trend, Validity, patterns, without_outliers};
-use centrical::{Extension, Law, MeasurementModel, Observation, PairRelation, fit};
+use centrical::uncertainty::{Pattern, Trend};
+use centrical::{Calibration, Data, Extension, Law, MeasurementModel, Observation, PairRelation};
 use nalgebra::Vector3;
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
@@ -26,20 +26,26 @@ pub fn session(model: &MeasurementModel, x: &[f64], random: &mut Random) -> Vec<
     session
 }
 
+fn patterns(model: &MeasurementModel, observations: Vec<Observation>) -> Vec<Pattern> {
+    let data = Data::new(model, observations).unwrap();
+    Calibration::exact(&data).unwrap().patterns().unwrap()
+}
+
 /// Leverages add up to the unknowns; a block's statistic is the fall of chi^2 in a fit without it.
 #[test]
 fn statistics_are_what_a_fit_without_the_block_shows() {
     let (model, mut random) = (source_model(), Random::new(11));
     let data = session(&model, &truth(&model, 1.0, &mut random), &mut random);
-    let whole = fit::exact(&model, &data).unwrap();
-    let validity = Validity::of(&whole, &model, &data).unwrap();
+    let all = Data::new(&model, data.clone()).unwrap();
+    let calibration = Calibration::exact(&all).unwrap();
+    let (whole, validity) = (calibration.fit(), calibration.validity().unwrap());
     let leverage: f64 = validity.plateaus.iter().map(|p| 3.0 * p.leverage).sum();
     assert!((leverage - 49.0).abs() < 1e-6, "{leverage}");
     let set_points = &model.experiment().set_points;
     for check in &validity.mountings {
         let others: Vec<_> =
             data.iter().filter(|o| set_points[o.set_point].mounting != check.mounting).cloned().collect();
-        let without = fit::exact(&model, &others).unwrap();
+        let without = crate::common::exact(&model, &others).unwrap();
         let fall = whole.chi_squared - without.chi_squared;
         // The weights follow the estimate, by a millionth; a chi^2 of 275 hardly.
         assert!((check.prediction.statistic - fall).abs() < 1e-2, "{} {fall}", check.prediction.statistic);
@@ -48,7 +54,7 @@ fn statistics_are_what_a_fit_without_the_block_shows() {
     }
     for n in [0, 17, 53, 107] {
         let others: Vec<_> = data.iter().enumerate().filter(|(m, _)| *m != n).map(|(_, o)| o.clone()).collect();
-        let fall = whole.chi_squared - fit::exact(&model, &others).unwrap().chi_squared;
+        let fall = whole.chi_squared - crate::common::exact(&model, &others).unwrap().chi_squared;
         let statistic = validity.plateaus[n].prediction.statistic;
         assert!((statistic - fall).abs() < 1e-2, "plateau {n}: {statistic} {fall}");
     }
@@ -63,14 +69,14 @@ fn outliers_are_found_and_only_they() {
     let mut false_alarms = 0;
     for n in 0..SESSIONS {
         let mut data = session(&model, &x, &mut random);
-        let sound = without_outliers(&model, &data, 0.05).unwrap();
+        let sound = Data::new(&model, data.clone()).unwrap().without_outliers(0.05).unwrap();
         false_alarms += usize::from(!sound.left_out.is_empty());
         let victim = (n * 7) % data.len();
         data[victim].mean[n % 3] += 10.0 * data[victim].covariance[(0, 0)].sqrt();
         let set_point = &model.experiment().set_points[victim];
         // A speed error hides what acts along the pull: put the blow across, on a plateau at rest.
         if set_point.is_rest() {
-            let cleaned = without_outliers(&model, &data, 0.05).unwrap();
+            let cleaned = Data::new(&model, data.clone()).unwrap().without_outliers(0.05).unwrap();
             assert_eq!(cleaned.left_out[0].0, victim);
         }
     }
@@ -93,8 +99,7 @@ fn patterns_name_what_is_missing() {
     let mut alarms = 0;
     for _ in 0..SESSIONS {
         let data = session(&model, &x, &mut random);
-        let sound = fit::exact(&model, &data).unwrap();
-        alarms += usize::from(patterns(&sound, &model, &data).unwrap()[0].family_wise < 0.05);
+        alarms += usize::from(patterns(&model, data)[0].family_wise < 0.05);
     }
     assert!(alarms <= 7, "{alarms} of {SESSIONS} where 2 are expected");
     x.resize(bending.parameters().len(), 0.0);
@@ -104,8 +109,7 @@ fn patterns_name_what_is_missing() {
         x[bending.parameters().find(name).unwrap()] = 20e-6 / (fastest * fastest);
     }
     let data = session(&bending, &x, &mut random);
-    let fitted = fit::exact(&model, &data).unwrap();
-    let found = patterns(&fitted, &model, &data).unwrap();
+    let found = patterns(&model, data);
     assert!(found[0].family_wise < 1e-6, "{:?}", found[0]);
     assert!(matches!(found[0].trend, Trend::SpeedInPosition(2 | 3)), "positions 3 and 4 turn, found {:?}", &found[..3]);
 }

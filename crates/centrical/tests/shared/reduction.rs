@@ -32,7 +32,7 @@ fn windows_and_means(name: &str) {
     let (mut chi_squared, mut freedom) = (0.0, 0.0);
     for (m, reduced) in reduced.iter().enumerate() {
         assert!(reduced.clock_offset().is_some_and(|offset| offset.standard_uncertainty < 0.01));
-        for (k, mean) in plateau_means(&reduced, &noise).iter().enumerate() {
+        for (k, mean) in plateau_means(reduced, &noise).iter().enumerate() {
             let [start, end] = session.window(m, k);
             let [from, to] = mean.window;
             assert!(from >= start && to <= end, "{name} {m} {k}: {from} to {to} in {start} to {end}");

@@ -5,7 +5,7 @@
 //! in rationals of any length: no rounding anywhere until its results are read as doubles.
 
 use centrical::STANDARD_GRAVITY;
-use centrical::fit::recursive::Factor;
+use centrical::fit::filter::Factor;
 use nalgebra::{DMatrix, DVector, Vector3};
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};

@@ -1,7 +1,7 @@
 //! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
 
-use centrical::Experiment;
 use centrical::uncertainty::{Budget, Degrees, Pattern, Prediction, Source, Trend, Validity};
+use centrical::{Calibration, Experiment, FitError};
 use serde::{Deserialize, Serialize};
 
 /// Family-wise error at which a plateau stands out and a pattern is told.
@@ -141,6 +141,12 @@ impl BudgetSummary {
 }
 
 impl ValiditySummary {
+    /// The checks of a calibration.
+    pub(crate) fn of(calibration: &Calibration) -> Result<Self, FitError> {
+        let experiment = calibration.data().model().experiment();
+        Ok(Self::new(experiment, &calibration.validity()?, &calibration.patterns()?))
+    }
+
     /// The checks of a fit in the form of the file.
     pub fn new(experiment: &Experiment, validity: &Validity, patterns: &[Pattern]) -> Self {
         let family = validity.plateaus.len() as f64;

@@ -1,7 +1,6 @@
 //! From a fit to the result's form.
 
-use centrical::uncertainty::{Budget, Validity, patterns};
-use centrical::{Fit, FitError, MeasurementModel, Mounting, Observation, Position, PriorUse, SetPoint, Termination};
+use centrical::{Calibration, Fit, FitError, MeasurementModel, Mounting, Position, PriorUse, SetPoint, Termination};
 use nalgebra::{Matrix3, Vector3};
 
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
@@ -9,66 +8,48 @@ use super::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, ModelSummary, MountingSummary, ObservabilitySummary,
     ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, TermSummary,
 };
-use crate::document::steadiness;
+use crate::document::steadiness::{DriftSummary, TiltSummary};
 use crate::experiment::Session;
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
 
 impl CalibrationResult {
-    /// Puts a fit, the model it was made with and the plateaus it rests on into the form of the file.
-    pub fn new(session: &Session, model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Self {
-        let program = Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
+    /// Puts a calibration and the reduced session that it rests on into the form of the file: with its budget and, for a fit
+    /// on the exact model, its checks. Where the session states uncertainties beyond what the fit weighs, the uncertainties
+    /// and the covariance are the combined ones.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn from(calibration: &Calibration, session: &Session, reduced: &Reduced) -> Result<Self, FitError> {
+        let (model, fit) = (calibration.data().model(), calibration.fit());
+        let budget = calibration.budget(&session.type_b)?;
+        let is_combined = budget.contributions().iter().any(|c| !c.source.is_weighed());
+        let covariance = |i, j| if is_combined { budget.covariance(i, j) } else { fit.covariance(i, j) };
         let count = model.parameters().len();
-        Self {
+        Ok(Self {
             schema: SCHEMA.to_owned(),
-            program,
+            program: Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
             inputs: reduced.inputs.clone(),
             session: SessionSummary::new(session),
             model: ModelSummary::new(model),
-            parameters: (0..count).map(|j| ParameterEstimate::new(model, fit, j)).collect(),
-            covariance: (0..count).map(|i| (0..count).map(|j| fit.covariance(i, j)).collect()).collect(),
+            parameters: (0..count)
+                .map(|j| ParameterEstimate::new(model, fit, j, covariance(j, j).map(f64::sqrt)))
+                .collect(),
+            covariance: (0..count).map(|i| (0..count).map(|j| covariance(i, j)).collect()).collect(),
             observability: ObservabilitySummary::new(model, fit),
-            fit: FitSummary::new(fit),
+            fit: FitSummary::new(calibration),
             mountings: mountings(model, reduced),
-            plateaus: plateaus(model, reduced, fit),
-            convergence: Some(ConvergenceSummary::new(model, reduced, fit)),
-            budget: None,
-            validity: None,
+            plateaus: plateaus(calibration, reduced),
+            convergence: Some(ConvergenceSummary::new(calibration)),
+            budget: Some(BudgetSummary::new(&budget, count)),
+            validity: match fit.termination {
+                Termination::Linear => None,
+                _ => Some(ValiditySummary::of(calibration)?),
+            },
             stability: None,
-            drift: steadiness::drift(model, reduced, fit),
-            tilt: steadiness::tilt(model, reduced, fit),
+            drift: DriftSummary::of(calibration, reduced)?,
+            tilt: TiltSummary::of(calibration, reduced),
             records: reduced.records.clone(),
-        }
-    }
-}
-
-impl CalibrationResult {
-    /// The result with its budget and, for a fit on the exact model, its checks. Where the session states uncertainties
-    /// beyond what the fit weighs, the uncertainties and the covariance of the result become the combined ones.
-    ///
-    /// # Errors
-    /// [`FitError`] when an observation cannot be one.
-    pub fn with_trust(
-        mut self,
-        session: &Session,
-        model: &MeasurementModel,
-        observations: &[Observation],
-        fit: &Fit,
-    ) -> Result<Self, FitError> {
-        let budget = Budget::new(fit, model, observations, &session.type_b)?;
-        let count = self.parameters.len();
-        if budget.contributions().iter().any(|c| !c.source.is_weighed()) {
-            for (j, parameter) in self.parameters.iter_mut().enumerate() {
-                parameter.standard_uncertainty = budget.standard_uncertainty(j);
-            }
-            self.covariance = (0..count).map(|i| (0..count).map(|j| budget.covariance(i, j)).collect()).collect();
-        }
-        self.budget = Some(BudgetSummary::new(&budget, count));
-        if fit.termination != centrical::Termination::Linear {
-            let validity = Validity::of(fit, model, observations)?;
-            let patterns = patterns(fit, model, observations)?;
-            self.validity = Some(ValiditySummary::new(model.experiment(), &validity, &patterns));
-        }
-        Ok(self)
+        })
     }
 }
 
@@ -121,8 +102,8 @@ impl ConvergenceSummary {
     /// Stages that are kept: more than a plot can show apart.
     const STAGES: usize = 60;
 
-    fn new(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Self {
-        let stages = centrical::convergence(model, &reduced.observations(), fit, Self::STAGES);
+    fn new(calibration: &Calibration) -> Self {
+        let stages = calibration.convergence(Self::STAGES);
         Self {
             plateaus: stages.iter().map(|stage| stage.plateaus).collect(),
             standard_uncertainty: stages.into_iter().map(|stage| stage.standard_uncertainty).collect(),
@@ -131,12 +112,12 @@ impl ConvergenceSummary {
 }
 
 impl ParameterEstimate {
-    fn new(model: &MeasurementModel, fit: &Fit, j: usize) -> Self {
+    fn new(model: &MeasurementModel, fit: &Fit, j: usize, standard_uncertainty: Option<f64>) -> Self {
         let parameter = &model.parameters()[j];
         Self {
             name: parameter.name.clone(),
             value: fit.value(j),
-            standard_uncertainty: fit.standard_uncertainty(j),
+            standard_uncertainty,
             unit: parameter.unit.clone(),
             group: parameter.group.to_owned(),
             estimable: fit.value(j).is_some(),
@@ -163,12 +144,14 @@ impl ObservabilitySummary {
 }
 
 impl FitSummary {
-    fn new(fit: &Fit) -> Self {
+    fn new(calibration: &Calibration) -> Self {
+        let fit = calibration.fit();
+        let exact = if calibration.is_recursive() { "exact, recursive filter" } else { "exact, Gauss-Newton" };
         let (method, termination) = match fit.termination {
             Termination::Linear => ("linear [K5.3]", "linear"),
-            Termination::Converged => ("exact, Gauss-Newton", "converged"),
-            Termination::Stalled => ("exact, Gauss-Newton", "stalled"),
-            Termination::IterationLimit => ("exact, Gauss-Newton", "iteration limit"),
+            Termination::Converged => (exact, "converged"),
+            Termination::Stalled => (exact, "stalled"),
+            Termination::IterationLimit => (exact, "iteration limit"),
         };
         Self {
             method: method.to_owned(),
@@ -194,7 +177,8 @@ fn mountings(model: &MeasurementModel, reduced: &Reduced) -> Vec<MountingSummary
     experiment.mountings.iter().enumerate().map(summary).collect()
 }
 
-fn plateaus(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<PlateauSummary> {
+fn plateaus(calibration: &Calibration, reduced: &Reduced) -> Vec<PlateauSummary> {
+    let (model, fit) = (calibration.data().model(), calibration.fit());
     let mut index = 0;
     let mut previous = None;
     let mut summaries = Vec::with_capacity(reduced.plateaus.len());
@@ -202,7 +186,7 @@ fn plateaus(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<Plate
     for (n, (set_point, plateau)) in model.experiment().set_points.iter().zip(&reduced.plateaus).enumerate() {
         let held_out = reduced.held_out.contains(&n);
         let next = if held_out { None } else { fitted.next().map(|(c, r)| (*c, *r)) };
-        let (covariance, residual) = next.unwrap_or_else(|| against(fit, model, set_point, plateau));
+        let (covariance, residual) = next.unwrap_or_else(|| against(calibration, set_point, plateau));
         index = if previous == Some(set_point.mounting) { index + 1 } else { 0 };
         previous = Some(set_point.mounting);
         let turning = plateau.steadiness.filter(|_| !set_point.is_rest());
@@ -235,13 +219,8 @@ fn plateaus(model: &MeasurementModel, reduced: &Reduced, fit: &Fit) -> Vec<Plate
 }
 
 /// Covariance with the speed's term and residual of a plateau against a fit that it has no part in.
-fn against(
-    fit: &Fit,
-    model: &MeasurementModel,
-    set_point: &SetPoint,
-    plateau: &ReducedPlateau,
-) -> (Matrix3<f64>, Vector3<f64>) {
-    let there = model.linearise(set_point, fit.state());
+fn against(calibration: &Calibration, set_point: &SetPoint, plateau: &ReducedPlateau) -> (Matrix3<f64>, Vector3<f64>) {
+    let there = calibration.data().model().linearise(set_point, calibration.fit().state());
     (plateau.covariance + there.speed_error * there.speed_error.transpose(), plateau.mean - there.reading)
 }
 

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use centrical::MeasurementModel;
-use centrical::fit::recursive::{Innovation, Progress};
+use centrical::fit::{Innovation, Progress};
 use centrical_table::write_whole;
 use serde::{Deserialize, Serialize};
 

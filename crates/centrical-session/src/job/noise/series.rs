@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_table::{ColumnName, Field, Rule};
+use centrical_table::{Extent, Rule, TableReader};
 
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
@@ -27,28 +27,22 @@ impl Series {
     /// # Errors
     /// As of a record; and if nothing is in the window.
     pub fn read(file: &Path, time: &Column, readings: &[Column], window: [f64; 2]) -> Result<Self, Error> {
-        // A row's number is not in the file.
-        let counted = time.name == ColumnName::Row;
-        let mut fields: Vec<Field> =
-            if counted { Vec::new() } else { vec![field(time, Rule::Ascending { stamps: true })] };
-        fields.extend(readings.iter().map(|column| field(column, Rule::OrMissing)));
+        let mut fields = vec![time.field(Rule::Ascending { stamps: true })];
+        fields.extend(readings.iter().map(|column| column.field(Rule::OrMissing)));
         let (mut t, mut values) = (Vec::new(), vec![Vec::new(); readings.len()]);
-        let (mut rows, mut ends) = (0_u64, [f64::INFINITY, f64::NEG_INFINITY]);
-        centrical_table::read(file, &fields, "a record", &mut |block| {
-            let first = rows;
-            rows += block[0].len() as u64;
-            let times: Vec<f64> = if counted {
-                (first..rows).map(|row| si(time, row as f64)).collect()
-            } else {
-                block[0].iter().map(|raw| si(time, *raw)).collect()
-            };
-            ends = [ends[0].min(times[0]), ends[1].max(times[times.len() - 1])];
-            let inside = times.partition_point(|t| *t < window[0])..times.partition_point(|t| *t <= window[1]);
-            for ((kept, raw), column) in values.iter_mut().zip(&block[usize::from(!counted)..]).zip(readings) {
-                kept.extend(raw[inside.clone()].iter().map(|raw| si(column, *raw)));
+        let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut table = TableReader::open(file, Extent::Whole, &fields, "a record")?;
+        while let Some(batch) = table.next_batch()? {
+            for rows in batch.iter().filter(|rows| !rows[0].is_empty()) {
+                let times: Vec<f64> = rows[0].iter().map(|raw| si(time, *raw)).collect();
+                ends = [ends[0].min(times[0]), ends[1].max(times[times.len() - 1])];
+                let inside = times.partition_point(|t| *t < window[0])..times.partition_point(|t| *t <= window[1]);
+                for ((kept, raw), column) in values.iter_mut().zip(&rows[1..]).zip(readings) {
+                    kept.extend(raw[inside.clone()].iter().map(|raw| si(column, *raw)));
+                }
+                t.extend_from_slice(&times[inside]);
             }
-            t.extend_from_slice(&times[inside]);
-        })?;
+        }
         if t.is_empty() {
             let found = format!("nothing from {} s to {} s", window[0], window[1]);
             let expected = format!("a stretch of the record, which runs from {} s to {} s", ends[0], ends[1]);
@@ -81,11 +75,6 @@ impl Series {
         let series = Self::read(record, &columns.time, &columns.f, window)?;
         Ok((series, PlateauName::of(session, set_point)))
     }
-}
-
-/// A column as a field of a table.
-fn field(column: &Column, rule: Rule) -> Field {
-    Field { name: column.name.clone(), expected: format!("a number in {}", column.unit), rule }
 }
 
 /// A number of a column in SI.

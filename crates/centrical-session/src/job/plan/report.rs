@@ -49,7 +49,7 @@ pub(super) fn report(planning: &Planning, plan: &Plan, request: &PlanRequest) ->
         continuous_gap: (1.0 + plan.continuous.gap()).sqrt() - 1.0,
         nodes: plan.nodes,
         least_time: plan.least_time,
-        for_typical: candidates.scenarios[0].nominal == task.model().parameters().typical_in_turn(),
+        for_typical: candidates.scenarios[0].nominal == task.model().parameters().typical_alternating(),
         candidates: candidates.len(),
         time: schedule.time,
         time_by_use: [measuring, visits - measuring, schedule.time - visits],

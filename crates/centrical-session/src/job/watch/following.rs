@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use centrical::fit::recursive::{Follower, Progress};
+use centrical::fit::{Follower, Progress};
 use centrical::plan::{Benefit, Criterion, ReadingRange, next_best};
 use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linear};
 

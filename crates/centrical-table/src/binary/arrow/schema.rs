@@ -6,7 +6,7 @@ use polars_arrow_format::ipc::{Endianness, FieldRef, Precision, SchemaRef, TimeU
 
 use super::super::arrays::{Array, ArrayColumn, Bytes, Scalar, ScalarKind};
 use super::super::columnar::Column;
-use super::damaged;
+use super::messages::damaged;
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
 

@@ -2,11 +2,10 @@
 
 use nalgebra::Vector3;
 
-use crate::reduction::triangle::Triangle;
+use super::samples::CELLS;
+use super::strips::Sums;
+use crate::reduction::triangle::{TERMS, Triangle};
 use crate::simd::lanes::product as dot;
-
-/// Cells in a window.
-pub(in crate::reduction) const CELLS: usize = 128;
 
 /// Sums over the good samples of each cell.
 #[derive(Debug, Clone)]
@@ -31,25 +30,24 @@ pub(in crate::reduction) struct Weights {
 }
 
 impl Cells {
-    /// Cells without samples yet, of a fit with that triangle.
-    pub fn empty(triangle: &Triangle, terms: usize, width: f64, interval: f64) -> Self {
-        Self {
-            width,
-            interval,
-            counts: vec![0.0; CELLS],
-            residuals: vec![Vector3::zeros(); CELLS],
-            q: vec![vec![0.0; CELLS]; terms],
-            mean_scale: triangle.r[terms - 1][terms - 1],
+    /// The sums of all strips, gathered by cell, of a fit with that triangle.
+    pub(super) fn gather(
+        strips: impl Iterator<Item = (usize, Sums)>,
+        triangle: &Triangle,
+        terms: usize,
+        width: f64,
+        interval: f64,
+    ) -> Self {
+        let (mut counts, mut residuals) = (vec![0.0; CELLS], vec![Vector3::zeros(); CELLS]);
+        let mut columns = [[0.0; TERMS]; CELLS];
+        for (cell, sums) in strips {
+            counts[cell] += sums.count as f64;
+            residuals[cell] += sums.residuals;
+            columns[cell].iter_mut().zip(sums.columns).for_each(|(sum, column)| *sum += column);
         }
-    }
-
-    /// Fills a cell: the number of good samples, and the sums of their residuals and orthonormal columns.
-    pub fn fill(&mut self, cell: usize, count: usize, residuals: Vector3<f64>, q: &[f64]) {
-        self.counts[cell] = count as f64;
-        self.residuals[cell] = residuals;
-        for (sums, q) in self.q.iter_mut().zip(q) {
-            sums[cell] = *q;
-        }
+        let orthonormal = columns.map(|columns| triangle.orthonormal(columns, terms));
+        let q = (0..terms).map(|k| orthonormal.iter().map(|q| q[k]).collect()).collect();
+        Self { width, interval, counts, residuals, q, mean_scale: triangle.r[terms - 1][terms - 1] }
     }
 
     /// The weights of the samples in the mean.

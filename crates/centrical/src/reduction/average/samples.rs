@@ -5,9 +5,7 @@ use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
 use nalgebra::Vector3;
-use pulp::{Simd, WithSimd};
 
-use super::cells::CELLS;
 use super::saturation::standing;
 use crate::reduction::error::ReductionError;
 use crate::reduction::locate::{Shape, Window};
@@ -15,8 +13,11 @@ use crate::reduction::plateau::LeftOut;
 use crate::reduction::record::RecordSlice;
 use crate::reduction::survey::Blocks;
 use crate::reduction::triangle::Triangle;
-use crate::simd::lanes::{subtract_all, widest};
+use crate::simd::lanes::subtract_all;
 use crate::statistics::{MAD, cut, median, whole};
+
+/// Equal intervals of a window, for the slow part of the noise.
+pub(in crate::reduction) const CELLS: usize = 128;
 
 /// Samples of a window that represent all of them, and the neighbours among these that are taken together, since the
 /// memory delivers them together.
@@ -56,8 +57,10 @@ impl<'a> Samples<'a> {
     pub fn cut_out(record: RecordSlice<'a>, repeated: usize, window: &'a Window, blocks: &'a Blocks) -> Self {
         let RecordSlice { t, f_z } = record;
         let came = t.len();
-        let steps = widest(Steps { t });
-        let (t, f_z) = if steps[0] > 0.0 {
+        let steps = t.windows(2).map(|pair| pair[1] - pair[0]);
+        let (shortest, longest) =
+            steps.fold((f64::INFINITY, 0.0_f64), |(shortest, longest), step| (shortest.min(step), longest.max(step)));
+        let (t, f_z) = if shortest > 0.0 {
             (Cow::from(t), f_z.map(Cow::from))
         } else {
             let samples = record.without(&record.repeated(f64::NEG_INFINITY));
@@ -71,7 +74,7 @@ impl<'a> Samples<'a> {
             repeat_rate: blocks.repeat_rate,
             shown,
             repeated: repeated + came - t.len(),
-            longest_step: steps[1],
+            longest_step: longest,
             interval: blocks.interval,
             t,
             f_z,
@@ -159,31 +162,6 @@ impl<'a> Samples<'a> {
         } else {
             ReductionError::Unsteady { index, window, samples, good }
         }
-    }
-}
-
-/// The shortest and the longest step of time.
-struct Steps<'a> {
-    t: &'a [f64],
-}
-
-impl WithSimd for Steps<'_> {
-    type Output = [f64; 2];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> [f64; 2] {
-        const LANES: usize = 16;
-        let (mut shortest, mut longest) = ([f64::INFINITY; LANES], [0.0_f64; LANES]);
-        let (before, after) = (self.t, self.t.get(1..).unwrap_or_default());
-        for (before, after) in before.chunks(LANES).zip(after.chunks(LANES)) {
-            for (((before, after), shortest), longest) in before.iter().zip(after).zip(&mut shortest).zip(&mut longest)
-            {
-                let step = after - before;
-                *shortest = if step < *shortest { step } else { *shortest };
-                *longest = if step > *longest { step } else { *longest };
-            }
-        }
-        [shortest.into_iter().fold(f64::INFINITY, f64::min), longest.into_iter().fold(0.0, f64::max)]
     }
 }
 

@@ -46,11 +46,11 @@ mod tests {
 
     #[test]
     fn clipped_readings_pile_up_and_noise_does_not() {
+        let mut random = Random::stream(1, 0);
+        let readings: Vec<f64> = (0..100_000).map(|_| random.normal()).collect();
         for digit in [0.0, 1e-3, 0.1, 0.5, 1.0] {
             let rounded = |f: f64| if digit > 0.0 { (f / digit).round() * digit } else { f };
-            let mut random = Random::stream(1, 0);
-            let normal: Vec<f64> = (0..100_000).map(|_| random.normal()).collect();
-            for part in normal.chunks(2000) {
+            for part in readings.chunks(2000) {
                 let plain: Vec<f64> = part.iter().map(|f| rounded(*f)).collect();
                 assert_eq!(piled_up(plain), None, "digit {digit}");
                 if digit < 0.2 {

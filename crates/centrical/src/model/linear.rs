@@ -2,15 +2,15 @@
 //! as printed, for any number of positions and any pair relation.
 //!
 //! Unlike the source, `Omega^2` here stands for `Omega^2 + 2 Omega omega_E sin(latitude)` when the site gives
-//! a latitude (model notes, section 8): the Coriolis term is not of zero mean in the arm frame.
+//! a latitude (docs/source-and-findings.md): the Coriolis term is not of zero mean in the arm frame.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::exact::Share;
-use super::{Linearisation, MeasurementModel};
-use crate::experiment::{Experiment, SetPoint};
-use crate::frame::hat;
-use crate::parameter::Kind;
+use super::experiment::{Experiment, SetPoint};
+use super::frame::hat;
+use super::measurement::{Linearisation, MeasurementModel};
+use super::parameter::Kind;
 
 /// Nominal ideal reading `f0_z` [m/s^2] of a plateau [K5.1]:
 /// `P_k (g e3 + D R0_k) + sum_i e_i e_i^T M_k rho0 e_i`.

@@ -12,10 +12,11 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Geometry, MeasurementModel, Share};
-use crate::experiment::{EARTH_RATE, SetPoint, Site};
-use crate::frame::rotation;
-use crate::parameter::Kind;
+use super::exact::{Geometry, Share};
+use super::experiment::{EARTH_RATE, SetPoint, Site};
+use super::frame::rotation;
+use super::measurement::MeasurementModel;
+use super::parameter::Kind;
 
 /// Where the arm is in its turn and how it moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +31,7 @@ pub struct ArmMotion {
 
 /// The unit on the arm, deformed as it is at one speed: ideal readings as harmonics of the carousel angle.
 #[derive(Debug, Clone)]
-pub(crate) struct Carried {
+pub(crate) struct MountedUnit {
     /// Reaction to gravity: constant part, parts with `cos alpha_3` and `sin alpha_3` [m/s^2].
     weight: [Vector3<f64>; 3],
     /// Centripetal acceleration per unit of `Omega^2` [m].
@@ -48,12 +49,12 @@ pub(crate) struct Carried {
 impl MeasurementModel {
     /// Reading `f'` [m/s^2] of the unit in mounting `mounting` at the unknowns `x`, at one instant of the arm's motion.
     pub fn reading_at(&self, mounting: usize, x: &[f64], motion: &ArmMotion) -> Vector3<f64> {
-        let f = self.carried(mounting, x, motion.speed).specific_force(motion);
+        let f = self.mounted_unit(mounting, x, motion.speed).specific_force(motion);
         self.error_model.reading(self.parameters.coefficients(x), &f)
     }
 
     /// The unit on the arm in mounting `mounting` as `omega` deforms it.
-    pub(crate) fn carried(&self, mounting: usize, x: &[f64], omega: f64) -> Carried {
+    pub(crate) fn mounted_unit(&self, mounting: usize, x: &[f64], omega: f64) -> MountedUnit {
         let set_point = SetPoint { mounting, omega, angle: 0.0 };
         let geometry = self.geometry(&set_point, x);
         let square_scale = 1.0
@@ -61,7 +62,7 @@ impl MeasurementModel {
                 .filter(|(_, kind)| matches!(self.extension_share(&set_point, *kind), Share::Rate))
                 .map(|(column, _)| x[column])
                 .sum::<f64>();
-        Carried::new(&geometry, &earth_rate(&self.experiment.site), square_scale)
+        MountedUnit::new(&geometry, &earth_rate(&self.experiment.site), square_scale)
     }
 
     /// Whether the speed deforms anything.
@@ -71,7 +72,7 @@ impl MeasurementModel {
     }
 }
 
-impl Carried {
+impl MountedUnit {
     fn new(geometry: &Geometry, earth_rate_x: &Vector3<f64>, square_scale: f64) -> Self {
         let c_zy = geometry.c_zy;
         let axis_z = c_zy.column(2).into_owned();

@@ -4,8 +4,8 @@ use std::ops::Index;
 
 use centrical_compensate::Monomial;
 
-use crate::error_model::ErrorModel;
-use crate::experiment::{Experiment, PairRelation, ReferencePoint, STANDARD_GRAVITY};
+use super::error_model::ErrorModel;
+use super::experiment::{Experiment, PairRelation, ReferencePoint, STANDARD_GRAVITY};
 
 /// Standard deviation with which null directions are held about zero, in typical magnitudes of the parameters
 /// (5 mm, 10 mrad, 1e-2 of scale): ten times what any real unit shows, so that it holds and does not inform.
@@ -30,9 +30,9 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Whether a standard uncertainty [its unit] tells anything of it: one of [`NULL_HOLD`] typical
-    /// magnitudes and more is as much as is known without any data, and so far from the estimate the model is not linear.
-    pub fn is_told_by(&self, standard_uncertainty: f64) -> bool {
+    /// Whether a standard uncertainty [its unit] is informative: one of [`NULL_HOLD`] typical magnitudes or more is known
+    /// without any data, and so far from the estimate the model is not linear.
+    pub fn is_informative(&self, standard_uncertainty: f64) -> bool {
         standard_uncertainty < NULL_HOLD * self.typical
     }
 }
@@ -215,8 +215,8 @@ impl Parameters {
         Self { list, turn, shift, proof_mass, terms, extensions: first_extension }
     }
 
-    /// Unknowns of typical size, signs in turn: those of a unit that nothing is known of.
-    pub fn typical_in_turn(&self) -> Vec<f64> {
+    /// Unknowns of typical size with alternating signs: those of a unit of which nothing is known.
+    pub fn typical_alternating(&self) -> Vec<f64> {
         let sign = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
         self.iter().enumerate().map(|(j, parameter)| sign(j) * parameter.typical).collect()
     }

@@ -4,13 +4,11 @@
 //! (`dR`) or a seat is carried from the first plateau there to the last, and then retired. With the experiments
 //! ordered by position these are 30 of the source's 49 at a time: 19 fewer, 15 `delta` and 4 `dR` (source, section 6).
 
-use crate::experiment::SetPoint;
-use crate::measurement::MeasurementModel;
-use crate::parameter::Kind;
+use crate::model::{Kind, MeasurementModel, SetPoint};
 
-/// The lives of the unknowns in an order of plateaus.
+/// The lifetimes of the unknowns in an order of plateaus.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Lives {
+pub struct Lifetimes {
     /// Set points in the order in which they come.
     order: Vec<usize>,
     /// First and last place in the order, per unknown; `None` for one that no plateau of the order sees.
@@ -19,8 +17,8 @@ pub struct Lives {
     grouped_states: usize,
 }
 
-impl Lives {
-    /// The lives of the model's unknowns when its set points come in `order`.
+impl Lifetimes {
+    /// The lifetimes of the model's unknowns when its set points come in `order`.
     ///
     /// # Panics
     /// If the order names a set point that the experiment does not have.
@@ -60,7 +58,7 @@ impl Lives {
         carried.into_iter().map(|(_, column)| column).collect()
     }
 
-    /// Whether a life begins at a place of the order, or ends just before it.
+    /// Whether a lifetime begins at a place of the order, or ends just before it.
     pub(super) fn changes_at(&self, place: usize) -> bool {
         self.spans.iter().flatten().any(|(first, last)| *first == place || *last + 1 == place)
     }
@@ -90,7 +88,7 @@ fn spans(model: &MeasurementModel, order: &[usize]) -> Vec<Option<(usize, usize)
 fn most_at_a_time(spans: &[Option<(usize, usize)>]) -> usize {
     let begins = spans.iter().flatten().map(|(first, _)| *first);
     let carried = |place| spans.iter().flatten().filter(|(first, last)| (*first..=*last).contains(&place)).count();
-    // The number carried grows only where a life begins.
+    // The number carried grows only where a lifetime begins.
     begins.map(carried).max().unwrap_or(0)
 }
 

@@ -1,6 +1,6 @@
 //! The filter over plateaus: states enter with their position, retire with it, and come back by smoothing.
 //!
-//! The unknowns carried are ordered by the end of their lives, so that those to retire next stand in front. Their
+//! The unknowns carried are ordered by the end of their lifetimes, so that those to retire next stand in front. Their
 //! rows of the triangle, `R_rr x_r + R_ra x_a = b_r`, are all that the data of the past say about them given the
 //! others; they are laid aside as they are, and what remains of the triangle is the marginal information about
 //! the states that go on. Nothing is lost and nothing repeated: the rows laid aside and the last triangle together
@@ -8,12 +8,12 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::factor::Factor;
-use super::lives::Lives;
-use super::snapshot::{ResumeError, Row, Snapshot};
-use crate::design::{Design, Observation, Whitener};
-use crate::error::FitError;
-use crate::measurement::Linearisation;
+use super::super::data::Data;
+use super::super::design::Design;
+use super::lifetimes::Lifetimes;
+use crate::linalg::factor::Factor;
+use crate::model::whitening::Whitener;
+use crate::model::{FitError, Linearisation, Observation};
 use crate::observability::RANK_TOLERANCE;
 
 /// Three whitened readings of a plateau, linearised about a point of the unknowns: `rows (x - point) = misfit`.
@@ -49,7 +49,7 @@ impl Readings {
 /// rows, which the filter never reads.
 #[derive(Debug, Clone)]
 pub struct Filter<'a> {
-    lives: &'a Lives,
+    lifetimes: &'a Lifetimes,
     /// Place in the order of the latest plateau.
     place: usize,
     carried: Vec<usize>,
@@ -65,21 +65,43 @@ pub struct Filter<'a> {
     magnitude: f64,
 }
 
+/// One whitened equation `sum coefficient x = misfit`.
+#[derive(Debug, Clone, PartialEq)]
+struct Row {
+    /// Unknowns.
+    columns: Vec<usize>,
+    /// Their coefficients.
+    coefficients: Vec<f64>,
+    /// Right side.
+    misfit: f64,
+}
+
+/// One pass of the filter over all plateaus, and the smoothing back.
+pub(in crate::fit) fn smoothed(data: &Data, linearisations: &[Linearisation]) -> Result<Design, FitError> {
+    let order: Vec<usize> = data.observations().iter().map(|o| o.set_point).collect();
+    let lifetimes = Lifetimes::new(data.model(), &order);
+    let mut filter = Filter::new(&lifetimes);
+    for (place, (observation, linearisation)) in data.observations().iter().zip(linearisations).enumerate() {
+        filter.update(place, &Readings::new(observation, linearisation)?)?;
+    }
+    Ok(filter.smoothed())
+}
+
 impl<'a> Filter<'a> {
     /// A filter that knows nothing, before the first plateau of the order.
-    pub fn new(lives: &'a Lives) -> Self {
+    pub fn new(lifetimes: &'a Lifetimes) -> Self {
         let mut filter = Self {
-            lives,
+            lifetimes,
             place: 0,
             carried: Vec::new(),
-            slots: vec![None; lives.unknowns()],
+            slots: vec![None; lifetimes.unknowns()],
             lengths: Vec::new(),
             factor: Factor::new(0),
             archive: Vec::new(),
             scratch: Vec::new(),
             magnitude: 0.0,
         };
-        filter.carry(lives.carried(0), &[]);
+        filter.carry(lifetimes.carried(0), &[]);
         filter
     }
 
@@ -113,8 +135,8 @@ impl<'a> Filter<'a> {
         }
         while self.place < place {
             self.place += 1;
-            if self.lives.changes_at(self.place) {
-                let next = self.lives.carried(self.place);
+            if self.lifetimes.changes_at(self.place) {
+                let next = self.lifetimes.carried(self.place);
                 let returned = self.retire(&next);
                 self.carry(next, &returned);
             }
@@ -142,57 +164,22 @@ impl<'a> Filter<'a> {
         self.place
     }
 
-    /// Number of rows laid aside for retired states.
-    pub fn archived_rows(&self) -> usize {
-        self.archive.len()
-    }
-
     /// State of an unknown that has to be carried at `place`.
     pub(super) fn slot(&self, column: usize, place: usize) -> Result<usize, FitError> {
         self.slots.get(column).copied().flatten().ok_or(FitError::Retired { place })
     }
 
     /// Smoothing back: the triangle of all unknowns, retired and carried, as the equations of one batch.
-    pub(crate) fn smoothed(&self) -> Design {
+    fn smoothed(&self) -> Design {
         let states = (0..self.factor.states()).map(|j| row(&self.factor, &self.carried, j));
         let all: Vec<Row> = self.archive.iter().cloned().chain(states).collect();
-        let mut rows = DMatrix::zeros(all.len(), self.lives.unknowns());
+        let mut rows = DMatrix::zeros(all.len(), self.lifetimes.unknowns());
         let mut misfit = DVector::zeros(all.len());
         for (n, row) in all.iter().enumerate() {
             row.columns.iter().zip(&row.coefficients).for_each(|(&column, value)| rows[(n, column)] = *value);
             misfit[n] = row.misfit;
         }
         Design { rows, misfit, rest: self.factor.rest().sqrt(), magnitude: self.magnitude.sqrt() }
-    }
-
-    /// All there is to know to go on from here.
-    pub fn snapshot(&self) -> Snapshot {
-        let triangle = (0..self.factor.states()).map(|j| self.factor.row(j).to_vec()).collect();
-        Snapshot {
-            place: self.place,
-            carried: self.carried.clone(),
-            lengths: self.lengths.clone(),
-            triangle,
-            rest: self.factor.rest(),
-            magnitude: self.magnitude,
-            archive: self.archive.clone(),
-        }
-    }
-
-    /// The filter of a snapshot, to go on as if it had never stopped.
-    ///
-    /// # Errors
-    /// [`ResumeError`] if the snapshot is not one of a filter with these lives.
-    pub fn resume(lives: &'a Lives, snapshot: Snapshot) -> Result<Self, ResumeError> {
-        snapshot.check(lives)?;
-        let mut filter = Self::new(lives);
-        filter.place = snapshot.place;
-        filter.carry(snapshot.carried, &[]);
-        filter.lengths = snapshot.lengths;
-        filter.factor = Factor::from_rows(&snapshot.triangle, snapshot.rest).ok_or(ResumeError::Shape)?;
-        filter.magnitude = snapshot.magnitude;
-        filter.archive = snapshot.archive;
-        Ok(filter)
     }
 
     /// Lays aside the rows of the states in front that `next` does not carry any more, and returns those of them that

@@ -13,8 +13,8 @@
 use nalgebra::{DMatrix, DVector, SVD};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::filter::{Filter, Readings};
-use crate::error::FitError;
+use super::information::{Filter, Readings};
+use crate::model::FitError;
 use crate::observability::RANK_TOLERANCE;
 
 /// The outcome of the test of one plateau.
@@ -66,7 +66,7 @@ impl Filter<'_> {
 }
 
 /// Least sum of squares of equations, and their rank.
-pub(super) struct Unexplained {
+pub(in crate::fit) struct Unexplained {
     pub squared: f64,
     pub rank: usize,
 }

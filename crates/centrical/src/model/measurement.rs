@@ -1,35 +1,23 @@
-//! The measurement model: what the unit reads on a plateau, as a function of the unknowns `X`.
-//!
-//! Two forms, kept apart on purpose so that each checks the other:
-//! - [`MeasurementModel::linearise`], the exact model: exact rotations, every proof mass at its own point,
-//!   mean over a revolution or at rest, with its analytic Jacobian (`measurement/exact.rs`);
-//! - [`linear`], the source's small-parameter model `Z = H X + r` [K5.3].
-//!
-//! `H` is the Jacobian of the exact model at `X = 0` (test `h_is_the_jacobian_at_zero`).
-
-mod exact;
-pub mod linear;
+//! The measurement model: an experiment, the unit's error model, and the unknowns that follow from the two.
 
 use nalgebra::{Matrix3, Vector3};
 
-pub use exact::ArmMotion;
-pub(crate) use exact::Carried;
-
-use crate::error_model::ErrorModel;
-use crate::experiment::Experiment;
-use crate::parameter::{Extension, Parameters};
-use crate::prior::{self, Prior, PriorError};
+use super::error_model::ErrorModel;
+use super::experiment::Experiment;
+use super::frame::carousel;
+use super::parameter::{Extension, Parameters};
+use super::prior::{self, Prior, PriorError};
 
 /// An experiment, the unit's error model, and the unknowns that follow from the two.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasurementModel {
-    experiment: Experiment,
-    error_model: ErrorModel,
+    pub(super) experiment: Experiment,
+    pub(super) error_model: ErrorModel,
     extensions: Vec<Extension>,
-    parameters: Parameters,
+    pub(super) parameters: Parameters,
     priors: Vec<Prior>,
     /// Turns of the carousel over which a reading is averaged while spinning.
-    revolution: Vec<Matrix3<f64>>,
+    pub(super) revolution: Vec<Matrix3<f64>>,
 }
 
 /// Reading of a plateau and its first derivatives at some `X`.
@@ -47,7 +35,7 @@ impl MeasurementModel {
     /// Model of `experiment` with the unknowns of [K5.4] and `extensions`.
     pub fn new(experiment: Experiment, error_model: ErrorModel, extensions: &[Extension]) -> Self {
         let parameters = Parameters::new(&experiment, &error_model, extensions);
-        let revolution = exact::revolution(&error_model);
+        let revolution = revolution(&error_model);
         Self { experiment, error_model, extensions: extensions.to_vec(), parameters, priors: Vec::new(), revolution }
     }
 
@@ -95,4 +83,11 @@ impl MeasurementModel {
     pub fn priors(&self) -> &[Prior] {
         &self.priors
     }
+}
+
+/// Equal steps of the carousel over which the mean of every monomial is exact: one more than its degree.
+fn revolution(error_model: &ErrorModel) -> Vec<Matrix3<f64>> {
+    let degree = error_model.terms.iter().map(|t| t.monomial.degree()).max().unwrap_or(0).max(2);
+    let steps = f64::from(degree) + 1.0;
+    (0..=degree).map(|n| carousel(std::f64::consts::TAU * f64::from(n) / steps)).collect()
 }

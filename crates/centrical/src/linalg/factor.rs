@@ -17,7 +17,7 @@ pub struct Factor {
     rows: Vec<f64>,
     /// Three readings on their way through the triangle, as rows like those of `rows`.
     incoming: [Vec<f64>; 3],
-    /// Sum of squares of what the equations could not take up.
+    /// Sum of squares of the misfit that the equations could not take up.
     rest: f64,
 }
 
@@ -82,18 +82,18 @@ impl Factor {
     }
 
     /// `R`.
-    pub(super) fn triangle(&self) -> DMatrix<f64> {
+    pub(crate) fn triangle(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.states, self.states, |i, j| self.rows[i * (self.states + 1) + j])
     }
 
     /// `b`.
-    pub(super) fn right_side(&self) -> DVector<f64> {
+    pub(crate) fn right_side(&self) -> DVector<f64> {
         DVector::from_fn(self.states, |i, _| self.rows[i * (self.states + 1) + self.states])
     }
 
     /// The equations of the states from `first` on among `states` of a new order, old state `first + n` being
     /// `slots[n]` there; `slots` rises, so that the triangle stays one.
-    pub(super) fn rearranged(&self, first: usize, slots: &[usize], states: usize) -> Self {
+    pub(crate) fn rearranged(&self, first: usize, slots: &[usize], states: usize) -> Self {
         let mut next = Self::new(states);
         next.rest = self.rest;
         for (i, &slot) in slots.iter().enumerate() {
@@ -105,19 +105,6 @@ impl Factor {
             next.rows[start + states] = old[old.len() - 1];
         }
         next
-    }
-
-    /// The factor of given rows, each from its diagonal on; `None` if the lengths are not those of a triangle.
-    pub(super) fn from_rows(rows: &[Vec<f64>], rest: f64) -> Option<Self> {
-        let states = rows.len();
-        let mut factor = Self::new(states);
-        factor.rest = rest;
-        for (j, row) in rows.iter().enumerate() {
-            let start = j * (states + 1) + j;
-            factor.rows.get_mut(start..start + states + 1 - j)?.get_mut(..row.len())?.copy_from_slice(row);
-            (row.len() == states + 1 - j).then_some(())?;
-        }
-        Some(factor)
     }
 }
 

@@ -5,25 +5,19 @@
 //!
 //! [K3.1] and [K3.2] without their small-angle step. `w = Omega^2 + 2 Omega omega_E sin(latitude)` holds the
 //! constant part of the Coriolis term, which the source takes for a term of zero mean. The reading is the
-//! error model [K4.1] of `f`, meaned over a revolution while spinning, at the known `alpha_3` at rest.
-
-mod instant;
+//! error model [K4.1] of `f`, averaged over a revolution while spinning, at the known `alpha_3` at rest.
 
 use std::borrow::Cow;
 
 use nalgebra::{Matrix3, Matrix3x2, Vector3};
 
-pub use instant::ArmMotion;
-pub(crate) use instant::Carried;
-
-use super::{Linearisation, MeasurementModel};
-use crate::error_model::ErrorModel;
-use crate::experiment::SetPoint;
-use crate::frame::{carousel, hat, rotation, rotation_rate};
-use crate::parameter::Kind;
+use super::experiment::SetPoint;
+use super::frame::{carousel, hat, rotation, rotation_rate};
+use super::measurement::{Linearisation, MeasurementModel};
+use super::parameter::Kind;
 
 impl MeasurementModel {
-    /// Mean reading `f'` [m/s^2] of a plateau at the unknowns `x` (in the order of [`super::super::Parameters`]).
+    /// Mean reading `f'` [m/s^2] of a plateau at the unknowns `x` (in the order of [`super::Parameters`]).
     pub fn reading(&self, set_point: &SetPoint, x: &[f64]) -> Vector3<f64> {
         let geometry = self.geometry(set_point, x);
         let pull = geometry.pull();
@@ -85,7 +79,7 @@ impl MeasurementModel {
     }
 
     /// The plateau's geometry at `x`.
-    fn geometry(&self, set_point: &SetPoint, x: &[f64]) -> Geometry {
+    pub(super) fn geometry(&self, set_point: &SetPoint, x: &[f64]) -> Geometry {
         let (experiment, parameters) = (&self.experiment, &self.parameters);
         let mounting = &experiment.mountings[set_point.mounting];
         let omega_squared = set_point.omega * set_point.omega;
@@ -140,7 +134,7 @@ impl MeasurementModel {
         }
     }
 
-    /// Turns of the carousel whose mean is the mean of the reading: the known one at rest, [`revolution`] while spinning.
+    /// Turns of the carousel whose mean is the mean of the reading: the known one at rest, equal steps while spinning.
     fn turns(&self, set_point: &SetPoint) -> Cow<'_, [Matrix3<f64>]> {
         if set_point.is_rest() { Cow::Owned(vec![carousel(set_point.angle)]) } else { Cow::Borrowed(&self.revolution) }
     }
@@ -194,23 +188,15 @@ impl MeasurementModel {
     }
 }
 
-/// So many equal steps of the carousel that the mean over a revolution of every monomial is exact: one more than its
-/// degree.
-pub(super) fn revolution(error_model: &ErrorModel) -> Vec<Matrix3<f64>> {
-    let degree = error_model.terms.iter().map(|t| t.monomial.degree()).max().unwrap_or(0).max(2);
-    let steps = f64::from(degree) + 1.0;
-    (0..=degree).map(|n| carousel(std::f64::consts::TAU * f64::from(n) / steps)).collect()
-}
-
 /// How one unit of an extension's parameter enters the geometry.
 pub(super) enum Share {
     /// Not in this plateau.
     None,
-    /// As so much turn about an instrument axis [rad per unit].
+    /// Turn about an instrument axis [rad per unit].
     Turn(usize, f64),
-    /// As so much displacement in arm axes [m per unit].
+    /// Displacement in arm axes [m per unit].
     Arm(Vector3<f64>),
-    /// As a relative change of `Omega^2`.
+    /// Relative change of `Omega^2`.
     Rate,
 }
 
@@ -229,19 +215,19 @@ struct Partials {
 }
 
 /// Geometry of one plateau.
-struct Geometry {
-    gravity: f64,
-    p_zy: Matrix3<f64>,
-    tilt: Vector3<f64>,
+pub(super) struct Geometry {
+    pub gravity: f64,
+    pub p_zy: Matrix3<f64>,
+    pub tilt: Vector3<f64>,
     /// `rotation(alpha) e_3`.
-    up: Vector3<f64>,
-    turn: Vector3<f64>,
-    arm_y: Vector3<f64>,
-    rho_z: Matrix3<f64>,
+    pub up: Vector3<f64>,
+    pub turn: Vector3<f64>,
+    pub arm_y: Vector3<f64>,
+    pub rho_z: Matrix3<f64>,
     /// `w` [rad^2/s^2].
-    rate_squared: f64,
+    pub rate_squared: f64,
     /// `B`.
-    c_zy: Matrix3<f64>,
+    pub c_zy: Matrix3<f64>,
 }
 
 impl Geometry {
@@ -260,7 +246,7 @@ impl Geometry {
         self.pull_by_rate() * self.rate_squared
     }
 
-    fn pull_by_rate(&self) -> Vector3<f64> {
+    pub fn pull_by_rate(&self) -> Vector3<f64> {
         self.c_zy * horizontal(&self.arm_y) + (self.m() * self.rho_z).diagonal()
     }
 

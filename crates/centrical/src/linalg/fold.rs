@@ -1,12 +1,12 @@
 //! Rows folded into a triangular factor by reflections (Householder): `R'^T R' = R^T R + A^T A` without either product.
 //!
-//! A reflection that clears column `j` of the rows touches nothing of the triangle but its row `j`, and no column that the rows
-//! are zero in is cleared: plateaus of one position leave the unknowns of the others alone.
+//! A reflection that clears column `j` of the rows touches nothing of the triangle but its row `j`, and a column in which the rows
+//! are zero is passed over: plateaus of one position leave the unknowns of the others alone.
 
 use nalgebra::DMatrix;
 
-/// Folds `rows` into `triangle`; both have as many columns. What is left in `rows` is of no use.
-pub(super) fn fold(triangle: &mut DMatrix<f64>, rows: &mut DMatrix<f64>) {
+/// Folds `rows` into `triangle`; both have as many columns. `rows` are used up.
+pub fn fold(triangle: &mut DMatrix<f64>, rows: &mut DMatrix<f64>) {
     let (n, p) = rows.shape();
     for j in 0..p {
         let (pivot, rest) = rows.as_mut_slice()[j * n..].split_at_mut(n);

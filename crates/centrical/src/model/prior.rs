@@ -7,7 +7,7 @@
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-use crate::parameter::Parameters;
+use super::parameter::Parameters;
 
 /// Prior knowledge of one parameter: zero, with a standard uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]

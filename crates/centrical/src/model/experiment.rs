@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::position::Position;
+use super::position::Position;
 
 /// Standard gravity, exact by definition [m/s^2]: what "1 g" means in every quantity shown to people.
 pub const STANDARD_GRAVITY: f64 = 9.80665;

@@ -1,61 +1,59 @@
-//! Records that are kept in memory between the two passes over them, in room that all of them share.
+//! Samples that are kept in memory between the two passes over a record, within a budget that all records share.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 use centrical::reduction::RecordSlice;
-use centrical_table::Index;
 
+use super::reader::RecordIndex;
 use super::times::Times;
 
-/// Bytes that records take at most: an hour at 1 kHz and more.
-const MOST: usize = 125_000_000;
+/// Bytes that samples take at most: an hour at 1 kHz and more.
+const BYTES_LIMIT: usize = 125_000_000;
 
 /// Bytes of a sample: three readings, and a time in equal steps.
-const BYTES: usize = 25;
+const SAMPLE_BYTES: usize = 25;
 
-/// Room for records.
-pub(crate) struct Room {
+/// Bytes that the samples of all records share.
+pub(crate) struct MemoryBudget {
     left: AtomicUsize,
     all: usize,
 }
 
-/// A record that was read once, for the second pass: its samples, unless there are too many.
-pub(crate) struct Kept<'a> {
-    room: &'a Room,
-    /// Taken of the room.
+/// The samples of a record for the second pass, unless there are too many.
+pub(crate) struct SampleCache<'a> {
+    budget: &'a MemoryBudget,
+    /// Taken of the budget.
     bytes: usize,
     times: Vec<Times>,
     f_z: [Vec<f64>; 3],
     /// Stamp of the last sample, and those of samples that had the stamp of the one before: these are not kept.
     last: f64,
     repeated: Vec<f64>,
-    /// Where they stand, if they are not kept and the file can be read from anywhere.
-    pub(super) index: Option<Index>,
+    /// Where they are in the file, if they are not kept and the file can be read from anywhere.
+    pub(super) index: Option<RecordIndex>,
     pub(super) is_whole: bool,
-    /// Whether a record before was longer than all room: the next one is not begun in vain.
+    /// Whether an earlier record exceeded the whole budget: the next one is not begun in vain.
     is_too_long: bool,
-    /// Where times of windows were written: memory that is asked for anew is faulted in anew, page by page.
-    spare: Mutex<Vec<Vec<f64>>>,
 }
 
-impl Default for Room {
+impl Default for MemoryBudget {
     fn default() -> Self {
-        Self::of(MOST)
+        Self::of(BYTES_LIMIT)
     }
 }
 
-impl Room {
-    pub(super) fn of(all: usize) -> Self {
+impl MemoryBudget {
+    /// A budget of that many bytes.
+    pub fn of(all: usize) -> Self {
         Self { left: AtomicUsize::new(all), all }
     }
 
-    /// How many records of so many samples it holds; one in any case.
-    pub fn holds(&self, samples: u64) -> usize {
-        self.fit(usize::try_from(samples).unwrap_or(usize::MAX).saturating_mul(BYTES))
+    /// How many records of `samples` samples fit into it, at least one.
+    pub fn capacity(&self, samples: u64) -> usize {
+        self.capacity_for(usize::try_from(samples).unwrap_or(usize::MAX).saturating_mul(SAMPLE_BYTES))
     }
 
-    fn fit(&self, bytes: usize) -> usize {
+    fn capacity_for(&self, bytes: usize) -> usize {
         (self.all / bytes.max(1)).max(1)
     }
 
@@ -68,11 +66,11 @@ impl Room {
     }
 }
 
-impl<'a> Kept<'a> {
+impl<'a> SampleCache<'a> {
     /// No record yet.
-    pub fn new(room: &'a Room) -> Self {
+    pub fn new(budget: &'a MemoryBudget) -> Self {
         Self {
-            room,
+            budget,
             bytes: 0,
             times: Vec::new(),
             f_z: [const { Vec::new() }; 3],
@@ -81,7 +79,6 @@ impl<'a> Kept<'a> {
             index: None,
             is_whole: false,
             is_too_long: false,
-            spare: Mutex::default(),
         }
     }
 
@@ -93,15 +90,15 @@ impl<'a> Kept<'a> {
         for f in self.f_z.iter_mut().filter(|_| !self.is_too_long) {
             f.clear();
             // All at once: readings that move to larger places leave the old ones behind, and what is not used costs nothing.
-            f.reserve(self.room.all / BYTES);
+            f.reserve(self.budget.all / SAMPLE_BYTES);
         }
-        self.room.give_back(std::mem::take(&mut self.bytes));
+        self.budget.give_back(std::mem::take(&mut self.bytes));
         (self.index, self.is_whole) = (None, !self.is_too_long);
     }
 
-    /// How many records like this one there is room for, the room being taken by it alone.
-    pub fn fit_in(&self) -> usize {
-        if self.is_whole { self.room.fit(self.bytes) } else { 1 }
+    /// How many records like this one fit into the budget, at least one.
+    pub fn capacity(&self) -> usize {
+        if self.is_whole { self.budget.capacity_for(self.bytes) } else { 1 }
     }
 
     /// Keeps the next stretch.
@@ -133,16 +130,16 @@ impl<'a> Kept<'a> {
         }
     }
 
-    /// Takes more room, or gives back all if there is not so much.
+    /// Takes more of the budget, or gives everything back if it is exhausted.
     fn take(&mut self, bytes: usize) -> bool {
-        self.is_whole = self.room.take(bytes);
+        self.is_whole = self.budget.take(bytes);
         if self.is_whole {
             self.bytes += bytes;
         } else {
             (self.times, self.repeated) = (Vec::new(), Vec::new());
             self.f_z = [const { Vec::new() }; 3];
-            self.is_too_long |= self.bytes + bytes > self.room.all;
-            self.room.give_back(std::mem::take(&mut self.bytes));
+            self.is_too_long |= self.bytes + bytes > self.budget.all;
+            self.budget.give_back(std::mem::take(&mut self.bytes));
         }
         self.is_whole
     }
@@ -156,29 +153,25 @@ impl<'a> Kept<'a> {
         self.times.iter().filter(move |times| from <= times.span[1] && times.span[0] <= to)
     }
 
-    /// Gives `visit` the samples of a window, from and to [s], and how many with the stamp of the one before are not among
-    /// them.
-    pub(super) fn between<T>(&self, window: [f64; 2], visit: impl FnOnce(RecordSlice, usize) -> T) -> T {
+    /// The samples of a window, from and to [s], and how many with the stamp of the one before are not among them. Their times
+    /// are written to `t`.
+    pub(super) fn between<'b>(&'b self, window: [f64; 2], t: &'b mut Vec<f64>) -> (RecordSlice<'b>, usize) {
         let touched: Vec<&Times> = self.touched(window).collect();
-        let spare = || self.spare.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut t = spare().pop().unwrap_or_default();
         t.clear();
         t.reserve(touched.iter().map(|times| times.range.len()).sum());
         for times in &touched {
-            times.write(&mut t);
+            times.write(t);
         }
         let start = touched.first().map_or(0, |times| times.range.start);
         let f_z = self.f_z.each_ref().map(|f| &f[start..start + t.len()]);
         let [from, to] = window;
         let repeated = self.repeated.iter().filter(|t| (from..=to).contains(*t)).count();
-        let visited = visit(RecordSlice { t: &t, f_z }.between(window), repeated);
-        spare().push(t);
-        visited
+        (RecordSlice { t, f_z }.between(window), repeated)
     }
 }
 
-impl Drop for Kept<'_> {
+impl Drop for SampleCache<'_> {
     fn drop(&mut self) {
-        self.room.give_back(self.bytes);
+        self.budget.give_back(self.bytes);
     }
 }

@@ -8,13 +8,14 @@
 
 use nalgebra::{DVector, Matrix3};
 
-use super::filtered;
-use super::innovation::{Innovation, Unexplained};
-use crate::design::{Design, Observation};
-use crate::error::FitError;
-use crate::fit::{Equations, HALVING_LIMIT, Structure, check, chi_squared, linearised, residuals};
-use crate::measurement::{Linearisation, MeasurementModel};
-use crate::parameter::NULL_HOLD;
+use super::assembly::Assembly;
+use super::batch::HALVING_LIMIT;
+use super::data::Data;
+use super::design::Design;
+use super::filter::innovation::{Innovation, Unexplained};
+use super::structure::Structure;
+use crate::linalg::least_squares::LeastSquares;
+use crate::model::{FitError, Linearisation, MeasurementModel, NULL_HOLD, Observation};
 
 /// A point is close enough when the last step was below this many standard uncertainties: what the step after it would
 /// change is of the square of it.
@@ -27,8 +28,7 @@ const STEP_LIMIT: usize = 10;
 /// A session followed plateau by plateau on the exact model, in whatever order they come.
 #[derive(Debug, Clone)]
 pub struct Follower<'m> {
-    model: &'m MeasurementModel,
-    taken: Vec<Observation>,
+    data: Data<'m>,
     point: DVector<f64>,
 }
 
@@ -45,7 +45,7 @@ impl<'m> Follower<'m> {
     /// Before the first plateau.
     pub fn new(model: &'m MeasurementModel) -> Self {
         let point = DVector::zeros(model.parameters().len());
-        Self { model, taken: Vec::new(), point }
+        Self { data: Data::none(model), point }
     }
 
     /// Where a follower stood that had taken up some plateaus and reached [`Follower::point`]; it goes on as if it had never
@@ -55,17 +55,14 @@ impl<'m> Follower<'m> {
     /// [`FitError`] when an observation cannot be one.
     pub fn resume(model: &'m MeasurementModel, taken: Vec<Observation>, point: &[f64]) -> Result<Self, FitError> {
         let mut follower = Self::new(model);
-        if !taken.is_empty() {
-            check(model, &taken)?;
-        }
-        follower.taken = taken;
+        taken.into_iter().try_for_each(|observation| follower.data.push(observation))?;
         follower.point.iter_mut().zip(point).for_each(|(to, from)| *to = *from);
         Ok(follower)
     }
 
     /// Plateaus taken up, in the order in which they came.
     pub fn taken(&self) -> &[Observation] {
-        &self.taken
+        self.data.observations()
     }
 
     /// Point of linearisation, SI.
@@ -85,7 +82,7 @@ impl<'m> Follower<'m> {
         let mut with = self.clone();
         with.take(observation.clone())?;
         let after = with.unexplained()?;
-        with.taken.pop();
+        with.data.pop();
         let before = with.unexplained()?;
         Ok(before.innovation(&after))
     }
@@ -95,18 +92,19 @@ impl<'m> Follower<'m> {
     /// # Errors
     /// [`FitError`] when the observation cannot be one.
     pub fn take(&mut self, observation: Observation) -> Result<(), FitError> {
-        check(self.model, std::slice::from_ref(&observation))?;
-        self.taken.push(observation);
-        let typical = DVector::from_iterator(self.point.len(), self.model.parameters().iter().map(|p| p.typical));
+        self.data.push(observation)?;
+        let typical =
+            DVector::from_iterator(self.point.len(), self.data.model().parameters().iter().map(|p| p.typical));
         for _ in 0..STEP_LIMIT {
             let linearisations = self.linearised();
             let design = self.design_of(&linearisations)?;
-            let step = self.held(&design, &typical).solve();
+            let (equations, misfit) = self.held(&design, &typical);
+            let step = equations.solve(misfit);
             if step.whitened_length < CLOSE {
-                self.point += &step.dx;
+                self.point += &step.x;
                 break;
             }
-            let Some(point) = self.descend(&step.dx, &linearisations, &typical)? else { break };
+            let Some(point) = self.descend(&step.x, &linearisations, &typical)? else { break };
             self.point = point;
         }
         Ok(())
@@ -120,9 +118,8 @@ impl<'m> Follower<'m> {
         typical: &DVector<f64>,
     ) -> Result<Option<DVector<f64>>, FitError> {
         let objective = |x: &DVector<f64>| -> Result<f64, FitError> {
-            let residuals = residuals(self.model, &self.taken, x);
-            let priors = self.model.priors();
-            let data = chi_squared(priors, &self.taken, linearisations, &residuals, x)?;
+            let residuals = self.data.residuals(x.as_slice());
+            let data = self.data.chi_squared(linearisations, &residuals, x)?;
             Ok(data + (x.component_div(typical) / NULL_HOLD).norm_squared())
         };
         let here = objective(&self.point)?;
@@ -140,10 +137,13 @@ impl<'m> Follower<'m> {
     /// # Errors
     /// [`FitError::Empty`] before the first.
     pub fn progress(&self) -> Result<Progress, FitError> {
-        let structure = Structure::by(filtered, self.model, &self.taken)?;
-        let step = structure.equations(&self.design()?, &self.point, 1.0 / NULL_HOLD).solve();
-        let covariance = step.covariance();
-        let known = |j: usize| (self.point[j] + step.dx[j], covariance[(j, j)].sqrt());
+        if self.taken().is_empty() {
+            return Err(FitError::Empty);
+        }
+        let (structure, _) = Structure::by(Assembly::Filter, &self.data)?;
+        let (equations, misfit) = structure.equations(&self.design()?, &self.point, 1.0 / NULL_HOLD);
+        let (step, covariance) = (equations.solve(misfit), equations.covariance());
+        let known = |j: usize| (self.point[j] + step.x[j], covariance[(j, j)].sqrt());
         let estimates =
             (0..self.point.len()).map(|j| structure.observability.is_estimable(j).then(|| known(j))).collect();
         Ok(Progress { rank: structure.observability.rank(), estimates })
@@ -154,30 +154,28 @@ impl<'m> Follower<'m> {
     /// # Errors
     /// [`FitError`] when there can be no such plateau.
     pub fn expected(&self, set_point: usize, covariance: Matrix3<f64>) -> Result<Progress, FitError> {
-        let set_points = &self.model.experiment().set_points;
+        let set_points = &self.data.model().experiment().set_points;
         let unknown = FitError::Unknown { set_point, count: set_points.len() };
-        let mean = self.model.reading(set_points.get(set_point).ok_or(unknown)?, self.point());
+        let mean = self.data.model().reading(set_points.get(set_point).ok_or(unknown)?, self.point());
         let mut with = self.clone();
-        with.taken.push(Observation { set_point, mean, covariance });
+        with.data.push(Observation { set_point, mean, covariance })?;
         with.progress()
     }
 
     /// Least sum of squares of the plateaus taken up, linearised at the point, and their rank.
     fn unexplained(&self) -> Result<Unexplained, FitError> {
-        if self.taken.is_empty() {
-            return Ok(Unexplained { squared: 0.0, rank: self.model.priors().len() });
+        if self.taken().is_empty() {
+            return Ok(Unexplained { squared: 0.0, rank: self.data.model().priors().len() });
         }
-        let structure = Structure::by(filtered, self.model, &self.taken)?;
+        let (structure, _) = Structure::by(Assembly::Filter, &self.data)?;
         let design = self.design()?;
-        let Equations { rows, mut misfit, .. } = structure.equations(&design, &self.point, 1.0 / NULL_HOLD);
-        let unknowns = rows.ncols();
-        rows.qr().q_tr_mul(&mut misfit);
-        let left = misfit.rows_range(unknowns..).norm_squared();
+        let (equations, misfit) = structure.equations(&design, &self.point, 1.0 / NULL_HOLD);
+        let left = equations.redundant(&misfit).norm_squared();
         Ok(Unexplained { squared: left + design.rest.powi(2), rank: structure.observability.rank() })
     }
 
     fn linearised(&self) -> Vec<Linearisation> {
-        linearised(self.model, &self.taken, self.point())
+        self.data.linearised(self.point())
     }
 
     fn design(&self) -> Result<Design, FitError> {
@@ -185,17 +183,17 @@ impl<'m> Follower<'m> {
     }
 
     fn design_of(&self, linearisations: &[Linearisation]) -> Result<Design, FitError> {
-        filtered(self.point(), self.model, &self.taken, linearisations)
+        Assembly::Filter.design(&self.data, self.point(), linearisations)
     }
 
-    /// The equations with every unknown held about zero, in typical units.
-    fn held<'t>(&self, design: &Design, typical: &'t DVector<f64>) -> Equations<'t> {
+    /// The equations and their misfit, with every unknown held about zero.
+    fn held(&self, design: &Design, typical: &DVector<f64>) -> (LeastSquares, DVector<f64>) {
         let (n, p) = design.rows.shape();
         let mut rows = design.rows.clone().resize_vertically(n + p, 0.0);
         rows.column_iter_mut().zip(typical.iter()).for_each(|(mut column, typical)| column *= *typical);
         rows.rows_mut(n, p).fill_diagonal(1.0 / NULL_HOLD);
         let mut misfit = design.misfit.clone().resize_vertically(n + p, 0.0);
         misfit.rows_mut(n, p).copy_from(&(self.point.component_div(typical) / -NULL_HOLD));
-        Equations { rows, misfit, typical }
+        (LeastSquares::new(rows, typical.clone()), misfit)
     }
 }

@@ -1,0 +1,69 @@
+//! A mounting's record in two passes: where its plateaus are, then what they read.
+
+use centrical::linear;
+use centrical::reduction::{ReducedMounting, ReductionError, ScheduledPlateau, locate};
+
+use crate::error::Error;
+use crate::experiment::Session;
+use crate::record::{RecordFile, RecordOverview, SampleCache};
+
+/// Reduces the record of a mounting, its samples kept in `cache` between the passes.
+pub(super) fn reduce_mounting(
+    session: &Session,
+    number: usize,
+    progress: &(dyn Fn(u64) + Sync),
+    cache: &mut SampleCache,
+) -> Result<(ReducedMounting, RecordOverview), Error> {
+    let record = RecordFile::new(session.record_file(number)?, &session.columns, progress);
+    let refused = |source: ReductionError| Error::Reduction {
+        file: record.file.to_owned(),
+        mounting: number + 1,
+        source: Box::new(source),
+    };
+    let survey = record.survey(cache)?;
+    let telemetry = session.telemetry(number)?;
+    let located = locate(&survey, telemetry.as_ref(), &schedule(session, number)).map_err(refused)?;
+    let means = record.means(cache, &located)?.into_iter().collect::<Result<_, _>>().map_err(refused)?;
+    let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
+    Ok((ReducedMounting::new(located, means), overview))
+}
+
+/// The plateaus of a mounting in their order.
+fn schedule(session: &Session, mounting: usize) -> Vec<ScheduledPlateau> {
+    let experiment = &session.experiment;
+    let of_mounting = experiment.set_points.iter().filter(|set_point| set_point.mounting == mounting);
+    let scheduled = |set_point| linear::nominal(experiment, set_point);
+    of_mounting.map(|s| ScheduledPlateau { omega: s.omega, nominal_z: scheduled(s) }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::{self, File};
+    use std::path::{Path, PathBuf};
+
+    use flate2::{Compression, write::GzEncoder};
+
+    use super::*;
+    use crate::record::MemoryBudget;
+
+    /// A record read once, again by its index, and again from start to end.
+    #[test]
+    fn plateaus_are_the_same_from_the_cache_or_read_again() {
+        let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/ta-200");
+        let mut session = Session::read(&example).unwrap();
+        let plain = session.record_file(0).unwrap().to_owned();
+        let folder = tempfile::tempdir().unwrap();
+        let packed = folder.path().join("m01.csv.gz");
+        let mut encoder = GzEncoder::new(File::create(&packed).unwrap(), Compression::fast());
+        std::io::copy(&mut fs::File::open(&plain).unwrap(), &mut encoder).unwrap();
+        encoder.finish().unwrap();
+        let mut reduced = |file: &PathBuf, bytes: usize| {
+            session.mountings[0].record = Some(file.clone());
+            let budget = MemoryBudget::of(bytes);
+            let (mounting, overview) = reduce_mounting(&session, 0, &|_| {}, &mut SampleCache::new(&budget)).unwrap();
+            (format!("{mounting:?}"), overview)
+        };
+        let cached = reduced(&plain, usize::MAX >> 1);
+        assert!(reduced(&plain, 0) == cached && reduced(&packed, 0) == cached && reduced(&packed, 1 << 30) == cached);
+    }
+}

@@ -1,0 +1,85 @@
+//! The columns of records and telemetry, and what takes their numbers to SI.
+
+use centrical_table::{ColumnName, Field, Rule};
+
+/// The columns of records and telemetry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Columns {
+    /// Time, in both.
+    pub time: Column,
+    /// Readings of newtonometers 1, 2, 3.
+    pub f: [Column; 3],
+    /// Speed, in the telemetry.
+    pub speed: Column,
+}
+
+/// One column: how it is found and what takes it to SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// How it is found.
+    pub name: ColumnName,
+    /// Unit of its numbers, for messages.
+    pub unit: String,
+    /// What takes its numbers to SI.
+    pub scale: Scale,
+}
+
+/// `(raw - offset) factor`: from the numbers in a file to SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// Raw value at zero [raw unit].
+    pub offset: f64,
+    /// SI per raw unit.
+    pub factor: f64,
+}
+
+impl Scale {
+    /// `raw factor`.
+    pub const fn factor(factor: f64) -> Self {
+        Self { offset: 0.0, factor }
+    }
+
+    /// The number in a file that stands for `si`.
+    pub(crate) fn raw(self, si: f64) -> f64 {
+        si / self.factor + self.offset
+    }
+
+    pub(super) fn apply(self, values: &mut [f64]) {
+        if self != Self::factor(1.0) {
+            for value in values {
+                *value = (*value - self.offset) * self.factor;
+            }
+        }
+    }
+}
+
+impl Default for Columns {
+    /// `t` [s], `f1`, `f2`, `f3` [m/s^2], `omega` [rad/s].
+    fn default() -> Self {
+        Self {
+            time: Column::si("t", "s"),
+            f: ["f1", "f2", "f3"].map(|name| Column::si(name, "m/s^2")),
+            speed: Column::si("omega", "rad/s"),
+        }
+    }
+}
+
+impl Columns {
+    /// Those of a record, time first.
+    pub(super) fn of_record(&self) -> [&Column; 4] {
+        let [f1, f2, f3] = &self.f;
+        [&self.time, f1, f2, f3]
+    }
+}
+
+impl Column {
+    /// A column whose numbers are in SI.
+    pub fn si(name: &str, unit: &str) -> Self {
+        Self { name: ColumnName::Name(name.to_owned()), unit: unit.to_owned(), scale: Scale::factor(1.0) }
+    }
+
+    /// The column as a field of a table.
+    pub(crate) fn field(&self, rule: Rule) -> Field {
+        Field { name: self.name.clone(), expected: format!("a number in {}", self.unit), rule }
+    }
+}

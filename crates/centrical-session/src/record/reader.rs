@@ -1,0 +1,170 @@
+//! Records and telemetry from their files, batch by batch, in SI.
+
+use std::path::Path;
+
+use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+use centrical_table::{Extent, Field, Index, Reread, Rows, Rule, TableReader};
+
+use super::columns::{Column, Columns, Scale};
+use crate::error::Error;
+
+/// Reads the whole record of `file`.
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub fn read_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
+    RecordReader::open(file, columns)?.into_record()
+}
+
+/// Reads the part written so far of a record that is still growing: an incomplete last line is left for the next
+/// time. A file of another format than text has to appear whole, by renaming.
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub fn read_growing_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
+    RecordReader::with(file, Extent::Growing, &columns.of_record(), "a record")?.into_record()
+}
+
+/// Reads the telemetry of `file`.
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Error> {
+    let mut reader = RecordReader::with(file, Extent::Whole, &[&columns.time, &columns.speed], "telemetry")?;
+    let mut telemetry = SpeedTrace::default();
+    while let Some(batch) = reader.next_batch()? {
+        for rows in batch {
+            telemetry.t.extend_from_slice(&rows[0]);
+            telemetry.omega.extend_from_slice(&rows[1]);
+        }
+    }
+    Ok(telemetry)
+}
+
+/// A record that is read in memory that does not grow with it.
+pub struct RecordReader {
+    table: TableReader,
+    scales: Scales,
+    /// Bytes that [`RecordReader::newly_read`] has told.
+    told: u64,
+}
+
+impl RecordReader {
+    /// Opens the record of `file`.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn open(file: &Path, columns: &Columns) -> Result<Self, Error> {
+        Self::with(file, Extent::Whole, &columns.of_record(), "a record")
+    }
+
+    fn with(file: &Path, extent: Extent, columns: &[&Column], expected: &str) -> Result<Self, Error> {
+        let table = TableReader::open(file, extent, &fields(columns), expected)?;
+        Ok(Self { table, scales: Scales::of(columns), told: 0 })
+    }
+
+    /// The next rows: columns of time [s] and of readings [m/s^2] ([`stretch`]), several sets of them, to be worked on where they
+    /// are; none at the end.
+    ///
+    /// Time never decreases from row to row; it may stand still, as real streams repeat samples.
+    ///
+    /// # Errors
+    /// If the file cannot be read, has no rows, lacks a column, or a value is no finite number; if time runs
+    /// backwards.
+    pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
+        let batch = self.table.next_batch()?;
+        Ok(batch.map(|batch| self.scales.apply_to(batch)))
+    }
+
+    /// Bytes of the file that were read since this was last asked.
+    pub(crate) fn newly_read(&mut self) -> u64 {
+        let before = std::mem::replace(&mut self.told, self.table.bytes());
+        self.told - before
+    }
+
+    /// After the end: where the samples are, if any part can be read again.
+    pub(super) fn into_index(self) -> Option<RecordIndex> {
+        let scales = self.scales;
+        self.table.into_index().map(|index| RecordIndex { index, scales })
+    }
+
+    fn into_record(mut self) -> Result<Record, Error> {
+        let mut record = Record::default();
+        while let Some(batch) = self.next_batch()? {
+            batch.iter().for_each(|rows| record.extend(stretch(rows)));
+        }
+        Ok(record)
+    }
+}
+
+/// Rows of a record.
+pub fn stretch(rows: &Rows) -> RecordSlice<'_> {
+    RecordSlice { t: &rows[0], f_z: [&rows[1], &rows[2], &rows[3]] }
+}
+
+/// Where the samples of a record are in its file.
+pub(super) struct RecordIndex {
+    index: Index,
+    scales: Scales,
+}
+
+/// A record of which parts are read again.
+pub(super) struct PartReader<'a> {
+    index: &'a RecordIndex,
+    table: Reread<'a>,
+}
+
+impl RecordIndex {
+    /// The record, to be read again in parts.
+    pub fn parts(&self) -> PartReader<'_> {
+        PartReader { index: self, table: self.index.reread() }
+    }
+}
+
+impl PartReader<'_> {
+    /// Reads the samples from and to [s] in place of those in `samples`; the bytes that it took.
+    pub fn read(&mut self, part: [f64; 2], samples: &mut Record) -> Result<u64, Error> {
+        let RecordIndex { index, scales } = self.index;
+        let raw = scales.raw_range(part);
+        samples.clear();
+        self.table.seek(raw);
+        while let Some(batch) = self.table.next_batch()? {
+            scales.apply_to(batch).iter().for_each(|rows| samples.extend(stretch(rows).between(part)));
+        }
+        Ok(index.bytes(raw))
+    }
+}
+
+/// What takes columns to SI.
+#[derive(Debug, Clone)]
+struct Scales(Vec<Scale>);
+
+impl Scales {
+    fn of(columns: &[&Column]) -> Self {
+        Self(columns.iter().map(|column| column.scale).collect())
+    }
+
+    fn apply_to<'a>(&self, batch: &'a mut [Rows]) -> &'a mut [Rows] {
+        for rows in &mut *batch {
+            rows.iter_mut().zip(&self.0).for_each(|(values, scale)| scale.apply(values));
+        }
+        batch
+    }
+
+    /// What the first column, time, has in a window. The rounding of its scale is made up for by a part in 10^12.
+    fn raw_range(&self, window: [f64; 2]) -> [f64; 2] {
+        let [from, to] = window.map(|t| self.0[0].raw(t));
+        let slack = 1e-12 * from.abs().max(to.abs());
+        [from - slack, to + slack]
+    }
+}
+
+/// Columns as fields of a table, the first of them time.
+fn fields(columns: &[&Column]) -> Vec<Field> {
+    let rule = |k: usize, column: &Column| match k {
+        // A stamp is in seconds, whatever the numbers would be in.
+        0 => Rule::Ascending { stamps: column.scale == Scale::factor(1.0) },
+        _ => Rule::Any,
+    };
+    columns.iter().enumerate().map(|(k, column)| column.field(rule(k, column))).collect()
+}

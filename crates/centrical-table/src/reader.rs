@@ -1,0 +1,200 @@
+//! Tables in, whatever the format: chosen columns, row by row, in batches of bounded size.
+//!
+//! The first bytes of the file show its format, not its name.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use flate2::read::MultiGzDecoder;
+use memchr::memchr_iter;
+
+use crate::binary::{BinaryFormat, ColumnReader};
+use crate::column::Field;
+use crate::error::{Error, Place};
+use crate::rows::{RowNumber, Rows};
+use crate::text::{Index, Lines, Packed, Plain, TextReader};
+
+/// Rows per byte of a packed file: the noise of a sensor takes a bit a row and more, however it is packed.
+const ROWS_PER_BYTE: u64 = 8;
+
+/// Rows that may be packed into nothing: 32 MB of four columns.
+const ROWS_ALLOWANCE: u64 = 1_000_000;
+
+/// How much of a file there is to read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// All of it.
+    Whole,
+    /// Someone is still writing: of a text the complete lines, as the last one may be there in part. Other formats
+    /// are whole or cannot be read.
+    Growing,
+}
+
+/// A table that is read batch by batch, in memory that does not grow with it.
+pub struct TableReader {
+    file: PathBuf,
+    /// What the file is, for messages.
+    expected: String,
+    /// Its length, and how much of it was read.
+    length: u64,
+    bytes: u64,
+    source: Source,
+    row_number: RowNumber,
+    /// Rows that were handed out, and sets of rows in the last batch.
+    count: u64,
+    batch: usize,
+}
+
+enum Source {
+    Text(TextReader),
+    Binary(ColumnReader),
+}
+
+impl TableReader {
+    /// Opens `file`, which should be what `expected` says, to read `fields`.
+    ///
+    /// # Errors
+    /// If it cannot be read, or a binary table lacks a column.
+    pub fn open(file: &Path, extent: Extent, fields: &[Field], expected: &str) -> Result<Self, Error> {
+        let failed = |e| Error::reading(file, e, expected);
+        let mut input = open(file, expected)?;
+        let length = input.metadata().map_err(failed)?.len();
+        let magic = first_bytes(&mut input).map_err(failed)?;
+        if magic.is_empty() {
+            return Err(Error::content(file, Place::Whole, "an empty file", expected));
+        }
+        let mut fields = fields.to_vec();
+        let row_number = RowNumber::take_out(&mut fields);
+        let source = match Format::of(&magic) {
+            Format::Binary(format) => Source::Binary(format.open(file, input, fields, most_rows(length))?),
+            format => {
+                let lines = match (format, extent) {
+                    (Format::Gzip, _) => Lines::Packed(Packed::new(file, MultiGzDecoder::new(input))),
+                    (Format::Zstd, _) => Lines::Packed(Packed::new(file, zstd::Decoder::new(input).map_err(failed)?)),
+                    (_, Extent::Whole) => Lines::Plain(Plain::new(file, input).map_err(failed)?),
+                    (_, Extent::Growing) => {
+                        Lines::Plain(Plain::new(file, input).and_then(Plain::complete).map_err(failed)?)
+                    }
+                };
+                Source::Text(TextReader::new(file, lines, fields))
+            }
+        };
+        let (file, expected) = (file.to_owned(), expected.to_owned());
+        Ok(Self { file, expected, length, bytes: 0, source, row_number, count: 0, batch: 0 })
+    }
+
+    /// The next rows, several sets of them so that they may be worked on in parallel; none at the end. They belong to the
+    /// caller until the next call.
+    ///
+    /// # Errors
+    /// If the file cannot be read, has no rows, lacks a column, or a value is not what its field asks for.
+    pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
+        self.row_number.remove(self.source.rows(std::mem::take(&mut self.batch)));
+        let read = match &mut self.source {
+            Source::Text(text) => text.read()?,
+            Source::Binary(columns) => Some((columns.read()?, 0)).filter(|(sets, _)| *sets > 0),
+        };
+        let Some((sets, bytes)) = read else {
+            self.bytes = self.length;
+            return if self.count == 0 { Err(self.refuse("a table without rows".to_owned())) } else { Ok(None) };
+        };
+        self.bytes += bytes;
+        self.batch = sets;
+        for rows in self.source.rows(sets) {
+            let first = self.count;
+            self.count += rows[0].len() as u64;
+            self.row_number.put(first, rows);
+        }
+        let most = most_rows(self.length);
+        if self.count > most {
+            let found = format!("a file of {} bytes that unpacks to more than {most} rows", self.length);
+            return Err(self.refuse(found));
+        }
+        Ok(Some(self.source.rows(sets)))
+    }
+
+    fn refuse(&self, found: String) -> Error {
+        Error::content(&self.file, Place::Whole, found, self.expected.as_str())
+    }
+
+    /// Bytes of the file that were read so far; of a packed or binary file none before its end.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// After the end: where the rows are, so that any part can be read again; only of a text that is not packed.
+    pub fn into_index(self) -> Option<Index> {
+        match self.source {
+            Source::Text(text) => text.into_index(self.row_number),
+            Source::Binary(_) => None,
+        }
+    }
+}
+
+impl Source {
+    /// The rows that were read last.
+    fn rows(&mut self, sets: usize) -> &mut [Rows] {
+        match self {
+            Self::Text(text) => text.rows(sets),
+            Self::Binary(columns) => columns.rows(sets),
+        }
+    }
+}
+
+/// Rows that a file of this length can hold: a packed file can claim any number of them.
+fn most_rows(length: u64) -> u64 {
+    ROWS_ALLOWANCE + ROWS_PER_BYTE * length
+}
+
+/// Estimates the rows of a table: of a text by how long the lines in its middle are; none of other formats.
+pub fn estimate_rows(file: &Path) -> Option<u64> {
+    const SAMPLE: u64 = 1 << 16;
+    let mut input = open(file, "a table of numbers").ok()?;
+    let bytes = input.metadata().ok()?.len();
+    let format = Format::of(&first_bytes(&mut input).ok()?);
+    let mut sample = Vec::new();
+    input.seek(SeekFrom::Start(bytes.saturating_sub(SAMPLE) / 2)).ok()?;
+    input.take(SAMPLE).read_to_end(&mut sample).ok()?;
+    let lines = memchr_iter(b'\n', &sample).count() as u64;
+    (format == Format::Text && lines > 0).then(|| bytes.div_ceil(sample.len() as u64) * lines)
+}
+
+/// The formats, told by their first bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Text,
+    /// Text in gzip.
+    Gzip,
+    /// Text in Zstandard.
+    Zstd,
+    Binary(BinaryFormat),
+}
+
+impl Format {
+    fn of(magic: &[u8]) -> Self {
+        match magic {
+            [0x1f, 0x8b, ..] => Self::Gzip,
+            [0x28, 0xb5, 0x2f, 0xfd, ..] => Self::Zstd,
+            _ => BinaryFormat::of(magic).map_or(Self::Text, Self::Binary),
+        }
+    }
+}
+
+/// Opens a regular file: a pipe or a device could keep the reader for ever.
+fn open(file: &Path, expected: &str) -> Result<File, Error> {
+    let kind = std::fs::metadata(file).map_err(|e| Error::reading(file, e, expected))?.file_type();
+    if !kind.is_file() {
+        let found = if kind.is_dir() { "a folder" } else { "something that is no regular file" };
+        return Err(Error::content(file, Place::Whole, found, expected));
+    }
+    File::open(file).map_err(|e| Error::reading(file, e, expected))
+}
+
+/// The first bytes, up to 8, leaving the file at its start.
+fn first_bytes(input: &mut File) -> io::Result<Vec<u8>> {
+    let mut magic = Vec::new();
+    input.take(8).read_to_end(&mut magic)?;
+    input.rewind()?;
+    Ok(magic)
+}

@@ -1,0 +1,221 @@
+//! A text in pieces of whole lines: of a file any piece by its number, of a packed one each after the other.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::ops::{Deref, Range};
+use std::path::{Path, PathBuf};
+
+use memchr::{memchr, memchr_iter, memrchr};
+
+use crate::error::{Error, quoted};
+
+/// Bytes in a piece, more or less a line: several make up a plateau, and each is worth the way to it.
+pub(super) const SIZE: u64 = 1 << 17;
+
+/// The longest line [bytes].
+const LONGEST_LINE: usize = 1 << 20;
+
+/// Whole lines, within bytes that were read together.
+#[derive(Default)]
+pub(super) struct Text {
+    bytes: Vec<u8>,
+    lines: Range<usize>,
+}
+
+impl Deref for Text {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        &self.bytes[self.lines.clone()]
+    }
+}
+
+impl Text {
+    /// Leaves out a mark of the byte order.
+    fn skip_mark(&mut self) {
+        let mark = "\u{feff}".as_bytes();
+        if self.starts_with(mark) {
+            self.lines.start += mark.len();
+        }
+    }
+}
+
+/// A text that comes in pieces.
+pub(crate) enum Lines {
+    Plain(Plain),
+    Packed(Packed),
+}
+
+/// A text in an ordinary file. A piece has the lines that begin in its range of bytes.
+pub(crate) struct Plain {
+    file: PathBuf,
+    input: File,
+    length: u64,
+}
+
+/// A text that is read from its start to its end.
+pub(crate) struct Packed {
+    file: PathBuf,
+    input: Box<dyn Read + Send>,
+    /// Begin of a line that goes on.
+    rest: Vec<u8>,
+    at_end: bool,
+}
+
+impl Plain {
+    /// The text in a file, as long as it is now.
+    pub fn new(file: &Path, input: File) -> io::Result<Self> {
+        let length = input.metadata()?.len();
+        Ok(Self { file: file.to_owned(), input, length })
+    }
+
+    /// The same, ending with the last complete line.
+    pub fn complete(mut self) -> io::Result<Self> {
+        self.length = self.complete_lines_length()?;
+        Ok(self)
+    }
+
+    /// How many pieces there are from the one of that number on, `most` at most.
+    pub(super) fn pieces_from(&self, number: u64, most: usize) -> usize {
+        let left = self.length.div_ceil(SIZE).saturating_sub(number);
+        usize::try_from(left).unwrap_or(usize::MAX).min(most)
+    }
+
+    /// Bytes up to the end of the last complete line.
+    fn complete_lines_length(&self) -> io::Result<u64> {
+        let (mut end, mut bytes) = (self.length, Vec::new());
+        while end > 0 {
+            let start = end.saturating_sub(SIZE);
+            let read = self.fill(&mut bytes, 0, usize::try_from(end - start).unwrap_or(usize::MAX), start)?;
+            if let Some(last) = memrchr(b'\n', &bytes[..read]) {
+                return Ok(start + last as u64 + 1);
+            }
+            end = start;
+        }
+        Ok(0)
+    }
+
+    /// Reads the piece of that number; any thread may read any piece.
+    pub(super) fn read(&self, number: u64, text: &mut Text) -> Result<(), Error> {
+        self.try_read(number, text).map_err(|e| Error::reading(&self.file, e, TABLE))
+    }
+
+    fn try_read(&self, number: u64, text: &mut Text) -> io::Result<()> {
+        /// Where the last line most likely ends.
+        const BEYOND: usize = 512;
+        // The byte before: if it ends a line, the next line begins here.
+        let from = (number * SIZE).saturating_sub(1);
+        let size = usize::try_from(((number + 1) * SIZE).min(self.length).saturating_sub(from)).unwrap_or(0);
+        let mut read = self.fill(&mut text.bytes, 0, size + BEYOND, from)?;
+        let size = size.min(read);
+        let begin = if number == 0 { Some(0) } else { memchr(b'\n', &text.bytes[..size]).map(|end| end + 1) };
+        text.lines = 0..0;
+        let Some(begin) = begin.filter(|begin| *begin < size) else { return Ok(()) };
+        // The rest of the last line.
+        let mut end = size;
+        while text.bytes[end - 1] != b'\n' && end - size <= LONGEST_LINE {
+            if let Some(line_end) = memchr(b'\n', &text.bytes[end..read]) {
+                end += line_end + 1;
+                break;
+            }
+            end = read;
+            read = self.fill(&mut text.bytes, read, 2 * BEYOND.max(read - size), from)?;
+            if read == end {
+                break;
+            }
+        }
+        text.lines = begin..end;
+        if number == 0 {
+            text.skip_mark();
+        }
+        Ok(())
+    }
+
+    /// Reads up to `count` more bytes behind the first `filled`, which stand at `from` in the file; how many there are then.
+    fn fill(&self, bytes: &mut Vec<u8>, mut filled: usize, count: usize, from: u64) -> io::Result<usize> {
+        let left = self.length.saturating_sub(from + filled as u64);
+        let most = filled + usize::try_from(left).unwrap_or(usize::MAX).min(count);
+        bytes.resize(bytes.len().max(most), 0);
+        while filled < most {
+            match read_at(&self.input, &mut bytes[filled..most], from + filled as u64) {
+                Ok(0) => break,
+                Ok(read) => filled += read,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(filled)
+    }
+}
+
+/// Reads at a place in a file, wherever others read.
+#[cfg(unix)]
+fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
+    std::os::unix::fs::FileExt::read_at(file, bytes, place)
+}
+
+/// Reads at a place in a file, wherever others read.
+#[cfg(windows)]
+fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
+    std::os::windows::fs::FileExt::seek_read(file, bytes, place)
+}
+
+impl Packed {
+    /// The text that `input` gives.
+    pub fn new(file: &Path, input: impl Read + Send + 'static) -> Self {
+        Self { file: file.to_owned(), input: Box::new(input), rest: Vec::new(), at_end: false }
+    }
+
+    /// Reads the next piece, the first one without a mark of the byte order; whether there is one.
+    pub(super) fn read(&mut self, first: bool, text: &mut Text) -> Result<bool, Error> {
+        if self.at_end && self.rest.is_empty() {
+            return Ok(false);
+        }
+        let bytes = &mut text.bytes;
+        bytes.clear();
+        bytes.append(&mut self.rest);
+        let mut end = None;
+        while end.is_none() && !self.at_end && bytes.len() <= LONGEST_LINE {
+            let before = bytes.len();
+            let read = (&mut self.input).take(SIZE).read_to_end(bytes);
+            let read = read.map_err(|e| Error::unpacking(&self.file, e, TABLE))?;
+            self.at_end = (read as u64) < SIZE;
+            end = memrchr(b'\n', &bytes[before..]).map(|end| before + end + 1);
+        }
+        if !self.at_end {
+            self.rest.extend_from_slice(&bytes[end.unwrap_or(bytes.len())..]);
+            bytes.truncate(end.unwrap_or(bytes.len()));
+        }
+        text.lines = 0..bytes.len();
+        if first {
+            text.skip_mark();
+        }
+        Ok(true)
+    }
+}
+
+/// What a text is expected to be.
+pub(super) const TABLE: &str = "a table of numbers as text";
+
+/// The last line, counted from 0, if it goes on and on: what has such lines is no table.
+pub(super) fn endless_line(text: &[u8]) -> Option<(u64, String)> {
+    let start = memrchr(b'\n', &text[..text.len().saturating_sub(1)]).map_or(0, |end| end + 1);
+    let line = || memchr_iter(b'\n', &text[..start]).count() as u64;
+    (text.len() - start > LONGEST_LINE).then(|| (line(), format!("a line longer than {LONGEST_LINE} bytes")))
+}
+
+/// Text must be UTF-8: in any other encoding the names of columns would not be found. Of text that is not: the line,
+/// counted from 0, and what was found there.
+pub(super) fn check_utf8(text: &[u8]) -> Result<(), (u64, Option<String>, String)> {
+    let Err(error) = std::str::from_utf8(text) else { return Ok(()) };
+    let bad = error.valid_up_to();
+    let line = memchr_iter(b'\n', &text[..bad]).count() as u64;
+    let start = memrchr(b'\n', &text[..bad]).map_or(0, |end| end + 1);
+    Err((line, None, format!("byte 0x{:02x} after {}", text[bad], quoted(&text[start..bad]))))
+}
+
+/// Length of the first `count` lines.
+pub(super) fn before_line(text: &[u8], count: u64) -> usize {
+    let last = usize::try_from(count).ok().and_then(|count| count.checked_sub(1));
+    last.and_then(|last| memchr_iter(b'\n', text).nth(last)).map_or(0, |end| end + 1)
+}

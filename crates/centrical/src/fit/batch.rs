@@ -1,0 +1,243 @@
+//! Least squares on the linear model, and Gauss-Newton on the exact one.
+//!
+//! Both work by orthogonal factorisation of the whitened design, never by normal equations.
+
+use nalgebra::{DMatrix, DVector, Vector3};
+
+use super::data::Data;
+use super::design::Design;
+use super::estimates::{Fit, Termination};
+use super::structure::Structure;
+use crate::linalg::least_squares::{LeastSquares, Solution};
+use crate::model::{FitError, Linearisation, NULL_HOLD};
+
+/// The null directions are released when the data keep every one of them to this part of the hold: it then informs by less
+/// than 1 %.
+const RELEASE_BELOW: f64 = 0.1;
+
+/// A step of less than this many standard uncertainties, all unknowns together, ends the iteration: it converges
+/// quadratically, so the step after it would be lost in rounding.
+const CONVERGED: f64 = 1e-6;
+
+const ITERATION_LIMIT: usize = 50;
+
+/// Halvings of a step before it is given up: `2^-30` of a Gauss-Newton step is negligible.
+pub(super) const HALVING_LIMIT: u32 = 30;
+
+impl Structure {
+    /// Weighted least squares on the source's linear model [K5.3], for one of many data sets of the same plateaus.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn linear(&self, data: &Data) -> Result<Fit, FitError> {
+        Ok(Start::new(self, data)?.solve())
+    }
+
+    /// Gauss-Newton on the exact model to convergence, from the linear solution, for one of many data sets of the same plateaus.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn exact(&self, data: &Data) -> Result<Fit, FitError> {
+        Search::from(Start::new(self, data)?).run()
+    }
+}
+
+/// The problem at `X = 0`: its structure and first linear equations.
+pub(super) struct Start<'a> {
+    pub data: &'a Data<'a>,
+    pub structure: &'a Structure,
+    /// The equations at `X = 0`.
+    pub design: Design,
+}
+
+impl<'a> Start<'a> {
+    /// Assembles the equations of `data` at `X = 0` for a structure that is known.
+    fn new(structure: &'a Structure, data: &'a Data<'a>) -> Result<Self, FitError> {
+        let zero = vec![0.0; structure.typical.len()];
+        let design = structure.assembly.design(data, &zero, &structure.linearisations)?;
+        Ok(Self { data, structure, design })
+    }
+
+    /// The first step, from zero: every fit of one experiment has the same equations there, and its own misfit.
+    fn step(&self) -> (&'a LeastSquares, Solution) {
+        let zero = DVector::zeros(self.structure.typical.len());
+        let equations = || self.structure.equations(&self.design, &zero, 1.0 / NULL_HOLD).0;
+        let equations = self.structure.start.get_or_init(equations);
+        (equations, equations.solve(self.design.misfit.clone()))
+    }
+
+    /// Degrees of freedom left by the estimable combinations.
+    fn degrees_of_freedom(&self) -> usize {
+        let rows = 3 * self.data.observations().len() + self.data.model().priors().len();
+        rows.saturating_sub(self.structure.observability.rank())
+    }
+
+    /// The linear fit: the residual of `Z - H X`.
+    pub fn solve(self) -> Fit {
+        let (equations, step) = self.step();
+        let covariance = equations.covariance();
+        let residuals = (self.data.observations().iter())
+            .zip(&self.structure.linearisations)
+            .map(|(o, l)| {
+                let predicted: Vector3<f64> = l.columns.iter().map(|(j, column)| column * step.x[*j]).sum();
+                o.mean - l.reading - predicted
+            })
+            .collect();
+        let whitened = &self.design.misfit - &self.design.rows * &step.x;
+        Fit {
+            values: step.x.as_slice().to_vec(),
+            covariance,
+            chi_squared: whitened.norm_squared() + self.design.rest.powi(2),
+            degrees_of_freedom: self.degrees_of_freedom(),
+            null_directions_held: self.structure.null_basis.ncols() > 0,
+            iterations: 1,
+            termination: Termination::Linear,
+            residuals,
+            observation_covariances: self.data.covariances(&self.structure.linearisations),
+            observability: self.structure.observability.clone(),
+            of_data: self.structure.of_data.clone(),
+            priors: self.data.model().priors().to_vec(),
+        }
+    }
+}
+
+/// A point, and the linearisations there.
+type Place = (DVector<f64>, Vec<Linearisation>);
+
+/// The state of the Gauss-Newton iteration.
+pub(super) struct Search<'a> {
+    start: Start<'a>,
+    x: DVector<f64>,
+    linearisations: Vec<Linearisation>,
+    /// Those at `x`, where the step to it has made them already.
+    ahead: Option<Vec<Linearisation>>,
+    design: Option<Design>,
+    /// Weight with which null directions are held: one over [`NULL_HOLD`], then 0 when released.
+    null_weight: f64,
+    iterations: usize,
+    termination: Option<Termination>,
+    /// Of the last linearisation, once the search has ended.
+    covariance: DMatrix<f64>,
+}
+
+impl<'a> Search<'a> {
+    pub fn from(start: Start<'a>) -> Self {
+        let null_weight = if start.structure.null_basis.ncols() > 0 { 1.0 / NULL_HOLD } else { 0.0 };
+        let x = start.step().1.x;
+        Self {
+            start,
+            x,
+            linearisations: Vec::new(),
+            ahead: None,
+            design: None,
+            null_weight,
+            iterations: 0,
+            termination: None,
+            covariance: DMatrix::zeros(0, 0),
+        }
+    }
+
+    pub fn run(mut self) -> Result<Fit, FitError> {
+        while self.is_running() {
+            self.linearise()?;
+            self.step()?;
+        }
+        self.into_fit()
+    }
+
+    fn is_running(&self) -> bool {
+        self.termination.is_none()
+    }
+
+    fn linearise(&mut self) -> Result<(), FitError> {
+        let ahead = self.ahead.take();
+        let Start { data, structure, .. } = self.start;
+        let x = self.x.as_slice();
+        self.linearisations = ahead.unwrap_or_else(|| data.linearised(x));
+        self.design = Some(structure.assembly.design(data, x, &self.linearisations)?);
+        self.iterations += 1;
+        Ok(())
+    }
+
+    /// One Gauss-Newton step, halved until chi^2 falls with the weights as they are.
+    fn step(&mut self) -> Result<(), FitError> {
+        let Some(design) = self.design.take() else { return Ok(()) };
+        let (equations, misfit) = self.start.structure.equations(&design, &self.x, self.null_weight);
+        let objective_norm = misfit.norm().hypot(design.rest);
+        let step = equations.solve(misfit);
+        // Of a sum of squares of readings that are known to a few units of their last place.
+        let rounding = 100.0 * f64::EPSILON * design.magnitude;
+        if step.whitened_length <= CONVERGED + rounding {
+            self.x += &step.x;
+            self.termination = (!self.release_null_space(&equations)).then_some(Termination::Converged);
+        } else if let Some((x, linearisations)) = self.descend(&step, (objective_norm + rounding).powi(2))? {
+            (self.x, self.ahead) = (x, Some(linearisations));
+            if self.iterations == ITERATION_LIMIT {
+                self.termination = Some(Termination::IterationLimit);
+            }
+        } else {
+            self.termination = Some(Termination::Stalled);
+        }
+        if self.termination.is_some() {
+            self.covariance = equations.covariance();
+        }
+        Ok(())
+    }
+
+    /// Releases the null directions, once, if the data keep them well within the hold.
+    fn release_null_space(&mut self, equations: &LeastSquares) -> bool {
+        let null_basis = &self.start.structure.null_basis;
+        let free =
+            self.null_weight > 0.0 && (null_basis.transpose() * equations.inverse()).norm() < RELEASE_BELOW * NULL_HOLD;
+        if free {
+            self.null_weight = 0.0;
+        }
+        free
+    }
+
+    /// The point one step on, halved until the objective falls, and the linearisations there; none if it does not.
+    fn descend(&self, step: &Solution, objective: f64) -> Result<Option<Place>, FitError> {
+        for halvings in 0..HALVING_LIMIT {
+            let x = &self.x + &step.x * 0.5_f64.powi(halvings.cast_signed());
+            let linearisations = self.start.data.linearised(x.as_slice());
+            if self.objective(&x, &linearisations)? <= objective {
+                return Ok(Some((x, linearisations)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// chi^2 of the exact model at `x`, where it reads as in `there`, with the weights of the present linearisation; and
+    /// the shares of the priors and of the hold.
+    fn objective(&self, x: &DVector<f64>, there: &[Linearisation]) -> Result<f64, FitError> {
+        let structure = self.start.structure;
+        let held = structure.null_basis.transpose() * x.component_div(&structure.typical) * self.null_weight;
+        let residuals: Vec<_> =
+            self.start.data.observations().iter().zip(there).map(|(o, l)| o.mean - l.reading).collect();
+        Ok(self.chi_squared(&residuals, x)? + held.norm_squared())
+    }
+
+    fn chi_squared(&self, residuals: &[Vector3<f64>], x: &DVector<f64>) -> Result<f64, FitError> {
+        self.start.data.chi_squared(&self.linearisations, residuals, x)
+    }
+
+    /// The residuals at the last point, with the weights and the covariance of the last linearisation: on convergence
+    /// less than a millionth of a standard uncertainty away.
+    fn into_fit(self) -> Result<Fit, FitError> {
+        let residuals = self.start.data.residuals(self.x.as_slice());
+        Ok(Fit {
+            values: self.x.as_slice().to_vec(),
+            chi_squared: self.chi_squared(&residuals, &self.x)?,
+            covariance: self.covariance,
+            degrees_of_freedom: self.start.degrees_of_freedom(),
+            null_directions_held: self.null_weight > 0.0,
+            iterations: self.iterations,
+            termination: self.termination.unwrap_or(Termination::IterationLimit),
+            residuals,
+            observation_covariances: self.start.data.covariances(&self.linearisations),
+            observability: self.start.structure.observability.clone(),
+            of_data: self.start.structure.of_data.clone(),
+            priors: self.start.data.model().priors().to_vec(),
+        })
+    }
+}

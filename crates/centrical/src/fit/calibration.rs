@@ -1,0 +1,115 @@
+//! A fit with the data it was made of.
+
+use std::sync::OnceLock;
+
+use super::assembly::Assembly;
+use super::batch::{Search, Start};
+use super::data::Data;
+use super::estimates::Fit;
+use super::gain::Gain;
+use super::structure::Structure;
+use crate::model::FitError;
+
+/// The data, the structure of their design, and the fit: all that a budget, checks and residual patterns ask for.
+#[derive(Debug, Clone)]
+pub struct Calibration<'d> {
+    data: &'d Data<'d>,
+    structure: Structure,
+    fit: Fit,
+    gain: OnceLock<Gain>,
+}
+
+impl<'d> Calibration<'d> {
+    /// Gauss-Newton on the exact model to convergence, from the linear solution.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn exact(data: &'d Data<'d>) -> Result<Self, FitError> {
+        Self::by(Assembly::Batch, data, |start| Search::from(start).run())
+    }
+
+    /// Weighted least squares on the source's linear model [K5.3].
+    ///
+    /// # Errors
+    /// As [`Calibration::exact`].
+    pub fn linear(data: &'d Data<'d>) -> Result<Self, FitError> {
+        Self::by(Assembly::Batch, data, |start| Ok(start.solve()))
+    }
+
+    /// [`Calibration::exact`] by the iterated filter, in the order of the observations.
+    ///
+    /// # Errors
+    /// As [`Calibration::exact`].
+    pub fn recursive(data: &'d Data<'d>) -> Result<Self, FitError> {
+        Self::by(Assembly::Filter, data, |start| Search::from(start).run())
+    }
+
+    /// [`Calibration::linear`] by one pass of the filter, in the order of the observations.
+    ///
+    /// # Errors
+    /// As [`Calibration::exact`].
+    pub fn recursive_linear(data: &'d Data<'d>) -> Result<Self, FitError> {
+        Self::by(Assembly::Filter, data, |start| Ok(start.solve()))
+    }
+
+    /// [`Calibration::exact`] with the structure of the design already known.
+    ///
+    /// # Errors
+    /// As [`Calibration::exact`].
+    pub fn with_structure(structure: Structure, data: &'d Data<'d>) -> Result<Self, FitError> {
+        let fit = structure.exact(data)?;
+        Ok(Self { data, structure, fit, gain: OnceLock::new() })
+    }
+
+    fn by(
+        assembly: Assembly,
+        data: &'d Data<'d>,
+        fit: impl FnOnce(Start) -> Result<Fit, FitError>,
+    ) -> Result<Self, FitError> {
+        let (structure, design) = Structure::by(assembly, data)?;
+        let fit = fit(Start { data, structure: &structure, design })?;
+        Ok(Self { data, structure, fit, gain: OnceLock::new() })
+    }
+
+    /// The data.
+    pub fn data(&self) -> &'d Data<'d> {
+        self.data
+    }
+
+    /// The structure of the design.
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// The fit.
+    pub fn fit(&self) -> &Fit {
+        &self.fit
+    }
+
+    /// Whether the equations went through the filter.
+    pub fn is_recursive(&self) -> bool {
+        self.structure.assembly == Assembly::Filter
+    }
+
+    /// The fit alone.
+    pub fn into_fit(self) -> Fit {
+        self.fit
+    }
+
+    /// Estimate of the parameter of that name, unless there is none or the data do not determine it.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.fit.value(self.data.model().parameters().find(name)?)
+    }
+
+    /// How the estimates answer to changes of the readings, factored when first asked for.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn gain(&self) -> Result<&Gain, FitError> {
+        if let Some(gain) = self.gain.get() {
+            return Ok(gain);
+        }
+        let gain = Gain::of(self.data, &self.structure, &self.fit)?;
+        Ok(self.gain.get_or_init(|| gain))
+    }
+}

@@ -1,0 +1,112 @@
+//! Plateau means together with the model of them.
+
+use nalgebra::{DVector, Matrix3, Vector3};
+
+use crate::model::whitening::{Whitener, total_covariance};
+use crate::model::{FitError, Linearisation, MeasurementModel, Observation, SetPoint};
+
+/// What is fitted: the plateau means and the model of them, checked once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Data<'m> {
+    model: &'m MeasurementModel,
+    observations: Vec<Observation>,
+}
+
+impl<'m> Data<'m> {
+    /// Plateau means of `model`.
+    ///
+    /// # Errors
+    /// [`FitError`] when an observation is invalid, or if there is none.
+    pub fn new(model: &'m MeasurementModel, observations: Vec<Observation>) -> Result<Self, FitError> {
+        observations.iter().try_for_each(|observation| check(model, observation))?;
+        if observations.is_empty() { Err(FitError::Empty) } else { Ok(Self { model, observations }) }
+    }
+
+    /// No plateau yet.
+    pub(super) fn none(model: &'m MeasurementModel) -> Self {
+        Self { model, observations: Vec::new() }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &'m MeasurementModel {
+        self.model
+    }
+
+    /// The plateau means.
+    pub fn observations(&self) -> &[Observation] {
+        &self.observations
+    }
+
+    /// Adds a plateau.
+    pub(super) fn push(&mut self, observation: Observation) -> Result<(), FitError> {
+        check(self.model, &observation)?;
+        self.observations.push(observation);
+        Ok(())
+    }
+
+    /// Takes the last plateau away.
+    pub(super) fn pop(&mut self) {
+        self.observations.pop();
+    }
+
+    /// The data without observation `n`, unless it is the only one.
+    pub(crate) fn without(&self, n: usize) -> Result<Self, FitError> {
+        let mut observations = self.observations.clone();
+        observations.remove(n);
+        Self::new(self.model, observations)
+    }
+
+    /// The source's linear model of each plateau.
+    pub(super) fn linearised_at_zero(&self) -> Vec<Linearisation> {
+        self.set_points().map(|set_point| self.model.linearise_at_zero(set_point)).collect()
+    }
+
+    /// The exact model of each plateau, linearised at `x`.
+    pub(super) fn linearised(&self, x: &[f64]) -> Vec<Linearisation> {
+        self.set_points().map(|set_point| self.model.linearise(set_point, x)).collect()
+    }
+
+    /// Readings less those of the exact model at `x` [m/s^2].
+    pub(super) fn residuals(&self, x: &[f64]) -> Vec<Vector3<f64>> {
+        let pairs = self.observations.iter().zip(self.set_points());
+        pairs.map(|(observation, set_point)| observation.mean - self.model.reading(set_point, x)).collect()
+    }
+
+    /// Sum of squares of `residuals`, which are those at `x`, with the weights of the linearisations; and the priors' share.
+    pub(super) fn chi_squared(
+        &self,
+        linearisations: &[Linearisation],
+        residuals: &[Vector3<f64>],
+        x: &DVector<f64>,
+    ) -> Result<f64, FitError> {
+        let priors = self.model.priors().iter();
+        let mut sum: f64 = priors.map(|p| (x[p.parameter] / p.standard_uncertainty).powi(2)).sum();
+        for ((observation, linearisation), residual) in self.observations.iter().zip(linearisations).zip(residuals) {
+            sum += Whitener::new(&observation.into(), &linearisation.speed_error)?.apply(residual).norm_squared();
+        }
+        Ok(sum)
+    }
+
+    /// Covariance of each plateau with its speed term [m^2/s^4].
+    pub(super) fn covariances(&self, linearisations: &[Linearisation]) -> Vec<Matrix3<f64>> {
+        let pairs = self.observations.iter().zip(linearisations);
+        pairs.map(|(o, l)| total_covariance(&o.covariance, &l.speed_error)).collect()
+    }
+
+    fn set_points(&self) -> impl Iterator<Item = &'m SetPoint> {
+        let set_points = &self.model.experiment().set_points;
+        self.observations.iter().map(|observation| &set_points[observation.set_point])
+    }
+}
+
+fn check(model: &MeasurementModel, observation: &Observation) -> Result<(), FitError> {
+    let count = model.experiment().set_points.len();
+    let set_point = observation.set_point;
+    if set_point >= count {
+        return Err(FitError::Unknown { set_point, count });
+    }
+    if !observation.mean.iter().chain(observation.covariance.iter()).all(|v| v.is_finite()) {
+        return Err(FitError::NotFinite { set_point });
+    }
+    observation.noise_factor().map(|_| ())
+}

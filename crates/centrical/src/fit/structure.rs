@@ -1,0 +1,87 @@
+//! The structure of a design: rank and null space, which hold for any number of fits of one experiment.
+
+use std::sync::OnceLock;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::assembly::Assembly;
+use super::data::Data;
+use super::design::Design;
+use crate::linalg::least_squares::LeastSquares;
+use crate::model::{FitError, Linearisation};
+use crate::observability::Observability;
+
+/// What a design determines and what it loses, decided on `H` at `X = 0`. It depends on the plateaus and their weights,
+/// never on the readings, and holds for any number of fits of one experiment.
+#[derive(Debug, Clone)]
+pub struct Structure {
+    /// How the equations are brought together, at zero and at every later point.
+    pub(super) assembly: Assembly,
+    pub(super) observability: Observability,
+    /// What the data determine without the priors, if there are any.
+    pub(super) of_data: Option<Observability>,
+    /// Orthonormal basis of the null space in typical units, `p x (p - rank)`.
+    pub(super) null_basis: DMatrix<f64>,
+    pub(super) typical: DVector<f64>,
+    /// Of the observations at `X = 0`.
+    pub(super) linearisations: Vec<Linearisation>,
+    /// The equations at `X = 0`, null directions held, factored when the first fit starts from them.
+    pub(super) start: OnceLock<LeastSquares>,
+}
+
+impl Structure {
+    /// Structure of the design that the plateaus make with their weights.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn of(data: &Data) -> Result<Self, FitError> {
+        Self::by(Assembly::Batch, data).map(|(structure, _)| structure)
+    }
+
+    /// The structure, and the equations at `X = 0` that it was decided on.
+    pub(super) fn by(assembly: Assembly, data: &Data) -> Result<(Self, Design), FitError> {
+        let model = data.model();
+        let linearisations = data.linearised_at_zero();
+        let columns = model.parameters().len();
+        let design = assembly.design(data, &vec![0.0; columns], &linearisations)?;
+        let rows_of_data = design.rows.nrows() - model.priors().len();
+        let of_data = || Observability::of(&design.rows.rows(0, rows_of_data).into_owned());
+        let of_data = (!model.priors().is_empty()).then(of_data);
+        let observability = Observability::of(&design.rows);
+        let typical = DVector::from_iterator(columns, model.parameters().iter().map(|p| p.typical));
+        let mut null_basis = observability.null_basis().clone();
+        null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);
+        let (null_basis, start) = (orthonormal(null_basis), OnceLock::new());
+        Ok((Self { assembly, observability, of_data, null_basis, typical, linearisations, start }, design))
+    }
+
+    /// What the design determines.
+    pub fn observability(&self) -> &Observability {
+        &self.observability
+    }
+
+    /// The whitened equations and their misfit, with one equation more for each null direction: its component is zero, with
+    /// weight `null_weight`.
+    pub(super) fn equations(
+        &self,
+        design: &Design,
+        x: &DVector<f64>,
+        null_weight: f64,
+    ) -> (LeastSquares, DVector<f64>) {
+        let (n, p, lost) = (design.rows.nrows(), design.rows.ncols(), self.null_basis.ncols());
+        let mut rows = DMatrix::zeros(n + lost, p);
+        rows.rows_mut(0, n).copy_from(&design.rows);
+        rows.column_iter_mut().zip(self.typical.iter()).for_each(|(mut column, typical)| column *= *typical);
+        let held = self.null_basis.transpose() * null_weight;
+        let mut misfit = DVector::zeros(n + lost);
+        misfit.rows_mut(0, n).copy_from(&design.misfit);
+        misfit.rows_mut(n, lost).copy_from(&(-&held * x.component_div(&self.typical)));
+        rows.rows_mut(n, lost).copy_from(&held);
+        (LeastSquares::new(rows, self.typical.clone()), misfit)
+    }
+}
+
+/// Orthonormal basis of the span of the columns, which are independent.
+fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
+    if columns.ncols() == 0 { columns } else { columns.qr().q() }
+}

@@ -1,0 +1,38 @@
+//! The model: what is set, what is unknown, what the unit reads, and how well a plateau mean is known.
+//!
+//! An [`Experiment`] and the unit's [`ErrorModel`] define the unknowns ([`Parameters`]); the [`MeasurementModel`] says what the
+//! unit reads on a plateau as a function of them. It has two forms, kept apart on purpose so that each checks the other:
+//! - [`MeasurementModel::linearise`], the exact model: exact rotations, every proof mass at its own point,
+//!   mean over a revolution or at rest, with its analytic Jacobian;
+//! - [`linear`], the source's small-parameter model `Z = H X + r` [K5.3].
+//!
+//! `H` is the Jacobian of the exact model at `X = 0` (test `h_is_the_jacobian_at_zero`).
+
+mod error;
+mod error_model;
+mod exact;
+mod experiment;
+mod frame;
+mod instant;
+pub mod linear;
+mod measurement;
+mod observation;
+mod parameter;
+pub mod position;
+pub(crate) mod prior;
+pub(crate) mod whitening;
+
+pub use error::FitError;
+pub use error_model::{ErrorModel, Extra, Term};
+pub use experiment::{
+    Centrifuge, EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint,
+    Site, Unit,
+};
+pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
+pub use instant::ArmMotion;
+pub(crate) use instant::MountedUnit;
+pub use measurement::{Linearisation, MeasurementModel};
+pub use observation::{Observation, Weight};
+pub use parameter::{Extension, Kind, Law, NULL_HOLD, Parameter, Parameters};
+pub use position::Position;
+pub use prior::{Prior, PriorError, PriorUse};

@@ -1,0 +1,60 @@
+//! From plateaus to rows of independent errors of unit variance, three per plateau.
+//!
+//! A plateau's covariance is that of its mean plus the speed error's rank-one term `d d^T`,
+//! `d = sigma d f' / d ln Omega` of the full model (`docs/source-and-findings.md`). Rows are whitened by its Cholesky factor,
+//! so that least squares on them is the generalised least squares of the plateaus.
+
+use nalgebra::{Cholesky, Const, DMatrix, Matrix3, Vector3};
+
+use super::error::FitError;
+use super::measurement::Linearisation;
+use super::observation::Weight;
+
+/// The whitened rows of plateaus of given weights, `3 n x p`.
+///
+/// # Errors
+/// [`FitError::Covariance`] when a covariance is not positive definite.
+pub(crate) fn whitened_rows(
+    weights: &[Weight],
+    linearisations: &[Linearisation],
+    columns: usize,
+) -> Result<DMatrix<f64>, FitError> {
+    let mut rows = DMatrix::zeros(3 * weights.len(), columns);
+    for (n, (weight, linearisation)) in weights.iter().zip(linearisations).enumerate() {
+        Whitener::new(weight, &linearisation.speed_error)?.fill(&mut rows, n, linearisation);
+    }
+    Ok(rows)
+}
+
+/// Takes a plateau's errors to independent ones of unit variance.
+#[derive(Debug, Clone)]
+pub(crate) struct Whitener(Cholesky<f64, Const<3>>);
+
+impl Whitener {
+    /// From the covariance of the mean and the speed term.
+    pub fn new(weight: &Weight, speed_error: &Vector3<f64>) -> Result<Self, FitError> {
+        let total = total_covariance(&weight.covariance, speed_error);
+        Cholesky::new(total)
+            .map(Self)
+            .ok_or(FitError::Covariance { set_point: weight.set_point, diagonal: weight.covariance.diagonal().into() })
+    }
+
+    /// `L^-1 v`.
+    pub fn apply(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        // A Cholesky factor has no zero on its diagonal, so the triangular system has a solution.
+        self.0.l_dirty().solve_lower_triangular(v).unwrap_or_else(Vector3::zeros)
+    }
+
+    /// Writes the three rows of plateau `n`.
+    pub fn fill(&self, rows: &mut DMatrix<f64>, n: usize, linearisation: &Linearisation) {
+        let mut block = rows.fixed_rows_mut::<3>(3 * n);
+        for (column, derivative) in &linearisation.columns {
+            block.set_column(*column, &self.apply(derivative));
+        }
+    }
+}
+
+/// `C + d d^T` [m^2/s^4], `d` the change of the mean by one standard uncertainty of the speed.
+pub(crate) fn total_covariance(mean: &Matrix3<f64>, speed_error: &Vector3<f64>) -> Matrix3<f64> {
+    mean + speed_error * speed_error.transpose()
+}
