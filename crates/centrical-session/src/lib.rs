@@ -47,15 +47,15 @@ pub use document::{
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, MountingFiles, Noise, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
-    earlier_result, read_plateaus, write_plateaus,
+    ExpectedValues, MountingFiles, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session, earlier_result,
+    read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following,
     MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series, USUAL_LEVELS, USUAL_TIMES, Watch,
     WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess, calibrate, calibrate_without, compare_results,
-    compensate, compensate_record, noise_of, read_plan, read_planning, reduce, reduce_without_inputs, select_model,
-    simulate_session, subject, write_reduced,
+    compensate, compensate_record, noise_of, plan, read_plan, read_planning, reduce, reduce_without_inputs,
+    select_model, simulate_session, subject, write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
