@@ -24,7 +24,7 @@ pub use self::prediction::{PredictedParameter, PredictionReport};
 pub use self::result::{
     BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, Method, ModelSummary,
     MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, ParameterEstimate, PatternSummary,
-    PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve, TermSummary,
+    PlateauSummary, PositionSummary, PriorSummary, Program, ResultObjection, SCHEMA, SessionSummary, StabilityCurve, TermSummary,
     ValiditySummary,
 };
 pub use self::steadiness::{DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, TiltSummary};
