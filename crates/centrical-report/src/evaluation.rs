@@ -3,11 +3,11 @@
 mod combination;
 mod conformity;
 mod criterion;
-mod not_used;
 mod equation;
 mod expanded;
 mod group;
 mod noise;
+mod not_used;
 mod reading_error;
 
 pub(crate) use self::combination::combination;
@@ -17,5 +17,5 @@ pub(crate) use self::equation::{equation, equations, monomial};
 pub(crate) use self::expanded::{COVERAGE_FACTOR, Expanded, expanded};
 pub(crate) use self::group::by_group;
 pub(crate) use self::noise::Shown;
-pub(crate) use self::reading_error::{ReadingError, compensated, reading_errors};
 pub(crate) use self::not_used::not_used;
+pub(crate) use self::reading_error::{ReadingError, compensated, reading_errors};

@@ -41,10 +41,9 @@ pub use document::{
     MountingSummary, NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary,
     ObservedParameter, OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting,
     PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program,
-    ResultObjection,
-    ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, SCHEMA, SessionSummary, SessionTrend, SightReport,
-    StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, ValiditySummary, WatchState, WatchedPlateau,
-    append_history, keep_history, read_history,
+    ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, ResultObjection, SCHEMA, SessionDriftVerdict,
+    SessionSummary, SessionTrend, SightReport, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary,
+    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, append_history, keep_history, read_history,
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{states_text, terminal_table, verdict_text, write_all_documents};
-use centrical_session::{CalibrationResult, Error, Method, PlateauName, ResultObjection, Session, calibrate_without, create_folder};
+use centrical_session::{
+    CalibrationResult, Error, Method, PlateauName, ResultObjection, Session, calibrate_without, create_folder,
+};
 
 use crate::command::report::Documents;
 use crate::outcome::{Outcome, print};
@@ -72,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         write_all_documents(&result, laboratory.as_deref(), (*language).into(), folder)?;
     }
     let objections = result.objections();
-    let text = if arguments.json { result.to_json()? } else { report(&result, &file.as_deref()) };
+    let text = if arguments.json { result.to_json()? } else { report(&result, &objections, file.as_deref()) };
     print(&text);
     Ok(Outcome::acceptable(objections.is_empty()))
 }

@@ -1,9 +1,12 @@
 //! What the documents say of drift and tilt, a name and a text each.
 
-use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, TiltSummary};
+use centrical_session::{
+    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, SessionDriftVerdict, TiltSummary, TiltVerdict,
+};
 
 use crate::evaluation::not_used;
 use crate::language::Language;
+use crate::number::MINUTE;
 
 /// A name and what it stands for.
 type Fact = (&'static str, String);

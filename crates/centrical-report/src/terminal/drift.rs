@@ -2,10 +2,12 @@
 
 use std::fmt::Write;
 
-use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, TiltSummary};
+use centrical_session::{
+    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, SessionDriftVerdict, TiltSummary, TiltVerdict,
+};
 
 use crate::evaluation::not_used;
-use crate::number::with_uncertainty;
+use crate::number::{MINUTE, with_uncertainty};
 
 /// The section of the terminal's table; empty for a session that came already averaged.
 pub(super) fn drift(text: &mut String, result: &CalibrationResult) {

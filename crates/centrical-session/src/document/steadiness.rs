@@ -1,7 +1,9 @@
 //! How steady the readings were: over a plateau, over the session, over a revolution; and what was left out.
 
 use centrical::reduction::LeftOut;
-use centrical::uncertainty::{OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, repeats};
+use centrical::uncertainty::{
+    Level, OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, chi_squared_tail, repeats,
+};
 use centrical::{Calibration, FitError, Observation};
 use serde::{Deserialize, Serialize};
 

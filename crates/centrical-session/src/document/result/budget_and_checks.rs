@@ -1,6 +1,6 @@
 //! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
 
-use centrical::uncertainty::{Level, Budget, Degrees, Pattern, Prediction, Source, Trend, Validity};
+use centrical::uncertainty::{Budget, Degrees, Level, Pattern, Prediction, Source, Trend, Validity};
 use centrical::{Calibration, Experiment, FitError};
 use serde::{Deserialize, Serialize};
 
