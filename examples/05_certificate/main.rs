@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use centrical_report::{DocumentRequest, Language, objections, write_documents};
+use centrical_report::{DocumentRequest, Language, write_documents};
 use centrical_session::{Method, Session, calibrate, create_folder};
 
 /// Report, certificate, digital certificate and the compensation as source code; and the objections if there are any.
@@ -27,6 +27,6 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         laboratory: Some("examples/ta-200/laboratory.toml".into()),
         language: Language::English,
     })?;
-    println!("{}: {} objections", folder.display(), objections(&result).len());
+    println!("{}: {} objections", folder.display(), result.objections().len());
     Ok(())
 }

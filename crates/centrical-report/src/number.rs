@@ -2,6 +2,9 @@
 
 use std::ops::Range;
 
+/// Seconds in a minute.
+pub(crate) const MINUTE: f64 = 60.0;
+
 /// Digits and power of ten of a number rounded to `digits` significant digits: 0.0996 to two is `1.0`, -1.
 pub(crate) fn scientific(value: f64, digits: usize) -> (String, i32) {
     parts(format!("{value:.*e}", digits.saturating_sub(1)))

@@ -24,10 +24,12 @@ pub use self::prediction::{PredictedParameter, PredictionReport};
 pub use self::result::{
     BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, Method, ModelSummary,
     MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, ParameterEstimate, PatternSummary,
-    PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve, TermSummary,
-    ValiditySummary,
+    PlateauSummary, PositionSummary, PriorSummary, Program, ResultObjection, SCHEMA, SessionSummary, StabilityCurve,
+    TermSummary, ValiditySummary,
 };
-pub use self::steadiness::{DriftSummary, LeftOutSummary, RepeatedPlateau, SessionTrend, TiltSummary};
+pub use self::steadiness::{
+    DriftSummary, LeftOutSummary, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary, TiltVerdict,
+};
 pub(crate) use self::truth::{Written, truth_json};
 pub use self::watch::{
     HistoryEntry, HistoryEstimate, InnovationSummary, WatchState, WatchedPlateau, append_history, keep_history,

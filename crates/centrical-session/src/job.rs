@@ -22,7 +22,7 @@ pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
 pub use self::noise::{NoiseRequest, Series, noise_of};
 pub use self::observe::subject;
-pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, read_plan, read_planning};
+pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, read_plan, read_planning};
 pub use self::reduce::{reduce, reduce_without_inputs};
 pub use self::reduced_session::write_reduced;
 pub use self::simulate::simulate_session;

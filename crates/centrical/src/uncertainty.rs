@@ -24,6 +24,7 @@ mod selection;
 mod source;
 mod tilt;
 mod validity;
+mod verdict;
 
 pub use budget::{Budget, Contribution, Improvement};
 pub use comparison::{Comparison, Difference, Estimates, compare};
@@ -37,3 +38,4 @@ pub use selection::{Candidate, NestedTest, Rival, Selection, TermVerdict, rivals
 pub use source::{Source, TypeB};
 pub use tilt::{OncePerRevolution, TiltComparison};
 pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity, f_tail};
+pub use verdict::{Findings, Level, Objection, objections};

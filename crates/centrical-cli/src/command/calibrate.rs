@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_report::{Objection, objections, states_text, terminal_table, verdict_text, write_all_documents};
-use centrical_session::{CalibrationResult, Error, Method, PlateauName, Session, calibrate_without, create_folder};
+use centrical_report::{states_text, terminal_table, verdict_text, write_all_documents};
+use centrical_session::{
+    CalibrationResult, Error, Method, PlateauName, ResultObjection, Session, calibrate_without, create_folder,
+};
 
 use crate::command::report::Documents;
 use crate::outcome::{Outcome, print};
@@ -71,13 +73,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         let Documents { laboratory, language } = &arguments.documents;
         write_all_documents(&result, laboratory.as_deref(), (*language).into(), folder)?;
     }
-    let objections = objections(&result);
+    let objections = result.objections();
     let text = if arguments.json { result.to_json()? } else { report(&result, &objections, file.as_deref()) };
     print(&text);
     Ok(Outcome::acceptable(objections.is_empty()))
 }
 
-fn report(result: &CalibrationResult, objections: &[Objection], file: Option<&Path>) -> String {
+fn report(result: &CalibrationResult, objections: &[ResultObjection], file: Option<&Path>) -> String {
     let mut lines = vec![terminal_table(result), verdict_text(objections)];
     lines.extend(file.map(|file| format!("\nWritten to {}\n", file.display())));
     lines.concat()

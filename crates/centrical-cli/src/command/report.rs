@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{DocumentRequest, Language, objections, verdict_text, write_documents};
+use centrical_report::{DocumentRequest, Language, verdict_text, write_documents};
 use centrical_session::Error;
 use clap::ValueEnum;
 
@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         laboratory: arguments.documents.laboratory.clone(),
         language: arguments.documents.language.into(),
     })?;
-    let objections = objections(&result);
+    let objections = result.objections();
     if !objections.is_empty() {
         print(&verdict_text(&objections));
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use centrical_report::{objections, states_text, terminal_table, verdict_text, watch_table, write_history_plot};
+use centrical_report::{states_text, terminal_table, verdict_text, watch_table, write_history_plot};
 use centrical_session::{Error, Following, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, create_folder};
 
 use crate::outcome::{Outcome, print};
@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             Ok(Outcome::Done)
         }
         WatchEnd::Complete(result) => {
-            let objections = objections(&result);
+            let objections = result.objections();
             let file = arguments.out.join("result.json");
             let written = format!("\nThe schedule is complete. Written to {}\n", file.display());
             let text = terminal_table(&result) + &verdict_text(&objections) + &written;

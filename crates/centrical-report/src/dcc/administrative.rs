@@ -4,7 +4,7 @@ use centrical_session::{Address, CalibrationResult, Contact, DecisionRule, Labor
 
 use super::xml::Xml;
 use crate::document::objection;
-use crate::evaluation::{conformity, objections};
+use crate::evaluation::conformity;
 use crate::language::Language;
 
 pub(super) fn data(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
@@ -122,7 +122,7 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
                 xml.content("dcc:declaration", text, language);
             });
         };
-        for reason in objections(result) {
+        for reason in result.objections() {
             let text = format!("{}: {}", messages.not_acceptable, objection(&reason, language));
             statement(xml, "7.8.2.1 m", &text);
         }

@@ -8,7 +8,7 @@ use super::content::{Align, Block, Document, Margins, Opening, Section, Table, T
 use super::drift::drift_facts;
 use super::objection::objection;
 use super::reading_error::error_table;
-use crate::evaluation::{by_group, conformity, equations, expanded, objections};
+use crate::evaluation::{by_group, conformity, equations, expanded};
 use crate::language::Language;
 
 /// The certificate, with the results `before` an adjustment beside those after it if the unit was adjusted.
@@ -55,7 +55,7 @@ pub fn certificate(
 
 /// The objections to the result, before anything else.
 fn warning(result: &CalibrationResult, language: Language) -> Vec<Block> {
-    let (messages, objections) = (language.messages(), objections(result));
+    let (messages, objections) = (language.messages(), result.objections());
     if objections.is_empty() {
         return Vec::new();
     }

@@ -1,9 +1,12 @@
 //! What the documents say of drift and tilt, a name and a text each.
 
-use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, TiltSummary};
+use centrical_session::{
+    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, SessionDriftVerdict, TiltSummary, TiltVerdict,
+};
 
-use crate::evaluation::drift::{MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter};
+use crate::evaluation::not_used;
 use crate::language::Language;
+use crate::number::MINUTE;
 
 /// A name and what it stands for.
 type Fact = (&'static str, String);
@@ -31,22 +34,22 @@ fn drifts(facts: &mut Vec<Fact>, drift: &DriftSummary, language: Language) {
     let said = [
         with_unit(slopes, "ug/min", language),
         format!("χ² = {}; ν = {}", language.fixed(drift.chi_squared, 1), drift.degrees_of_freedom),
-        (if plateaus_drift(drift) { messages.plateaus_drift } else { messages.no_drift }).to_owned(),
+        (if drift.plateaus_drift() { messages.plateaus_drift } else { messages.no_drift }).to_owned(),
     ];
     facts.push((messages.drift_over_plateau, said.join("; ")));
     if !drift.over_session.is_empty() {
         let changes = drift.over_session.iter().map(|trend| {
             axis(trend.axis, &language.plus_minus(trend.change / MICRO_G, trend.standard_uncertainty / MICRO_G))
         });
-        let verdict = match SessionDrift::of(drift) {
-            SessionDrift::NotSeen => messages.no_drift,
-            SessionDrift::WithinScatter => messages.within_scatter,
-            SessionDrift::Seen => messages.session_drifts,
+        let verdict = match drift.session_verdict() {
+            SessionDriftVerdict::NotSeen => messages.no_drift,
+            SessionDriftVerdict::WithinScatter => messages.within_scatter,
+            SessionDriftVerdict::Seen => messages.session_drifts,
         };
         let said = [with_unit(changes, "ug", language), verdict.to_owned()];
         facts.push((messages.drift_over_session, said.join("; ")));
     }
-    if let Some((worst, differ)) = farthest_apart(drift) {
+    if let Some((worst, differ)) = drift.farthest_apart() {
         let [first, second] = worst.indices.map(|index| format!("{}:{}", worst.mounting, index + 1));
         let chi_squared = language.fixed(worst.chi_squared, 1);
         let said = [
@@ -65,15 +68,15 @@ fn tilts(facts: &mut Vec<Fact>, tilt: &TiltSummary, language: Language) {
     let mut said = vec![
         shown(tilt.spinning, tilt.spinning_uncertainty),
         format!("χ² = {}; ν = 1", language.fixed(tilt.chi_squared, 1)),
-        match Tilts::of(tilt) {
-            Tilts::Agree => messages.tilts_agree.to_owned(),
-            Tilts::Differ => messages.tilts_differ.to_owned(),
-            Tilts::Reversed => {
+        match tilt.verdict() {
+            TiltVerdict::Agree => messages.tilts_agree.to_owned(),
+            TiltVerdict::Differ => messages.tilts_differ.to_owned(),
+            TiltVerdict::Reversed => {
                 format!("{} ({})", messages.tilt_reversed, shown(tilt.reversed, tilt.spinning_uncertainty))
             }
         },
     ];
-    if tilts_scatter(tilt) {
+    if tilt.scatters() {
         let (chi_squared, nu) = (language.fixed(tilt.scatter_chi_squared, 1), tilt.plateaus.saturating_sub(1));
         said.push(format!("{}: χ² = {chi_squared}; ν = {nu}", messages.tilts_scatter));
     }

@@ -1,12 +1,12 @@
 //! Objections and patterns as sentences.
 
-use centrical_session::{Follows, MICRO_G, PatternSummary};
+use centrical::uncertainty::Objection;
+use centrical_session::{Follows, MICRO_G, PatternSummary, ResultObjection};
 
-use crate::evaluation::Objection;
 use crate::language::Language;
 
 /// An objection to a result.
-pub(crate) fn objection(objection: &Objection, language: Language) -> String {
+pub(crate) fn objection(objection: &ResultObjection, language: Language) -> String {
     let messages = language.messages();
     match objection {
         Objection::NotConverged { termination, iterations } => {

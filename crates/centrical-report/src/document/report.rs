@@ -7,7 +7,7 @@ use super::drift::drift_facts;
 use super::objection::{objection, pattern};
 use super::reading_error::error_table;
 use super::tables::{budget, parameters};
-use crate::evaluation::{by_group, objections};
+use crate::evaluation::by_group;
 use crate::figure::{Figure, figures, positions};
 use crate::language::Language;
 
@@ -48,7 +48,7 @@ pub fn report(result: &CalibrationResult, further: &[Figure], language: Language
 /// The verdict with its reasons, and what the instrument is worth after compensation.
 fn verdict(result: &CalibrationResult, language: Language) -> Section {
     let messages = language.messages();
-    let objections = objections(result);
+    let objections = result.objections();
     let mut blocks = if objections.is_empty() {
         vec![Block::heading(messages.acceptable, 4), Block::paragraph(messages.verdict_good)]
     } else {

@@ -3,7 +3,6 @@
 use centrical_session::{CalibrationResult, Decision, DecisionRule, Limit};
 
 use super::expanded::expanded;
-use super::verdict::objections;
 
 /// A limit and whether its parameter keeps it.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +18,7 @@ pub(crate) struct Judged<'d> {
 
 /// Every limit of a decision, judged.
 pub(crate) fn conformity<'d>(result: &CalibrationResult, decision: &'d Decision) -> Vec<Judged<'d>> {
-    let is_acceptable = objections(result).is_empty();
+    let is_acceptable = result.objections().is_empty();
     let judge = |limit: &'d Limit| {
         let value = result.parameter(&limit.parameter).and_then(|p| Some((p.value?, expanded(result, p)?.uncertainty)));
         let conforms = value.filter(|_| is_acceptable).map(|(value, expanded)| {

@@ -2,15 +2,12 @@
 
 use std::fmt::Write;
 
-use centrical::uncertainty::{Budget, CurvePoint, Degrees, Pattern, Validity, coverage_factor};
+use centrical::uncertainty::{Budget, CurvePoint, Degrees, Level, Pattern, Validity, coverage_factor};
 use centrical::{Experiment, Fit, MeasurementModel, Parameters, STANDARD_GRAVITY};
 use centrical_session::{Assessment, MICRO_G, PatternSummary, customary};
 
 use super::pattern::pattern_in_words;
 use crate::number::short;
-
-/// A plateau or a pattern with a family-wise probability below this is reported.
-const REPORTED: f64 = 0.05;
 
 /// The whole assessment, expanded uncertainties for a probability of `coverage`; the correlations if they are wanted.
 pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: bool) -> String {
@@ -130,7 +127,7 @@ fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[Patte
             r.y,
             r.z,
             check.leverage,
-            if family_wise < REPORTED { "  OUTLYING" } else { "" }
+            if Level::Reported.is_passed_by(family_wise) { "  OUTLYING" } else { "" }
         );
     }
     text.push_str("  each mounting predicted from all others (chi^2 / degrees of freedom, probability):\n");
@@ -145,7 +142,7 @@ fn validity_text(experiment: &Experiment, validity: &Validity, patterns: &[Patte
             p.probability
         );
     }
-    let found: Vec<&Pattern> = patterns.iter().filter(|p| p.family_wise < REPORTED).collect();
+    let found: Vec<&Pattern> = patterns.iter().filter(|p| Level::Reported.is_passed_by(p.family_wise)).collect();
     if found.is_empty() {
         let _ = writeln!(
             text,

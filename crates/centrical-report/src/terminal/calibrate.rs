@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use centrical_session::{CalibrationResult, ParameterEstimate, TermSummary, customary};
+use centrical_session::{CalibrationResult, ParameterEstimate, ResultObjection, TermSummary, customary};
 
 use super::drift::drift;
 use super::pattern::pattern_in_words;
 use crate::document::objection;
-use crate::evaluation::{Objection, combination, monomial};
+use crate::evaluation::{combination, monomial};
 use crate::language::Language;
 use crate::number::with_uncertainty;
 
@@ -267,7 +267,7 @@ fn validity(text: &mut String, result: &CalibrationResult) {
 }
 
 /// The verdict in a line, or one for each objection.
-pub fn verdict_text(objections: &[Objection]) -> String {
+pub fn verdict_text(objections: &[ResultObjection]) -> String {
     if objections.is_empty() {
         return "ACCEPTABLE  no check raised an objection\n".to_owned();
     }

@@ -2,10 +2,12 @@
 
 use std::fmt::Write;
 
-use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, TiltSummary};
+use centrical_session::{
+    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, SessionDriftVerdict, TiltSummary, TiltVerdict,
+};
 
-use crate::evaluation::drift::{MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter};
-use crate::number::with_uncertainty;
+use crate::evaluation::not_used;
+use crate::number::{MINUTE, with_uncertainty};
 
 /// The section of the terminal's table; empty for a session that came already averaged.
 pub(super) fn drift(text: &mut String, result: &CalibrationResult) {
@@ -36,7 +38,7 @@ fn over_plateaus(text: &mut String, drift: &DriftSummary) {
         .map(|(slope, u)| with_uncertainty(MINUTE * slope / MICRO_G, MINUTE * u / MICRO_G))
         .map(|(slope, u)| format!("{slope} ± {u}"))
         .collect();
-    let verdict = if plateaus_drift(drift) { "plateaus drift" } else { "no drift seen" };
+    let verdict = if drift.plateaus_drift() { "plateaus drift" } else { "no drift seen" };
     let _ = writeln!(
         text,
         "DRIFT over a plateau, mean: {} ug/min; chi^2 {:.1} of {} slopes, {verdict}",
@@ -55,16 +57,16 @@ fn over_session(text: &mut String, drift: &DriftSummary) {
         format!("f{} {change} ± {u}", trend.axis)
     });
     let trends: Vec<String> = trends.collect();
-    let verdict = match SessionDrift::of(drift) {
-        SessionDrift::NotSeen => "no drift seen",
-        SessionDrift::WithinScatter => "no more than the plateaus scatter",
-        SessionDrift::Seen => "the session drifts",
+    let verdict = match drift.session_verdict() {
+        SessionDriftVerdict::NotSeen => "no drift seen",
+        SessionDriftVerdict::WithinScatter => "no more than the plateaus scatter",
+        SessionDriftVerdict::Seen => "the session drifts",
     };
     let _ = writeln!(text, "      over the session: {} ug, {verdict}", trends.join(", "));
 }
 
 fn repeats(text: &mut String, drift: &DriftSummary) {
-    let Some((worst, differ)) = farthest_apart(drift) else { return };
+    let Some((worst, differ)) = drift.farthest_apart() else { return };
     let count = drift.repeats.len();
     let [first, second] = worst.indices.map(|index| index + 1);
     let verdict = if differ { "they differ" } else { "no difference seen" };
@@ -80,12 +82,12 @@ fn tilts(text: &mut String, tilt: &TiltSummary) {
         let (value, u) = with_uncertainty(1e6 * value, 1e6 * u);
         format!("{value} ± {u} urad")
     };
-    let verdict = match Tilts::of(tilt) {
-        Tilts::Agree => "they agree".to_owned(),
-        Tilts::Differ => {
+    let verdict = match tilt.verdict() {
+        TiltVerdict::Agree => "they agree".to_owned(),
+        TiltVerdict::Differ => {
             "they differ: the axis is not the same while it spins, or something else turns with it".to_owned()
         }
-        Tilts::Reversed => {
+        TiltVerdict::Reversed => {
             let as_if = shown(tilt.reversed, tilt.spinning_uncertainty);
             format!("it turns the other way ({as_if}): the sense of rotation is wrong")
         }
@@ -98,7 +100,7 @@ fn tilts(text: &mut String, tilt: &TiltSummary) {
         shown(tilt.at_rest, tilt.at_rest_uncertainty),
         tilt.chi_squared
     );
-    if tilts_scatter(tilt) {
+    if tilt.scatters() {
         let _ = writeln!(
             text,
             "      the plateaus' own tilts scatter: chi^2 {:.1} of {}",

@@ -66,7 +66,7 @@ fn heading(text: &mut String, report: &PlanReport) {
     } else {
         let _ = writeln!(
             text,
-            "  no plan of these candidates in this time is below {}: at most {} better ({} nodes over mountings and visits)",
+            "  no plan of these candidates in this time is below {}: at most {} better ({} nodes over mountings)",
             value(report, report.bound),
             percent(1.0 - report.bound / report.value),
             report.nodes

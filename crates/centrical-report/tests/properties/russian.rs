@@ -20,9 +20,11 @@ fn extended() -> CalibrationResult {
                    { axis = 1, term = \"f1^4\" }]\nextensions = [\"radius-scale\", \"speed-scale\"]";
     assert!(form.contains(model));
     fs::write(folder.path().join("experiment.toml"), form.replace(model, further)).unwrap();
-    fs::create_dir(folder.path().join("records")).unwrap();
-    for record in fs::read_dir(Path::new(EXAMPLE).join("records")).unwrap().flatten() {
-        fs::copy(record.path(), folder.path().join("records").join(record.file_name())).unwrap();
+    for part in ["records", "telemetry"] {
+        fs::create_dir(folder.path().join(part)).unwrap();
+        for file in fs::read_dir(Path::new(EXAMPLE).join(part)).unwrap().flatten() {
+            fs::copy(file.path(), folder.path().join(part).join(file.file_name())).unwrap();
+        }
     }
     calibrate(&Session::read(folder.path()).unwrap(), Method::Recursive, &|_| {}).unwrap()
 }

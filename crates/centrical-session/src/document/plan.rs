@@ -37,9 +37,9 @@ pub struct PlanReport {
     pub continuous_gap: f64,
     /// Nodes of the branch and bound over sets of mountings.
     pub nodes: usize,
-    /// Of a plan for goals: no schedule of the candidates that is shorter keeps them, with type B as in this plan [s].
+    /// Of a plan for goals: no schedule of the candidates that is shorter meets them, with type B as in this plan [s].
     pub least_time: Option<f64>,
-    /// Whether it is for a unit of typical errors, signs in turn: see [`Planning::plan`].
+    /// Whether it is for a unit of typical errors, signs in turn: see [`centrical::plan::Task::plan`].
     pub for_typical: bool,
     /// Plateaus to choose from.
     pub candidates: usize,
@@ -128,13 +128,6 @@ pub struct GoalReport {
     pub type_b: Option<f64>,
     /// Predicted with type B.
     pub combined: Option<f64>,
-}
-
-impl GoalReport {
-    pub(crate) fn with_type_b(self) -> Self {
-        let rest = |(all, a): (f64, f64)| (all * all - a * a).max(0.0).sqrt();
-        Self { type_b: self.combined.zip(self.type_a).map(rest), ..self }
-    }
 }
 
 /// One time of the frontier. Values are uncertainties as in [`PlanReport::value`].

@@ -4,6 +4,7 @@ mod budget_and_checks;
 mod error_terms;
 mod from_calibration;
 mod schema;
+mod verdict;
 
 pub use self::budget_and_checks::{
     BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
@@ -13,3 +14,4 @@ pub use self::schema::{
     ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
     TermSummary,
 };
+pub use self::verdict::ResultObjection;

@@ -1,7 +1,9 @@
 //! How steady the readings were: over a plateau, over the session, over a revolution; and what was left out.
 
 use centrical::reduction::LeftOut;
-use centrical::uncertainty::{OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, repeats};
+use centrical::uncertainty::{
+    Level, OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, chi_squared_tail, repeats,
+};
 use centrical::{Calibration, FitError, Observation};
 use serde::{Deserialize, Serialize};
 
@@ -99,6 +101,28 @@ pub struct TiltSummary {
     pub probability: f64,
 }
 
+/// What the two tilts say of each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TiltVerdict {
+    /// Their difference is no more than chance.
+    Agree,
+    /// They differ.
+    Differ,
+    /// The one seen while spinning would agree better if the arm turned the other way.
+    Reversed,
+}
+
+/// What the residuals say of a drift over the session.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SessionDriftVerdict {
+    /// No more than the stated uncertainties explain.
+    NotSeen,
+    /// More than the stated uncertainties explain, and no more than the plateaus scatter about the fit.
+    WithinScatter,
+    /// More than the plateaus scatter about the fit.
+    Seen,
+}
+
 impl From<TiltComparison> for TiltSummary {
     fn from(tilt: TiltComparison) -> Self {
         Self {
@@ -117,6 +141,20 @@ impl From<TiltComparison> for TiltSummary {
 }
 
 impl TiltSummary {
+    /// What the two tilts say of each other.
+    pub fn verdict(&self) -> TiltVerdict {
+        match Level::Real.is_passed_by(self.probability) {
+            false => TiltVerdict::Agree,
+            true if self.reversed > self.spinning => TiltVerdict::Reversed,
+            true => TiltVerdict::Differ,
+        }
+    }
+
+    /// Whether the plateaus' own tilts scatter.
+    pub fn scatters(&self) -> bool {
+        Level::Real.is_passed_by(self.scatter_probability)
+    }
+
     /// The tilts of a session; none for one that came already averaged.
     pub(crate) fn of(calibration: &Calibration, reduced: &Reduced) -> Option<Self> {
         let set_points = &calibration.data().model().experiment().set_points;
@@ -131,6 +169,33 @@ impl TiltSummary {
 }
 
 impl DriftSummary {
+    /// Whether the plateaus drift.
+    pub fn plateaus_drift(&self) -> bool {
+        Level::Real.is_passed_by(self.probability)
+    }
+
+    /// What the residuals say of a drift over the session, family-wise over the newtonometers (Bonferroni).
+    pub fn session_verdict(&self) -> SessionDriftVerdict {
+        let tests = self.over_session.len() as f64;
+        let any = |probability: &dyn Fn(&SessionTrend) -> f64| {
+            self.over_session.iter().any(|trend| Level::Real.is_passed_by(tests * probability(trend)))
+        };
+        let stated = |trend: &SessionTrend| chi_squared_tail((trend.change / trend.standard_uncertainty).powi(2), 1);
+        if any(&|trend| trend.probability) {
+            SessionDriftVerdict::Seen
+        } else if any(&stated) {
+            SessionDriftVerdict::WithinScatter
+        } else {
+            SessionDriftVerdict::NotSeen
+        }
+    }
+
+    /// The plateaus run again that are farthest apart, and whether they differ (Bonferroni).
+    pub fn farthest_apart(&self) -> Option<(&RepeatedPlateau, bool)> {
+        let worst = self.repeats.iter().min_by(|a, b| a.probability.total_cmp(&b.probability))?;
+        Some((worst, Level::Real.is_passed_by(self.repeats.len() as f64 * worst.probability)))
+    }
+
     /// The drift of a session; none for one that came already averaged.
     pub(crate) fn of(calibration: &Calibration, reduced: &Reduced) -> Result<Option<Self>, FitError> {
         let slope = |steadiness: Steadiness| Slope {

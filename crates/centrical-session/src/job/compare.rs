@@ -1,11 +1,8 @@
 //! Two calibrations of one unit.
 
-use centrical::uncertainty::{Comparison, compare};
+use centrical::uncertainty::{Comparison, Level, compare};
 
 use crate::document::CalibrationResult;
-
-/// Differences as large as these arise by chance once in a hundred comparisons.
-const CHANCE: f64 = 0.01;
 
 /// Two calibrations compared.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +16,6 @@ pub struct ComparedResults {
 /// Compares the coefficients of the error model that both calibrations determine.
 pub fn compare_results(first: &CalibrationResult, second: &CalibrationResult) -> ComparedResults {
     let comparison = compare(&first.of_unit(), &second.of_unit());
-    let agree = comparison.probability.is_some_and(|probability| probability > CHANCE);
+    let agree = comparison.probability.is_some_and(|probability| probability > Level::Disagreement.probability());
     ComparedResults { comparison, agree }
 }

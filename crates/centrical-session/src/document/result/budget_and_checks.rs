@@ -1,11 +1,8 @@
 //! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
 
-use centrical::uncertainty::{Budget, Degrees, Pattern, Prediction, Source, Trend, Validity};
+use centrical::uncertainty::{Budget, Degrees, Level, Pattern, Prediction, Source, Trend, Validity};
 use centrical::{Calibration, Experiment, FitError};
 use serde::{Deserialize, Serialize};
-
-/// Family-wise error at which a plateau stands out and a pattern is told.
-const TOLD: f64 = 0.05;
 
 /// The uncertainties by their sources.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -164,7 +161,7 @@ impl ValiditySummary {
                     probability: (family * check.prediction.probability).min(1.0),
                 }
             })
-            .filter(|plateau| plateau.probability < TOLD)
+            .filter(|plateau| Level::Reported.is_passed_by(plateau.probability))
             .collect();
         outlying.sort_by(|a, b| a.probability.total_cmp(&b.probability));
         let prediction = |mounting: usize, p: &Prediction| MountingPrediction {
@@ -173,13 +170,13 @@ impl ValiditySummary {
             degrees_of_freedom: p.degrees_of_freedom,
             probability: p.probability,
         };
-        let told = patterns.iter().filter(|pattern| pattern.family_wise < TOLD);
+        let reported = patterns.iter().filter(|pattern| Level::Reported.is_passed_by(pattern.family_wise));
         Self {
             probability: validity.probability,
             outlying,
             mountings: validity.mountings.iter().map(|m| prediction(m.mounting, &m.prediction)).collect(),
             patterns_tested: patterns.len(),
-            patterns: told.map(|pattern| PatternSummary::new(experiment, pattern)).collect(),
+            patterns: reported.map(|pattern| PatternSummary::new(experiment, pattern)).collect(),
         }
     }
 }

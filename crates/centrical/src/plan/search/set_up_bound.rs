@@ -1,28 +1,28 @@
-//! Which mountings no schedule can do without: what the set-ups cost at least.
+//! Which mountings no schedule can do without, hence the least cost of the set-ups.
 //!
-//! More information never raises a criterion, so a set of mountings on which everything there is, every plateau as often and as
-//! long as may be, does not get below a value is of no use, nor is any of its subsets: a schedule below that value uses a
-//! mounting outside of each such set. The cheapest mountings that do so are a hitting set, and the sets to be hit are found as
-//! they are needed: the cheapest hitting set so far, if it is of no use, is enlarged as long as it remains so, and is the next
-//! one (Moreno-Centeno and Karp 2013, "The implicit hitting set approach").
+//! More information never raises a criterion. A set of mountings is useless for a value if it does not reach that even with
+//! every candidate as often and as long as possible; so are its subsets, and a schedule below the value uses a mounting outside
+//! of each such set. The cheapest mountings that do so are a hitting set. The sets to be hit are found as they are needed: the
+//! cheapest hitting set so far, if it is useless, is enlarged as long as it remains so, and is the next one (Moreno-Centeno and
+//! Karp 2013, "The implicit hitting set approach").
 
 use std::collections::BTreeMap;
 
 use super::problem::Problem;
 
-/// What is known of sets of mountings.
+/// The least cost of set-ups, with the sets of mountings that have been valued for it.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Needs {
-    /// Largest sets of no use.
+pub(super) struct SetUpBound {
+    /// Largest useless sets.
     useless: Vec<Vec<bool>>,
     /// Logarithm of the criterion with everything on a set.
     values: BTreeMap<Vec<bool>, f64>,
 }
 
-impl Needs {
+impl SetUpBound {
     /// Least set-up time [s] of the mountings of a schedule whose criterion has a logarithm below `value`: all of `set_up` are
-    /// among them and none that is not `open`. `None` if there is no such schedule. `value` may not rise from call to call.
-    pub fn least_set_up(&mut self, problem: &Problem, set_up: &[bool], open: &[bool], value: f64) -> Option<f64> {
+    /// among them and only `open` ones. `None` if there is no such schedule. `value` may not rise from call to call.
+    pub fn least(&mut self, problem: &Problem, set_up: &[bool], open: &[bool], value: f64) -> Option<f64> {
         loop {
             let mut cheapest = Cheapest { problem, open, useless: &self.useless, time: f64::INFINITY, set: None };
             cheapest.seek(set_up.to_vec(), vec![false; open.len()]);
@@ -39,7 +39,7 @@ impl Needs {
     }
 }
 
-/// A set of no use with all mountings that leave it so.
+/// A useless set with all mountings that leave it so.
 fn enlarged(problem: &Problem, mut set: Vec<bool>, value: f64) -> Vec<bool> {
     let mut everything = problem.everything_on(&set);
     for m in 0..set.len() {

@@ -1,14 +1,13 @@
-//! Why each plateau is there: what is lost without it.
+//! The rationale of a schedule: what is lost without each of its visits and mountings.
 
-use nalgebra::Matrix3;
-
+use super::atom::Atom;
 use super::candidates::{Candidates, Schedule};
 use super::criterion::{Criterion, Goal};
 use super::error::PlanError;
-use super::information::{Factor, Scene, sum_of};
+use super::information::LinearisedScenario;
 use super::search::Problem;
 
-/// What a part of a schedule is there for.
+/// The purpose of a part of a schedule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reason {
     /// The criterion without it over that with it, less 1 (variance units).
@@ -21,50 +20,50 @@ pub struct Reason {
     pub factor: f64,
 }
 
-/// A schedule accounted for.
+/// The reasons for the parts of a schedule.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Account {
+pub struct Rationale {
     /// By visit of the schedule.
     pub visits: Vec<Reason>,
     /// By mounting of the candidates: all its visits together; `None` for one that is not used.
     pub mountings: Vec<Option<Reason>>,
 }
 
-impl Account {
-    /// Accounts for `schedule`, which was planned by `criterion`.
+impl Rationale {
+    /// The rationale of a `schedule` that was planned by `criterion`.
     ///
     /// # Errors
     /// As [`super::best_for_time`].
     pub fn of(candidates: &Candidates, criterion: &Criterion, schedule: &Schedule) -> Result<Self, PlanError> {
-        let judges = Judges::new(candidates, criterion, schedule)?;
+        let reference = Reference::new(candidates, criterion, schedule)?;
         let set_points = &candidates.experiment().set_points;
         let of_mounting = |m: usize| {
-            let there = |n: usize| set_points[schedule.visits[n].plateau].mounting == m;
+            let there = |n: usize| set_points[schedule.visits[n].candidate].mounting == m;
             let visits: Vec<usize> = (0..schedule.visits.len()).filter(|&n| there(n)).collect();
-            (!visits.is_empty()).then(|| judges.without(&visits))
+            (!visits.is_empty()).then(|| reference.without(&visits))
         };
         Ok(Self {
-            visits: (0..schedule.visits.len()).map(|n| judges.without(&[n])).collect(),
+            visits: (0..schedule.visits.len()).map(|n| reference.without(&[n])).collect(),
             mountings: (0..candidates.experiment().mountings.len()).map(of_mounting).collect(),
         })
     }
 }
 
-/// The criterion, and every parameter of the instrument as a goal of its own.
-struct Judges<'a> {
-    candidates: &'a Candidates,
+/// The whole schedule, with which its parts are compared: its criterion, and the uncertainty of every parameter of the
+/// instrument.
+struct Reference<'a> {
     schedule: &'a Schedule,
-    by_criterion: Problem<'a>,
-    by_parameter: Scene,
+    problem: Problem<'a>,
+    /// Every parameter of the instrument as a goal of its own.
+    by_parameter: LinearisedScenario,
     parameters: Vec<usize>,
     value: f64,
     goals: Vec<f64>,
 }
 
-impl<'a> Judges<'a> {
+impl<'a> Reference<'a> {
     fn new(candidates: &'a Candidates, criterion: &Criterion, schedule: &'a Schedule) -> Result<Self, PlanError> {
-        // The durations of the schedule, whatever those of the candidates are.
-        let by_criterion = Problem::new(candidates, criterion)?;
+        let problem = Problem::new(candidates, criterion)?;
         let model = &candidates.scenarios[0].model;
         let parameters: Vec<usize> =
             (0..model.parameters().len()).filter(|&j| model.parameters()[j].is_of_instrument()).collect();
@@ -73,32 +72,31 @@ impl<'a> Judges<'a> {
             uncertainty: model.parameters()[j].typical,
         };
         let goals = Criterion::Worst(parameters.iter().map(goal).collect());
-        let by_parameter = Scene::new(&candidates.scenarios[0], candidates, &goals, 1.0)?;
-        let mut judges =
-            Self { candidates, schedule, by_criterion, by_parameter, parameters, value: 0.0, goals: Vec::new() };
-        (judges.value, judges.goals) = judges.judged(&[]);
-        Ok(judges)
+        let by_parameter = LinearisedScenario::new(&candidates.scenarios[0], candidates, &goals, 1.0)?;
+        let mut reference = Self { schedule, problem, by_parameter, parameters, value: 0.0, goals: Vec::new() };
+        (reference.value, reference.goals) = reference.judged(&[]);
+        Ok(reference)
     }
 
     /// Logarithm of the criterion, and squares of the parameters' uncertainties, with some visits left out.
     fn judged(&self, left_out: &[usize]) -> (f64, Vec<f64>) {
-        let factor = |scene: &Scene| scene.factor(&self.information(scene, left_out));
-        let factors: Vec<Factor> = self.by_criterion.scenes.all.iter().map(factor).collect();
-        (self.by_criterion.scenes.value(&factors), factor(&self.by_parameter).goals)
+        let visits = self.visits(left_out);
+        let information = self.by_parameter.information(self.problem.candidates.atoms(), |x| f64::from(visits[x]));
+        let goals = self.by_parameter.factor(&information).goals;
+        (self.problem.schedule(visits).value, goals)
     }
 
-    fn information(&self, scene: &Scene, left_out: &[usize]) -> Vec<(usize, Matrix3<f64>)> {
-        let options = self.candidates.durations.len();
-        let atom = |n: usize| {
-            let visit = &self.schedule.visits[n];
-            let option = self.candidates.durations.iter().position(|d| *d == visit.duration)?;
-            Some((visit.plateau, visit.plateau * options + option))
-        };
-        let mut atoms: Vec<(usize, usize)> =
-            (0..self.schedule.visits.len()).filter(|n| !left_out.contains(n)).filter_map(atom).collect();
-        atoms.sort_unstable();
-        let same = atoms.chunk_by(|a, b| a.0 == b.0);
-        same.map(|visits| (visits[0].0, sum_of(visits.iter().map(|(_, x)| *scene.precision(*x))))).collect()
+    /// Visits by atom, some left out.
+    fn visits(&self, left_out: &[usize]) -> Vec<u32> {
+        let candidates = self.problem.candidates;
+        let atoms = candidates.atoms();
+        let mut visits = vec![0; atoms.count()];
+        for (_, visit) in self.schedule.visits.iter().enumerate().filter(|(n, _)| !left_out.contains(n)) {
+            if let Some(duration) = candidates.durations.iter().position(|d| *d == visit.duration) {
+                visits[atoms.number(Atom { candidate: visit.candidate, duration })] += 1;
+            }
+        }
+        visits
     }
 
     fn without(&self, visits: &[usize]) -> Reason {
@@ -109,7 +107,7 @@ impl<'a> Judges<'a> {
         let kept: Vec<_> = kept.collect();
         Reason {
             rise: (value - self.value).exp() - 1.0,
-            time: self.schedule.time - self.candidates.time_of(&kept),
+            time: self.schedule.time - self.problem.candidates.time_of(&kept),
             parameter: self.parameters[most],
             factor: factor(most),
         }

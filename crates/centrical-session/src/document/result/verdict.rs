@@ -1,0 +1,29 @@
+//! Whether a result can be accepted as it stands, and why not.
+
+use centrical::uncertainty::{Findings, Objection, objections};
+
+use super::budget_and_checks::PatternSummary;
+use super::schema::CalibrationResult;
+
+/// An objection to a result: plateaus as `mounting:plateau`, counted from 1.
+pub type ResultObjection = Objection<String, PatternSummary>;
+
+impl CalibrationResult {
+    /// The objections to the result; empty if it is acceptable.
+    pub fn objections(&self) -> Vec<ResultObjection> {
+        let validity = self.validity.iter();
+        let outlying = validity.clone().flat_map(|validity| &validity.outlying);
+        let patterns = validity.flat_map(|validity| &validity.patterns);
+        let terms = self.model.error_model.iter().map(|term| &term.name);
+        let is_lost = |name: &&String| self.parameter(name).is_none_or(|p| !p.estimable);
+        objections(Findings {
+            termination: self.fit.termination,
+            iterations: self.fit.iterations,
+            chi_squared: self.fit.chi_squared,
+            degrees_of_freedom: self.fit.degrees_of_freedom,
+            outlying: outlying.map(|p| (format!("{}:{}", p.mounting, p.index + 1), p.probability)).collect(),
+            patterns: patterns.map(|pattern| (pattern.clone(), pattern.probability)).collect(),
+            not_determined: terms.filter(is_lost).cloned().collect(),
+        })
+    }
+}

@@ -1,0 +1,112 @@
+//! Whether a calibration is acceptable, and the levels of probability at which its checks speak.
+
+use crate::fit::Termination;
+
+use super::coverage::chi_squared_tail;
+
+/// A level of probability: what is less probable by chance is not taken for chance.
+///
+/// Reports inform and may be wrong in one sound session of twenty. An objection refuses a result, so it must be rare in
+/// sound sessions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// A plateau stands out, or a pattern shows in the residuals: family-wise 5 %.
+    Reported,
+    /// Two calibrations of one unit disagree: 1 %.
+    Disagreement,
+    /// A drift or a difference of tilts is real: 0.1 %.
+    Real,
+    /// An objection to the result: 0.01 %.
+    Objection,
+}
+
+impl Level {
+    /// Its probability.
+    pub const fn probability(self) -> f64 {
+        match self {
+            Self::Reported => 0.05,
+            Self::Disagreement => 1e-2,
+            Self::Real => 1e-3,
+            Self::Objection => 1e-4,
+        }
+    }
+
+    /// Whether something of this probability by chance is beyond the level.
+    pub fn is_passed_by(self, probability: f64) -> bool {
+        probability < self.probability()
+    }
+}
+
+/// What the checks of a calibration found; `P` names a plateau, `Q` a pattern.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Findings<P, Q> {
+    /// How the fit ended.
+    pub termination: Termination,
+    /// Linearisations made.
+    pub iterations: usize,
+    /// chi^2 of the fit.
+    pub chi_squared: f64,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: usize,
+    /// Plateaus that stand out, each with its family-wise probability, the most outlying first.
+    pub outlying: Vec<(P, f64)>,
+    /// Patterns in the residuals, each with its family-wise probability.
+    pub patterns: Vec<(Q, f64)>,
+    /// Names of the instrument's parameters that are not determined.
+    pub not_determined: Vec<String>,
+}
+
+/// An objection to a result.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Objection<P, Q> {
+    /// The fit did not converge.
+    NotConverged {
+        /// How it ended.
+        termination: Termination,
+        /// Linearisations made.
+        iterations: usize,
+    },
+    /// Residuals are larger than the stated uncertainties explain.
+    Residuals {
+        /// chi^2.
+        chi_squared: f64,
+        /// Its degrees of freedom.
+        degrees_of_freedom: usize,
+        /// Probability of so large a chi^2.
+        chance: f64,
+    },
+    /// Plateaus that stand out, and the probability of the first.
+    Outlying(Vec<P>, f64),
+    /// Residuals follow something that the model does not have.
+    Patterns(Vec<Q>),
+    /// Parameters of the instrument are not determined. Lost geometry alone is no objection.
+    NotDetermined(Vec<String>),
+}
+
+/// The objections to a calibration; empty if it is acceptable.
+pub fn objections<P, Q>(findings: Findings<P, Q>) -> Vec<Objection<P, Q>> {
+    let Findings { termination, iterations, chi_squared, degrees_of_freedom, outlying, patterns, not_determined } =
+        findings;
+    let is_beyond = |probability: f64| Level::Objection.is_passed_by(probability);
+    let mut objections = Vec::new();
+    match termination {
+        Termination::Stalled | Termination::IterationLimit => {
+            objections.push(Objection::NotConverged { termination, iterations });
+        }
+        Termination::Linear | Termination::Converged => {}
+    }
+    let chance = chi_squared_tail(chi_squared, degrees_of_freedom);
+    if is_beyond(chance) {
+        objections.push(Objection::Residuals { chi_squared, degrees_of_freedom, chance });
+    }
+    let (plateaus, chances): (Vec<P>, Vec<f64>) = outlying.into_iter().filter(|(_, chance)| is_beyond(*chance)).unzip();
+    objections.extend(chances.first().map(|first| Objection::Outlying(plateaus, *first)));
+    let patterns: Vec<Q> = patterns.into_iter().filter(|(_, p)| is_beyond(*p)).map(|(pattern, _)| pattern).collect();
+    if !patterns.is_empty() {
+        objections.push(Objection::Patterns(patterns));
+    }
+    if !not_determined.is_empty() {
+        objections.push(Objection::NotDetermined(not_determined));
+    }
+    objections
+}
