@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
+use centrical::Group;
 use centrical_session::{Method, Session, calibrate};
 
 /// From records to estimates.
@@ -14,7 +15,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let result = calibrate(&session, Method::Exact, &|_| ())?;
 
     println!("{}: chi^2 {:.1}, {} degrees", session.title, result.fit.chi_squared, result.fit.degrees_of_freedom);
-    for parameter in result.parameters.iter().filter(|parameter| parameter.group == "bias") {
+    for parameter in result.parameters.iter().filter(|parameter| parameter.group == Group::Bias) {
         // What the data do not determine has no value.
         match (parameter.value, parameter.standard_uncertainty) {
             (Some(value), Some(u)) => println!("{} = {value:.6} ± {u:.6} {}", parameter.name, parameter.unit),

@@ -3,17 +3,15 @@
 use std::error::Error;
 use std::path::Path;
 
-use centrical_session::{PlanRequest, read_planning};
+use centrical_session::{PlanRequest, plan};
 
 /// The schedule with the smallest uncertainty, and how far from the optimum it can be.
 ///
 /// # Errors
 /// If the plan file is wrong, or no plan fits its time.
 pub fn main() -> Result<(), Box<dyn Error>> {
-    let mut planning = read_planning(Path::new("examples/03_plan/plan.toml"))?;
-    let plan = planning.plan(false)?;
-    let request = PlanRequest { frontier: Vec::new(), levels: Vec::new(), coverage: 0.95 };
-    let report = planning.report(&plan, &request)?;
+    let request = PlanRequest { certify: false, frontier: Vec::new(), levels: Vec::new(), coverage: 0.95 };
+    let report = plan(Path::new("examples/03_plan/plan.toml"), &request)?;
 
     for mounting in &report.mountings {
         println!("position {} at {} m: {} plateaus", mounting.position, mounting.radius, mounting.plateaus.len());

@@ -2,19 +2,23 @@
 
 mod administrative;
 mod results;
-mod unit;
 mod xml;
 
-use centrical_session::{CalibrationResult, Laboratory};
+use centrical_session::{CalibrationResult, Laboratory, Unit, UnknownUnit};
 
 use crate::language::Language;
 use xml::Xml;
 
-/// Probability that the expanded uncertainties cover.
-const COVERAGE: &str = "0.95";
-
 /// The certificate of a result. The same data give the same bytes.
-pub fn digital_certificate(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> String {
+///
+/// # Errors
+/// [`UnknownUnit`] when a parameter has a unit that D-SI cannot be given for.
+pub fn digital_certificate(
+    result: &CalibrationResult,
+    laboratory: &Laboratory,
+    language: Language,
+) -> Result<String, UnknownUnit> {
+    let units: Vec<Unit> = result.parameters.iter().map(|p| Unit::parse(&p.unit)).collect::<Result<_, _>>()?;
     let mut xml = Xml::new();
     let attributes = [
         ("xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance"),
@@ -25,7 +29,7 @@ pub fn digital_certificate(result: &CalibrationResult, laboratory: &Laboratory, 
     ];
     xml.element_with("dcc:digitalCalibrationCertificate", &attributes, |xml| {
         administrative::data(xml, result, laboratory, language);
-        results::list(xml, result, laboratory, language);
+        results::list(xml, (result, &units), laboratory, language);
     });
-    xml.into_text()
+    Ok(xml.into_text())
 }

@@ -4,16 +4,15 @@ use std::path::{Path, PathBuf};
 
 use centrical::MeasurementModel;
 use centrical_session::{
-    CalibrationResult, Error, Laboratory, NoiseAnalysis, Place, create_folder, read_history, write_whole,
+    CalibrationResult, Error, Laboratory, NoiseAnalysis, Place, UnknownUnit, create_folder, read_history, write_whole,
 };
 
-use crate::certificate::pdf_certificate;
 use crate::codegen::{NamedTerm, compensation_source, heading};
 use crate::dcc::digital_certificate;
-use crate::figures::{figures, history_figure};
-use crate::html::{html_report, html_report_with};
+use crate::document::{certificate, report};
+use crate::figure::{figures, history_figure, noise_plots};
 use crate::language::Language;
-use crate::noise::noise_plots;
+use crate::render::{html, pdf};
 
 /// The documents that are made of a result.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -48,17 +47,17 @@ pub fn write_documents(request: &DocumentRequest) -> Result<CalibrationResult, E
     let language = request.language;
     if let Some(file) = &request.html {
         let history = request.history.as_deref().map(read_history).transpose()?.unwrap_or_default();
-        let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group.as_str());
+        let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group);
         let further = history_figure(&history, &group_of, language);
-        write_whole(file, html_report_with(&result, further.as_slice(), language).as_bytes())?;
+        write_whole(file, html(&report(&result, further.as_slice(), language)).as_bytes())?;
     }
     if let Some(laboratory) = laboratory {
         if let Some(file) = &request.pdf {
             let before = request.before.as_deref().map(|file| before(file, &result, &laboratory)).transpose()?;
-            write_whole(file, &pdf_certificate(&result, before.as_ref(), &laboratory, language))?;
+            write_whole(file, &pdf(&certificate(&result, before.as_ref(), &laboratory, language)))?;
         }
         if let Some(file) = &request.dcc {
-            write_whole(file, digital_certificate(&result, &laboratory, language).as_bytes())?;
+            write_whole(file, dcc(&result, &laboratory, language, &request.result)?.as_bytes())?;
         }
     }
     if let Some(folder) = &request.code {
@@ -78,10 +77,10 @@ pub fn write_all_documents(
     folder: &Path,
 ) -> Result<(), Error> {
     let laboratory = read_laboratory(laboratory, result)?;
-    write_whole(&folder.join("report.html"), html_report(result, language).as_bytes())?;
+    write_whole(&folder.join("report.html"), html(&report(result, &[], language)).as_bytes())?;
     if let Some(laboratory) = laboratory {
-        write_whole(&folder.join("certificate.pdf"), &pdf_certificate(result, None, &laboratory, language))?;
-        let dcc = digital_certificate(result, &laboratory, language);
+        write_whole(&folder.join("certificate.pdf"), &pdf(&certificate(result, None, &laboratory, language)))?;
+        let dcc = dcc(result, &laboratory, language, &folder.join("result.json"))?;
         write_whole(&folder.join("certificate.xml"), dcc.as_bytes())?;
     }
     let plots = folder.join("plots");
@@ -147,6 +146,14 @@ fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Re
         return refuse("a result before an adjustment".to_owned(), expected.to_owned());
     }
     Ok(before)
+}
+
+/// The digital certificate of the result in `file`.
+fn dcc(result: &CalibrationResult, laboratory: &Laboratory, language: Language, file: &Path) -> Result<String, Error> {
+    digital_certificate(result, laboratory, language).map_err(|UnknownUnit { found }| {
+        let expected = "a fraction of powers of m, s and rad such as s^2/m, or 1";
+        Error::content(file, Place::Whole, format!("a parameter in {found:?}"), expected)
+    })
 }
 
 /// Writes the compensation as source code.

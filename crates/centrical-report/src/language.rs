@@ -1,10 +1,15 @@
 //! The languages of the documents: how each writes numbers, units and dates.
 
-use centrical_session::Date;
+mod english;
+mod messages;
+mod russian;
 
-use crate::customary::with_uncertainty;
-use crate::message::{ENGLISH, Messages, RUSSIAN};
-use crate::plot::power_of_ten;
+use centrical_session::{Date, Symbol};
+
+use self::english::ENGLISH;
+pub(crate) use self::messages::Messages;
+use self::russian::RUSSIAN;
+use crate::number::{power_of_ten, scientific, shortest, significant, superscript, with_uncertainty};
 
 /// A language of the documents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -47,7 +52,7 @@ impl Language {
         }
     }
 
-    /// A number to so many decimal places.
+    /// A number to `places` decimal places.
     pub(crate) fn fixed(self, value: f64, places: usize) -> String {
         self.number(&format!("{value:.places$}"))
     }
@@ -57,22 +62,21 @@ impl Language {
         if value >= 1e-3 || value == 0.0 {
             return self.fixed(value, 3);
         }
-        let digits = format!("{value:.1e}");
-        let (digits, power) = digits.split_once('e').unwrap_or((&digits, "0"));
-        format!("{}·{}", self.number(digits), power_of_ten(power.parse().unwrap_or(0)))
+        self.with_power(scientific(value, 2))
     }
 
     /// A number to `digits` significant digits, never in powers of ten.
-    pub(crate) fn significant(self, value: f64, digits: i32) -> String {
-        let places = usize::try_from(digits - 1 - exponent(value)).unwrap_or(0);
-        self.fixed(value, places)
+    pub(crate) fn significant(self, value: f64, digits: u8) -> String {
+        self.number(&significant(value, digits, i32::MIN..i32::MAX))
     }
 
     /// `1.5·10⁻⁵`, with the digits that the number has.
     pub(crate) fn scientific(self, value: f64) -> String {
-        let plain = format!("{value:e}");
-        let (digits, power) = plain.split_once('e').unwrap_or((&plain, "0"));
-        format!("{}·{}", self.number(digits), power_of_ten(power.parse().unwrap_or(0)))
+        self.with_power(shortest(value))
+    }
+
+    fn with_power(self, (digits, power): (String, i32)) -> String {
+        format!("{}·{}", self.number(&digits), power_of_ten(power))
     }
 
     /// `value ± uncertainty` to two digits of the uncertainty.
@@ -83,7 +87,7 @@ impl Language {
 
     /// `(value ± uncertainty)·10ⁿ` with a leading digit before the point.
     pub(crate) fn plus_minus_scientific(self, value: f64, uncertainty: f64) -> String {
-        let power = exponent(value.abs().max(uncertainty));
+        let power = shortest(value.abs().max(uncertainty)).1;
         if (-1..4).contains(&power) {
             return self.plus_minus(value, uncertainty);
         }
@@ -91,38 +95,19 @@ impl Language {
         format!("({})·{}", self.plus_minus(value * scale, uncertainty * scale), power_of_ten(power))
     }
 
-    /// A unit as the result names it.
+    /// A unit as results and tables for the terminal name it.
     pub(crate) fn unit(self, plain: &str) -> String {
-        const SYMBOLS: [(&str, &str, &str); 10] = [
-            ("ppm", "ppm", "млн⁻¹"),
-            ("urad", "µrad", "мкрад"),
-            ("rad", "rad", "рад"),
-            ("um", "µm", "мкм"),
-            ("ug", "µg", "мкg"),
-            ("mg", "mg", "мg"),
-            ("min", "min", "мин"),
-            ("s", "s", "с"),
-            ("m", "m", "м"),
-            ("1", "1", "1"),
-        ];
-        let symbol = |name: &str| {
+        let part = |name: &str| {
             let (stem, power) = name.split_once('^').unwrap_or((name, ""));
-            let known = SYMBOLS.iter().find(|(plain, _, _)| *plain == stem);
-            let stem = match (known, self) {
-                (Some((_, english, _)), Self::English) => english,
-                (Some((_, _, russian)), Self::Russian) => russian,
-                (None, _) => stem,
-            };
-            let raised = power.chars().map(|digit| match digit {
-                '2' => '²',
-                '3' => '³',
-                '4' => '⁴',
-                '6' => '⁶',
-                other => other,
+            let symbol = Symbol::of(stem).map(|symbol| match self {
+                Self::English => symbol.english,
+                Self::Russian => symbol.russian,
             });
-            format!("{stem}{}", raised.collect::<String>())
+            let raised = power.parse().map_or(String::new(), superscript);
+            format!("{}{raised}", symbol.unwrap_or(stem))
         };
-        plain.split('/').map(symbol).collect::<Vec<_>>().join("/")
+        let words = |text: &str| text.split(' ').map(part).collect::<Vec<_>>().join(" ");
+        plain.split('/').map(words).collect::<Vec<_>>().join("/")
     }
 
     /// A day.
@@ -132,13 +117,6 @@ impl Language {
             Self::Russian => format!("{:02}.{:02}.{:04}", date.day, date.month, date.year),
         }
     }
-}
-
-/// Power of ten of the leading digit; 0 for zero.
-#[allow(clippy::cast_possible_truncation)]
-fn exponent(value: f64) -> i32 {
-    let size = value.abs();
-    if size > 0.0 && size.is_finite() { size.log10().floor() as i32 } else { 0 }
 }
 
 #[cfg(test)]
@@ -156,6 +134,7 @@ mod tests {
         assert_eq!(English.significant(1234.5, 3), "1234");
         assert_eq!(Russian.significant(0.012_345, 3), "0,0123");
         assert_eq!((English.unit("ug/g^2"), Russian.unit("ug/g^2")), ("µg/g²".to_owned(), "мкg/g²".to_owned()));
+        assert_eq!(Russian.unit("urad at 10 rev/s"), "мкрад при 10 об/с");
         assert_eq!((English.unit("s^4/m^2"), Russian.unit("s^4/m^2")), ("s⁴/m²".to_owned(), "с⁴/м²".to_owned()));
     }
 }

@@ -9,6 +9,7 @@ mod result;
 mod steadiness;
 mod truth;
 mod watch;
+mod words;
 
 pub use self::noise::{NOISE_SCHEMA, NoiseAnalysis, ReadingNoise};
 pub use self::observability::{
@@ -16,10 +17,12 @@ pub use self::observability::{
     ObservedParameter, PairReport, RemedyReport, SightReport, StepReport, Subject,
 };
 pub(crate) use self::plan::SCHEMA as PLAN_SCHEMA;
-pub use self::plan::{FrontierRow, GoalReport, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport};
+pub use self::plan::{
+    CriterionName, FrontierRow, GoalReport, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport,
+};
 pub use self::prediction::{PredictedParameter, PredictionReport};
 pub use self::result::{
-    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, ModelSummary,
+    BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, Method, ModelSummary,
     MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, ParameterEstimate, PatternSummary,
     PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve, TermSummary,
     ValiditySummary,

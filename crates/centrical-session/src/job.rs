@@ -15,14 +15,14 @@ mod simulate;
 mod watch;
 
 pub use self::assess::{Assessment, AssessmentRequest, assess};
-pub use self::calibrate::{Method, Problem, calibrate, calibrate_without};
+pub use self::calibrate::{Problem, calibrate, calibrate_without};
 pub use self::compare::{ComparedResults, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
 pub use self::noise::{NoiseRequest, Series, noise_of};
 pub use self::observe::subject;
-pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, read_plan, read_planning};
+pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, read_plan, read_planning};
 pub use self::reduce::{reduce, reduce_without_inputs};
 pub use self::reduced_session::write_reduced;
 pub use self::simulate::simulate_session;

@@ -28,6 +28,7 @@ mod record;
 mod record_writer;
 mod reduced;
 mod truth;
+mod units;
 
 pub use centrical::STANDARD_GRAVITY;
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
@@ -35,26 +36,26 @@ pub use centrical::stability::Estimator;
 pub use centrical_table::{ColumnName, TableFormat, create_folder, write_whole};
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
-    DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry, HistoryEstimate,
-    InnovationSummary, LeftOutSummary, LostCombination, ModelSummary, MountingPrediction, MountingSummary,
-    NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary, ObservedParameter,
-    OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting, PlannedPlateau,
-    PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise,
-    ReasonReport, RemedyReport, RepeatedPlateau, SCHEMA, SessionSummary, SessionTrend, SightReport, StabilityCurve,
-    StepReport, Subject, TermSummary, TiltSummary, ValiditySummary, WatchState, WatchedPlateau, append_history,
-    keep_history, read_history,
+    CriterionName, DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry,
+    HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method, ModelSummary, MountingPrediction,
+    MountingSummary, NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary,
+    ObservedParameter, OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting,
+    PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program,
+    ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, SCHEMA, SessionSummary, SessionTrend, SightReport,
+    StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, ValiditySummary, WatchState, WatchedPlateau,
+    append_history, keep_history, read_history,
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, MountingFiles, Noise, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
-    earlier_result, read_plateaus, write_plateaus,
+    ExpectedValues, MountingFiles, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session, earlier_result,
+    read_plateaus, write_plateaus,
 };
 pub use job::{
-    Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following, Method,
+    Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following,
     MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series, USUAL_LEVELS, USUAL_TIMES, Watch,
     WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess, calibrate, calibrate_without, compare_results,
-    compensate, compensate_record, noise_of, read_plan, read_planning, reduce, reduce_without_inputs, select_model,
-    simulate_session, subject, write_reduced,
+    compensate, compensate_record, noise_of, plan, read_plan, read_planning, reduce, reduce_without_inputs,
+    select_model, simulate_session, subject, write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
@@ -68,3 +69,4 @@ pub use record::{
 pub use record_writer::RecordWriter;
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use truth::Truth;
+pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary};

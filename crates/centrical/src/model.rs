@@ -13,6 +13,7 @@ mod error_model;
 mod exact;
 mod experiment;
 mod frame;
+mod group;
 mod instant;
 pub mod linear;
 mod measurement;
@@ -29,6 +30,7 @@ pub use experiment::{
     Site, Unit,
 };
 pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
+pub use group::Group;
 pub use instant::ArmMotion;
 pub(crate) use instant::MountedUnit;
 pub use measurement::{Linearisation, MeasurementModel};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{frontier_plot, plan_text};
-use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, read_planning, write_whole};
+use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, write_whole};
 
 use super::assess::probability;
 use crate::outcome::{Outcome, print};
@@ -26,7 +26,7 @@ pub struct Arguments {
     /// Levels m of [K5.5] on the frontier
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = USUAL_LEVELS, value_parser = level)]
     levels: Vec<f64>,
-    /// Search until the optimality gap over all sets of mountings is below 0.25 %
+    /// Search until the optimality gap over all sets of mountings is below 0.25 %; the cost of whole visits adds to it
     #[arg(long)]
     certify: bool,
     /// Coverage probability of the expanded uncertainties
@@ -39,14 +39,13 @@ pub struct Arguments {
 
 /// Runs the command. Not acceptable: a parameter of the instrument is not determined, or a goal is missed.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let mut planning = read_planning(&arguments.plan)?;
-    let plan = planning.plan(arguments.certify)?;
     let request = PlanRequest {
+        certify: arguments.certify,
         frontier: if arguments.frontier { USUAL_TIMES.to_vec() } else { Vec::new() },
         levels: arguments.levels.clone(),
         coverage: arguments.coverage,
     };
-    let report = planning.report(&plan, &request)?;
+    let report = plan(&arguments.plan, &request)?;
     if let Some(file) = &arguments.out {
         write_whole(file, report.session_text(&arguments.plan)?.as_bytes())?;
     }

@@ -128,7 +128,7 @@ fn calibrate_tells_sources_validity_and_verdict() {
         "none of the 108 plateaus stands out",
         "patterns against speed, position, radius and time in the residuals",
         "each mounting predicted from all others",
-        "ACCEPTABLE  nothing speaks against this result",
+        "ACCEPTABLE  no check raised an objection",
     ] {
         assert!(told.contains(part), "{part} is not in\n{told}");
     }
@@ -193,7 +193,7 @@ fn an_outlying_plateau_is_named() {
     assert_eq!(run.status.code(), Some(1), "{told}");
     assert!(told.contains("plateau 5:9 STANDS OUT") && told.contains("--hold-out 5:9"), "{told}");
     assert!(told.contains("NOT ACCEPTABLE  plateaus that stand out: 5:9"), "{told}");
-    assert!(text(&copy.calibrate(&["--hold-out", "5:9"])).contains("ACCEPTABLE  nothing speaks against"));
+    assert!(text(&copy.calibrate(&["--hold-out", "5:9"])).contains("ACCEPTABLE  no check raised"));
     let cleaned = text(&copy.run(&["assess", copy.session().to_str().unwrap(), "--without-outliers"]));
     assert!(cleaned.contains("OUTLIERS  1 plateaus left out\n  mounting 5, plateau 9"), "{cleaned}");
     assert!(cleaned.contains("estimates that moved most"), "{cleaned}");

@@ -183,7 +183,7 @@ fn adjustment_and_decision() {
     assert!(!unasked.contains("conform"), "no statement that was not asked for");
 }
 
-/// What speaks against a result stands before everything else, and no conformity is stated from it.
+/// The objections to a result stand before everything else, and no conformity is stated from it.
 #[test]
 #[ignore = "needs pdftotext"]
 fn a_result_that_is_not_acceptable_says_so() {

@@ -1,7 +1,8 @@
 //! C99: one header, one source, in double and single precision.
 
+use super::model::Model;
 use super::statement::Language;
-use super::{Model, vectors};
+use super::vectors;
 
 /// The header.
 pub(super) fn header(model: &Model) -> String {

@@ -1,7 +1,8 @@
 //! MATLAB and Octave: one function file, many readings at a time.
 
+use super::model::Model;
 use super::statement::Language;
-use super::{Model, vectors};
+use super::vectors;
 
 /// The function file.
 pub(super) fn function(model: &Model) -> String {

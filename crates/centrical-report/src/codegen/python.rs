@@ -1,7 +1,8 @@
 //! Python 3: one module without dependencies.
 
+use super::model::Model;
 use super::statement::Language;
-use super::{Model, vectors};
+use super::vectors;
 
 /// The module.
 pub(super) fn module(model: &Model) -> String {

@@ -2,7 +2,7 @@
 
 use centrical_compensate::Monomial;
 
-use super::{NamedTerm, harmless};
+use super::term::{NamedTerm, harmless};
 
 /// How a language writes what the error model is made of. Indices count from 0.
 pub(super) trait Language {

@@ -2,7 +2,7 @@
 
 use centrical_compensate::reading;
 
-use super::Model;
+use super::model::Model;
 use super::statement::Language;
 
 /// A reading and its specific force [m/s^2].

@@ -3,9 +3,9 @@
 use centrical_session::{Address, CalibrationResult, Contact, DecisionRule, Laboratory};
 
 use super::xml::Xml;
-use crate::conformity::conformity;
+use crate::document::objection;
+use crate::evaluation::{conformity, objections};
 use crate::language::Language;
-use crate::verdict::objections;
 
 pub(super) fn data(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
     xml.element("dcc:administrativeData", |xml| {
@@ -122,9 +122,9 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
                 xml.content("dcc:declaration", text, language);
             });
         };
-        for objection in objections(result) {
-            let told = format!("{}: {}", messages.not_acceptable, messages.objection(&objection, language));
-            statement(xml, "7.8.2.1 m", &told);
+        for reason in objections(result) {
+            let text = format!("{}: {}", messages.not_acceptable, objection(&reason, language));
+            statement(xml, "7.8.2.1 m", &text);
         }
         statement(xml, "7.8.2.1 l", messages.item_only);
         statement(xml, "7.8.2.1", messages.reproduction);

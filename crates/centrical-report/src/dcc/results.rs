@@ -1,19 +1,25 @@
 //! Measurement results: method, software, standards, influence conditions, parameters with their covariance, reading
 //! errors.
 
-use centrical_session::{CalibrationResult, Condition, Laboratory, ParameterEstimate};
+use centrical_session::{CalibrationResult, Condition, Laboratory, ParameterEstimate, Unit};
 use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::COVERAGE;
 use super::administrative::{identification, software};
-use super::unit::Unit;
 use super::xml::Xml;
-use crate::expanded::{Expanded, expanded};
+use crate::evaluation::{COVERAGE_FACTOR, Expanded, ReadingError, equation, expanded, reading_errors};
 use crate::language::Language;
-use crate::reading_error::{self, ReadingError, reading_errors};
 
-pub(super) fn list(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
+/// Probability that the expanded uncertainties cover.
+const COVERAGE_PROBABILITY: f64 = 0.95;
+
+/// The results, the parameters with their `units`.
+pub(super) fn list(
+    xml: &mut Xml,
+    (result, units): (&CalibrationResult, &[Unit]),
+    laboratory: &Laboratory,
+    language: Language,
+) {
     let messages = language.messages();
     xml.element("dcc:measurementResults", |xml| {
         xml.element("dcc:measurementResult", |xml| {
@@ -23,8 +29,8 @@ pub(super) fn list(xml: &mut Xml, result: &CalibrationResult, laboratory: &Labor
             equipment(xml, laboratory, language);
             influences(xml, result, laboratory, language);
             xml.element("dcc:results", |xml| {
-                parameters(xml, result, language);
-                covariance(xml, result, language);
+                parameters(xml, result, units, language);
+                covariance(xml, result, units, language);
                 errors(xml, result, language);
             });
         });
@@ -95,7 +101,7 @@ fn influences(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
         }
         influence(xml, ("centrical_gravity", messages.gravity), language, |xml| {
             xml.element("dcc:quantity", |xml| {
-                real(xml, result.model.gravity, &Unit::parse("m/s^2").to_string(), None);
+                real(xml, result.model.gravity, &Unit::ACCELERATION.d_si(), None);
             });
         });
         influence(xml, ("centrical_speedUncertainty", messages.speed_uncertainty), language, |xml| {
@@ -121,51 +127,55 @@ fn real(xml: &mut Xml, value: f64, unit: &str, expanded: Option<Expanded>) {
                 xml.element("si:expandedMU", |xml| {
                     xml.leaf("si:valueExpandedMU", &number(expanded.uncertainty));
                     xml.leaf("si:coverageFactor", &expanded.factor.to_string());
-                    xml.leaf("si:coverageProbability", COVERAGE);
-                    xml.leaf("si:distribution", if expanded.factor == 2.0 { "normal" } else { "t-distribution" });
+                    xml.leaf("si:coverageProbability", &COVERAGE_PROBABILITY.to_string());
+                    xml.leaf(
+                        "si:distribution",
+                        if expanded.factor == COVERAGE_FACTOR { "normal" } else { "t-distribution" },
+                    );
                 });
             });
         }
     });
 }
 
-fn parameters(xml: &mut Xml, result: &CalibrationResult, language: Language) {
+fn parameters(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], language: Language) {
     let messages = language.messages();
     xml.element_with("dcc:result", &[("refType", "centrical_parameters")], |xml| {
         xml.content("dcc:name", messages.parameters, language);
-        xml.content("dcc:description", &crate::equation::equation(result), language);
+        xml.content("dcc:description", &equation(result), language);
         xml.element("dcc:data", |xml| {
             xml.element("dcc:list", |xml| {
-                for parameter in &result.parameters {
-                    xml.element("dcc:quantity", |xml| one_parameter(xml, result, parameter, language));
+                for (parameter, unit) in result.parameters.iter().zip(units) {
+                    xml.element("dcc:quantity", |xml| one_parameter(xml, result, (parameter, *unit), language));
                 }
             });
         });
     });
 }
 
-fn one_parameter(xml: &mut Xml, result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) {
+fn one_parameter(
+    xml: &mut Xml,
+    result: &CalibrationResult,
+    (parameter, unit): (&ParameterEstimate, Unit),
+    language: Language,
+) {
     let messages = language.messages();
     xml.content("dcc:name", &parameter.name, language);
-    xml.content("dcc:description", messages.word(&parameter.group), language);
+    xml.content("dcc:description", (messages.words.group)(parameter.group), language);
     match (parameter.value, expanded(result, parameter)) {
-        (Some(value), Some(expanded)) => {
-            let unit = Unit::parse(&parameter.unit).to_string();
-            real(xml, value, &unit, Some(expanded));
-        }
+        (Some(value), Some(expanded)) => real(xml, value, &unit.d_si(), Some(expanded)),
         // Never a number that looks like a result.
         _ => xml.content("dcc:noQuantity", messages.not_determined, language),
     }
 }
 
 /// The estimable parameters as one vector with its covariance matrix.
-fn covariance(xml: &mut Xml, result: &CalibrationResult, language: Language) {
+fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], language: Language) {
     let all = &result.parameters;
     let shown: Vec<usize> = (0..all.len()).filter(|&j| all[j].estimable).collect();
     if shown.is_empty() {
         return;
     }
-    let units: Vec<Unit> = all.iter().map(|p| Unit::parse(&p.unit)).collect();
     let joined = |text: &dyn Fn(usize) -> String| shown.iter().map(|&j| text(j)).collect::<Vec<_>>().join(" ");
     xml.element_with("dcc:result", &[("refType", "centrical_covariance")], |xml| {
         xml.content("dcc:name", language.messages().covariance, language);
@@ -174,7 +184,7 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                 xml.element("si:realListXMLList", |xml| {
                     xml.leaf("si:labelXMLList", &joined(&|j| all[j].name.clone()));
                     xml.leaf("si:valueXMLList", &joined(&|j| number(all[j].value.unwrap_or(f64::NAN))));
-                    xml.leaf("si:unitXMLList", &joined(&|j| units[j].to_string()));
+                    xml.leaf("si:unitXMLList", &joined(&|j| units[j].d_si()));
                     xml.element("si:measurementUncertaintyMultivariateXMLList", |xml| {
                         xml.element("si:ellipsoidalRegionMUXMLList", |xml| {
                             xml.element("si:covarianceMatrixXMLList", |xml| {
@@ -183,14 +193,14 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                                         xml.element("si:covarianceXMLList", |xml| {
                                             let entry = |i: usize| number(result.covariance[i][j].unwrap_or(f64::NAN));
                                             xml.leaf("si:valueXMLList", &joined(&entry));
-                                            let unit = |i: usize| units[i].times(units[j]).to_string();
+                                            let unit = |i: usize| units[i].times(units[j]).d_si();
                                             xml.leaf("si:unitXMLList", &joined(&unit));
                                         });
                                     });
                                 }
                             });
                             xml.leaf("si:coverageFactorXMLList", &ellipsoid_factor(shown.len()));
-                            xml.leaf("si:coverageProbabilityXMLList", COVERAGE);
+                            xml.leaf("si:coverageProbabilityXMLList", &COVERAGE_PROBABILITY.to_string());
                             xml.leaf("si:distributionXMLList", "normal");
                         });
                     });
@@ -203,7 +213,7 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, language: Language) {
 /// `k` of the ellipsoid that holds a normal vector of `dimension` with probability 0.95: the root of the quantile of
 /// chi^2 (JCGM 102, 6.5).
 fn ellipsoid_factor(dimension: usize) -> String {
-    let quantile = ChiSquared::new(dimension as f64).map_or(f64::NAN, |law| law.inverse_cdf(0.95));
+    let quantile = ChiSquared::new(dimension as f64).map_or(f64::NAN, |law| law.inverse_cdf(COVERAGE_PROBABILITY));
     format!("{:.4}", quantile.sqrt())
 }
 
@@ -223,14 +233,14 @@ fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                             xml.element("si:realListXMLList", |xml| {
                                 let values: Vec<String> = errors.iter().map(|error| number(of(error)[axis])).collect();
                                 xml.leaf("si:valueXMLList", &values.join(" "));
-                                xml.leaf("si:unitXMLList", &Unit::parse("m/s^2").to_string());
+                                xml.leaf("si:unitXMLList", &Unit::ACCELERATION.d_si());
                             });
                         });
                     };
                     column(messages.specific_force, |e| e.force);
                     column(messages.before, |e| e.before);
                     column(messages.after, |e| e.after);
-                    column(messages.compensation_uncertainty, |e| reading_error::COVERAGE * e.prediction);
+                    column(messages.compensation_uncertainty, |e| COVERAGE_FACTOR * e.prediction);
                 });
             }
         });

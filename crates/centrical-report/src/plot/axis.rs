@@ -1,6 +1,7 @@
 //! From values to lengths along an axis, and where its ticks stand.
 
-use super::{Axis, Scale};
+use super::series::{Axis, Scale};
+use crate::number::{power_of_ten, superscript};
 
 /// An axis laid out over a length.
 pub(super) struct Ruler {
@@ -131,15 +132,6 @@ fn whole(value: f64) -> i32 {
     value as i32
 }
 
-/// `10` with its exponent raised; plain numbers near 1.
-pub(crate) fn power_of_ten(exponent: i32) -> String {
-    match exponent {
-        0 => "1".to_owned(),
-        1 => "10".to_owned(),
-        _ => format!("10{}", superscript(exponent)),
-    }
-}
-
 fn power_times(digit: u8, exponent: i32) -> String {
     match exponent {
         -1 => format!("0.{digit}"),
@@ -147,12 +139,6 @@ fn power_times(digit: u8, exponent: i32) -> String {
         1 => format!("{digit}0"),
         _ => format!("{digit}·10{}", superscript(exponent)),
     }
-}
-
-fn superscript(number: i32) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
-    number.to_string().chars().map(raised).collect()
 }
 
 #[cfg(test)]

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
-use super::axis::{Ruler, Tick, power_of_ten};
+use super::axis::{Ruler, Tick};
+use super::series::{Mark, Plot, Point, Series};
 use super::svg::{Escaped, Px, Value};
-use super::{Mark, Plot, Point, Series};
+use crate::number::power_of_ten;
 
 /// Lengths of a drawing, px.
 struct Sheet {

@@ -1,4 +1,5 @@
-//! What holds for every plot.
+//! What holds for every plot and document.
 
 mod palette;
 mod plot;
+mod russian;

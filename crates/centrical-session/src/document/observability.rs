@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use centrical::observability::{Condition, CorrelatedGroup, Need, Reason, Remedy};
 use centrical::plan::{ReadingRange, predict};
 use centrical::uncertainty::TypeB;
-use centrical::{Combination, MeasurementModel, SetPoint, Study, Weight, linear};
+use centrical::{Combination, Group, MeasurementModel, SetPoint, Study, Weight, linear};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -128,7 +128,8 @@ pub struct ObservedParameter {
     /// Unit.
     pub unit: String,
     /// bias, scale, misalignment, ...
-    pub group: &'static str,
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub group: Group,
     /// Whether it belongs to the instrument's error model.
     pub of_instrument: bool,
     /// Whether the experiment determines it.

@@ -1,5 +1,6 @@
 //! A plan as a document: schema `centrical-plan/1`. The same input gives the same bytes.
 
+use centrical::Group;
 use serde::Serialize;
 
 use crate::document::json;
@@ -19,8 +20,8 @@ pub struct PlanReport {
     pub program: Program,
     /// Title.
     pub title: String,
-    /// "I", "A", "D" or "worst".
-    pub criterion: &'static str,
+    /// What the plan is to make small.
+    pub criterion: CriterionName,
     /// Value of the criterion as an uncertainty: square root of the variance it is [m/s^2 for I, else 1].
     pub value: f64,
     /// The value in each scenario, if there are several: the expected one first.
@@ -36,9 +37,9 @@ pub struct PlanReport {
     pub continuous_gap: f64,
     /// Nodes of the branch and bound over sets of mountings.
     pub nodes: usize,
-    /// Of a plan for goals: no schedule of the candidates that is shorter keeps them, with type B as in this plan [s].
+    /// Of a plan for goals: no schedule of the candidates that is shorter meets them, with type B as in this plan [s].
     pub least_time: Option<f64>,
-    /// Whether it is for a unit of typical errors, signs in turn: see [`Planning::plan`].
+    /// Whether it is for a unit of typical errors, signs in turn: see [`centrical::plan::Task::plan`].
     pub for_typical: bool,
     /// Plateaus to choose from.
     pub candidates: usize,
@@ -54,6 +55,20 @@ pub struct PlanReport {
     pub goals: Vec<GoalReport>,
     /// Time against uncertainty.
     pub frontier: Vec<FrontierRow>,
+}
+
+/// What a plan is to make small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum CriterionName {
+    /// Mean uncertainty of the compensated reading.
+    I,
+    /// Mean uncertainty of the parameters.
+    A,
+    /// Volume of their joint uncertainty.
+    D,
+    /// Worst uncertainty over its goal.
+    #[serde(rename = "worst")]
+    Worst,
 }
 
 /// One mounting of a plan.
@@ -103,7 +118,8 @@ pub struct GoalReport {
     /// SI unit.
     pub unit: String,
     /// Group of the parameter.
-    pub group: &'static str,
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub group: Group,
     /// Wanted standard uncertainty.
     pub wanted: f64,
     /// Predicted by noise, speeds and priors.
@@ -112,13 +128,6 @@ pub struct GoalReport {
     pub type_b: Option<f64>,
     /// Predicted with type B.
     pub combined: Option<f64>,
-}
-
-impl GoalReport {
-    pub(crate) fn with_type_b(self) -> Self {
-        let rest = |(all, a): (f64, f64)| (all * all - a * a).max(0.0).sqrt();
-        Self { type_b: self.combined.zip(self.type_a).map(rest), ..self }
-    }
 }
 
 /// One time of the frontier. Values are uncertainties as in [`PlanReport::value`].

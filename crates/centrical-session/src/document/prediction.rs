@@ -1,5 +1,6 @@
 //! What a plan will know, as data for documents.
 
+use centrical::Group;
 use centrical::plan::{Prediction, ReadingRange};
 use centrical::uncertainty::{Degrees, coverage_factor};
 use serde::Serialize;
@@ -33,7 +34,8 @@ pub struct PredictedParameter {
     /// Unit.
     pub unit: String,
     /// bias, scale, misalignment, ...
-    pub group: &'static str,
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub group: Group,
     /// Standard uncertainty by noise, speeds and priors.
     pub type_a: Option<f64>,
     /// Combined standard uncertainty.
@@ -43,6 +45,7 @@ pub struct PredictedParameter {
     /// Effective degrees of freedom; null when infinite.
     pub degrees_of_freedom: Option<f64>,
     /// Whether lost combinations of unknowns leave doubt in it that is not in its uncertainties.
+    #[serde(rename = "leans_on_lost")]
     pub is_affected_by_null_space: bool,
 }
 

@@ -9,7 +9,7 @@ pub use self::budget_and_checks::{
     BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
 };
 pub use self::schema::{
-    CalibrationResult, ConvergenceSummary, FitSummary, ModelSummary, MountingSummary, ObservabilitySummary,
+    CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
     ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
     TermSummary,
 };

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical::plan::{Candidates, Costs, Criterion, Goal, ReadingRange, Robustness, Scenario};
-use centrical::uncertainty::TypeB;
+use centrical::plan::{Candidates, Costs, Criterion, Goal, Noise, PlanError, ReadingRange, Robustness, Scenario, Task};
 use centrical::{Experiment, MeasurementModel, STANDARD_GRAVITY, SetPoint};
 
 use super::form::{self, CandidatesTable, Form, MountingTable, Steps};
@@ -30,16 +29,10 @@ pub struct Planning {
     pub file: PathBuf,
     /// Title, as in a session.
     pub title: String,
-    /// What can be chosen.
-    pub candidates: Candidates,
-    /// What is made small within `time`, or the goals to be reached if there is none.
-    pub criterion: Criterion,
-    /// Time there is [s].
-    pub time: Option<f64>,
+    /// What can be chosen, what is made small, and within what time.
+    pub task: Task,
     /// Over what a compensated reading is judged.
     pub range: ReadingRange,
-    /// Standard uncertainties that the data will not show.
-    pub type_b: TypeB,
 }
 
 impl Planning {
@@ -72,12 +65,13 @@ impl Planning {
         Ok(Self {
             file: path.to_owned(),
             title: session.title.clone(),
-            candidates,
-            criterion,
-            time,
+            task: Task { candidates, criterion, time, type_b: session.type_b },
             range,
-            type_b: session.type_b,
         })
+    }
+
+    pub(crate) fn failed(&self, source: PlanError) -> Error {
+        Error::Planning { file: self.file.clone(), source }
     }
 }
 
@@ -208,8 +202,7 @@ fn costs(file: &Path, form: &Form) -> Result<Costs, Error> {
 fn scenarios(file: &Path, form: &Form, session: &Session, values: &ExpectedValues) -> Result<Vec<Scenario>, Error> {
     let plan = form.plan.as_ref();
     let given = |key: fn(&form::PlanTable) -> &Option<Quantity>| plan.and_then(|table| key(table).as_ref());
-    let expected = noise(file, given(|t| &t.noise), given(|t| &t.floor), given(|t| &t.duration))?;
-    let expected = centrical::plan::Noise { density: expected.density, floor: expected.floor };
+    let (expected, _) = noise(file, given(|t| &t.noise), given(|t| &t.floor), given(|t| &t.duration))?;
     let scenario =
         |model: MeasurementModel, noise| Scenario { nominal: expected_of(&model, values), model, noise, weight: 1.0 };
     let model = session.model()?;
@@ -218,11 +211,11 @@ fn scenarios(file: &Path, form: &Form, session: &Session, values: &ExpectedValue
     for density in &form.robust.noise {
         let meaning = "a spectral density above 0 and below 1 m/s^2/sqrt(Hz)";
         let density = at.bounded("noise", density, Dimension::NoiseDensity, (1e-15, 1.0), meaning)?;
-        scenarios.push(scenario(model.clone(), centrical::plan::Noise { density, ..expected }));
+        scenarios.push(scenario(model.clone(), Noise { density, ..expected }));
     }
     for floor in &form.robust.floor {
         let floor = at.bounded("floor", floor, Dimension::Acceleration, (0.0, 1.0), "a floor from 0 to 1 m/s^2")?;
-        scenarios.push(scenario(model.clone(), centrical::plan::Noise { floor, ..expected }));
+        scenarios.push(scenario(model.clone(), Noise { floor, ..expected }));
     }
     if !form.robust.extensions.is_empty() {
         let mut with = session.clone();

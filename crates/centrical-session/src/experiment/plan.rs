@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use centrical::plan::Normalised;
+use centrical::plan::{Noise, Normalised};
 use centrical::position::ThirdPosition;
 use centrical::uncertainty::TypeB;
 use centrical::{MeasurementModel, Parameter, Weight};
@@ -36,29 +36,17 @@ pub struct Plan {
     pub nominal: Vec<f64>,
     /// How well the mean of each set point will be known.
     pub weights: Vec<Weight>,
-    /// The noise that is reckoned with.
+    /// The assumed noise.
     pub noise: Noise,
     /// Standard uncertainties that the data will not show, as stated in `[uncertainty]`.
     pub type_b: TypeB,
 }
 
-/// White noise down to a floor: the variance of the mean of a plateau of duration `T` is `density^2 / (2 T) + floor^2`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Noise {
-    /// Square root of the one-sided spectral density [m/s^2/sqrt(Hz)].
-    pub density: f64,
-    /// What longer averaging does not get below [m/s^2].
-    pub floor: f64,
-    /// Duration of a plateau that gives none [s].
-    pub duration: f64,
-}
+/// The noise unless a file says otherwise: 20 ug/sqrt(Hz) and no floor, an ordinary quartz newtonometer.
+const USUAL_NOISE: Noise = Noise { density: 20e-6 * centrical::STANDARD_GRAVITY, floor: 0.0 };
 
-impl Default for Noise {
-    /// 20 ug/sqrt(Hz) and no floor, a minute each: an ordinary quartz newtonometer.
-    fn default() -> Self {
-        Self { density: 20e-6 * centrical::STANDARD_GRAVITY, floor: 0.0, duration: 60.0 }
-    }
-}
+/// Duration of a plateau unless a file says otherwise [s].
+const USUAL_DURATION: f64 = 60.0;
 
 /// As much of a file as tells a plan from a session, and which kind of plan.
 #[derive(Deserialize)]
@@ -108,11 +96,9 @@ impl Plan {
             schedule::set_points(file, &form.mounting, session.experiment.centrifuge.rotation)?;
         let table = form.plan.as_ref();
         let of_table = |key: fn(&PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
-        let noise = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;
-        let durations = schedule::durations(file, &form.mounting)?
-            .into_iter()
-            .map(|duration| duration.unwrap_or(noise.duration))
-            .collect();
+        let (noise, usual) = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;
+        let durations =
+            schedule::durations(file, &form.mounting)?.into_iter().map(|duration| duration.unwrap_or(usual)).collect();
         let model = session.model()?;
         Ok(Self {
             file: file.to_owned(),
@@ -137,10 +123,10 @@ impl Plan {
             Normalised { pair_relation: pair_relation(file, &form.model.pair_relation)?, ..Normalised::default() },
         )?;
         let mut experiment = plan.experiment();
-        let noise = noise(file, table.noise.as_ref(), table.floor.as_ref(), table.duration.as_ref())?;
+        let (noise, duration) = noise(file, table.noise.as_ref(), table.floor.as_ref(), table.duration.as_ref())?;
         let stated = form.centrifuge.speed_uncertainty.as_ref().map(|q| speed_uncertainty(file, q)).transpose()?;
         experiment.centrifuge.speed_uncertainty = stated.unwrap_or(0.0);
-        let weights = weights(&noise, vec![noise.duration; experiment.set_points.len()]);
+        let weights = weights(&noise, vec![duration; experiment.set_points.len()]);
         let error_model = terms::error_model(file, &form.model.error_model)?;
         let model = MeasurementModel::new(experiment, error_model, &extensions(file, &form.model)?);
         Ok(Self {
@@ -222,14 +208,15 @@ fn list(at: &TomlPath, key: &str, values: &[f64], (low, high): (f64, f64), meani
     }
 }
 
+/// Noise, and the duration of a plateau for which no other is given [s].
 pub(crate) fn noise(
     file: &Path,
     density: Option<&Quantity>,
     floor: Option<&Quantity>,
     per_plateau: Option<&Quantity>,
-) -> Result<Noise, Error> {
+) -> Result<(Noise, f64), Error> {
     let at = TomlPath::table(file, "plan");
-    let mut noise = Noise::default();
+    let mut noise = USUAL_NOISE;
     if let Some(density) = density {
         let meaning = "a spectral density above 0 and below 1 m/s^2/sqrt(Hz)";
         noise.density = at.bounded("noise", density, Dimension::NoiseDensity, (1e-15, 1.0), meaning)?;
@@ -238,13 +225,10 @@ pub(crate) fn noise(
         let meaning = "an acceleration from 0 to 10 m/s^2";
         noise.floor = at.bounded("floor", floor, Dimension::Acceleration, (0.0, 10.0), meaning)?;
     }
-    noise.duration = schedule::duration(&at, "duration", per_plateau)?.unwrap_or(noise.duration);
-    Ok(noise)
+    Ok((noise, schedule::duration(&at, "duration", per_plateau)?.unwrap_or(USUAL_DURATION)))
 }
 
 /// The covariances of the means, the same on all axes.
 fn weights(noise: &Noise, durations: Vec<f64>) -> Vec<Weight> {
-    let variance = |duration: f64| noise.density * noise.density / (2.0 * duration) + noise.floor * noise.floor;
-    let weight = |(set_point, duration)| Weight { set_point, covariance: Matrix3::identity() * variance(duration) };
-    durations.into_iter().enumerate().map(weight).collect()
+    durations.into_iter().enumerate().map(|(set_point, duration)| noise.weight(set_point, duration)).collect()
 }

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use centrical::{MeasurementModel, PriorError, STANDARD_GRAVITY};
+use centrical::{Group, MeasurementModel, Parameter, PriorError};
 
 use super::toml_path::TomlPath;
 use crate::error::Error;
 use crate::quantity::{Dimension, Quantity};
+use crate::units::writable;
 
 /// A prior as written.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,28 +66,25 @@ fn in_si(at: &TomlPath, model: &MeasurementModel, entry: &PriorEntry) -> Result<
         "rad" => Dimension::Angle,
         "m" => Dimension::Length,
         "m/s^2" => Dimension::Acceleration,
-        "1" if first.group == "misalignment" => {
+        "1" if first.group == Group::Misalignment => {
             return at.finite(&entry.name, &entry.standard_uncertainty, Dimension::Ratio).or_else(|error| {
                 at.finite(&entry.name, &entry.standard_uncertainty, Dimension::Angle).map_err(|_| error)
             });
         }
         "1" => Dimension::Ratio,
-        unit => return in_derived_unit(at, entry, unit),
+        _ => return in_derived_unit(at, entry, first),
     };
     at.finite(&entry.name, &entry.standard_uncertainty, dimension)
 }
 
-/// A coefficient in its SI unit or the unit in which people are shown it.
-fn in_derived_unit(at: &TomlPath, entry: &PriorEntry, unit: &str) -> Result<f64, Error> {
-    let customary: &[(&str, f64)] = match unit {
-        "s^2/m" => &[("ug/g^2", 1e-6 / STANDARD_GRAVITY)],
-        "s^4/m^2" => &[("ug/g^3", 1e-6 / (STANDARD_GRAVITY * STANDARD_GRAVITY))],
-        _ => &[],
-    };
-    let units: Vec<&str> = std::iter::once(unit).chain(customary.iter().map(|(name, _)| *name)).collect();
-    let factor = |written: &str| {
-        let known = customary.iter().copied().chain([(unit, 1.0), ("", 1.0)]);
-        known.into_iter().find(|(name, _)| *name == written).map(|(_, factor)| factor)
+/// A coefficient in its SI unit or a unit in which people are shown it.
+fn in_derived_unit(at: &TomlPath, entry: &PriorEntry, parameter: &Parameter) -> Result<f64, Error> {
+    let unit = &parameter.unit;
+    let known = writable(unit, parameter.group);
+    let units: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+    let factor = |written: &str| match written {
+        "" => Some(1.0),
+        _ => known.iter().find(|(name, _)| *name == written).map(|(_, factor)| *factor),
     };
     let value = match &entry.standard_uncertainty {
         Quantity::Number(number) => Some(*number),
@@ -110,7 +108,7 @@ fn refusal(at: &TomlPath, entry: &PriorEntry, error: PriorError) -> Error {
         PriorError::NotPositive { found, .. } => {
             (format!("a standard uncertainty of {found}"), "a positive number".to_owned())
         }
-        PriorError::Twice { parameter, .. } => (format!("a second prior on {parameter}"), "one".to_owned()),
+        PriorError::Duplicate { parameter, .. } => (format!("a second prior on {parameter}"), "one".to_owned()),
     };
     at.unexpected(&entry.name, found, expected)
 }

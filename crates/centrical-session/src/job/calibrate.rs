@@ -3,22 +3,10 @@
 use centrical::{Calibration, Data, MeasurementModel};
 
 use super::reduce::reduce;
-use crate::document::CalibrationResult;
+use crate::document::{CalibrationResult, Method};
 use crate::error::Error;
 use crate::experiment::{PlateauName, Session};
 use crate::reduced::Reduced;
-
-/// How the unknowns are estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Method {
-    /// Gauss-Newton on the exact model.
-    #[default]
-    Exact,
-    /// The same estimates by the recursive filter, iterated.
-    Recursive,
-    /// The linear fit of [K5.3] alone, with its second-order error.
-    Linear,
-}
 
 /// What is fitted: the plateau means of a session and the model of them.
 #[derive(Debug, Clone, PartialEq)]

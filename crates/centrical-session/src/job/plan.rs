@@ -1,11 +1,25 @@
-//! The best plan for the time, or the shortest for the goals, with all that is said of it.
+//! The best plan for the time, or the shortest for the goals, with its report.
 
 mod frontier;
 mod read;
 mod report;
 mod request;
 mod schedule_file;
-mod search;
+
+use std::path::Path;
 
 pub use self::read::{read_plan, read_planning};
+use self::report::report;
 pub use self::request::{PlanRequest, USUAL_LEVELS, USUAL_TIMES};
+use crate::document::PlanReport;
+use crate::error::Error;
+
+/// Plans as a plan file asks, and reports the plan.
+///
+/// # Errors
+/// As [`read_planning`]; [`Error::Planning`] when there is no plan, or it cannot be predicted.
+pub fn plan(file: &Path, request: &PlanRequest) -> Result<PlanReport, Error> {
+    let mut planning = read_planning(file)?;
+    let plan = planning.task.plan(request.certify).map_err(|source| planning.failed(source))?;
+    report(&planning, &plan, request)
+}

@@ -52,11 +52,10 @@ impl Case {
     /// The best plan from the candidates of the example.
     fn planned() -> (Self, TypeB) {
         let mut planning = read_planning(&example("best.toml")).unwrap();
-        let plan = planning.plan(false).unwrap();
-        let (experiment, weights) = planning.candidates.experiment_of(&plan.schedule);
-        let scenario = &planning.candidates.scenarios[0];
-        let model = scenario.model.in_experiment(experiment);
-        (Self { model, weights }, planning.type_b)
+        let plan = planning.task.plan(false).unwrap();
+        let (experiment, weights) = planning.task.candidates.experiment_of(&plan.schedule);
+        let model = planning.task.model().in_experiment(experiment);
+        (Self { model, weights }, planning.task.type_b)
     }
 
     /// Unknowns of so many typical magnitudes, signs in turn.
@@ -138,7 +137,7 @@ fn every_parameter_of_the_best_plan_scatters_as_predicted() {
 #[ignore = "some minutes; run by .ci/run predictions"]
 fn every_parameter_of_the_source_scatters_as_predicted() {
     let normalised = Case::normalised();
-    let stated = read_planning(&example("best.toml")).unwrap().type_b;
+    let stated = read_planning(&example("best.toml")).unwrap().task.type_b;
     let all = normalised.model.parameters().len();
     assert_eq!(normalised.compare("[K5.5], type A", &normalised.truth(0.0), TypeB::default()), all);
     normalised.compare("[K5.5] of a unit with errors, type A and B", &normalised.truth(0.3), stated);

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why a fit cannot be made at all. A rank that is short is not among them: it is an answer.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// There is nothing to fit.
     #[error("no plateau to fit: found 0, expected at least 1")]

@@ -3,6 +3,8 @@
 use centrical_compensate::Monomial;
 use nalgebra::{Matrix3, Vector3};
 
+use super::group::Group;
+
 /// `f' = f + sum_t c_t m_t(f) e_axis(t)`: a list of terms; their coefficients `c_t` are parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorModel {
@@ -15,8 +17,8 @@ pub struct ErrorModel {
 pub struct Term {
     /// Name of its coefficient: `G0_21`.
     pub name: String,
-    /// Group of the coefficient: bias, scale, misalignment, quadratic, cubic, ...
-    pub group: &'static str,
+    /// Group of the coefficient.
+    pub group: Group,
     /// Newtonometer it acts on, 0 to 2.
     pub axis: usize,
     /// What multiplies the coefficient.
@@ -33,6 +35,7 @@ pub(crate) struct Expanded {
 
 /// Terms beyond the source's model, which its text permits ("for example"), each off by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Extra {
     /// The cross terms `K_ip f_i f_p`, `K_io f_i f_o`, `K_po f_p f_o` of IEEE Std 1293: for every newtonometer `i`
     /// the products of two of the three components, 9 coefficients `K_1[f1*f2]`, ... Which of the other two axes is
@@ -70,14 +73,14 @@ impl Term {
     pub fn new(axis: usize, monomial: Monomial) -> Self {
         let axes = monomial.powers.iter().filter(|p| **p > 0).count();
         let group = match (axes, monomial.degree()) {
-            (2.., _) => "cross-coupling",
-            (_, 0) => "bias",
-            (_, 1) if monomial.sign_of.is_some() => "asymmetry",
-            (_, 1) if monomial.powers[axis] == 1 => "scale",
-            (_, 1) => "misalignment",
-            (_, 2) => "quadratic",
-            (_, 3) => "cubic",
-            _ => "higher order",
+            (2.., _) => Group::CrossCoupling,
+            (_, 0) => Group::Bias,
+            (_, 1) if monomial.sign_of.is_some() => Group::Asymmetry,
+            (_, 1) if monomial.powers[axis] == 1 => Group::Scale,
+            (_, 1) => Group::Misalignment,
+            (_, 2) => Group::Quadratic,
+            (_, 3) => Group::Cubic,
+            _ => Group::HigherOrder,
         };
         Self { name: format!("K_{}[{monomial}]", axis + 1), group, axis, monomial }
     }
@@ -101,20 +104,21 @@ impl ErrorModel {
     /// zero by the choice of the instrument frame (test `g0_is_lower_triangular`).
     pub fn kozlov_2017() -> Self {
         let term = |name: String, group, axis, monomial| Term { name, group, axis, monomial };
-        let mut terms: Vec<Term> = (0..3).map(|i| term(format!("df_{}", i + 1), "bias", i, Monomial::ONE)).collect();
+        let mut terms: Vec<Term> =
+            (0..3).map(|i| term(format!("df_{}", i + 1), Group::Bias, i, Monomial::ONE)).collect();
         for i in 0..3 {
             for j in 0..=i {
-                let group = if i == j { "scale" } else { "misalignment" };
+                let group = if i == j { Group::Scale } else { Group::Misalignment };
                 terms.push(term(format!("G0_{}{}", i + 1, j + 1), group, i, Monomial::power(j, 1)));
             }
         }
         for i in 0..3 {
             for j in 0..3 {
-                terms.push(term(format!("G1_{}{}", i + 1, j + 1), "quadratic", i, Monomial::power(j, 2)));
+                terms.push(term(format!("G1_{}{}", i + 1, j + 1), Group::Quadratic, i, Monomial::power(j, 2)));
             }
         }
         for i in 0..3 {
-            terms.push(term(format!("G2_{0}{0}", i + 1), "cubic", i, Monomial::power(i, 3)));
+            terms.push(term(format!("G2_{0}{0}", i + 1), Group::Cubic, i, Monomial::power(i, 3)));
         }
         Self { terms }
     }

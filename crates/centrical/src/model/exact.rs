@@ -130,7 +130,10 @@ impl MeasurementModel {
             }
             Kind::RadiusScale => Share::Arm(*r0_y),
             Kind::SpeedScale => Share::Rate,
-            _ => Share::None,
+            // Of another position or seat.
+            Kind::ElasticTurn { .. } | Kind::ArmStretch { .. } => Share::None,
+            // Not extensions: the geometry and the error model have them already.
+            Kind::Tilt(_) | Kind::Turn { .. } | Kind::Shift { .. } | Kind::ProofMass(_) | Kind::Term(_) => Share::None,
         }
     }
 
@@ -144,11 +147,13 @@ impl MeasurementModel {
         let omega = set_point.omega;
         let mut speed = partials.rate * (omega * (2.0 * omega + self.experiment.site.coriolis()));
         for (column, kind) in self.parameters.extensions() {
-            speed += match (self.extension_share(set_point, kind), kind) {
-                (Share::Turn(axis, per_unit), _) => partials.turn.column(axis) * (2.0 * per_unit * x[column]),
-                (Share::Arm(per_unit), Kind::ArmStretch { .. }) => partials.arm * per_unit * (2.0 * x[column]),
-                (Share::Rate, _) => partials.rate * (2.0 * omega * omega * x[column]),
-                _ => Vector3::zeros(),
+            speed += match self.extension_share(set_point, kind) {
+                Share::Turn(axis, per_unit) if kind.is_elastic() => {
+                    partials.turn.column(axis) * (2.0 * per_unit * x[column])
+                }
+                Share::Arm(per_unit) if kind.is_elastic() => partials.arm * per_unit * (2.0 * x[column]),
+                Share::Rate => partials.rate * (2.0 * omega * omega * x[column]),
+                Share::Turn(..) | Share::Arm(_) | Share::None => Vector3::zeros(),
             };
         }
         speed

@@ -16,7 +16,6 @@ use super::exact::{Geometry, Share};
 use super::experiment::{EARTH_RATE, SetPoint, Site};
 use super::frame::rotation;
 use super::measurement::MeasurementModel;
-use super::parameter::Kind;
 
 /// Where the arm is in its turn and how it moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,8 +66,7 @@ impl MeasurementModel {
 
     /// Whether the speed deforms anything.
     pub(crate) fn deforms(&self) -> bool {
-        let elastic = |kind| matches!(kind, Kind::ElasticTurn { .. } | Kind::ArmStretch { .. });
-        self.parameters.extensions().any(|(_, kind)| elastic(kind))
+        self.parameters.extensions().any(|(_, kind)| kind.is_elastic())
     }
 }
 

@@ -59,12 +59,16 @@ impl MeasurementModel {
                 let term = &self.error_model.terms[index];
                 Vector3::ith(term.axis, term.monomial.value((*f0).into()))
             }
-            _ => match self.extension_share(set_point, kind) {
-                Share::None => Vector3::zeros(),
-                Share::Turn(axis, per_unit) => n.by_turn(axis) * per_unit,
-                Share::Arm(per_unit) => n.p * n.d * per_unit,
-                Share::Rate => n.by_rate() * (set_point.omega * set_point.omega),
-            },
+            // Of another position or pair.
+            Kind::Turn { .. } | Kind::Shift { .. } => Vector3::zeros(),
+            Kind::ElasticTurn { .. } | Kind::ArmStretch { .. } | Kind::RadiusScale | Kind::SpeedScale => {
+                match self.extension_share(set_point, kind) {
+                    Share::None => Vector3::zeros(),
+                    Share::Turn(axis, per_unit) => n.by_turn(axis) * per_unit,
+                    Share::Arm(per_unit) => n.p * n.d * per_unit,
+                    Share::Rate => n.by_rate() * (set_point.omega * set_point.omega),
+                }
+            }
         }
     }
 }

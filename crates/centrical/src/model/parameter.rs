@@ -6,6 +6,7 @@ use centrical_compensate::Monomial;
 
 use super::error_model::ErrorModel;
 use super::experiment::{Experiment, PairRelation, ReferencePoint, STANDARD_GRAVITY};
+use super::group::Group;
 
 /// Standard deviation with which null directions are held about zero, in typical magnitudes of the parameters
 /// (5 mm, 10 mrad, 1e-2 of scale): ten times what any real unit shows, so that it holds and does not inform.
@@ -18,8 +19,8 @@ pub struct Parameter {
     pub name: String,
     /// Unit of its value, SI.
     pub unit: String,
-    /// Name of the group it belongs to: tilt, turn, shift, bias, scale, ...
-    pub group: &'static str,
+    /// The group it belongs to.
+    pub group: Group,
     /// What it is.
     pub kind: Kind,
     /// Power of acceleration in its unit, which people are shown in g to that power: -1 for s^2/m.
@@ -39,6 +40,7 @@ impl Parameter {
 
 /// What a parameter is in the measurement model. Axes are 0, 1, 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Kind {
     /// `alpha_1`, `alpha_2`: tilt of the rotation axis [rad].
     Tilt(usize),
@@ -82,6 +84,35 @@ pub enum Kind {
     SpeedScale,
 }
 
+impl Kind {
+    /// Whether it is a deformation that grows with the square of the speed.
+    pub(crate) fn is_elastic(self) -> bool {
+        match self {
+            Self::ElasticTurn { .. } | Self::ArmStretch { .. } => true,
+            Self::Tilt(_)
+            | Self::Turn { .. }
+            | Self::Shift { .. }
+            | Self::ProofMass(_)
+            | Self::Term(_)
+            | Self::RadiusScale
+            | Self::SpeedScale => false,
+        }
+    }
+
+    /// Whether it belongs to a position or to a pair of positions.
+    pub(crate) fn is_of_position(self) -> bool {
+        match self {
+            Self::Turn { .. } | Self::Shift { .. } | Self::ElasticTurn { .. } => true,
+            Self::Tilt(_)
+            | Self::ProofMass(_)
+            | Self::Term(_)
+            | Self::ArmStretch { .. }
+            | Self::RadiusScale
+            | Self::SpeedScale => false,
+        }
+    }
+}
+
 impl Parameter {
     /// Whether it belongs to the instrument: a coefficient of its error model, as opposed to the geometry.
     pub fn is_of_instrument(&self) -> bool {
@@ -91,6 +122,7 @@ impl Parameter {
 
 /// What an elastic deformation grows with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Law {
     /// `Omega^2` [rad^2/s^2].
     Speed,
@@ -132,6 +164,7 @@ impl Law {
 
 /// Unknowns beyond the source's 49, each off by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Extension {
     /// Elastic turn of the unit, three per position.
     ElasticTurn(Law),
@@ -188,7 +221,7 @@ impl Parameters {
     pub fn new(experiment: &Experiment, error_model: &ErrorModel, extensions: &[Extension]) -> Self {
         let mut list = Vec::new();
         for axis in 0..2 {
-            list.push(parameter(format!("alpha_{}", axis + 1), "rad", "tilt", Kind::Tilt(axis), 1e-3));
+            list.push(parameter(format!("alpha_{}", axis + 1), "rad", Group::Tilt, Kind::Tilt(axis), 1e-3));
         }
         let turn = turns(experiment, &mut list);
         let shift = shifts(experiment, &mut list);
@@ -196,7 +229,7 @@ impl Parameters {
             let first = list.len();
             for axis in 1..3 {
                 let name = format!("drho_{0}{0}", axis + 1);
-                list.push(parameter(name, "m", "proof mass", Kind::ProofMass(axis), 5e-4));
+                list.push(parameter(name, "m", Group::ProofMass, Kind::ProofMass(axis), 5e-4));
             }
             first
         });
@@ -249,7 +282,7 @@ impl Parameters {
         }
         let has_stem = |p: &Parameter| p.name.strip_prefix(name).is_some_and(|rest| rest.starts_with(['_', '[']));
         let columns = self.iter().enumerate();
-        columns.filter(|(_, p)| p.group == name || has_stem(p)).map(|(column, _)| column).collect()
+        columns.filter(|(_, p)| p.group.name() == name || has_stem(p)).map(|(column, _)| column).collect()
     }
 
     /// Coefficients of the error model's terms within `x`.
@@ -300,7 +333,7 @@ impl Index<usize> for Parameters {
     }
 }
 
-fn parameter(name: String, unit: &str, group: &'static str, kind: Kind, typical: f64) -> Parameter {
+fn parameter(name: String, unit: &str, group: Group, kind: Kind, typical: f64) -> Parameter {
     Parameter { name, unit: unit.to_owned(), group, kind, power_of_acceleration: 0, typical }
 }
 
@@ -310,7 +343,7 @@ fn turns(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<usize> {
         first_columns.push(list.len());
         for axis in 0..3 {
             let name = format!("delta_{}[{}]", axis + 1, position.id);
-            list.push(parameter(name, "rad", "turn", Kind::Turn { axis, position: k }, 1e-3));
+            list.push(parameter(name, "rad", Group::Turn, Kind::Turn { axis, position: k }, 1e-3));
         }
     }
     first_columns
@@ -333,7 +366,7 @@ fn shifts(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<Shared> {
         let id = if experiment.pair_relation == PairRelation::Free { &position.id } else { &position.pair };
         for axis in 0..2 {
             let name = format!("dR_{}[{id}]", axis + 1);
-            list.push(parameter(name, "m", "shift", Kind::Shift { axis, position: k }, 5e-4));
+            list.push(parameter(name, "m", Group::Shift, Kind::Shift { axis, position: k }, 5e-4));
         }
     }
     shared
@@ -354,7 +387,7 @@ fn extend(experiment: &Experiment, extension: Extension, list: &mut Vec<Paramete
                 for axis in 0..3 {
                     let name = format!("elastic_{}_{}[{}]", law.name(), axis + 1, position.id);
                     let kind = Kind::ElasticTurn { law, axis, position: k };
-                    list.push(per_law(name, "elastic turn", law, kind));
+                    list.push(per_law(name, Group::ElasticTurn, law, kind));
                 }
             }
         }
@@ -368,21 +401,21 @@ fn extend(experiment: &Experiment, extension: Extension, list: &mut Vec<Paramete
             }
         }
         Extension::RadiusScale => {
-            list.push(parameter("radius_scale".to_owned(), "1", "scale of radii", Kind::RadiusScale, 1e-3));
+            list.push(parameter("radius_scale".to_owned(), "1", Group::RadiusScale, Kind::RadiusScale, 1e-3));
         }
         Extension::SpeedScale => {
-            list.push(parameter("speed_scale".to_owned(), "1", "scale of speed", Kind::SpeedScale, 1e-3));
+            list.push(parameter("speed_scale".to_owned(), "1", Group::SpeedScale, Kind::SpeedScale, 1e-3));
         }
     }
 }
 
 fn stretch(name: String, law: Law, seat: Option<usize>) -> Parameter {
     let kind = Kind::ArmStretch { law, seat };
-    per_law(name, "arm stretch", law, kind)
+    per_law(name, Group::ArmStretch, law, kind)
 }
 
 /// A deformation per unit of its law.
-fn per_law(name: String, group: &'static str, law: Law, kind: Kind) -> Parameter {
+fn per_law(name: String, group: Group, law: Law, kind: Kind) -> Parameter {
     let power_of_acceleration = if law == Law::Load { -1 } else { 0 };
     let deformation = parameter(name, law.unit_of_inverse(), group, kind, 1e-3 / law.full_scale());
     Parameter { power_of_acceleration, ..deformation }

@@ -57,7 +57,7 @@ pub enum PriorError {
     },
     /// A parameter has a prior already.
     #[error("prior {name:?}: found a second prior on {parameter}, expected one")]
-    Twice {
+    Duplicate {
         /// As given.
         name: String,
         /// The parameter.
@@ -86,7 +86,7 @@ pub(crate) fn select(
             return Err(PriorError::MixedUnits { name, units: [first.unit.clone(), parameter.unit.clone()] });
         }
         if present.iter().any(|prior| prior.parameter == j) {
-            return Err(PriorError::Twice { name, parameter: parameter.name.clone() });
+            return Err(PriorError::Duplicate { name, parameter: parameter.name.clone() });
         }
     }
     Ok(selected.into_iter().map(|parameter| Prior { parameter, standard_uncertainty }).collect())

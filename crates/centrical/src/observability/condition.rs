@@ -9,7 +9,7 @@ use nalgebra::Matrix3;
 use super::addition::Addition;
 use super::remedy::{axis_attitudes, new_angle, new_id, new_radius, new_speed};
 use super::study::Study;
-use crate::model::{Kind, Position, SetPoint};
+use crate::model::{Position, SetPoint};
 
 /// "An order of magnitude or more" above gravity.
 const LOAD_RATIO: f64 = 10.0;
@@ -165,11 +165,12 @@ impl Study {
         let Ok(study) = Self::at_zero(self.model().clone(), weights) else {
             return self.observability().columns();
         };
-        let unused = self.model().parameters().iter().enumerate().filter(|(j, parameter)| {
-            let of_position =
-                matches!(parameter.kind, Kind::Turn { .. } | Kind::ElasticTurn { .. } | Kind::Shift { .. });
-            of_position && !study.acts(*j) && self.acts(*j)
-        });
+        let unused = self
+            .model()
+            .parameters()
+            .iter()
+            .enumerate()
+            .filter(|(j, parameter)| parameter.kind.is_of_position() && !study.acts(*j) && self.acts(*j));
         study.observability().lost() - unused.count()
     }
 

@@ -11,8 +11,8 @@ use super::direction::{self, NullDirection, TAKES_PART};
 /// Singular values below this part of the largest count as zero.
 ///
 /// Rounding in forming and decomposing a design of some thousand rows leaves zero singular values at about
-/// `1e-16` to `1e-14`; the smallest genuine ones of the field's experiments are at `1e-5` (one speed, model notes,
-/// section 7). The tolerance stands in the middle between `1e-15` and `1e-5`.
+/// `1e-16` to `1e-14`; the smallest genuine ones of the field's experiments are at `1e-5` (one speed,
+/// docs/source-and-findings.md). The tolerance stands in the middle between `1e-15` and `1e-5`.
 pub const RANK_TOLERANCE: f64 = 1e-10;
 
 /// A singular value within this factor of the tolerance makes the rank doubtful.

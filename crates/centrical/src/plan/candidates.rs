@@ -1,9 +1,10 @@
-//! What can be measured, what it costs, and what is chosen of it.
+//! What can be measured, what it costs, and the schedule that is chosen from it.
 
 use nalgebra::Matrix3;
 
+use super::atom::Atoms;
+use super::criterion::Robustness;
 use super::error::PlanError;
-use super::robustness::Robustness;
 use crate::model::{Experiment, MeasurementModel, Weight};
 
 /// White noise down to a floor: the variance of the mean of a plateau of duration `T` is `density^2 / 2T + floor^2`.
@@ -11,7 +12,7 @@ use crate::model::{Experiment, MeasurementModel, Weight};
 pub struct Noise {
     /// Square root of the one-sided spectral density [m/s^2/sqrt(Hz)].
     pub density: f64,
-    /// What longer averaging does not get below [m/s^2].
+    /// Limit of longer averaging [m/s^2].
     pub floor: f64,
 }
 
@@ -21,13 +22,13 @@ impl Noise {
         self.density * self.density / (2.0 * duration) + self.floor * self.floor
     }
 
-    /// How well the mean of a plateau of `duration` [s] will be known.
+    /// The covariance with which the mean of a plateau of `duration` [s] will be known.
     pub fn weight(&self, set_point: usize, duration: f64) -> Weight {
         Weight { set_point, covariance: Matrix3::identity() * self.variance(duration) }
     }
 }
 
-/// One state of affairs that the plan must be good for: noise, unknowns, priors.
+/// One state of unit and noise that a plan must be good for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     /// The unit's model. Its experiment has all candidate mountings, and the candidate plateaus as set points.
@@ -35,9 +36,9 @@ pub struct Scenario {
     /// Expected unknowns in the order of the model's parameters, about which the plan is linearised: zeros for a unit and
     /// seatings without errors.
     pub nominal: Vec<f64>,
-    /// The noise that is reckoned with.
+    /// The expected noise.
     pub noise: Noise,
-    /// Its weight among the scenarios; they are divided by their sum.
+    /// Its weight among the scenarios. Weights are divided by their sum.
     pub weight: f64,
 }
 
@@ -62,7 +63,7 @@ pub struct Costs {
 pub struct Candidates {
     /// What the plan must be good for; at least one.
     pub scenarios: Vec<Scenario>,
-    /// How their criteria are one.
+    /// How their criteria are combined.
     pub robustness: Robustness,
     /// Durations of a plateau [s], rising.
     pub durations: Vec<f64>,
@@ -72,21 +73,21 @@ pub struct Candidates {
     pub costs: Costs,
 }
 
-/// One stay at a plateau.
+/// One stay at a set point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Visit {
-    /// Index of the plateau among the set points of the candidates.
-    pub plateau: usize,
+    /// Index of the candidate: of the set point in [`Candidates::experiment`].
+    pub candidate: usize,
     /// Duration [s].
     pub duration: f64,
 }
 
-/// What is chosen, in the order of the candidates' mountings.
+/// The visits that are chosen, in the order of the candidates' mountings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
-    /// The stays.
+    /// The visits.
     pub visits: Vec<Visit>,
-    /// Time of all of it, set-ups included [s].
+    /// Time of the whole, set-ups included [s].
     pub time: f64,
 }
 
@@ -96,7 +97,7 @@ impl Candidates {
         self.scenarios[0].model.experiment()
     }
 
-    /// Number of plateaus to choose from.
+    /// Number of candidates.
     pub fn len(&self) -> usize {
         self.experiment().set_points.len()
     }
@@ -108,36 +109,56 @@ impl Candidates {
 
     /// Time of one visit [s], without the set-up of its mounting.
     pub fn visit_time(&self, visit: &Visit) -> f64 {
-        self.overhead(visit.plateau) + visit.duration
+        self.overhead(visit.candidate) + visit.duration
     }
 
     /// Time of a list of visits with the set-ups of the mountings they use [s].
     pub fn time_of(&self, visits: &[Visit]) -> f64 {
-        let experiment = self.experiment();
-        let mut used = vec![false; experiment.mountings.len()];
-        for visit in visits {
-            used[experiment.set_points[visit.plateau].mounting] = true;
-        }
+        let used = self.mountings_used(visits.iter().map(|visit| visit.candidate));
         self.set_up_time(&used) + visits.iter().map(|visit| self.visit_time(visit)).sum::<f64>()
     }
 
-    /// A schedule of these visits: mounting by mounting, in each rest first and then rising speeds. A plateau that is visited
-    /// again is so in another run through the speeds, so that each visit is approached anew and has a speed error of its own.
-    /// Of two visits of each plateau none follow one another but in a mounting that has one plateau.
+    /// A schedule of these visits: mounting by mounting, in each rest first and then rising speeds. A second visit of a
+    /// candidate belongs to another run through the speeds, so that each visit is approached anew and has a speed error of its
+    /// own. Two visits of one candidate follow one another only in a mounting with no other candidate.
     pub fn schedule(&self, mut visits: Vec<Visit>) -> Schedule {
         let set_points = &self.experiment().set_points;
-        let speed = |visit: &Visit| set_points[visit.plateau].omega.abs();
+        let speed = |visit: &Visit| set_points[visit.candidate].omega.abs();
         visits.sort_by(|a, b| {
             let by_speed = speed(a).total_cmp(&speed(b));
-            by_speed.then(a.plateau.cmp(&b.plateau)).then(a.duration.total_cmp(&b.duration))
+            by_speed.then(a.candidate.cmp(&b.candidate)).then(a.duration.total_cmp(&b.duration))
         });
         let time = self.time_of(&visits);
         let mut ordered = Vec::with_capacity(visits.len());
         for mounting in 0..self.experiment().mountings.len() {
-            let there = visits.iter().filter(|visit| set_points[visit.plateau].mounting == mounting);
+            let there = visits.iter().filter(|visit| set_points[visit.candidate].mounting == mounting);
             ordered.extend(in_runs(there.copied().collect()));
         }
         Schedule { visits: ordered, time }
+    }
+
+    /// The atoms of these candidates.
+    pub(super) fn atoms(&self) -> Atoms {
+        Atoms { candidates: self.len(), durations: self.durations.len() }
+    }
+
+    /// Time of a visit of an atom [s], without the set-up of its mounting.
+    pub(super) fn price(&self, atom: usize) -> f64 {
+        let atom = self.atoms().at(atom);
+        self.overhead(atom.candidate) + self.durations[atom.duration]
+    }
+
+    /// The mounting of an atom.
+    pub(super) fn mounting_of(&self, atom: usize) -> usize {
+        self.experiment().set_points[self.atoms().at(atom).candidate].mounting
+    }
+
+    /// Which mountings some candidates belong to.
+    pub(super) fn mountings_used(&self, candidates: impl Iterator<Item = usize>) -> Vec<bool> {
+        let experiment = self.experiment();
+        let mut used = vec![false; experiment.mountings.len()];
+        candidates.for_each(|candidate| used[experiment.set_points[candidate].mounting] = true);
+        used
     }
 
     /// Set-ups of the mountings in use [s]: `position` for each position, `seat` for each further mounting in it, and the
@@ -153,12 +174,12 @@ impl Candidates {
         time
     }
 
-    /// Ramp or turn before a plateau [s].
-    pub(super) fn overhead(&self, plateau: usize) -> f64 {
-        if self.experiment().set_points[plateau].is_rest() { self.costs.turn } else { self.costs.ramp }
+    /// Ramp or turn before a visit of a candidate [s].
+    fn overhead(&self, candidate: usize) -> f64 {
+        if self.experiment().set_points[candidate].is_rest() { self.costs.turn } else { self.costs.ramp }
     }
 
-    /// Refuses what no plan can be made of.
+    /// Refuses candidates from which no plan can be made.
     pub(super) fn check(&self) -> Result<(), PlanError> {
         let Some(first) = self.scenarios.first() else { return Err(PlanError::Nothing("scenarios")) };
         if first.model.experiment().set_points.is_empty() {
@@ -184,12 +205,12 @@ impl Candidates {
     }
 }
 
-/// Visits of one mounting, rising, in as many runs as its most visited plateau has visits. A further run, which has fewer
-/// plateaus, comes before the others, or after them where it would end on the plateau that they begin with.
+/// Visits of one mounting, rising, in as many runs as its most visited candidate has visits. A further run, which has fewer
+/// visits, precedes the others, or follows them where it would end on the candidate that they begin with.
 fn in_runs(rising: Vec<Visit>) -> Vec<Visit> {
     let mut runs: Vec<Vec<Visit>> = Vec::new();
     for visit in rising {
-        match runs.iter_mut().find(|run| run.iter().all(|other| other.plateau != visit.plateau)) {
+        match runs.iter_mut().find(|run| run.iter().all(|other| other.candidate != visit.candidate)) {
             Some(run) => run.push(visit),
             None => runs.push(vec![visit]),
         }
@@ -197,7 +218,7 @@ fn in_runs(rising: Vec<Visit>) -> Vec<Visit> {
     let mut ordered: Vec<Visit> = Vec::new();
     for mut run in runs {
         let meets =
-            |run: &[Visit], others: &[Visit]| run.last().map(|v| v.plateau) == others.first().map(|v| v.plateau);
+            |run: &[Visit], others: &[Visit]| run.last().map(|v| v.candidate) == others.first().map(|v| v.candidate);
         if meets(&run, &ordered) {
             ordered.append(&mut run);
         } else {

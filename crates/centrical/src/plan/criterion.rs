@@ -23,6 +23,17 @@ pub enum Criterion {
     Worst(Vec<Goal>),
 }
 
+/// How the criteria `Phi_s` of several scenarios are combined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Robustness {
+    /// Their weighted geometric mean, which needs no reference values.
+    #[default]
+    Mean,
+    /// The largest: what the plan reaches whichever scenario comes true. Weights do not count. It is of use where no scenario
+    /// is the worst for every plan: noise that is white, or that longer plateaus do not lower.
+    Worst,
+}
+
 /// Over what forces a compensated reading is judged: magnitudes uniform from 0 to `force`, all directions alike, mean of
 /// the three components.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +59,32 @@ pub enum Goal {
         /// Wanted standard uncertainty [m/s^2].
         uncertainty: f64,
     },
+}
+
+impl Goal {
+    /// The parameter, or "reading".
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Parameter { name, .. } => name,
+            Self::Reading { .. } => "reading",
+        }
+    }
+
+    /// Wanted standard uncertainty [its unit].
+    pub fn uncertainty(&self) -> f64 {
+        match self {
+            Self::Parameter { uncertainty, .. } | Self::Reading { uncertainty, .. } => *uncertainty,
+        }
+    }
+
+    /// The same goal with another wanted standard uncertainty.
+    pub fn with_uncertainty(&self, wanted: f64) -> Self {
+        let mut goal = self.clone();
+        match &mut goal {
+            Self::Parameter { uncertainty, .. } | Self::Reading { uncertainty, .. } => *uncertainty = wanted,
+        }
+        goal
+    }
 }
 
 /// Columns `K` in the unknowns of a model, `p x m`, and the goal that each belongs to.

@@ -1,6 +1,8 @@
-//! Why there is no plan.
+//! Errors of planning.
 
 use thiserror::Error;
+
+use crate::model::FitError;
 
 /// Why there is no plan.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -8,7 +10,7 @@ pub enum PlanError {
     /// There is nothing to choose from.
     #[error("found no {0}, expected at least one")]
     Nothing(&'static str),
-    /// A time or duration is none.
+    /// A time or duration is negative or not finite.
     #[error("found a time that is negative or not finite, expected durations above 0 and costs of 0 or more")]
     Time,
     /// A re-seating costs more than a change of position, which contains one.
@@ -17,22 +19,22 @@ pub enum PlanError {
     /// The scenarios are of different experiments.
     #[error("found scenarios of different experiments, expected the same candidates in all")]
     Experiments,
-    /// Expected unknowns that are not those of the model.
+    /// The expected unknowns are not those of the model.
     #[error("found expected unknowns of another number than the model's parameters, expected one for each")]
     Nominal,
-    /// A plateau's noise is none.
-    #[error("candidate {}: found noise that is no covariance, expected finite noise above 0", plateau + 1)]
+    /// The noise of a candidate is invalid.
+    #[error("candidate {}: found noise that is no covariance, expected finite noise above 0", candidate + 1)]
     Noise {
-        /// Index of the plateau.
-        plateau: usize,
+        /// Its index.
+        candidate: usize,
     },
-    /// A goal names no parameter.
+    /// A goal names an unknown parameter.
     #[error("goal {name:?}: found no such parameter, expected one of the instrument")]
     Unknown {
         /// As given.
         name: String,
     },
-    /// Not one visit fits into the time.
+    /// No visit fits into the time.
     #[error("found {found:.0} s, expected at least {least:.0} s, the set-up of one mounting and its shortest plateau")]
     TooShort {
         /// Time given [s].
@@ -40,7 +42,7 @@ pub enum PlanError {
         /// Least time in which anything can be measured [s].
         least: f64,
     },
-    /// A goal is below what the stated type B leaves of it.
+    /// A goal is below its type B uncertainty.
     #[error(
         "goal {name:?}: found one that the stated type B uncertainties alone miss by a factor of {factor:.3} when all candidates \
          are measured, expected one above them: no plan lowers gravity, radii and attitudes as they are stated"
@@ -51,10 +53,13 @@ pub enum PlanError {
         /// Its type B uncertainty over the goal.
         factor: f64,
     },
-    /// The goals are not reached by all that there is.
+    /// All candidates together do not reach the goals.
     #[error("found goals that all candidates together miss by a factor of {factor:.3}, expected goals that they reach")]
     OutOfReach {
         /// Worst uncertainty over its goal.
         factor: f64,
     },
+    /// A schedule cannot be predicted.
+    #[error(transparent)]
+    Prediction(#[from] FitError),
 }

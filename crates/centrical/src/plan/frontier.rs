@@ -1,4 +1,4 @@
-//! Time against uncertainty: the best plans, and what a uniform plan gives for the same time.
+//! Time against uncertainty: the best plans, and a uniform plan for the same time.
 
 use super::candidates::{Candidates, Schedule, Visit};
 use super::criterion::Criterion;
@@ -36,13 +36,13 @@ pub fn frontier(
 }
 
 impl Candidates {
-    /// The uniform plan: every plateau once, all for the same duration, in `time` [s]. Returns the schedule and its criterion
+    /// The uniform plan: every candidate once, all for the same duration, in `time` [s]. Returns the schedule and its criterion
     /// (variance units); `None` if set-ups and ramps leave nothing to measure in.
     ///
     /// # Errors
     /// As [`best_for_time`], but for the time.
     pub fn uniform(&self, criterion: &Criterion, time: f64) -> Result<Option<(Schedule, f64)>, PlanError> {
-        let visits = |duration: f64| (0..self.len()).map(|plateau| Visit { plateau, duration }).collect::<Vec<_>>();
+        let visits = |duration: f64| (0..self.len()).map(|candidate| Visit { candidate, duration }).collect::<Vec<_>>();
         let duration = (time - self.time_of(&visits(0.0))) / self.len() as f64;
         if duration <= 0.0 {
             return Ok(None);

@@ -1,12 +1,13 @@
 //! The information of a design, as a triangular factor, and how the criterion answers to more of it.
 //!
-//! Unknowns are in units of ten typical magnitudes, so the hold is the identity: `M = E + priors + sum N`, each visit
-//! adding `J^T N J`, `N = Sigma^-1`. With `M = R^T R` by QR of the stacked rows and `P = R^-1`, the covariance is `P P^T` and
-//! is never formed. A change `dN` at plateau `c` changes it by `-C J^T Q J C`, `Q = dN (E + A dN)^-1`, `A = J C J^T`, so a
+//! Unknowns are in units of ten typical magnitudes, so the hold is the identity: `M = E + priors + sum J^T N J` over the
+//! visits, `N = Sigma^-1`. With `M = R^T R` by QR of the stacked rows and `P = R^-1`, the covariance is `P P^T` and
+//! is never formed. A change `dN` at candidate `c` changes it by `-C J^T Q J C`, `Q = dN (E + A dN)^-1`, `A = J C J^T`, so a
 //! goal `r = sum |P^T k|^2` changes by `-tr(Q G)`, `G = sum (J C k)(J C k)^T`: all in 3x3.
 
 use nalgebra::{Cholesky, DMatrix, Matrix3, MatrixXx3, Vector3};
 
+use super::atom::Atoms;
 use super::candidates::{Candidates, Scenario};
 use super::criterion::{Columns, Criterion};
 use super::error::PlanError;
@@ -14,17 +15,20 @@ use crate::linalg::fold::fold;
 use crate::model::whitening::total_covariance;
 use crate::model::{Linearisation, MeasurementModel, NULL_HOLD, SetPoint, Weight};
 
-/// Plateaus whose rows are folded in at once: as many as stay in the nearest cache with the triangle.
+/// Candidates whose rows are folded in at once: as many as stay in the nearest cache with the triangle.
 const AT_ONCE: usize = 16;
 
-/// A scenario made ready: rows of all plateaus, precisions of all visits, what is judged.
+/// Fewer visits than this give no information.
+const NOTHING: f64 = 1e-9;
+
+/// A scenario linearised at its expected unknowns: rows of all candidates, precisions of all atoms, columns of the criterion.
 #[derive(Debug, Clone)]
-pub(super) struct Scene {
+pub(super) struct LinearisedScenario {
     /// Its part among the scenarios; they sum to 1.
     pub weight: f64,
-    /// By plateau: non-zero columns of `J`, scaled.
+    /// By candidate: non-zero columns of `J`, scaled.
     jacobians: Vec<Vec<(usize, Vector3<f64>)>>,
-    /// By atom (plateau, then duration): `Sigma^-1`.
+    /// By atom: `Sigma^-1`.
     precisions: Vec<Matrix3<f64>>,
     /// Roots of the diagonal of `M_0`.
     prior: Vec<f64>,
@@ -32,7 +36,7 @@ pub(super) struct Scene {
     goals: usize,
 }
 
-/// A design's information in one scene.
+/// A design's information in one scenario.
 #[derive(Debug, Clone)]
 pub(super) struct Factor {
     triangle: DMatrix<f64>,
@@ -49,7 +53,7 @@ pub(super) struct Factor {
 pub(super) struct Smooth {
     /// Logarithm of the smooth criterion.
     pub value: f64,
-    /// The same with the weights of the goals as they are: what the bound of the true criterion starts from.
+    /// The same with the weights of the goals held: the bound of the true criterion starts from it.
     pub support: f64,
     /// `v` by column.
     pub columns: Vec<f64>,
@@ -57,7 +61,7 @@ pub(super) struct Smooth {
     pub parts: Vec<f64>,
 }
 
-impl Scene {
+impl LinearisedScenario {
     /// The scenario with its criterion; `total` is the sum of the weights of all.
     pub fn new(
         scenario: &Scenario,
@@ -66,7 +70,7 @@ impl Scene {
         total: f64,
     ) -> Result<Self, PlanError> {
         let model = &scenario.model;
-        let mut precisions = Vec::with_capacity(candidates.len() * candidates.durations.len());
+        let mut precisions = Vec::with_capacity(candidates.atoms().count());
         for n in 0..candidates.len() {
             for &duration in &candidates.durations {
                 let weight = scenario.noise.weight(n, duration);
@@ -76,7 +80,7 @@ impl Scene {
         Ok(Self { weight: scenario.weight / total, precisions, ..Self::of(model, &scenario.nominal, criterion)? })
     }
 
-    /// The rows of all plateaus of `model` and what is judged, without precisions.
+    /// The rows of all set points of `model` and the columns of the criterion, without precisions.
     pub fn of(model: &MeasurementModel, nominal: &[f64], criterion: &Criterion) -> Result<Self, PlanError> {
         let scale: Vec<f64> = model.parameters().iter().map(|p| NULL_HOLD * p.typical).collect();
         let jacobian = |set_point| {
@@ -100,13 +104,23 @@ impl Scene {
         &self.precisions[atom]
     }
 
-    /// The factor of `M_0` and so much information at some plateaus.
+    /// Information of a design, by candidate.
+    pub fn information(&self, atoms: Atoms, visits: impl Fn(usize) -> f64) -> Vec<(usize, Matrix3<f64>)> {
+        let of_candidate = |c: usize| {
+            let mut visited = atoms.of(c).filter(|&x| visits(x) > NOTHING).peekable();
+            visited.peek()?;
+            Some((c, visited.fold(Matrix3::zeros(), |sum, x| sum + self.precisions[x] * visits(x))))
+        };
+        (0..atoms.candidates).filter_map(of_candidate).collect()
+    }
+
+    /// The factor of `M_0` and the information at some candidates.
     pub fn factor(&self, information: &[(usize, Matrix3<f64>)]) -> Factor {
         let p = self.prior.len();
         self.stacked(&DMatrix::from_fn(p, p, |i, j| if i == j { self.prior[i] } else { 0.0 }), information)
     }
 
-    /// The factor with more information at some plateaus.
+    /// The factor with more information at some candidates.
     pub fn with(&self, factor: &Factor, information: &[(usize, Matrix3<f64>)]) -> Factor {
         self.stacked(&factor.triangle, information)
     }
@@ -116,10 +130,10 @@ impl Scene {
         let mut triangle = triangle.clone();
         for some in information.chunks(AT_ONCE) {
             let mut rows = DMatrix::zeros(3 * some.len(), p);
-            for (n, (plateau, precision)) in some.iter().enumerate() {
-                // What is no information adds no rows.
+            for (n, (candidate, precision)) in some.iter().enumerate() {
+                // A zero precision adds no rows.
                 let Some(half) = Cholesky::new(*precision).map(|factor| factor.l().transpose()) else { continue };
-                for (column, derivative) in &self.jacobians[*plateau] {
+                for (column, derivative) in &self.jacobians[*candidate] {
                     rows.fixed_view_mut::<3, 1>(3 * n, *column).copy_from(&(half * derivative));
                 }
             }
@@ -178,10 +192,10 @@ impl Scene {
         }
     }
 
-    /// `f_m = J C k_m` of a plateau in rows, `m x 3`.
-    pub fn response(&self, factor: &Factor, plateau: usize) -> MatrixXx3<f64> {
+    /// `f_m = J C k_m` of a candidate in rows, `m x 3`.
+    pub fn response(&self, factor: &Factor, candidate: usize) -> MatrixXx3<f64> {
         let mut response = MatrixXx3::zeros(factor.reach.nrows());
-        for (column, derivative) in &self.jacobians[plateau] {
+        for (column, derivative) in &self.jacobians[candidate] {
             for i in (0..3).filter(|&i| derivative[i] != 0.0) {
                 response.column_mut(i).axpy(derivative[i], &factor.reach.column(*column), 1.0);
             }
@@ -189,12 +203,12 @@ impl Scene {
         response
     }
 
-    /// `J P` of some plateaus, `p x 3` each, side by side.
-    pub fn views(&self, factor: &Factor, plateaus: &[usize]) -> DMatrix<f64> {
+    /// `J P` of some candidates, `p x 3` each, side by side.
+    pub fn views(&self, factor: &Factor, candidates: &[usize]) -> DMatrix<f64> {
         let p = self.prior.len();
-        let mut views = DMatrix::zeros(p, 3 * plateaus.len());
-        for (n, &plateau) in plateaus.iter().enumerate() {
-            for (column, derivative) in &self.jacobians[plateau] {
+        let mut views = DMatrix::zeros(p, 3 * candidates.len());
+        for (n, &candidate) in candidates.iter().enumerate() {
+            for (column, derivative) in &self.jacobians[candidate] {
                 for i in 0..3 {
                     if derivative[i] != 0.0 {
                         views.column_mut(3 * n + i).axpy(derivative[i], &factor.root.column(*column), 1.0);
@@ -242,16 +256,16 @@ impl Scene {
         self.columns.is_determinant
     }
 
-    /// All that a change at one plateau needs to be judged.
-    pub fn insight(&self, factor: &Factor, plateau: usize) -> Insight {
-        let view = self.views(factor, &[plateau]);
-        let response = self.response(factor, plateau);
+    /// The matrices by which changes at one candidate are judged.
+    pub fn insight(&self, factor: &Factor, candidate: usize) -> Insight {
+        let view = self.views(factor, &[candidate]);
+        let response = self.response(factor, candidate);
         let a = view.transpose() * &view;
         Insight { a: Matrix3::from_fn(|i, j| a[(i, j)]), by_goal: self.by_goal(&response) }
     }
 
-    /// Logarithm of the criterion after a change `dn` of the information at a plateau; infinite if it would take away what
-    /// is not there.
+    /// Logarithm of the criterion after a change `dn` of the information at a candidate; infinite if it would take away more
+    /// than there is.
     pub fn value_after(&self, factor: &Factor, insight: &Insight, dn: &Matrix3<f64>) -> f64 {
         let system = Matrix3::identity() + insight.a * dn;
         // Positive for any gain; a loss of nearly all that is known along a direction is no number to rely on.
@@ -276,14 +290,14 @@ impl Scene {
     }
 }
 
-/// What a change at one plateau needs to be judged: `A` and `G` by goal.
+/// The matrices by which changes at one candidate are judged: `A`, and `G` by goal.
 #[derive(Debug, Clone)]
 pub(super) struct Insight {
     a: Matrix3<f64>,
     by_goal: Vec<Matrix3<f64>>,
 }
 
-/// At the expected unknowns by the exact model, at none by [K5.3], which is the same there.
+/// At the expected unknowns by the exact model; at zero by [K5.3], which is the same there.
 fn linearised(model: &MeasurementModel, nominal: &[f64], set_point: &SetPoint) -> Linearisation {
     if nominal.iter().all(|value| *value == 0.0) {
         model.linearise_at_zero(set_point)
@@ -292,21 +306,16 @@ fn linearised(model: &MeasurementModel, nominal: &[f64], set_point: &SetPoint) -
     }
 }
 
-/// `Sigma^-1` of a plateau's mean, its speed error included.
+/// `Sigma^-1` of the mean of a plateau, its speed error included.
 pub(super) fn precision(model: &MeasurementModel, nominal: &[f64], weight: &Weight) -> Result<Matrix3<f64>, PlanError> {
     let set_points = &model.experiment().set_points;
     let speed_error = linearised(model, nominal, &set_points[weight.set_point]).speed_error;
     let total = total_covariance(&weight.covariance, &speed_error);
     let precision = total.cholesky().map(|factor| factor.inverse());
-    precision.filter(|p| p.iter().all(|v| v.is_finite())).ok_or(PlanError::Noise { plateau: weight.set_point })
+    precision.filter(|p| p.iter().all(|v| v.is_finite())).ok_or(PlanError::Noise { candidate: weight.set_point })
 }
 
 /// `tr(A B)` of two matrices, the second symmetric.
 pub(super) fn trace_of_product(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
     a.component_mul(b).sum()
-}
-
-/// Sum of the information of some visits of one plateau.
-pub(super) fn sum_of(parts: impl Iterator<Item = Matrix3<f64>>) -> Matrix3<f64> {
-    parts.fold(Matrix3::zeros(), |sum, part| sum + part)
 }

@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::model::position::{ThirdPosition, kozlov_2017};
-use crate::model::{Centrifuge, Experiment, Mounting, PairRelation, ReferencePoint, SetPoint, Site, Unit};
+use crate::model::{
+    Centrifuge, Experiment, Mounting, PairRelation, ReferencePoint, STANDARD_GRAVITY, SetPoint, Site, Unit,
+};
 
 /// The normalised experiment [K5.5]: six positions, `R* Omega*^2 / g = 10`, speeds `Omega* sqrt(m)`.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +45,7 @@ impl Default for Normalised {
             levels: vec![0.0, 1.0, 2.0, 3.0],
             rest_angles: vec![0.0, PI],
             arm: 0.5,
-            gravity: crate::STANDARD_GRAVITY,
+            gravity: STANDARD_GRAVITY,
         }
     }
 }

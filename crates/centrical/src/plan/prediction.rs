@@ -15,13 +15,13 @@
 
 use nalgebra::{DMatrix, Vector3};
 
-use super::candidates::{Candidates, Schedule};
+use super::candidates::{Candidates, Schedule, Visit};
 use super::criterion::ReadingRange;
 use crate::fit::{Calibration, Data, Structure};
 use crate::model::{Experiment, FitError, MeasurementModel, Mounting, Observation, Weight};
 use crate::uncertainty::{Budget, Compensated, CurvePoint, TypeB};
 
-/// What a plan will know.
+/// The uncertainties that are expected of a plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
     model: MeasurementModel,
@@ -34,7 +34,7 @@ pub struct Prediction {
 /// model's parameters; all zero for a plan, which is predicted for typical ones where its rank is short).
 ///
 /// # Errors
-/// [`FitError`] when a weight cannot be one.
+/// [`FitError`] when a weight is invalid.
 pub fn predict(
     model: &MeasurementModel,
     weights: &[Weight],
@@ -151,7 +151,7 @@ impl Candidates {
     pub fn experiment_of(&self, schedule: &Schedule) -> (Experiment, Vec<Weight>) {
         let all = self.experiment();
         let used: Vec<usize> = (0..all.mountings.len())
-            .filter(|&m| schedule.visits.iter().any(|v| all.set_points[v.plateau].mounting == m))
+            .filter(|&m| schedule.visits.iter().any(|v| all.set_points[v.candidate].mounting == m))
             .collect();
         let kept: Vec<usize> =
             (0..all.positions.len()).filter(|&k| used.iter().any(|&m| all.mountings[m].position == k)).collect();
@@ -160,8 +160,8 @@ impl Candidates {
             let Mounting { position, arm_y } = all.mountings[*m];
             Mounting { position: place(&kept, position), arm_y }
         };
-        let set_point = |visit: &super::Visit| {
-            let mut set_point = all.set_points[visit.plateau];
+        let set_point = |visit: &Visit| {
+            let mut set_point = all.set_points[visit.candidate];
             set_point.mounting = place(&used, set_point.mounting);
             set_point
         };
@@ -171,7 +171,7 @@ impl Candidates {
             set_points: schedule.visits.iter().map(set_point).collect(),
             ..all.clone()
         };
-        let weight = |(n, visit): (usize, &super::Visit)| self.scenarios[0].noise.weight(n, visit.duration);
+        let weight = |(n, visit): (usize, &Visit)| self.scenarios[0].noise.weight(n, visit.duration);
         (experiment, schedule.visits.iter().enumerate().map(weight).collect())
     }
 }

@@ -37,13 +37,13 @@ pub fn kozlov(experiment: Experiment) -> MeasurementModel {
 
 /// Every extension and further terms at once: what a Jacobian must get right.
 pub fn everything(experiment: Experiment) -> MeasurementModel {
-    use centrical::{Monomial, Term};
+    use centrical::{Group, Monomial, Term};
     let mut error_model = ErrorModel::kozlov_2017();
     for axis in 0..3 {
         for (name, monomial) in
             [("cross", Monomial::product(axis, (axis + 1) % 3)), ("odd", Monomial::odd_square(axis))]
         {
-            error_model.terms.push(Term { name: format!("{name}_{axis}"), group: "other", axis, monomial });
+            error_model.terms.push(Term { name: format!("{name}_{axis}"), group: Group::HigherOrder, axis, monomial });
         }
     }
     let extensions = [

@@ -1,5 +1,5 @@
 use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
-use centrical::{Experiment, Linearisation, MeasurementModel, Monomial, PairRelation, ReferencePoint, SetPoint};
+use centrical::{Experiment, Group, Linearisation, MeasurementModel, Monomial, PairRelation, ReferencePoint, SetPoint};
 use nalgebra::{DMatrix, Vector3};
 
 use crate::common::{Random, everything, experiment, kozlov, truth};
@@ -154,7 +154,7 @@ fn mean_over_a_revolution_is_exact() {
     let mut finer = centrical::ErrorModel::kozlov_2017();
     finer.terms.push(centrical::Term {
         name: "none".to_owned(),
-        group: "none",
+        group: Group::HigherOrder,
         axis: 0,
         monomial: Monomial { powers: [60, 0, 0], sign_of: None },
     });

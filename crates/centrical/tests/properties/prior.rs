@@ -98,7 +98,7 @@ fn priors_that_cannot_be_are_refused() {
         assert!(matches!(refused("drho", sigma), PriorError::NotPositive { .. }));
     }
     let twice = opposite().with_prior("drho_22", 1e-4).unwrap().with_prior("proof mass", 1e-4);
-    assert!(matches!(twice, Err(PriorError::Twice { .. })));
+    assert!(matches!(twice, Err(PriorError::Duplicate { .. })));
     let both_laws = [Extension::ElasticTurn(Law::Speed), Extension::ElasticTurn(Law::Load)];
     let mixed = MeasurementModel::new(
         experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]),

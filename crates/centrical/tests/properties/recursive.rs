@@ -6,8 +6,8 @@ use centrical::fit::Follower;
 use centrical::fit::filter::{Filter, Lifetimes, Readings};
 use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::{
-    Calibration, Data, ErrorModel, Experiment, Extension, Extra, Fit, FitError, Law, MeasurementModel, Observation,
-    PairRelation, STANDARD_GRAVITY, Termination, rotation,
+    Calibration, Data, ErrorModel, Experiment, Extension, Extra, Fit, FitError, Group, Law, MeasurementModel,
+    Observation, PairRelation, STANDARD_GRAVITY, Termination, rotation,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -59,8 +59,8 @@ fn random_design(random: &mut Random) -> (MeasurementModel, Vec<Observation>) {
             error_model = error_model.with(extra);
         }
     }
-    let gone = ["cubic", "quadratic", "misalignment", "none"][random.below(4)];
-    error_model.terms.retain(|term| term.group != gone);
+    let gone = [Some(Group::Cubic), Some(Group::Quadratic), Some(Group::Misalignment), None][random.below(4)];
+    error_model.terms.retain(|term| Some(term.group) != gone);
     let extensions = [
         Extension::ElasticTurn(Law::Speed),
         Extension::ElasticTurn(Law::Load),

@@ -1,5 +1,5 @@
 use centrical::uncertainty::{Candidate, rivals_of, select};
-use centrical::{ErrorModel, MeasurementModel, Monomial, Term};
+use centrical::{ErrorModel, Group, MeasurementModel, Monomial, Term};
 use rayon::prelude::*;
 
 use crate::common::{Random, observations, truth};
@@ -15,7 +15,7 @@ fn with(extra: &[Term]) -> MeasurementModel {
 }
 
 fn cross() -> Term {
-    Term { name: "K_2[f1*f2]".to_owned(), group: "cross-coupling", axis: 1, monomial: Monomial::product(0, 1) }
+    Term { name: "K_2[f1*f2]".to_owned(), group: Group::CrossCoupling, axis: 1, monomial: Monomial::product(0, 1) }
 }
 
 /// A term of five standard uncertainties is kept at least 95 times in 100, an absent one rejected at least 95 times: by

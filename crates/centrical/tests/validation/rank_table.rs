@@ -4,7 +4,7 @@
 
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition::{self, AxisOneDown, AxisOneUp};
-use centrical::{ErrorModel, Extension, Law, MeasurementModel, Observability, PairRelation, Study, Weight};
+use centrical::{ErrorModel, Extension, Group, Law, MeasurementModel, Observability, PairRelation, Study, Weight};
 use nalgebra::Matrix3;
 
 use crate::common::rank_table::{self, CASES, Case, RELATIONS, spread};
@@ -107,7 +107,7 @@ fn instrument_is_estimable_with_two_radii_rest_and_two_speeds() {
             for rho in [spread(), Matrix3::zeros()] {
                 let study = study(&plan(case, AxisOneUp, relation, rho), &[]);
                 for (j, parameter) in study.model().parameters().iter().enumerate() {
-                    let may_be_lost = ["shift", "proof mass"].contains(&parameter.group);
+                    let may_be_lost = matches!(parameter.group, Group::Shift | Group::ProofMass);
                     assert!(may_be_lost || study.observability().is_estimable(j), "{}: {}", case.0, parameter.name);
                 }
                 assert!(study.lost_of_instrument().is_empty());

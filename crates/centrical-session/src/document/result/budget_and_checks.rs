@@ -22,8 +22,9 @@ pub struct BudgetSummary {
 /// What one source leaves in the parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BudgetSource {
-    /// Its name.
-    pub name: String,
+    /// Which.
+    #[serde(with = "crate::document::words")]
+    pub name: Source,
     /// Whether the fit weighs it (noise, speed of each plateau, priors); what it does not weigh, the session states.
     #[serde(default)]
     pub weighed_in_fit: bool,
@@ -124,7 +125,7 @@ impl BudgetSummary {
     pub(crate) fn new(budget: &Budget, count: usize) -> Self {
         let known = |j: usize| budget.standard_uncertainty(j);
         let source = |c: &centrical::uncertainty::Contribution| BudgetSource {
-            name: Source::name(c.source).to_owned(),
+            name: c.source,
             weighed_in_fit: c.source.is_weighed(),
             standard_uncertainty: (0..count).map(|j| known(j).map(|_| c.standard_uncertainty(j))).collect(),
         };

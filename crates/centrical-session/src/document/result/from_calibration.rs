@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
 use super::schema::{
-    CalibrationResult, ConvergenceSummary, FitSummary, ModelSummary, MountingSummary, ObservabilitySummary,
+    CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
     ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, TermSummary,
 };
 use crate::document::steadiness::{DriftSummary, TiltSummary};
@@ -82,8 +82,8 @@ impl ModelSummary {
         });
         Self {
             error_model: terms.collect(),
-            pair_relation: experiment.pair_relation.name().to_owned(),
-            reference: experiment.unit.reference.name().to_owned(),
+            pair_relation: experiment.pair_relation,
+            reference: experiment.unit.reference,
             gravity: experiment.site.gravity,
             latitude: experiment.site.latitude,
             speed_uncertainty: model.experiment().centrifuge.speed_uncertainty,
@@ -119,7 +119,7 @@ impl ParameterEstimate {
             value: fit.value(j),
             standard_uncertainty,
             unit: parameter.unit.clone(),
-            group: parameter.group.to_owned(),
+            group: parameter.group,
             estimable: fit.value(j).is_some(),
             prior: fit.prior_uses().iter().find(|used| used.prior.parameter == j).map(PriorSummary::from),
             prior_share: if model.priors().is_empty() { None } else { fit.prior_share(j) },
@@ -146,16 +146,14 @@ impl ObservabilitySummary {
 impl FitSummary {
     fn new(calibration: &Calibration) -> Self {
         let fit = calibration.fit();
-        let exact = if calibration.is_recursive() { "exact, recursive filter" } else { "exact, Gauss-Newton" };
-        let (method, termination) = match fit.termination {
-            Termination::Linear => ("linear [K5.3]", "linear"),
-            Termination::Converged => (exact, "converged"),
-            Termination::Stalled => (exact, "stalled"),
-            Termination::IterationLimit => (exact, "iteration limit"),
+        let method = match fit.termination {
+            Termination::Linear => Method::Linear,
+            _ if calibration.is_recursive() => Method::Recursive,
+            Termination::Converged | Termination::Stalled | Termination::IterationLimit => Method::Exact,
         };
         Self {
-            method: method.to_owned(),
-            termination: termination.to_owned(),
+            method,
+            termination: fit.termination,
             iterations: fit.iterations,
             chi_squared: fit.chi_squared,
             degrees_of_freedom: fit.degrees_of_freedom,

@@ -7,7 +7,8 @@
 use std::fs;
 use std::path::Path;
 
-use centrical::uncertainty::Estimates;
+use centrical::uncertainty::{Estimates, Source};
+use centrical::{Group, PairRelation, ReferencePoint, Termination};
 use centrical_table::write_whole;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -101,9 +102,11 @@ pub struct ModelSummary {
     /// The terms of the error model: reading = f + sum of coefficient times monomial.
     pub error_model: Vec<TermSummary>,
     /// "common", "opposite" or "free".
-    pub pair_relation: String,
+    #[serde(with = "crate::document::words")]
+    pub pair_relation: PairRelation,
     /// "first-proof-mass" or "own-axes".
-    pub reference: String,
+    #[serde(with = "crate::document::words")]
+    pub reference: ReferencePoint,
     /// Local gravity [m/s^2].
     pub gravity: f64,
     /// Latitude [rad], if the Earth-rate term is applied.
@@ -152,7 +155,8 @@ pub struct ParameterEstimate {
     /// Unit of both.
     pub unit: String,
     /// bias, scale, misalignment, ...
-    pub group: String,
+    #[serde(with = "crate::document::words")]
+    pub group: Group,
     /// Whether the data determine it.
     pub estimable: bool,
     /// The prior it was given, if any.
@@ -192,13 +196,29 @@ pub struct ObservabilitySummary {
     pub null_directions_held: bool,
 }
 
+/// How the unknowns are estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Method {
+    /// Gauss-Newton on the exact model.
+    #[default]
+    #[serde(rename = "exact, Gauss-Newton")]
+    Exact,
+    /// The same estimates by the recursive filter, iterated.
+    #[serde(rename = "exact, recursive filter")]
+    Recursive,
+    /// The linear fit of [K5.3] alone, with its second-order error.
+    #[serde(rename = "linear [K5.3]")]
+    Linear,
+}
+
 /// How the fit went.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FitSummary {
-    /// "linear [K5.3]" or "exact, Gauss-Newton".
-    pub method: String,
+    /// How the unknowns were estimated.
+    pub method: Method,
     /// "converged", "stalled", "iteration limit" or "linear".
-    pub termination: String,
+    #[serde(with = "crate::document::words")]
+    pub termination: Termination,
     /// Linearisations made.
     pub iterations: usize,
     /// Weighted sum of squared residuals.
@@ -350,9 +370,9 @@ impl CalibrationResult {
         }
     }
 
-    /// Names of the sources that the session states beyond what the fit weighs.
-    pub fn stated_sources(&self) -> Vec<&str> {
+    /// The sources that the session states beyond what the fit weighs.
+    pub fn stated_sources(&self) -> Vec<Source> {
         let sources = self.budget.iter().flat_map(|budget| &budget.sources);
-        sources.filter(|source| !source.weighed_in_fit).map(|source| source.name.as_str()).collect()
+        sources.filter(|source| !source.weighed_in_fit).map(|source| source.name).collect()
     }
 }

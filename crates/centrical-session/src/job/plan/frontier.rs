@@ -1,6 +1,6 @@
-//! Time against uncertainty, with the plans that one would make without a search beside the best.
+//! Time against uncertainty, with plans that are made without a search beside the best.
 
-use centrical::plan::{Candidates, Effort, frontier};
+use centrical::plan::{Candidates, Effort, FrontierPoint, PlanError, Task, frontier};
 use centrical::{Experiment, SetPoint};
 
 use super::request::PlanRequest;
@@ -11,36 +11,32 @@ use crate::experiment::Planning;
 /// Speeds of a uniform plan at most, in each mounting.
 const UNIFORM_SPEEDS: usize = 8;
 
-impl Planning {
-    /// The frontier about `time`, with the uniform plan and [K5.5] beside it.
-    pub(crate) fn frontier(&self, time: f64, request: &PlanRequest) -> Result<Vec<FrontierRow>, Error> {
-        if request.frontier.is_empty() {
-            return Ok(Vec::new());
-        }
-        let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
-        let effort = Effort::usual(self.candidates.len());
-        let points = frontier(&self.candidates, &self.criterion, &times, effort);
-        let points = points.map_err(|source| self.failed(source))?;
-        let uniform = with_set_points(&self.candidates, &uniform_set_points(self.candidates.experiment()));
-        let normalised =
-            with_set_points(&self.candidates, &normalised_set_points(self.candidates.experiment(), &request.levels));
-        let of = |candidates: &Candidates, time: f64| {
-            let found = candidates.uniform(&self.criterion, time).map_err(|source| self.failed(source))?;
-            Ok::<_, Error>(found.map(|(_, value)| value.sqrt()))
-        };
-        points
-            .into_iter()
-            .map(|point| {
-                Ok(FrontierRow {
-                    time: point.time,
-                    best: point.plan.criterion.sqrt(),
-                    bound: point.plan.bound.sqrt(),
-                    uniform: of(&uniform, point.time)?,
-                    normalised: of(&normalised, point.time)?,
-                })
-            })
-            .collect()
+/// The frontier about `time`, with the uniform plan and [K5.5] beside it.
+pub(super) fn frontier_rows(planning: &Planning, time: f64, request: &PlanRequest) -> Result<Vec<FrontierRow>, Error> {
+    if request.frontier.is_empty() {
+        return Ok(Vec::new());
     }
+    let Task { candidates, criterion, .. } = &planning.task;
+    let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
+    let points = frontier(candidates, criterion, &times, Effort::usual(candidates.len()));
+    let experiment = candidates.experiment();
+    let uniform = with_set_points(candidates, &uniform_set_points(experiment));
+    let normalised = with_set_points(candidates, &normalised_set_points(experiment, &request.levels));
+    let of = |candidates: &Candidates, time: f64| {
+        let found = candidates.uniform(criterion, time)?;
+        Ok::<_, PlanError>(found.map(|(_, value)| value.sqrt()))
+    };
+    let row = |point: FrontierPoint| {
+        Ok(FrontierRow {
+            time: point.time,
+            best: point.plan.criterion.sqrt(),
+            bound: point.plan.bound.sqrt(),
+            uniform: of(&uniform, point.time)?,
+            normalised: of(&normalised, point.time)?,
+        })
+    };
+    let rows = points.and_then(|points| points.into_iter().map(row).collect());
+    rows.map_err(|source| planning.failed(source))
 }
 
 /// The candidates with other plateaus in the same mountings.

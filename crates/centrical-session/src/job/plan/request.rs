@@ -1,4 +1,4 @@
-//! What of a plan is asked for.
+//! The parts of a plan that are asked for.
 
 /// Levels `m` of [K5.5] on the frontier unless others are given.
 pub const USUAL_LEVELS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
@@ -6,10 +6,12 @@ pub const USUAL_LEVELS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 /// Times of the frontier over that of the plan unless others are given.
 pub const USUAL_TIMES: [f64; 8] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0];
 
-/// What of a plan is asked for.
+/// The parts of a plan that are asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanRequest {
-    /// Times of the frontier over that of the plan; none for no frontier.
+    /// Whether to search until every set of mountings is decided on.
+    pub certify: bool,
+    /// Times of the frontier over that of the plan; empty for no frontier.
     pub frontier: Vec<f64>,
     /// Levels `m` of [K5.5] to compare with.
     pub levels: Vec<f64>,

@@ -6,16 +6,16 @@ use std::thread;
 use std::time::Duration;
 
 use centrical::fit::{Follower, Progress};
-use centrical::plan::{Criterion, Gain, ReadingRange, next_best};
+use centrical::plan::{Benefit, Criterion, ReadingRange, next_best};
 use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linear};
 
 use super::arrivals::Watch;
 use crate::document::{
-    CalibrationResult, HistoryEntry, HistoryEstimate, WatchState, WatchedPlateau, append_history, keep_history,
+    CalibrationResult, HistoryEntry, HistoryEstimate, Method, WatchState, WatchedPlateau, append_history, keep_history,
 };
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
-use crate::job::calibrate::{Method, calibrate_without};
+use crate::job::calibrate::calibrate_without;
 
 /// How a session is watched.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +62,7 @@ pub struct WatchProgress<'a> {
     pub next: Option<(usize, Progress)>,
     /// The most useful plateau that remains in the mounting on the arm, and that of the other mountings: by the mean
     /// uncertainty of the compensated reading with it over that without.
-    pub best: Vec<Gain>,
+    pub best: Vec<Benefit>,
 }
 
 /// How a watch ends.
@@ -186,7 +186,7 @@ impl<'a> Following<'a> {
 
     /// The best of the plateaus that remain in the mounting on the arm, and of those of later mountings, by what they would
     /// bring if they were as noisy as the last one.
-    fn best_next(&self, last: &Observation) -> Result<Vec<Gain>, Error> {
+    fn best_next(&self, last: &Observation) -> Result<Vec<Benefit>, Error> {
         let experiment = &self.session.experiment;
         let remaining: Vec<Weight> = (0..experiment.set_points.len())
             .filter(|&set_point| !self.has(set_point))
@@ -196,12 +196,12 @@ impl<'a> Following<'a> {
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
         let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
         let criterion = Criterion::Reading(ReadingRange { force });
-        let gains = next_best(self.model, &criterion, &taken, &remaining)
+        let benefits = next_best(self.model, &criterion, &taken, &remaining)
             .map_err(|source| Error::Planning { file: self.session.file.clone(), source })?;
         let on_the_arm = experiment.set_points[last.set_point].mounting;
-        let is_here = |gain: &&Gain| experiment.set_points[gain.set_point].mounting == on_the_arm;
-        let here = gains.iter().find(is_here);
-        let elsewhere = gains.iter().find(|gain| !is_here(gain));
+        let is_here = |benefit: &&Benefit| experiment.set_points[benefit.set_point].mounting == on_the_arm;
+        let here = benefits.iter().find(is_here);
+        let elsewhere = benefits.iter().find(|benefit| !is_here(benefit));
         Ok(here.into_iter().chain(elsewhere).copied().collect())
     }
 
@@ -228,7 +228,7 @@ impl<'a> Following<'a> {
 
 /// Refuses a group that the model does not have.
 fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) -> Result<(), Error> {
-    let mut groups: Vec<&str> = model.parameters().iter().map(|parameter| parameter.group).collect();
+    let mut groups: Vec<&str> = model.parameters().iter().map(|parameter| parameter.group.name()).collect();
     groups.dedup();
     match wanted.iter().find(|group| !groups.contains(&group.as_str())) {
         None => Ok(()),

@@ -4,27 +4,17 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector, MatrixXx3};
 
-use crate::plan::information::{Factor, Scene, Smooth, trace_of_product};
-
-/// A scene at a design, and its part in the joint criterion.
-pub(super) struct SceneThere<'a> {
-    pub scene: &'a Scene,
-    pub factor: &'a Factor,
-    pub smooth: &'a Smooth,
-    pub part: f64,
-}
+use super::point::ScenarioPoint;
+use crate::plan::atom::Atoms;
+use crate::plan::information::trace_of_product;
 
 /// `-d ln Phi_s / d w_x` of the active atoms.
-pub(super) fn slope(there: &SceneThere, active: &[usize], options: usize) -> DVector<f64> {
-    let SceneThere { scene, factor, smooth, .. } = there;
-    let of_atom = |&x: &usize| {
-        let g = Scene::weighed(&scene.response(factor, x / options), &smooth.columns);
-        trace_of_product(scene.precision(x), &g)
-    };
+pub(super) fn slope(at: &ScenarioPoint, active: &[usize], atoms: Atoms) -> DVector<f64> {
+    let of_atom = |&x: &usize| trace_of_product(at.scenario.precision(x), &at.weighed(atoms.at(x).candidate));
     DVector::from_iterator(active.len(), active.iter().map(of_atom))
 }
 
-/// Adds what the norm over scenes makes of their first derivatives: `q (sum pi_s l_s l_s^T - t t^T)`, `t = sum pi_s l_s`.
+/// Adds the contribution of the norm over scenarios, from their first derivatives: `q (sum pi_s l_s l_s^T - t t^T)`, `t = sum pi_s l_s`.
 pub(super) fn add_norm(hessian: &mut DMatrix<f64>, slopes: &DMatrix<f64>, parts: &[f64], exponent: f64) {
     let total = slopes * DVector::from_column_slice(parts);
     for (slope, part) in slopes.column_iter().zip(parts) {
@@ -33,38 +23,38 @@ pub(super) fn add_norm(hessian: &mut DMatrix<f64>, slopes: &DMatrix<f64>, parts:
     }
 }
 
-/// Adds a scene's second derivatives: of a goal `2 tr(N A N' G')`, less `tr(N G N' G')` for a determinant, plus what the norm
-/// over goals makes of the first derivatives, less the product of the sensitivities for the logarithm.
+/// Adds the second derivatives of a scenario: of a goal `2 tr(N A N' G')`, less `tr(N G N' G')` for a determinant, plus the
+/// contribution of the norm over goals, less the product of the sensitivities for the logarithm.
 pub(super) fn add_curvature(
     hessian: &mut DMatrix<f64>,
-    there: &SceneThere,
+    at: &ScenarioPoint,
     exponent: f64,
-    (active, groups, plateaus): (&[usize], &[Range<usize>], &[usize]),
+    (active, groups, candidates): (&[usize], &[Range<usize>], &[usize]),
 ) {
-    let SceneThere { scene, factor, smooth, part: weight } = there;
-    let views = scene.views(factor, plateaus);
+    let ScenarioPoint { scenario, factor, smooth, part: weight } = at;
+    let views = scenario.views(factor, candidates);
     let a = views.transpose() * &views;
-    let responses: Vec<_> = plateaus.iter().map(|&c| scene.response(factor, c)).collect();
+    let responses: Vec<_> = candidates.iter().map(|&c| scenario.response(factor, c)).collect();
     let m = smooth.columns.len();
-    let mut roots = DMatrix::zeros(m, 3 * plateaus.len());
+    let mut roots = DMatrix::zeros(m, 3 * candidates.len());
     for (n, response) in responses.iter().enumerate() {
         for (column, weight) in smooth.columns.iter().enumerate() {
             (0..3).for_each(|i| roots[(column, 3 * n + i)] = response[(column, i)] * weight.sqrt());
         }
     }
     let g = roots.transpose() * &roots;
-    let by_goal = by_goal(scene, &responses, active, groups, factor);
+    let by_goal = by_goal(at, &responses, active, groups);
     let block = |of: &DMatrix<f64>, i: usize, j: usize| of.fixed_view::<3, 3>(3 * i, 3 * j).into_owned();
     let s = m as f64;
-    for i in 0..plateaus.len() {
+    for i in 0..candidates.len() {
         for j in 0..=i {
             let (a_ij, g_ij) = (block(&a, i, j), block(&g, i, j));
-            let mixed = if scene.is_determinant() { 2.0 * a_ij - g_ij * s } else { 2.0 * a_ij };
+            let mixed = if scenario.is_determinant() { 2.0 * a_ij - g_ij * s } else { 2.0 * a_ij };
             for k in groups[i].clone() {
-                let left = scene.precision(active[k]) * mixed;
+                let left = scenario.precision(active[k]) * mixed;
                 for l in groups[j].clone().filter(|&l| l <= k) {
                     // tr(N_k X_ij N_l G_ji), G_ji = G_ij^T
-                    let value = weight * (left * scene.precision(active[l])).component_mul(&g_ij).sum();
+                    let value = weight * (left * scenario.precision(active[l])).component_mul(&g_ij).sum();
                     hessian[(k, l)] += value;
                     if l != k {
                         hessian[(l, k)] += value;
@@ -73,7 +63,7 @@ pub(super) fn add_curvature(
             }
         }
     }
-    if !scene.is_determinant() {
+    if !scenario.is_determinant() {
         let total = &by_goal * DVector::from_column_slice(&smooth.parts);
         for (goal, part) in smooth.parts.iter().enumerate().filter(|(_, part)| **part > 1e-12) {
             let column = by_goal.column(goal);
@@ -85,21 +75,20 @@ pub(super) fn add_curvature(
 
 /// `d ln r_j / d w_x` without its sign, active atoms by goals.
 fn by_goal(
-    scene: &Scene,
+    ScenarioPoint { scenario, factor, .. }: &ScenarioPoint,
     responses: &[MatrixXx3<f64>],
     active: &[usize],
     groups: &[Range<usize>],
-    factor: &Factor,
 ) -> DMatrix<f64> {
-    let mut by_goal = DMatrix::zeros(active.len(), scene.goals());
-    if scene.is_determinant() {
+    let mut by_goal = DMatrix::zeros(active.len(), scenario.goals());
+    if scenario.is_determinant() {
         return by_goal;
     }
     for (group, response) in groups.iter().zip(responses) {
-        let of_goal = scene.by_goal(response);
+        let of_goal = scenario.by_goal(response);
         for k in group.clone() {
             for (goal, g) in of_goal.iter().enumerate() {
-                by_goal[(k, goal)] = trace_of_product(scene.precision(active[k]), g) / factor.goals[goal];
+                by_goal[(k, goal)] = trace_of_product(scenario.precision(active[k]), g) / factor.goals[goal];
             }
         }
     }

@@ -1,11 +1,11 @@
 //! A quadratic model of the smooth criterion in the atoms that matter, and its optimum by exchange of time between pairs of
-//! plateaus.
+//! candidates.
 
 use nalgebra::DMatrix;
 
-use super::curvature::{SceneThere, add_curvature, add_norm, slope};
+use super::curvature::{add_curvature, add_norm, slope};
+use super::point::{Objective, Point};
 use super::polytope::Polytope;
-use super::{NOTHING, Point, Search};
 
 /// Atoms in a quadratic model: those that are farthest from where they should be, and those nearest to their price.
 const FARTHEST: usize = 150;
@@ -14,12 +14,15 @@ const NEAREST: usize = 60;
 /// An inner problem is solved when no exchange gains this part of the distance to the bound any more.
 const INNER: f64 = 0.03;
 
+/// Fewer visits than this are none.
+const NOTHING: f64 = 1e-9;
+
 /// A quadratic model of the smooth criterion in the atoms that matter.
 pub(super) struct Model<'a> {
     polytope: &'a Polytope,
-    /// The atoms, by plateau.
+    /// Their numbers, by candidate.
     active: Vec<usize>,
-    /// Ranges of `active` that are one plateau's.
+    /// Ranges of `active` of one candidate each.
     groups: Vec<std::ops::Range<usize>>,
     hessian: DMatrix<f64>,
     /// Fall of the model by each atom.
@@ -31,44 +34,42 @@ pub(super) struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
-    pub fn new(search: &Search<'a>, point: &Point, lambda: f64, w: &[f64]) -> Self {
-        let polytope = search.polytope;
-        let options = polytope.options;
-        let worth = Worth { polytope, sensitivity: &point.sensitivity, lambda, w };
-        let active = worth.chosen();
+    /// The model at the point of the design `w`, which is `gap` above its bound.
+    pub fn new(objective: &Objective<'a>, point: &Point, gap: f64, w: &[f64]) -> Self {
+        let Objective { scenarios, polytope, exponent } = *objective;
+        let atoms = polytope.atoms;
+        let active = Worth { polytope, point, w }.chosen();
         let mut groups = Vec::new();
-        let mut plateaus = Vec::new();
+        let mut candidates = Vec::new();
         let mut first = 0;
-        for same in active.chunk_by(|a, b| a / options == b / options) {
+        for same in active.chunk_by(|a, b| atoms.at(*a).candidate == atoms.at(*b).candidate) {
             groups.push(first..first + same.len());
-            plateaus.push(same[0] / options);
+            candidates.push(atoms.at(same[0]).candidate);
             first += same.len();
         }
         let n = active.len();
         let mut hessian = DMatrix::zeros(n, n);
-        let scenes = search.scenes.all.iter().zip(&point.factors).zip(&point.smooth).zip(&point.parts);
-        let mut slopes = DMatrix::zeros(n, point.parts.len());
-        for (s, (((scene, factor), smooth), part)) in scenes.enumerate().filter(|(_, (_, part))| **part > 1e-12) {
-            let of_scene = SceneThere { scene, factor, smooth, part: *part };
-            add_curvature(&mut hessian, &of_scene, search.exponent, (&active, &groups, &plateaus));
-            if search.scenes.is_worst() {
-                slopes.set_column(s, &slope(&of_scene, &active, search.polytope.options));
+        let mut slopes = DMatrix::zeros(n, point.scenarios.len());
+        for (s, at) in point.scenarios.iter().enumerate().filter(|(_, at)| at.part > 1e-12) {
+            add_curvature(&mut hessian, at, exponent, (&active, &groups, &candidates));
+            if scenarios.is_worst() {
+                slopes.set_column(s, &slope(at, &active, atoms));
             }
         }
-        if search.scenes.is_worst() {
-            add_norm(&mut hessian, &slopes, &point.parts, search.exponent);
+        if scenarios.is_worst() {
+            let parts: Vec<f64> = point.scenarios.iter().map(|at| at.part).collect();
+            add_norm(&mut hessian, &slopes, &parts, exponent);
         }
         // A trace of a ridge makes parallel atoms no flat direction.
         let ridge = 1e-9 * hessian.diagonal().iter().copied().fold(0.0, f64::max);
         (0..n).for_each(|i| hessian[(i, i)] += ridge);
         let benefit = active.iter().map(|&x| point.sensitivity[x]).collect();
-        let gap = (point.value - search.best).max(0.0);
-        let least = (INNER * gap / polytope.time).max(1e-9 * lambda);
+        let least = (INNER * gap / polytope.time).max(1e-9 * point.lambda);
         Self { polytope, active, groups, hessian, benefit, spent: polytope.spent(w), w: w.to_vec(), least }
     }
 
-    /// The optimum of the model by exchange of time between the plateau that gains most by more of it and the one that loses
-    /// least by less.
+    /// The optimum of the model by exchange of time between the candidate that gains most by more of it and the one that
+    /// loses least by less.
     pub fn optimum(mut self) -> Vec<f64> {
         let limit = 20 * self.active.len() + 200;
         for _ in 0..limit {
@@ -94,8 +95,7 @@ impl<'a> Model<'a> {
     fn steepest(&self) -> (Option<Conversion>, Option<Conversion>) {
         let (mut up, mut down): (Option<Conversion>, Option<Conversion>) = (None, None);
         for group in &self.groups {
-            let all: f64 =
-                self.polytope.atoms_of(self.active[group.start] / self.polytope.options).map(|x| self.w[x]).sum();
+            let all: f64 = self.polytope.atoms.of(self.candidate(group.start)).map(|x| self.w[x]).sum();
             let can_leave = |i: usize| self.w[self.active[i]] - self.polytope.low[self.active[i]] > NOTHING;
             let can_enter = |i: usize| self.polytope.high[self.active[i]] - self.w[self.active[i]] > NOTHING;
             let idle = self.polytope.repeats - all > NOTHING;
@@ -113,6 +113,10 @@ impl<'a> Model<'a> {
             }
         }
         (up, down)
+    }
+
+    fn candidate(&self, i: usize) -> usize {
+        self.polytope.atoms.at(self.active[i]).candidate
     }
 
     fn price(&self, end: Option<usize>) -> f64 {
@@ -136,7 +140,7 @@ impl<'a> Model<'a> {
             let part = sign / conversion.time;
             conversion.to.into_iter().for_each(|i| add(i, part));
             conversion.from.into_iter().for_each(|i| add(i, -part));
-            let inside = conversion.to.or(conversion.from).map_or(0, |i| self.active[i] / self.polytope.options);
+            let inside = conversion.to.or(conversion.from).map_or(0, |i| self.candidate(i));
             let net =
                 part * (f64::from(u8::from(conversion.to.is_some())) - f64::from(u8::from(conversion.from.is_some())));
             match idle.iter_mut().find(|(c, _)| *c == inside) {
@@ -153,7 +157,7 @@ impl<'a> Model<'a> {
             }
         }
         for (c, rate) in idle.into_iter().filter(|(_, rate)| *rate > 0.0) {
-            let all: f64 = self.polytope.atoms_of(c).map(|x| self.w[x]).sum();
+            let all: f64 = self.polytope.atoms.of(c).map(|x| self.w[x]).sum();
             limit = limit.min((self.polytope.repeats - all) / rate);
         }
         let mut curvature = 0.0;
@@ -175,38 +179,37 @@ impl<'a> Model<'a> {
     }
 }
 
-/// What atoms are worth at a price of time.
+/// The worth of atoms at the price of time.
 struct Worth<'a> {
     polytope: &'a Polytope,
-    sensitivity: &'a [f64],
-    lambda: f64,
+    point: &'a Point<'a>,
     w: &'a [f64],
 }
 
 impl Worth<'_> {
     fn price(&self, x: usize) -> f64 {
-        (self.lambda * self.polytope.price[x]).max(1e-300)
+        (self.point.lambda * self.polytope.price[x]).max(1e-300)
     }
 
     fn net(&self, x: usize) -> f64 {
-        self.sensitivity[x] - self.price(x)
+        self.point.sensitivity[x] - self.price(x)
     }
 
-    /// Visits of a plateau that are left.
-    fn idle(&self, plateau: usize) -> f64 {
-        self.polytope.repeats - self.polytope.atoms_of(plateau).map(|y| self.w[y]).sum::<f64>()
+    /// Visits of a candidate that are not used.
+    fn idle(&self, candidate: usize) -> f64 {
+        self.polytope.repeats - self.polytope.atoms.of(candidate).map(|y| self.w[y]).sum::<f64>()
     }
 
     /// By how much the criterion would fall if the atom went where its worth and its bounds draw it.
     fn distance(&self, x: usize) -> f64 {
         let net = self.net(x);
-        let plateau = x / self.polytope.options;
-        // A better duration of the same plateau draws as well, however few visits are left.
-        let dearest = self.polytope.atoms_of(plateau).filter(|&y| self.w[y] > NOTHING).map(|y| self.net(y));
+        let candidate = self.polytope.atoms.at(x).candidate;
+        // A better duration of the same candidate draws as well, however few visits are left.
+        let dearest = self.polytope.atoms.of(candidate).filter(|&y| self.w[y] > NOTHING).map(|y| self.net(y));
         let displaced = dearest.fold(f64::INFINITY, f64::min);
         if net > 0.0 {
             let room = self.polytope.high[x] - self.w[x];
-            let gain = net * room.min(self.idle(plateau).max(0.0));
+            let gain = net * room.min(self.idle(candidate).max(0.0));
             if displaced < net { gain.max((net - displaced) * room) } else { gain }
         } else {
             -net * (self.w[x] - self.polytope.low[x])
@@ -226,10 +229,10 @@ impl Worth<'_> {
         near.truncate(NEAREST);
         // Visits of another duration that an atom would displace have to be free to go.
         let with_displaced = |x: usize| {
-            let plateau = x / self.polytope.options;
-            let is_full = self.idle(plateau) < NOTHING;
+            let candidate = self.polytope.atoms.at(x).candidate;
+            let is_full = self.idle(candidate) < NOTHING;
             let is_displaced = move |y: usize| is_full && self.w[y] > self.polytope.low[y] + NOTHING;
-            self.polytope.atoms_of(plateau).filter(move |y| *y == x || is_displaced(*y))
+            self.polytope.atoms.of(candidate).filter(move |y| *y == x || is_displaced(*y))
         };
         let mut chosen: Vec<usize> = far.into_iter().chain(near).flat_map(|(_, x)| with_displaced(x)).collect();
         chosen.sort_unstable();
@@ -238,7 +241,7 @@ impl Worth<'_> {
     }
 }
 
-/// Part of a visit of a plateau turned from one duration, or none, to another, or none.
+/// Part of a visit of a candidate turned from one duration, or none, to another, or none.
 #[derive(Debug, Clone, Copy)]
 struct Conversion {
     from: Option<usize>,

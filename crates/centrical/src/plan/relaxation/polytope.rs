@@ -1,4 +1,6 @@
-//! The bounds within which a design is sought: least and most visits of each atom, most visits of each plateau, time.
+//! The bounds within which a design is sought: least and most visits of each atom, most visits of each candidate, time.
+
+use crate::plan::atom::Atoms;
 
 /// Halvings of a Lagrange multiplier: any is a bound, these make it tight to a part in a million.
 const HALVINGS: usize = 36;
@@ -13,19 +15,16 @@ pub(in crate::plan) struct Polytope {
     /// Least and most visits of each atom.
     pub low: Vec<f64>,
     pub high: Vec<f64>,
-    /// Durations to a plateau.
-    pub options: usize,
-    /// Most visits of a plateau.
+    /// The atoms.
+    pub atoms: Atoms,
+    /// Most visits of a candidate.
     pub repeats: f64,
 }
 
 impl Polytope {
-    pub fn plateaus(&self) -> usize {
-        self.price.len() / self.options
-    }
-
-    pub fn atoms_of(&self, plateau: usize) -> std::ops::Range<usize> {
-        plateau * self.options..(plateau + 1) * self.options
+    /// Whether a candidate may be visited.
+    pub fn is_open(&self, candidate: usize) -> bool {
+        self.atoms.of(candidate).any(|x| self.high[x] > 0.0)
     }
 
     /// Time that a design takes [s].
@@ -36,7 +35,7 @@ impl Polytope {
     /// Whether there is a design at all.
     pub fn is_feasible(&self) -> bool {
         self.spent(&self.low) <= self.time * (1.0 + 1e-12)
-            && (0..self.plateaus()).all(|c| self.low[self.atoms_of(c)].iter().sum::<f64>() <= self.repeats)
+            && (0..self.atoms.candidates).all(|c| self.low[self.atoms.of(c)].iter().sum::<f64>() <= self.repeats)
     }
 
     /// An upper bound of `sum gain w` over the polytope, tight but for rounding, and its multiplier.
@@ -59,11 +58,11 @@ impl Polytope {
     /// `lambda time + max over the bounds without the time of sum (gain - lambda price) w`, and the time of the maximum.
     fn lagrangian(&self, gain: &[f64], lambda: f64) -> (f64, f64) {
         let (mut value, mut spent) = (lambda * self.time, 0.0);
-        let mut best: Vec<(f64, usize)> = Vec::with_capacity(self.options);
-        for c in 0..self.plateaus() {
+        let mut best: Vec<(f64, usize)> = Vec::with_capacity(self.atoms.durations);
+        for c in 0..self.atoms.candidates {
             let mut left = self.repeats;
             best.clear();
-            for x in self.atoms_of(c) {
+            for x in self.atoms.of(c) {
                 let worth = gain[x] - lambda * self.price[x];
                 value += worth * self.low[x];
                 spent += self.price[x] * self.low[x];
@@ -86,8 +85,8 @@ impl Polytope {
     /// `w` brought within the bounds and the time: clipped, then what is above the least visits scaled down.
     pub fn within(&self, w: &[f64]) -> Vec<f64> {
         let mut w: Vec<f64> = (0..w.len()).map(|x| w[x].clamp(self.low[x], self.high[x])).collect();
-        for c in 0..self.plateaus() {
-            let atoms = self.atoms_of(c);
+        for c in 0..self.atoms.candidates {
+            let atoms = self.atoms.of(c);
             let (sum, low): (f64, f64) = (w[atoms.clone()].iter().sum(), self.low[atoms.clone()].iter().sum());
             if sum > self.repeats {
                 let part = ((self.repeats - low) / (sum - low)).max(0.0);
@@ -100,5 +99,26 @@ impl Polytope {
             (0..w.len()).for_each(|x| w[x] = self.low[x] + part * (w[x] - self.low[x]));
         }
         w
+    }
+
+    /// Every atom that may be visited for the same part of the time.
+    pub fn spread(&self) -> Vec<f64> {
+        let room = |x: usize| (self.high[x] - self.low[x]).min(self.repeats);
+        let all: f64 = (0..self.price.len()).map(|x| room(x) * self.price[x]).sum();
+        let part = ((self.time - self.spent(&self.low)) / all).min(1.0);
+        (0..self.price.len()).map(|x| self.low[x] + part * room(x)).collect()
+    }
+
+    /// `w` times the factor that spends all the time, within the bounds.
+    pub fn filled(&self, w: &[f64]) -> Vec<f64> {
+        let scaled = |factor: f64| -> Vec<f64> { w.iter().map(|w| w * factor).collect() };
+        let unbounded = Self { time: f64::INFINITY, ..self.clone() };
+        let (mut below, mut above) = (0.0, 64.0);
+        for _ in 0..40 {
+            let middle = 0.5 * (below + above);
+            let spent = self.spent(&unbounded.within(&scaled(middle)));
+            if spent > self.time { above = middle } else { below = middle }
+        }
+        self.within(&unbounded.within(&scaled(below)))
     }
 }

@@ -1,61 +1,65 @@
-//! Candidates and criterion made ready for the search.
+//! Candidates and criterion prepared for the search, and how much of a search there is.
 
-use crate::plan::candidates::{Candidates, Schedule};
+use crate::plan::candidates::Candidates;
 use crate::plan::criterion::Criterion;
 use crate::plan::error::PlanError;
-use crate::plan::exchange::{Exchange, Whole};
-use crate::plan::information::Scene;
-use crate::plan::robustness::Scenes;
+use crate::plan::exchange::{Exchange, IntegerSchedule};
+use crate::plan::information::LinearisedScenario;
+use crate::plan::scenarios::LinearisedScenarios;
 
-/// Candidates and criterion made ready.
+/// Limits of a search. The outcome depends on them, never on the clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// Nodes of the branch and bound over mountings.
+    pub nodes: usize,
+    /// Exchanges tried in each schedule.
+    pub trials: usize,
+}
+
+impl Effort {
+    /// Some seconds' worth: fewer nodes where there are more candidates.
+    pub fn usual(candidates: usize) -> Self {
+        Self { nodes: (300_000 / candidates.max(1)).clamp(20, 1000), ..Self::CERTIFIED }
+    }
+
+    /// Until every set of mountings is decided on. The gap that remains is a matter of whole visits.
+    pub const CERTIFIED: Self = Self { nodes: 1 << 20, trials: 120 };
+
+    /// One schedule, with no exchange of mountings and no bound over sets of them.
+    pub const QUICK: Self = Self { nodes: 1, trials: 60 };
+
+    /// Mountings exchanged, and the bound of the first continuous design.
+    pub const FAIR: Self = Self { nodes: 2, ..Self::QUICK };
+}
+
+/// Candidates and criterion prepared for the search.
 pub(in crate::plan) struct Problem<'a> {
     pub candidates: &'a Candidates,
-    pub scenes: Scenes,
+    pub scenarios: LinearisedScenarios,
 }
 
 impl<'a> Problem<'a> {
     pub fn new(candidates: &'a Candidates, criterion: &Criterion) -> Result<Self, PlanError> {
         candidates.check()?;
         let total: f64 = candidates.scenarios.iter().map(|s| s.weight).sum();
-        let scene = |scenario| Scene::new(scenario, candidates, criterion, total);
-        let all = candidates.scenarios.iter().map(scene).collect::<Result<_, _>>()?;
-        Ok(Self { candidates, scenes: Scenes { all, robustness: candidates.robustness } })
+        let linearised = |scenario| LinearisedScenario::new(scenario, candidates, criterion, total);
+        let all = candidates.scenarios.iter().map(linearised).collect::<Result<_, _>>()?;
+        Ok(Self { candidates, scenarios: LinearisedScenarios { all, robustness: candidates.robustness } })
     }
 
+    /// Number of mountings.
     pub fn mountings(&self) -> usize {
         self.candidates.experiment().mountings.len()
     }
 
-    /// Which mountings a schedule uses.
-    pub fn mountings_of(&self, schedule: &Schedule) -> Vec<bool> {
-        let mut used = vec![false; self.mountings()];
-        for visit in &schedule.visits {
-            used[self.candidates.experiment().set_points[visit.plateau].mounting] = true;
-        }
-        used
-    }
-
-    pub fn mounting_of(&self, atom: usize) -> usize {
-        self.candidates.experiment().set_points[atom / self.candidates.durations.len()].mounting
-    }
-
-    pub fn price(&self, atom: usize) -> f64 {
-        let options = self.candidates.durations.len();
-        self.candidates.overhead(atom / options) + self.candidates.durations[atom % options]
-    }
-
-    pub fn atoms(&self) -> usize {
-        self.candidates.len() * self.candidates.durations.len()
-    }
-
-    /// Time of the cheapest mounting with its shortest plateau [s].
+    /// Time of the cheapest mounting with its shortest visit [s].
     pub fn least_time(&self) -> f64 {
         let of_atom = |x: usize| {
             let mut used = vec![false; self.mountings()];
-            used[self.mounting_of(x)] = true;
-            self.candidates.set_up_time(&used) + self.price(x)
+            used[self.candidates.mounting_of(x)] = true;
+            self.candidates.set_up_time(&used) + self.candidates.price(x)
         };
-        (0..self.atoms()).map(of_atom).fold(f64::INFINITY, f64::min)
+        (0..self.candidates.atoms().count()).map(of_atom).fold(f64::INFINITY, f64::min)
     }
 
     pub fn check_time(&self, time: f64) -> Result<(), PlanError> {
@@ -63,31 +67,38 @@ impl<'a> Problem<'a> {
         if time.is_finite() && time >= least { Ok(()) } else { Err(PlanError::TooShort { found: time, least }) }
     }
 
+    /// The exchange of visits within a time, on the mountings that are `open`.
     pub fn exchange<'b>(&'b self, time: f64, open: &'b [bool], trials: usize) -> Exchange<'b> {
-        Exchange { candidates: self.candidates, scenes: &self.scenes, time, open, trials }
+        Exchange { candidates: self.candidates, scenarios: &self.scenarios, time, open, trials }
     }
 
-    /// Every plateau as often and as long as may be.
-    pub fn everything(&self) -> Whole {
+    /// The schedule of these visits, whatever time it takes.
+    pub fn schedule(&self, visits: Vec<u32>) -> IntegerSchedule {
+        self.exchange(f64::INFINITY, &[], 0).schedule(visits)
+    }
+
+    /// Every candidate as often and as long as possible.
+    pub fn everything(&self) -> IntegerSchedule {
         self.everything_on(&vec![true; self.mountings()])
     }
 
-    /// Every plateau of a set of mountings as often and as long as may be.
-    pub fn everything_on(&self, set: &[bool]) -> Whole {
-        self.exchange(f64::INFINITY, set, 0).whole(self.most_visits(set))
+    /// Every candidate of a set of mountings as often and as long as possible.
+    pub fn everything_on(&self, set: &[bool]) -> IntegerSchedule {
+        self.schedule(self.most_visits(set))
     }
 
-    /// A schedule and everything on one mounting more.
-    pub fn with_everything_on(&self, whole: &Whole, mounting: usize) -> Whole {
+    /// A schedule with everything on one mounting more.
+    pub fn with_everything_on(&self, schedule: &IntegerSchedule, mounting: usize) -> IntegerSchedule {
         let mut set = vec![false; self.mountings()];
         set[mounting] = true;
-        self.exchange(f64::INFINITY, &set, 0).with(whole, &self.most_visits(&set))
+        self.exchange(f64::INFINITY, &set, 0).with(schedule, &self.most_visits(&set))
     }
 
     fn most_visits(&self, set: &[bool]) -> Vec<u32> {
-        let options = self.candidates.durations.len();
+        let atoms = self.candidates.atoms();
         let repeats = u32::try_from(self.candidates.repeats).unwrap_or(u32::MAX);
-        let is_longest = |x: usize| x % options == options - 1 && set[self.mounting_of(x)];
-        (0..self.atoms()).map(|x| if is_longest(x) { repeats } else { 0 }).collect()
+        let is_longest = |x: usize| atoms.at(x).duration + 1 == atoms.durations;
+        let visits = |x: usize| if is_longest(x) && set[self.candidates.mounting_of(x)] { repeats } else { 0 };
+        (0..atoms.count()).map(visits).collect()
     }
 }

@@ -1,12 +1,14 @@
-//! The shortest schedule that keeps every goal, from both sides: a schedule that keeps them and is made shorter, and a time in
-//! which none does. A search for a time that comes to its end without a schedule that keeps the goals proves that there is none
-//! in that time, and so none in less: every branch of it has a bound above them.
+//! The shortest schedule that meets every goal, from both sides: a schedule that meets them and is made shorter, and a time in
+//! which no schedule does. A search for a time that ends without a schedule that meets the goals proves that there is none in
+//! that time, nor in less: every branch of it has a bound above them.
 
-use super::needs::Needs;
+use super::incumbent::Plan;
+use super::problem::{Effort, Problem};
+use super::set_up_bound::SetUpBound;
 use super::tree::Tree;
-use super::{Effort, Plan, PlanError, Problem};
+use crate::plan::error::PlanError;
 
-/// Searches after the first schedule, at most.
+/// Limit of searches after the first schedule.
 const SEARCHES: usize = 3;
 
 /// The search for the shortest schedule.
@@ -14,21 +16,21 @@ pub(super) struct Shortest<'a> {
     problem: &'a Problem<'a>,
     resolution: f64,
     effort: Effort,
-    /// Which sets of mountings can keep the goals: the same in any time.
-    needs: Needs,
+    /// Which sets of mountings can meet the goals: the same in any time.
+    set_up_bound: SetUpBound,
     /// No schedule is shorter than this [s].
     below: f64,
-    /// Time of everything there is [s].
+    /// Time of all candidates as often and as long as possible [s].
     everything: f64,
 }
 
-/// What a search for a time says.
+/// The answer of a search for a time.
 enum Answer {
-    /// A plan that keeps the goals.
+    /// A plan that meets the goals.
     Reached(Box<Plan>),
-    /// There is none.
+    /// There is no such plan.
     None,
-    /// Neither is known.
+    /// Neither is proved.
     Open,
 }
 
@@ -39,22 +41,22 @@ impl<'a> Shortest<'a> {
         if everything.value > 0.0 {
             return Err(out_of_reach);
         }
-        let mut needs = Needs::default();
+        let mut set_up_bound = SetUpBound::default();
         let all = vec![true; problem.mountings()];
         let none = vec![false; problem.mountings()];
-        // Everything keeps the goals, so some set does; what just does not count for `value` is left to `everything`.
-        let set_up = needs.least_set_up(problem, &none, &all, f64::MIN_POSITIVE).unwrap_or(0.0);
+        // Everything meets the goals, so some set does; one that only just does so is left to `everything`.
+        let set_up = set_up_bound.least(problem, &none, &all, f64::MIN_POSITIVE).unwrap_or(0.0);
         let below = problem.least_time().max(set_up);
-        Ok(Self { problem, resolution, effort, needs, below, everything: everything.time })
+        Ok(Self { problem, resolution, effort, set_up_bound, below, everything: everything.time })
     }
 
     pub fn run(mut self) -> Plan {
         let mut plan = self.first();
         let mut open = f64::INFINITY;
-        let searches = if self.effort.mounting_nodes > Effort::FAIR.mounting_nodes { SEARCHES } else { 0 };
+        let searches = if self.effort.nodes > Effort::FAIR.nodes { SEARCHES } else { 0 };
         for _ in 0..searches {
             let above = plan.schedule.time.min(open);
-            // Just below what is known, where that is to be proven; else half way.
+            // Near the least time just below the plan, which is to be proved the shortest; else half way.
             let is_near = above / self.below < 1.0 + 4.0 * self.resolution;
             let time = if is_near { above / (1.0 + self.resolution) } else { (self.below * above).sqrt() };
             if time <= self.below * (1.0 + 0.1 * self.resolution) {
@@ -80,7 +82,7 @@ impl<'a> Shortest<'a> {
                 Answer::Open => {}
             }
             if time >= self.everything {
-                let visits = self.problem.everything().visits(self.problem.candidates);
+                let visits = self.problem.everything().list(self.problem.candidates);
                 let plan = self.tree(time, self.quick()).run();
                 return Plan { schedule: self.problem.candidates.schedule(visits), ..plan };
             }
@@ -88,9 +90,9 @@ impl<'a> Shortest<'a> {
         }
     }
 
-    /// Effort where much is sought: mountings exchanged, no branches.
+    /// Effort of the many searches on the way: mountings exchanged, no branches.
     fn quick(&self) -> Effort {
-        Effort { mounting_nodes: self.effort.mounting_nodes.min(Effort::FAIR.mounting_nodes), ..Effort::FAIR }
+        Effort { nodes: self.effort.nodes.min(Effort::FAIR.nodes), ..Effort::FAIR }
     }
 
     fn search(&self, time: f64, effort: Effort) -> Answer {
@@ -102,16 +104,16 @@ impl<'a> Shortest<'a> {
     }
 
     fn wanted(&self, time: f64, effort: Effort) -> Tree<'a> {
-        Tree { wanted: Some(0.0), needs: self.needs.clone(), ..self.tree(time, effort) }
+        Tree::for_goals(self.problem, time, effort, self.set_up_bound.clone())
     }
 
     fn tree(&self, time: f64, effort: Effort) -> Tree<'a> {
         Tree::new(self.problem, time, effort)
     }
 
-    /// The shortest plan on the mountings of one that keeps the goals.
+    /// The shortest plan on the mountings of one that meets the goals.
     fn shortened(&self, mut plan: Plan) -> Plan {
-        let used = self.problem.mountings_of(&plan.schedule);
+        let used = self.problem.candidates.mountings_used(plan.schedule.visits.iter().map(|visit| visit.candidate));
         let mut low = self.below.max(self.problem.candidates.set_up_time(&used));
         while plan.schedule.time / low > 1.0 + 0.5 * self.resolution {
             let middle = (low * plan.schedule.time).sqrt();
@@ -121,7 +123,7 @@ impl<'a> Shortest<'a> {
         plan
     }
 
-    /// What else the time of a plan is good for, and a bound.
+    /// The best plan for the time of the shortest one, and its bound.
     fn thorough(&self, plan: Plan) -> Plan {
         let other = self.tree(plan.schedule.time, self.quick()).run();
         let bound = other.bound.min(plan.criterion);

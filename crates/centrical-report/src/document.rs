@@ -1,0 +1,14 @@
+//! What the documents say: content as data, drawn by the renderers.
+
+mod certificate;
+mod content;
+mod drift;
+mod objection;
+mod reading_error;
+mod report;
+mod tables;
+
+pub use self::certificate::certificate;
+pub use self::content::{Align, Block, Column, Document, Fact, Margins, Opening, Row, Section, Table, TableKind, Tone};
+pub(crate) use self::objection::objection;
+pub use self::report::report;

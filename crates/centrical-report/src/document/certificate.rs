@@ -1,0 +1,315 @@
+//! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
+
+use centrical_session::{
+    Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory, customary,
+};
+
+use super::content::{Align, Block, Document, Margins, Opening, Section, Table, Tone};
+use super::drift::drift_facts;
+use super::objection::objection;
+use super::reading_error::error_table;
+use crate::evaluation::{by_group, conformity, equations, expanded, objections};
+use crate::language::Language;
+
+/// The certificate, with the results `before` an adjustment beside those after it if the unit was adjusted.
+pub fn certificate(
+    result: &CalibrationResult,
+    before: Option<&CalibrationResult>,
+    laboratory: &Laboratory,
+    language: Language,
+) -> Document {
+    let (messages, number) = (language.messages(), &laboratory.certificate.number);
+    let decision = laboratory.decision.as_ref();
+    let sections = [
+        warning(result, language),
+        parties(laboratory, language),
+        item(result, laboratory, language),
+        dates(laboratory, language),
+        method(result, laboratory, language),
+        conditions(result, laboratory, language),
+        drift(result, language),
+        traceability(laboratory, language),
+        results(result, language),
+        adjustment(result, before, laboratory, language),
+        decision.map(|decision| conformity_statement(result, decision, language)).unwrap_or_default(),
+        authorisation(laboratory, language),
+    ];
+    let plain = |blocks| Section { tone: Tone::Plain, blocks };
+    Document {
+        language,
+        title: format!("{} {number}", messages.certificate),
+        opening: Opening {
+            kind: String::new(),
+            title: messages.certificate.to_owned(),
+            lines: Vec::new(),
+            date: String::new(),
+        },
+        sections: sections.into_iter().filter(|blocks| !blocks.is_empty()).map(plain).collect(),
+        margins: Margins {
+            head: [laboratory.laboratory.name.clone(), format!("{} {number}", messages.certificate_number)],
+            foot: messages.item_only.to_owned(),
+            page: [messages.page, messages.of],
+        },
+    }
+}
+
+/// The objections to the result, before anything else.
+fn warning(result: &CalibrationResult, language: Language) -> Vec<Block> {
+    let (messages, objections) = (language.messages(), objections(result));
+    if objections.is_empty() {
+        return Vec::new();
+    }
+    let reasons = objections.iter().map(|reason| objection(reason, language)).collect();
+    vec![Block::heading(messages.not_acceptable, 4), Block::paragraph(messages.verdict_bad), Block::List(reasons)]
+}
+
+/// 7.8.2.1 a, b, d, e.
+fn parties(laboratory: &Laboratory, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let of = &laboratory.laboratory;
+    let accreditation = of.accreditation.as_ref().map(|number| format!("{}: {number}", messages.accreditation));
+    vec![
+        Block::facts([(messages.certificate_number, laboratory.certificate.number.clone())]),
+        Block::facts([
+            (messages.laboratory, of.name.clone()),
+            ("", address(&of.address, &of.contact)),
+            ("", accreditation.unwrap_or_default()),
+            (messages.customer, laboratory.customer.name.clone()),
+            ("", address(&laboratory.customer.address, &laboratory.customer.contact)),
+            (messages.replaces, laboratory.certificate.replaces.clone().unwrap_or_default()),
+        ]),
+    ]
+}
+
+fn address(address: &Address, contact: &Contact) -> String {
+    let place = format!("{}, {} {}, {}", address.street, address.post_code, address.city, address.country);
+    [Some(place), contact.phone.clone(), contact.email.clone()].into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// 7.8.2.1 g.
+fn item(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> Vec<Block> {
+    let (messages, item, session) = (language.messages(), &laboratory.item, &result.session);
+    let text = |value: &Option<String>| value.clone().unwrap_or_default();
+    let serial = if session.unit_serial.is_empty() { messages.not_given } else { &session.unit_serial };
+    let facts = Block::facts([
+        (messages.description, text(&item.description)),
+        (messages.model, session.unit_model.clone()),
+        (messages.serial, serial.to_owned()),
+        (messages.manufacturer, text(&item.manufacturer)),
+        (messages.customer_number, text(&item.customer_number)),
+        (messages.condition, text(&item.condition)),
+    ]);
+    vec![Block::heading(messages.item, 4), facts]
+}
+
+/// 7.8.2.1 c, h, i, j.
+fn dates(laboratory: &Laboratory, language: Language) -> Vec<Block> {
+    let (messages, certificate) = (language.messages(), &laboratory.certificate);
+    let place = certificate.place.clone().unwrap_or_else(|| messages.own_premises.to_owned());
+    let calibrated = if certificate.begun == certificate.ended {
+        language.date(certificate.begun)
+    } else {
+        format!("{} – {}", language.date(certificate.begun), language.date(certificate.ended))
+    };
+    let facts = Block::facts([
+        (messages.received, certificate.received.map(|date| language.date(date)).unwrap_or_default()),
+        (messages.calibrated, calibrated),
+        (messages.issued, language.date(certificate.issued)),
+        (messages.place, place),
+    ]);
+    vec![Block::heading(messages.date, 4), facts]
+}
+
+/// 7.8.2.1 f, n.
+fn method(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> Vec<Block> {
+    let (messages, method) = (language.messages(), &laboratory.method);
+    let facts = Block::facts([
+        (messages.procedure, method.procedure.clone().unwrap_or_default()),
+        (messages.deviations, method.deviations.clone().unwrap_or_else(|| messages.none.to_owned())),
+        (messages.software, format!("{} {}", result.program.name, result.program.version)),
+    ]);
+    vec![Block::heading(messages.method, 6), Block::paragraph(messages.method_text), facts]
+}
+
+/// 7.8.4.1 b.
+fn conditions(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> Vec<Block> {
+    let (messages, environment) = (language.messages(), &laboratory.environment);
+    let shown = |condition: Condition, unit: &str| {
+        let [value, range] = [condition.value, condition.range].map(|value| language.number(&value.to_string()));
+        format!("{value} ± {range} {unit}")
+    };
+    let gravity = format!("{} {}", language.number(&result.model.gravity.to_string()), language.unit("m/s^2"));
+    let facts = Block::facts([
+        (messages.temperature, shown(environment.temperature, "°C")),
+        (messages.humidity, environment.humidity.map(|c| shown(c, "%")).unwrap_or_default()),
+        (messages.pressure, environment.pressure.map(|c| shown(c, &language.unit("kPa"))).unwrap_or_default()),
+        (messages.gravity, gravity),
+        (messages.speed_uncertainty, language.scientific(result.model.speed_uncertainty)),
+    ]);
+    vec![Block::heading(messages.conditions, 5), facts]
+}
+
+/// What was observed during the calibration, where records show it; also 7.8.2.1 n, samples that were left out.
+fn drift(result: &CalibrationResult, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let facts = drift_facts(result, language);
+    if facts.is_empty() {
+        return Vec::new();
+    }
+    let note = Block::paragraph(messages.steadiness_note);
+    vec![Block::heading(messages.steadiness, 13), note, Block::facts(facts)]
+}
+
+/// 7.8.4.1 c.
+fn traceability(laboratory: &Laboratory, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let standards = &laboratory.standard;
+    let rows = standards
+        .iter()
+        .map(|s| vec![s.name.clone(), s.identification.clone(), s.certificate.clone(), s.traceable_to.clone()]);
+    let columns = [
+        (messages.standard, 0.27, Align::Left),
+        (messages.number_sign, 0.18, Align::Left),
+        (messages.standard_certificate, 0.27, Align::Left),
+        (messages.traceable_to, 0.28, Align::Left),
+    ];
+    // Four lines for each of the first standards.
+    let lines = (1..=4).zip(standards).fold(6, |lines, _: (u8, _)| lines + 4);
+    vec![
+        Block::heading(messages.traceability, lines),
+        Block::paragraph(messages.traceability_text),
+        Block::Table(Table::numbers(columns, rows)),
+    ]
+}
+
+/// 7.8.2.1 m and 7.8.4.1 a.
+fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let terms: Vec<_> = result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect();
+    let rows = by_group(&terms).into_iter().map(|parameter| {
+        let (factor, unit) = customary(&parameter.unit, parameter.group);
+        let [shown, si] = match (parameter.value, expanded(result, parameter)) {
+            (Some(value), Some(expanded)) => {
+                let expanded = expanded.uncertainty;
+                let shown = language.plus_minus(value * factor, expanded * factor);
+                [shown, language.plus_minus_scientific(value, expanded)]
+            }
+            _ => [messages.not_determined.to_owned(), String::new()],
+        };
+        let group = (messages.words.group)(parameter.group).to_owned();
+        vec![parameter.name.clone(), group, shown, language.unit(unit), si, language.unit(&parameter.unit)]
+    });
+    let columns = [
+        ("", 0.08, Align::Left),
+        ("", 0.25, Align::Left),
+        (messages.value, 0.23, Align::Right),
+        ("", 0.09, Align::Left),
+        (messages.value_si, 0.26, Align::Right),
+        ("", 0.09, Align::Left),
+    ];
+    let model = [Block::heading(messages.results, 8), Block::paragraph(messages.results_model)];
+    let values = [
+        Block::Table(Table::numbers(columns, rows)),
+        Block::paragraph(messages.uncertainty_statement),
+        Block::paragraph(messages.covariance_note),
+    ];
+    model.into_iter().chain(equations(result).map(Block::Paragraph)).chain(values).collect()
+}
+
+/// 7.8.4.1 d.
+fn adjustment(
+    result: &CalibrationResult,
+    before: Option<&CalibrationResult>,
+    laboratory: &Laboratory,
+    language: Language,
+) -> Vec<Block> {
+    let (messages, adjustment) = (language.messages(), laboratory.item.adjustment.as_deref());
+    let mut blocks =
+        vec![Block::heading(messages.adjustment, 9), Block::paragraph(adjustment.unwrap_or(messages.no_adjustment))];
+    blocks.extend(before.map(|before| Block::Table(results_before(result, before, language))));
+    if let Some(errors) = error_table(result, language) {
+        if adjustment.is_none() {
+            blocks.push(Block::paragraph(messages.errors_of_readings));
+        }
+        blocks.push(Block::Table(errors));
+        blocks.push(Block::paragraph(messages.residual_error_note));
+    }
+    blocks
+}
+
+/// The parameters of the instrument before its adjustment and after.
+fn results_before(result: &CalibrationResult, before: &CalibrationResult, language: Language) -> Table {
+    let messages = language.messages();
+    let terms: Vec<_> = result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect();
+    let shown = |result: &CalibrationResult, name: &str, factor: f64| {
+        let estimate = result.parameter(name).and_then(|p| Some((p.value?, expanded(result, p)?.uncertainty)));
+        let known = |(value, expanded)| language.plus_minus(value * factor, expanded * factor);
+        estimate.map_or_else(|| messages.not_determined.to_owned(), known)
+    };
+    let rows = by_group(&terms).into_iter().map(|after| {
+        let (factor, unit) = customary(&after.unit, after.group);
+        let [was, is] = [before, result].map(|result| shown(result, &after.name, factor));
+        vec![after.name.clone(), was, is, language.unit(unit)]
+    });
+    let columns = [
+        (messages.parameter, 0.16, Align::Left),
+        (messages.before_adjustment, 0.34, Align::Right),
+        (messages.after_adjustment, 0.34, Align::Right),
+        (messages.unit, 0.16, Align::Left),
+    ];
+    Table::numbers(columns, rows)
+}
+
+/// 7.8.4.1 e and 7.8.6.
+fn conformity_statement(result: &CalibrationResult, decision: &Decision, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let rule = match decision.rule {
+        DecisionRule::Simple => messages.rule_simple,
+        DecisionRule::Guarded => messages.rule_guarded,
+    };
+    let rows = conformity(result, decision).into_iter().map(|judged| {
+        let limit = judged.limit;
+        let parameter = result.parameter(&limit.parameter);
+        let (factor, unit) = parameter.map_or((1.0, ""), |p| customary(&p.unit, p.group));
+        let [low, high] = [limit.low, limit.high].map(|end| language.significant(end * factor, 4));
+        let value = judged.value.map_or_else(
+            || messages.not_determined.to_owned(),
+            |(value, expanded)| language.plus_minus(value * factor, expanded * factor),
+        );
+        let verdict = match judged.conforms {
+            Some(true) => messages.conforms,
+            Some(false) => messages.does_not_conform,
+            None => messages.conformity_not_stated,
+        };
+        let range = format!("{low} … {high}");
+        vec![limit.parameter.clone(), range, value, language.unit(unit), verdict.to_owned()]
+    });
+    let columns = [
+        (messages.parameter, 0.16, Align::Left),
+        (messages.limits, 0.24, Align::Right),
+        (messages.value, 0.26, Align::Right),
+        (messages.unit, 0.12, Align::Left),
+        ("", 0.22, Align::Left),
+    ];
+    let facts = [(messages.specification, decision.specification.clone()), (messages.decision_rule, rule.to_owned())];
+    vec![Block::heading(messages.conformity, 9), Block::facts(facts), Block::Table(Table::numbers(columns, rows))]
+}
+
+/// 7.8.2.1 d, l, o.
+fn authorisation(laboratory: &Laboratory, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let signature = laboratory.authorised_by().map(|person| Block::Signature {
+        name: person.name.clone(),
+        role: person.role.clone(),
+        word: messages.signature.to_owned(),
+    });
+    let others = laboratory.person.iter().filter(|person| !person.authorises);
+    let others = others.map(|person| format!("{}, {}", person.name, person.role)).collect::<Vec<_>>().join("; ");
+    let end = [
+        Block::facts([(messages.responsible, others)]),
+        Block::paragraph(messages.item_only),
+        Block::paragraph(messages.reproduction),
+        Block::Paragraph(format!("— {} —", messages.end)),
+    ];
+    std::iter::once(Block::heading(messages.authorised, 12)).chain(signature).chain(end).collect()
+}

@@ -1,0 +1,104 @@
+//! What the documents say of drift and tilt, a name and a text each.
+
+use centrical_session::{CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, TiltSummary};
+
+use crate::evaluation::drift::{MINUTE, SessionDrift, Tilts, farthest_apart, not_used, plateaus_drift, tilts_scatter};
+use crate::language::Language;
+
+/// A name and what it stands for.
+type Fact = (&'static str, String);
+
+/// What is said of drift, tilt and samples left out; nothing for a session that came already averaged.
+pub(super) fn drift_facts(result: &CalibrationResult, language: Language) -> Vec<Fact> {
+    let mut facts = Vec::new();
+    if let Some(drift) = &result.drift {
+        drifts(&mut facts, drift, language);
+    }
+    if let Some(tilt) = &result.tilt {
+        tilts(&mut facts, tilt, language);
+    }
+    if result.drift.is_some() || result.tilt.is_some() {
+        left_out(&mut facts, result, language);
+    }
+    facts
+}
+
+fn drifts(facts: &mut Vec<Fact>, drift: &DriftSummary, language: Language) {
+    let messages = language.messages();
+    let per_minute = MINUTE / MICRO_G;
+    let slopes = drift.slope.iter().zip(&drift.slope_uncertainty).enumerate();
+    let slopes = slopes.map(|(i, (slope, u))| axis(i + 1, &language.plus_minus(per_minute * slope, per_minute * u)));
+    let said = [
+        with_unit(slopes, "ug/min", language),
+        format!("χ² = {}; ν = {}", language.fixed(drift.chi_squared, 1), drift.degrees_of_freedom),
+        (if plateaus_drift(drift) { messages.plateaus_drift } else { messages.no_drift }).to_owned(),
+    ];
+    facts.push((messages.drift_over_plateau, said.join("; ")));
+    if !drift.over_session.is_empty() {
+        let changes = drift.over_session.iter().map(|trend| {
+            axis(trend.axis, &language.plus_minus(trend.change / MICRO_G, trend.standard_uncertainty / MICRO_G))
+        });
+        let verdict = match SessionDrift::of(drift) {
+            SessionDrift::NotSeen => messages.no_drift,
+            SessionDrift::WithinScatter => messages.within_scatter,
+            SessionDrift::Seen => messages.session_drifts,
+        };
+        let said = [with_unit(changes, "ug", language), verdict.to_owned()];
+        facts.push((messages.drift_over_session, said.join("; ")));
+    }
+    if let Some((worst, differ)) = farthest_apart(drift) {
+        let [first, second] = worst.indices.map(|index| format!("{}:{}", worst.mounting, index + 1));
+        let chi_squared = language.fixed(worst.chi_squared, 1);
+        let said = [
+            drift.repeats.len().to_string(),
+            format!("{}: {first}, {second}, χ² = {chi_squared}, ν = 3", messages.farthest_apart),
+            if differ { messages.differ } else { messages.no_difference }.to_owned(),
+        ];
+        facts.push((messages.run_again, said.join("; ")));
+    }
+}
+
+fn tilts(facts: &mut Vec<Fact>, tilt: &TiltSummary, language: Language) {
+    let messages = language.messages();
+    let shown = |value: f64, u: f64| format!("{} {}", language.plus_minus(1e6 * value, 1e6 * u), language.unit("urad"));
+    facts.push((messages.tilt_at_rest, shown(tilt.at_rest, tilt.at_rest_uncertainty)));
+    let mut said = vec![
+        shown(tilt.spinning, tilt.spinning_uncertainty),
+        format!("χ² = {}; ν = 1", language.fixed(tilt.chi_squared, 1)),
+        match Tilts::of(tilt) {
+            Tilts::Agree => messages.tilts_agree.to_owned(),
+            Tilts::Differ => messages.tilts_differ.to_owned(),
+            Tilts::Reversed => {
+                format!("{} ({})", messages.tilt_reversed, shown(tilt.reversed, tilt.spinning_uncertainty))
+            }
+        },
+    ];
+    if tilts_scatter(tilt) {
+        let (chi_squared, nu) = (language.fixed(tilt.scatter_chi_squared, 1), tilt.plateaus.saturating_sub(1));
+        said.push(format!("{}: χ² = {chi_squared}; ν = {nu}", messages.tilts_scatter));
+    }
+    facts.push((messages.tilt_spinning, said.join("; ")));
+}
+
+fn left_out(facts: &mut Vec<Fact>, result: &CalibrationResult, language: Language) {
+    let messages = language.messages();
+    let LeftOutSummary { spikes, stuck, missing, repeated } = not_used(result);
+    let kinds = [
+        (messages.spikes, spikes),
+        (messages.missing, missing),
+        (messages.stuck, stuck),
+        (messages.repeated, repeated),
+    ];
+    let named = kinds.iter().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{kind}: {count}"));
+    let named = named.collect::<Vec<_>>().join("; ");
+    facts.push((messages.not_used, if named.is_empty() { messages.none.to_owned() } else { named }));
+}
+
+/// What is said of a newtonometer.
+fn axis(axis: usize, said: &str) -> String {
+    format!("f{axis} {said}")
+}
+
+fn with_unit(said: impl Iterator<Item = String>, unit: &str, language: Language) -> String {
+    format!("{} {}", said.collect::<Vec<_>>().join(", "), language.unit(unit))
+}

@@ -1,0 +1,56 @@
+//! The figures of a report: each a drawing, and a sentence that says what to see in it.
+
+mod correlation;
+mod drawing;
+mod fit;
+mod frontier;
+mod history;
+mod noise;
+mod positions;
+mod prediction;
+mod record;
+
+use centrical::Position;
+use centrical_session::CalibrationResult;
+use nalgebra::Matrix3;
+
+pub use self::drawing::Figure;
+pub use self::frontier::frontier_plot;
+pub use self::history::history_figure;
+pub use self::noise::noise_plots;
+use self::positions::position_drawings;
+pub use self::positions::positions_figure;
+use crate::language::Language;
+
+/// All figures that can be drawn from a result, in the order of the report.
+pub fn figures(result: &CalibrationResult, language: Language) -> Vec<Figure> {
+    let of_fit = fit::figures(result, language);
+    let correlation = correlation::figure(result, language);
+    let records = record::figure(result, language);
+    of_fit
+        .into_iter()
+        .chain(prediction::figure(result, language))
+        .chain(correlation)
+        .chain(fit::singular_values(result, language))
+        .chain([fit::convergence(result, language), records, fit::stability(result, language)].into_iter().flatten())
+        .collect()
+}
+
+/// The drawing of the mounting positions; `None` if the result does not have them.
+pub(crate) fn positions(result: &CalibrationResult, language: Language) -> Option<Figure> {
+    let messages = language.messages();
+    let positions: Vec<Position> = result
+        .model
+        .positions
+        .iter()
+        .map(|position| Position {
+            id: position.id.clone(),
+            p_zy: Matrix3::from_fn(|i, j| position.matrix[i][j]),
+            pair: position.pair.clone(),
+        })
+        .collect();
+    (!positions.is_empty()).then(|| {
+        let drawings = position_drawings(&positions, language);
+        Figure::new("positions", messages.positions, messages.positions_caption, drawings)
+    })
+}

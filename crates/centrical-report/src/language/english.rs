@@ -1,0 +1,316 @@
+//! English.
+
+use centrical::uncertainty::Source;
+use centrical::{Group, PairRelation, ReferencePoint, Termination};
+use centrical_session::{Follows, Method};
+
+use super::messages::{Messages, Words};
+
+/// English.
+pub(crate) const ENGLISH: Messages = Messages {
+    calibration_report: "Calibration report",
+    acceptable: "Acceptable",
+    not_acceptable: "Not acceptable",
+    verdict_good: "The result can be used as it stands: the fit converged, the residuals agree with the stated \
+        uncertainties, and every parameter of the instrument is determined.",
+    verdict_bad: "The result must not be used as it stands:",
+    serial: "Serial number",
+    not_given: "not given",
+    session: "Session",
+    date: "Date",
+    gravity: "Local gravity",
+    latitude: "Latitude",
+    pair_relation: "Relation of dR within a pair of positions",
+    reference: "Reference point",
+    speed_uncertainty: "Relative standard uncertainty of a speed",
+    data: "Data",
+    method: "Method",
+    software: "Software",
+    chi_squared: "χ² per degree of freedom",
+    rank: "Rank",
+    residual_error: "Reading error over the calibrated range",
+    residual_error_note: "Root mean square and, in brackets, largest magnitude over all plateaus, against the specific \
+        force of the fitted geometry. The second row still holds the error of each plateau’s speed; the third is without \
+        it, which along the arm leaves next to nothing, so it speaks for the axes across the arm and for rest. The last \
+        row is the expanded uncertainty that the parameters leave in a compensated reading of the same force.",
+    before: "Before compensation",
+    after: "After compensation",
+    after_speed_free: "After, less the speed error of each plateau",
+    compensation_uncertainty: "Uncertainty of compensation, k = 2",
+    axis: "axis",
+    newtonometer: "Newtonometer",
+    number_sign: "No.",
+    parameters: "Parameters",
+    parameters_note: "Value ± expanded uncertainty U = k·u with coverage factor k = 2, which for a normal \
+        distribution is a level of confidence of about 95 %; where the effective degrees of freedom are finite, k is that of Student’s \
+        distribution. 1 g = 9.80665 m/s².",
+    instrument: "Instrument",
+    mounting: "Geometry of the experiment",
+    parameter: "Parameter",
+    value: "Value ± U",
+    unit: "Unit",
+    value_si: "Value ± U, SI",
+    not_determined: "not determined",
+    budget: "Uncertainty budget",
+    budget_note: "Standard uncertainty by source, in the customary unit of each parameter; – is less than a \
+        thousandth of the combined one.",
+    no_budget: "The session states no uncertainties of gravity, radii, attitudes and the like: they count as exact, and \
+        the uncertainties hold what the fit weighs.",
+    combined: "combined",
+    degrees_word: "Eff. degrees of freedom",
+    chi_squared_chance: "Chance of so large a χ²",
+    outlying_plateaus: "plateaus that stand out",
+    patterns_found: "patterns in the residuals",
+    worst_mounting: "Worst of the mountings, each predicted from all others",
+    steadiness: "Steadiness",
+    steadiness_note: "How the readings moved within plateaus and over the session, and the tilt of the axis of \
+        rotation by the once-per-revolution term, which is not fitted, against the fitted one. With standard \
+        uncertainties; what comes by chance less often than once in a thousand is said to be there.",
+    drift_over_plateau: "Drift over a plateau, mean",
+    drift_over_session: "Drift over the session",
+    plateaus_drift: "plateaus drift",
+    session_drifts: "the session drifts",
+    no_drift: "no drift seen",
+    within_scatter: "no more than the plateaus scatter",
+    run_again: "Plateaus run again",
+    farthest_apart: "farthest apart",
+    differ: "they differ",
+    no_difference: "no difference seen",
+    tilt_spinning: "Tilt by the once-per-revolution term",
+    tilt_at_rest: "Tilt by rest",
+    tilts_agree: "they agree",
+    tilts_differ: "they differ: the axis is not the same while it spins, or something else turns with it",
+    tilt_reversed: "it turns the other way: the sense of rotation is wrong",
+    tilts_scatter: "the plateaus’ own tilts scatter",
+    not_used: "Samples not used",
+    spikes: "spikes",
+    missing: "missing",
+    stuck: "stuck",
+    repeated: "repeated",
+    positions: "Mounting positions",
+    positions_caption: "Where the three sensitive axes point in each position: the arm goes to the right, the \
+        rotation axis up.",
+    position: "Position",
+    pair: "pair",
+    plots: "Plots",
+    force_axis: "specific force along the loaded axis, g",
+    error_before_axis: "reading error, mg",
+    error_after_axis: "reading error, µg",
+    before_caption: "Error of each newtonometer against the specific force along the axis loaded most, a marker for each \
+        such axis: along its own axis the offset is the bias, the slope the scale error, the bend the quadratic and cubic \
+        terms; along another, the slope is misalignment and the parabola a quadratic term across.",
+    after_caption: "The same after compensation, less what an error of the plateau’s speed explains: points should keep \
+        within their bars (k = 2) without a trend; along its own axis the speed explains nearly all, so that those points \
+        lie at zero by construction.",
+    residuals_title: "Residuals by plateau",
+    residuals_caption: "Mean reading less fitted model with bars of k = 2, speed error included: bars that miss \
+        zero more often than one in twenty, or a pattern along the session, would mean a model that does not fit.",
+    normalised_title: "Residuals over their standard uncertainty",
+    normalised_caption: "Residuals made independent and divided by their standard uncertainty: about one in twenty \
+        should lie outside ±2.",
+    plateau_axis: "plateau, in the order of the session",
+    residual_axis: "residual, µg",
+    normalised_axis: "normalised residual",
+    correlation_title: "Correlation of the estimates",
+    correlation_caption: "Blue is positive, orange negative, and strength is saturation: strongly coloured cells \
+        away from the diagonal are parameters that the experiment separates badly.",
+    singular_title: "Singular values of the design",
+    singular_axis: "singular value",
+    order_axis: "number, from the largest",
+    singular_caption_full: "All of them lie above the limit: every combination of parameters is seen by the \
+        experiment.",
+    singular_caption_short: "Those below the limit belong to combinations that the experiment does not see; they \
+        are named under the plot.",
+    determined: "determined",
+    lost: "not seen",
+    limit: "limit",
+    null_directions: "The readings do not change along",
+    prediction_title: "Uncertainty of a compensated reading",
+    prediction_axis: "standard uncertainty, µg",
+    prediction_caption: "Standard uncertainty that the calibration leaves in a compensated reading, for a force along each \
+        axis alone; the noise of the reading itself comes on top.",
+    history_title: "Uncertainty as the session was watched",
+    history_caption: "Largest standard uncertainty of each group over that after the last plateau, as it stood when each \
+        plateau had come. A curve begins where all of its group that was determined in the end was determined first.",
+    convergence_title: "Uncertainty as the session goes on",
+    convergence_axis: "standard uncertainty over the final one",
+    convergence_caption: "The worst-known parameter of each group, against its final uncertainty: a curve that has \
+        flattened gains little from more plateaus of the same kind.",
+    plateaus_used_axis: "plateaus used",
+    records_title: "Records with the plateaus found",
+    records_caption: "Lowest and highest reading of the three axes over the record; the shaded stretches are the \
+        plateaus whose means were used, and each should lie on level ground clear of the ramps.",
+    mounting_word: "Mounting",
+    radius: "radius",
+    plateau: "plateau",
+    samples: "samples",
+    rejected: "rejected",
+    time_axis: "time, s",
+    stability_title: "Stability of the reading at rest",
+    tau_axis: "averaging time τ, s",
+    deviation_axis: "Allan deviation, m/s²",
+    stability_caption: "Where the curve falls as the square root of time the noise is white; the level of its \
+        lowest stretch is the bias instability.",
+    inputs: "Input files",
+    inputs_note: "Files from which the result was made, with the SHA-256 of their bytes.",
+    file: "File",
+    certificate: "Calibration certificate",
+    certificate_number: "Certificate no.",
+    page: "page",
+    of: "of",
+    laboratory: "Laboratory",
+    accreditation: "accreditation",
+    customer: "Customer",
+    item: "Item calibrated",
+    manufacturer: "Manufacturer",
+    model: "Model",
+    description: "Description",
+    customer_number: "Customer’s number",
+    condition: "Condition on receipt",
+    received: "Received",
+    calibrated: "Calibrated",
+    issued: "Issued",
+    place: "Place of calibration",
+    own_premises: "the laboratory’s premises",
+    replaces: "Replaces certificate",
+    procedure: "Procedure",
+    method_text: "Calibration on a precision centrifuge by the method of A. V. Kozlov (Lomonosov Moscow State \
+        University): time means of the readings in several mounting positions, radii and speeds and at rest; joint \
+        estimation of the instrument and of the geometry of the experiment by weighted least squares on the exact \
+        model.",
+    deviations: "Additions, deviations, exclusions",
+    none: "none",
+    conditions: "Conditions of calibration",
+    temperature: "Air temperature",
+    humidity: "Relative humidity",
+    pressure: "Air pressure",
+    traceability: "Metrological traceability",
+    traceability_text: "The results are traceable to the SI through the standards below.",
+    standard: "Standard",
+    standard_certificate: "Certificate",
+    traceable_to: "Traceable to",
+    results: "Results",
+    results_model: "Error model of the reading f′ of axis i at the specific force f:",
+    uncertainty_statement: "The expanded uncertainty U is the standard uncertainty multiplied by the coverage \
+        factor k = 2, which for a normal distribution corresponds to a coverage probability of approximately 95 %. \
+        Where the effective degrees of freedom are finite, k is that of Student’s distribution for the same \
+        probability. It was evaluated in accordance with JCGM 100 (GUM). 1 g = 9.80665 m/s².",
+    adjustment: "Before and after adjustment",
+    before_adjustment: "Before adjustment, ± U",
+    after_adjustment: "After adjustment, ± U",
+    no_adjustment: "The unit was not adjusted or repaired.",
+    errors_of_readings: "Readings as received carry the error “before”; compensated with the parameters above they carry the \
+        error “after”.",
+    conformity: "Statement of conformity",
+    specification: "Specification",
+    decision_rule: "Decision rule",
+    rule_simple: "simple acceptance: conformity is stated if the value lies within the limits; the risk of false \
+        acceptance may reach 50 % (ILAC-G8)",
+    rule_guarded: "guarded acceptance with guard band w = U: conformity is stated if the value lies within the \
+        limits by U or more; risk of false acceptance below 2.5 % (ILAC-G8)",
+    limits: "Limits",
+    conforms: "conforms",
+    does_not_conform: "does not conform",
+    conformity_not_stated: "not stated",
+    authorised: "Authorised by",
+    responsible: "Persons responsible",
+    signature: "signature",
+    item_only: "The results relate only to the item calibrated, in the condition and at the time of calibration.",
+    reproduction: "This certificate shall not be reproduced except in full without the approval of the laboratory.",
+    end: "End of certificate",
+    covariance_note: "The full covariance matrix of the parameters is in the digital calibration certificate and in \
+        result.json.",
+    mountings_used: "mountings",
+    plateaus_used: "plateaus",
+    uncertainty: "Expanded uncertainty",
+    covariance: "Covariance matrix of the parameters",
+    specific_force: "Specific force",
+    words: Words { group, source, method, termination, pair_relation, reference, follows },
+    not_converged: "the fit did not converge",
+    residuals_too_large: "residuals are larger than the stated uncertainties explain",
+    degrees_of_freedom: "degrees of freedom",
+    chance: "chance",
+    lost_parameters: "parameters of the instrument are not determined",
+};
+
+fn group(group: Group) -> &'static str {
+    match group {
+        Group::Bias => "Bias",
+        Group::Scale => "Scale error",
+        Group::Misalignment => "Misalignment",
+        Group::Quadratic => "Quadratic",
+        Group::Cubic => "Cubic",
+        Group::CrossCoupling => "Cross-coupling",
+        Group::Asymmetry => "Asymmetry of the scale",
+        Group::HigherOrder => "Higher order",
+        Group::Tilt => "Tilt of the rotation axis",
+        Group::Turn => "Turn of the unit",
+        Group::Shift => "Shift of the unit",
+        Group::ProofMass => "Place of a proof mass",
+        Group::ElasticTurn => "Elastic turn",
+        Group::ArmStretch => "Stretch of the arm",
+        Group::RadiusScale => "Scale of the radii",
+        Group::SpeedScale => "Scale of the speed",
+    }
+}
+
+fn source(source: Source) -> &'static str {
+    match source {
+        Source::Noise => "Noise",
+        Source::PlateauSpeed => "Speed of each plateau",
+        Source::Priors => "Priors",
+        Source::Gravity => "Gravity",
+        Source::Latitude => "Latitude",
+        Source::Radius => "Radius",
+        Source::RadiusDifference => "Difference of radii",
+        Source::SpeedScale => "Scale of the speed",
+        Source::RestAngle => "Angle at rest",
+        Source::ProofMasses => "Proof masses",
+        Source::Attitude => "Attitudes",
+        Source::Resolution => "Resolution",
+    }
+}
+
+fn method(method: Method) -> &'static str {
+    match method {
+        Method::Exact => "exact, Gauss-Newton",
+        Method::Recursive => "exact, recursive filter",
+        Method::Linear => "linear [K5.3]",
+    }
+}
+
+fn termination(termination: Termination) -> &'static str {
+    match termination {
+        Termination::Linear => "linear",
+        Termination::Converged => "converged",
+        Termination::Stalled => "stalled",
+        Termination::IterationLimit => "iteration limit",
+    }
+}
+
+fn pair_relation(pair_relation: PairRelation) -> &'static str {
+    match pair_relation {
+        PairRelation::Common => "common",
+        PairRelation::Opposite => "opposite",
+        PairRelation::Free => "free",
+    }
+}
+
+fn reference(reference: ReferencePoint) -> &'static str {
+    match reference {
+        ReferencePoint::FirstProofMass => "proof mass 1",
+        ReferencePoint::OwnAxes => "no displacement along own axes",
+    }
+}
+
+fn follows(follows: &Follows) -> &'static str {
+    match follows {
+        Follows::Position { .. } => "step in position",
+        Follows::SpeedInPosition { .. } => "square of the speed in position",
+        Follows::SpeedOnSeat { .. } => "square of the speed at radius",
+        Follows::Speed => "square of the speed",
+        Follows::Load => "load",
+        Follows::Mounting { .. } => "step in mounting",
+        Follows::Time => "drift over the session",
+    }
+}

@@ -1,0 +1,115 @@
+//! Numbers in decimal digits, as tables, documents and plots show them.
+
+use std::ops::Range;
+
+/// Digits and power of ten of a number rounded to `digits` significant digits: 0.0996 to two is `1.0`, -1.
+pub(crate) fn scientific(value: f64, digits: usize) -> (String, i32) {
+    parts(format!("{value:.*e}", digits.saturating_sub(1)))
+}
+
+/// The same with the digits that the number has.
+pub(crate) fn shortest(value: f64) -> (String, i32) {
+    parts(format!("{value:e}"))
+}
+
+fn parts(scientific: String) -> (String, i32) {
+    let parsed = scientific.split_once('e').and_then(|(digits, power)| Some((digits.to_owned(), power.parse().ok()?)));
+    // What is not finite has no power.
+    parsed.unwrap_or((scientific, 0))
+}
+
+/// A value and its standard uncertainty, both to the place of the uncertainty's second significant digit
+/// (GUM, 7.2.6).
+pub fn with_uncertainty(value: f64, uncertainty: f64) -> (String, String) {
+    let is_size = uncertainty.is_finite() && uncertainty > 0.0;
+    let places = if is_size { places(uncertainty, 2) } else { 6 };
+    let shown = format!("{value:.places$}");
+    // A small negative number rounds to a zero, which has no sign.
+    let is_zero = !shown.contains(|c: char| c.is_ascii_digit() && c != '0');
+    let shown = if is_zero { shown.trim_start_matches('-').to_owned() } else { shown };
+    (shown, format!("{uncertainty:.places$}"))
+}
+
+/// Decimal places that show `digits` significant digits of a number.
+fn places(value: f64, digits: u8) -> usize {
+    let exponent = scientific(value, digits.into()).1;
+    usize::try_from(i32::from(digits) - 1 - exponent).unwrap_or(0)
+}
+
+/// A number to `digits` significant digits, with an exponent where its leading digit is outside `plain` powers of ten.
+pub(crate) fn significant(value: f64, digits: u8, plain: Range<i32>) -> String {
+    let exponent = scientific(value, digits.into()).1;
+    if plain.contains(&exponent) {
+        format!("{value:.*}", places(value, digits))
+    } else {
+        format!("{value:.*e}", usize::from(digits) - 1)
+    }
+}
+
+/// Three significant digits, without an exponent where that is shorter.
+pub(crate) fn digits(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { significant(value, 3, -3..5) }
+}
+
+/// Two significant digits, without an exponent where that is shorter.
+pub(crate) fn short(value: f64) -> String {
+    let size = value.abs();
+    match size {
+        _ if size == 0.0 => "0".to_owned(),
+        _ if !(1e-3..1e5).contains(&size) => format!("{value:.0e}"),
+        _ if size >= 10.0 => format!("{value:.0}"),
+        _ if size >= 1.0 => format!("{value:.1}"),
+        _ if size >= 0.1 => format!("{value:.2}"),
+        _ if size >= 0.01 => format!("{value:.3}"),
+        _ => format!("{value:.4}"),
+    }
+}
+
+/// Two significant digits without zeros at the end.
+pub(crate) fn trimmed(value: f64) -> String {
+    let rounded: f64 = format!("{value:.1e}").parse().unwrap_or(value);
+    if (1e-3..1e4).contains(&rounded) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+/// `10` with its exponent raised; plain numbers near 1.
+pub(crate) fn power_of_ten(exponent: i32) -> String {
+    match exponent {
+        0 => "1".to_owned(),
+        1 => "10".to_owned(),
+        _ => format!("10{}", superscript(exponent)),
+    }
+}
+
+/// A whole number raised.
+pub(crate) fn superscript(number: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
+    number.to_string().chars().map(raised).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{significant, with_uncertainty};
+
+    #[test]
+    fn two_digits_of_the_uncertainty() {
+        let shown = |v, u| {
+            let (value, uncertainty) = with_uncertainty(v, u);
+            format!("{value} ± {uncertainty}")
+        };
+        assert_eq!(shown(-3.952_149, 0.001_234), "-3.9521 ± 0.0012");
+        assert_eq!(shown(744.294, 0.0996), "744.29 ± 0.10");
+        assert_eq!(shown(12345.6, 123.0), "12346 ± 123");
+        assert_eq!(shown(1.0, 9.96), "1 ± 10");
+        assert_eq!(shown(-0.3, 40.0), "0 ± 40");
+        assert_eq!(shown(-0.04, 3.0), "0.0 ± 3.0");
+        assert_eq!(shown(f64::NAN, 3.0), "NaN ± 3.0");
+    }
+
+    #[test]
+    fn digits_are_those_of_the_rounded_number() {
+        let numbers = [9.9996, 9.9994, 0.012_345, 123_456.0, 1.2e-7, 0.0];
+        let shown: Vec<String> = numbers.map(|v| significant(v, 4, -4..7)).into();
+        assert_eq!(shown, ["10.00", "9.999", "0.01235", "123456", "1.200e-7", "0.000"]);
+    }
+}

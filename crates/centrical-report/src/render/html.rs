@@ -1,0 +1,118 @@
+//! One HTML file: no network, no scripts, legible on a telephone, on paper and in the dark.
+
+use std::fmt::Write;
+
+use crate::document::{Block, Document, Opening, Row, Section, Table, TableKind, Tone};
+use crate::figure::Figure;
+use crate::plot::Escaped;
+
+const STYLE: &str = include_str!("html/style.css");
+
+/// The page of a document. The same document gives the same bytes.
+pub fn html(document: &Document) -> String {
+    let mut html = format!(
+        "<!DOCTYPE html>\n<html lang=\"{}\"><head><meta charset=\"utf-8\">\
+         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
+         <meta name=\"color-scheme\" content=\"light dark\"><link rel=\"icon\" href=\"data:,\">\
+         <title>{}</title><style>{STYLE}</style></head>\n<body><main>\n",
+        document.language.code(),
+        Escaped(&document.title)
+    );
+    opening(&mut html, &document.opening);
+    for part in &document.sections {
+        section(&mut html, part);
+    }
+    let _ = write!(html, "<footer>{}</footer>\n</main></body></html>\n", Escaped(&document.margins.foot));
+    html
+}
+
+fn opening(html: &mut String, opening: &Opening) {
+    let (kind, title) = (Escaped(&opening.kind), Escaped(&opening.title));
+    let _ = write!(html, "<header><p class=\"kind\">{kind}</p><h1>{title}</h1>");
+    for (n, line) in (1..).zip(&opening.lines) {
+        let _ = write!(html, "<p>{}", Escaped(line));
+        if n == opening.lines.len() && !opening.date.is_empty() {
+            let _ = write!(html, ", <time>{}</time>", Escaped(&opening.date));
+        }
+        html.push_str("</p>");
+    }
+    html.push_str("</header>\n");
+}
+
+fn section(html: &mut String, section: &Section) {
+    html.push_str(match section.tone {
+        Tone::Plain => "<section>",
+        Tone::Good => "<section class=\"verdict good\">",
+        Tone::Bad => "<section class=\"verdict bad\">",
+    });
+    for part in &section.blocks {
+        block(html, part);
+        if section.tone == Tone::Plain && matches!(part, Block::Heading(..)) {
+            html.push('\n');
+        }
+    }
+    html.push_str("</section>\n");
+}
+
+fn block(html: &mut String, block: &Block) {
+    let _ = match block {
+        Block::Heading(text, _) => write!(html, "<h2>{}</h2>", Escaped(text)),
+        Block::Subheading(text) => writeln!(html, "<h3>{}</h3>", Escaped(text)),
+        Block::Paragraph(text) => writeln!(html, "<p>{}</p>", Escaped(text)),
+        Block::Note(text) => writeln!(html, "<p class=\"note\">{}</p>", Escaped(text)),
+        Block::List(items) => list(html, items, ["<li>", "</li>"]),
+        Block::Formulas(items) => list(html, items, ["<li><code>", "</code></li>"]),
+        Block::Facts(facts) => {
+            let rows = facts.iter().map(|(name, value)| row(name, std::slice::from_ref(value)));
+            scrolling(html, "facts", &rows.collect::<String>())
+        }
+        Block::Table(table) => whole_table(html, table),
+        Block::Figure(figure) => draw(html, figure),
+        Block::Signature { name, role, word } => {
+            writeln!(html, "<p>{}: ____ {}, {}</p>", Escaped(word), Escaped(name), Escaped(role))
+        }
+    };
+}
+
+fn list(html: &mut String, items: &[String], [open, close]: [&str; 2]) -> std::fmt::Result {
+    let items = items.iter().map(|item| format!("{open}{}{close}", Escaped(item)));
+    writeln!(html, "<ul>{}</ul>", items.collect::<String>())
+}
+
+fn whole_table(html: &mut String, table: &Table) -> std::fmt::Result {
+    let class = match table.kind {
+        TableKind::Numbers => "numbers",
+        TableKind::Parameters => "parameters",
+        TableKind::Files => "hashes",
+    };
+    let cells = table.columns.iter().map(|column| format!("<th scope=\"col\">{}</th>", Escaped(&column.title)));
+    let head = format!("<thead><tr>{}</tr></thead>", cells.collect::<String>());
+    let rows = table.rows.iter().map(|shown| match shown {
+        Row::Group(name) => {
+            let (span, name) = (table.columns.len(), Escaped(name));
+            format!("<tr class=\"group\"><th colspan=\"{span}\" scope=\"rowgroup\">{name}</th></tr>")
+        }
+        Row::Cells(cells) => cells.split_first().map_or(String::new(), |(name, cells)| row(name, cells)),
+    });
+    scrolling(html, class, &(head + &rows.collect::<String>()))
+}
+
+fn scrolling(html: &mut String, class: &str, rows: &str) -> std::fmt::Result {
+    writeln!(html, "<div class=\"scroll\"><table class=\"{class}\">{rows}</table></div>")
+}
+
+fn row(name: &str, cells: &[String]) -> String {
+    let cells = cells.iter().map(|cell| format!("<td>{}</td>", Escaped(cell)));
+    format!("<tr><th scope=\"row\">{}</th>{}</tr>", Escaped(name), cells.collect::<String>())
+}
+
+fn draw(html: &mut String, figure: &Figure) -> std::fmt::Result {
+    write!(html, "<figure id=\"{}\">", figure.name)?;
+    let is_one = figure.drawings.len() == 1;
+    if !is_one && !figure.title.is_empty() {
+        write!(html, "<h3>{}</h3>", Escaped(&figure.title))?;
+    }
+    let class = if is_one { "one" } else { "strips" };
+    writeln!(html, "<div class=\"{class}\">{}</div>", figure.drawings.concat())?;
+    writeln!(html, "<figcaption>{}</figcaption></figure>", Escaped(&figure.caption))
+}

@@ -1,0 +1,37 @@
+//! A PDF file of running text and tables on A4, with embedded fonts for Latin, Greek and Cyrillic.
+
+mod font;
+mod layout;
+mod write;
+
+use self::layout::Layout;
+use crate::document::{Block, Document};
+
+/// The file of a document. The same document gives the same bytes.
+pub fn pdf(document: &Document) -> Vec<u8> {
+    let mut layout = Layout::new();
+    layout.title(&document.opening.title);
+    for line in &document.opening.lines {
+        layout.paragraph(line);
+    }
+    for part in document.sections.iter().flat_map(|section| &section.blocks) {
+        block(&mut layout, part);
+    }
+    write::write(layout, document)
+}
+
+fn block(layout: &mut Layout, block: &Block) {
+    match block {
+        Block::Heading(text, lines) => layout.heading(text, *lines),
+        Block::Subheading(text) => layout.heading(text, 4),
+        Block::Paragraph(text) | Block::Note(text) => layout.paragraph(text),
+        Block::List(items) | Block::Formulas(items) => {
+            items.iter().for_each(|item| layout.paragraph(&format!("– {item}")));
+        }
+        Block::Facts(facts) => layout.facts(facts),
+        Block::Table(table) => layout.table(table),
+        // Drawings are SVG, which a PDF does not take as it is.
+        Block::Figure(figure) => layout.paragraph(&figure.caption),
+        Block::Signature { name, role, word } => layout.signature(name, role, word),
+    }
+}

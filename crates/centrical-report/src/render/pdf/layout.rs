@@ -1,0 +1,226 @@
+//! Running text and tables, broken into lines and pages.
+
+use pdf_writer::{Content, Name, Str};
+
+use super::font::{Font, Weight};
+use crate::document::{Align, Column, Fact, Row, Table};
+
+/// A4 and its margins, points.
+pub(super) const PAGE: (f32, f32) = (595.28, 841.89);
+pub(super) const LEFT: f32 = 56.0;
+pub(super) const TOP: f32 = 74.0;
+pub(super) const BOTTOM: f32 = 66.0;
+/// Width of the text.
+pub(super) const WIDTH: f32 = PAGE.0 - 2.0 * LEFT;
+
+const SIZE: f32 = 9.5;
+/// Distance of baselines over the size.
+const LEADING: f32 = 1.38;
+/// Free space between columns.
+const GUTTER: f32 = 8.0;
+
+/// Pages that grow from above.
+pub(super) struct Layout {
+    pub(super) pages: Vec<Content>,
+    pub(super) fonts: [Font; 2],
+    /// Upper edge of what comes next, from the foot of the page.
+    y: f32,
+}
+
+impl Layout {
+    pub fn new() -> Self {
+        let mut layout = Self { pages: Vec::new(), fonts: Weight::ALL.map(Font::new), y: 0.0 };
+        layout.break_page();
+        layout
+    }
+
+    /// The document's title.
+    pub fn title(&mut self, text: &str) {
+        self.lines(text, Weight::Bold, 20.0, LEFT, WIDTH);
+        self.space(4.0);
+    }
+
+    /// A heading that stays with the `lines` after it.
+    pub fn heading(&mut self, text: &str, lines: u8) {
+        self.space(11.0);
+        self.keep(18.0 + 10.0 * f32::from(lines));
+        self.lines(text, Weight::Bold, 11.5, LEFT, WIDTH);
+        self.space(3.0);
+    }
+
+    /// A paragraph.
+    pub fn paragraph(&mut self, text: &str) {
+        self.lines(text, Weight::Regular, SIZE, LEFT, WIDTH);
+        self.space(4.0);
+    }
+
+    /// Names on the left, what they stand for on the right.
+    pub fn facts(&mut self, facts: &[Fact]) {
+        let columns = [0.32, 0.68].map(|share| Column { title: String::new(), share, align: Align::Left });
+        for (name, value) in facts {
+            self.row(&columns, &[name.clone(), value.clone()], Weight::Regular);
+        }
+        self.space(3.0);
+    }
+
+    /// A table; its head is repeated on every page.
+    pub fn table(&mut self, table: &Table) {
+        let columns = &table.columns;
+        let head: Vec<String> = columns.iter().map(|column| column.title.clone()).collect();
+        self.keep(self.height_of(columns, &head, Weight::Bold) + 2.0 * SIZE * LEADING);
+        self.head(columns, &head);
+        for row in &table.rows {
+            let (cells, weight) = match row {
+                Row::Group(name) => (std::slice::from_ref(name), Weight::Bold),
+                Row::Cells(cells) => (&cells[..], Weight::Regular),
+            };
+            if self.y - self.height_of(columns, cells, weight) < BOTTOM {
+                self.break_page();
+                self.head(columns, &head);
+            }
+            self.row(columns, cells, weight);
+            self.rule(0.25);
+        }
+        self.space(6.0);
+    }
+
+    /// A line for a signature, with who signs beside it.
+    pub fn signature(&mut self, name: &str, role: &str, word: &str) {
+        self.keep(54.0);
+        self.space(26.0);
+        let y = self.y;
+        self.page().set_line_width(0.5).move_to(LEFT, y).line_to(LEFT + 170.0, y).stroke();
+        self.text(word, Weight::Regular, 8.0, LEFT, y - 10.0);
+        self.text(name, Weight::Bold, SIZE, LEFT + 190.0, y);
+        self.text(role, Weight::Regular, SIZE, LEFT + 190.0, y - 12.0);
+        self.space(22.0);
+    }
+
+    /// Free space, none at the head of a page.
+    pub fn space(&mut self, height: f32) {
+        if self.y < PAGE.1 - TOP {
+            self.y -= height;
+        }
+    }
+
+    /// A rule across the text at the present height.
+    pub fn rule(&mut self, width: f32) {
+        let y = self.y + 1.5;
+        self.page().set_line_width(width).move_to(LEFT, y).line_to(LEFT + WIDTH, y).stroke();
+    }
+
+    /// Goes on to the next page if less than `height` is left.
+    pub fn keep(&mut self, height: f32) {
+        if self.y - height < BOTTOM {
+            self.break_page();
+        }
+    }
+
+    fn head(&mut self, columns: &[Column], head: &[String]) {
+        self.row(columns, head, Weight::Bold);
+        self.rule(0.8);
+    }
+
+    fn row(&mut self, columns: &[Column], cells: &[String], weight: Weight) {
+        self.keep(self.height_of(columns, cells, weight));
+        let height = self.height_of(columns, cells, weight);
+        let mut x = LEFT;
+        for (column, cell) in columns.iter().zip(cells) {
+            let width = column.share * WIDTH;
+            let room = width - GUTTER;
+            for (n, line) in (0_u8..).zip(self.broken(cell, weight, SIZE, room)) {
+                let shift = match column.align {
+                    Align::Left => 0.0,
+                    Align::Right => room - self.font(weight).width(&line, SIZE),
+                };
+                let y = self.y - SIZE - f32::from(n) * SIZE * LEADING;
+                self.text(&line, weight, SIZE, x + shift, y);
+            }
+            x += width;
+        }
+        self.y -= height;
+    }
+
+    fn height_of(&self, columns: &[Column], cells: &[String], weight: Weight) -> f32 {
+        let lines =
+            |(column, cell): (&Column, &String)| self.broken(cell, weight, SIZE, column.share * WIDTH - GUTTER).len();
+        let most = columns.iter().zip(cells).map(lines).max().unwrap_or(0);
+        most as f32 * SIZE * LEADING + 2.0
+    }
+
+    fn lines(&mut self, text: &str, weight: Weight, size: f32, x: f32, width: f32) {
+        for line in self.broken(text, weight, size, width) {
+            self.keep(size * LEADING);
+            self.text(&line, weight, size, x, self.y - size);
+            self.y -= size * LEADING;
+        }
+    }
+
+    /// The text in lines no wider than `width`; a longer word is cut.
+    fn broken(&self, text: &str, weight: Weight, size: f32, width: f32) -> Vec<String> {
+        let font = self.font(weight);
+        let mut lines = Vec::new();
+        let mut line = String::new();
+        for word in text.split(' ').flat_map(|word| cut(word, |piece| font.width(piece, size) <= width)) {
+            let longer = if line.is_empty() { word.clone() } else { format!("{line} {word}") };
+            if font.width(&longer, size) > width && !line.is_empty() {
+                lines.push(std::mem::replace(&mut line, word));
+            } else {
+                line = longer;
+            }
+        }
+        lines.push(line);
+        lines
+    }
+
+    /// One line of text with its baseline at `y`.
+    fn text(&mut self, text: &str, weight: Weight, size: f32, x: f32, y: f32) {
+        let glyphs = encoded(self.font(weight), text);
+        show(self.page(), &glyphs, weight, size, x, y);
+    }
+
+    fn font(&self, weight: Weight) -> &Font {
+        &self.fonts[usize::from(weight == Weight::Bold)]
+    }
+
+    fn page(&mut self) -> &mut Content {
+        if self.pages.is_empty() {
+            self.pages.push(Content::new());
+        }
+        let last = self.pages.len() - 1;
+        &mut self.pages[last]
+    }
+
+    fn break_page(&mut self) {
+        self.pages.push(Content::new());
+        self.y = PAGE.1 - TOP;
+    }
+}
+
+/// Pieces of a word that fit, in order: the whole of it if it does.
+fn cut(word: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
+    let mut pieces = vec![String::new()];
+    for c in word.chars() {
+        let last = pieces.len() - 1;
+        let longer = format!("{}{c}", pieces[last]);
+        if fits(&longer) || pieces[last].is_empty() {
+            pieces[last] = longer;
+        } else {
+            pieces.push(c.to_string());
+        }
+    }
+    pieces
+}
+
+/// Glyphs of a text, two bytes each.
+pub(super) fn encoded(font: &Font, text: &str) -> Vec<u8> {
+    text.chars().flat_map(|c| font.glyph(c).to_be_bytes()).collect()
+}
+
+pub(super) fn show(page: &mut Content, glyphs: &[u8], weight: Weight, size: f32, x: f32, y: f32) {
+    page.begin_text();
+    page.set_font(Name(weight.resource()), size);
+    page.next_line(x, y);
+    page.show(Str(glyphs));
+    page.end_text();
+}

@@ -1,0 +1,142 @@
+//! A noise analysis as text for the terminal.
+
+use std::fmt::Write;
+
+use centrical::stability::{Analysis, Coefficient, Deviation, Estimator, NoiseTerm};
+use centrical_session::{NoiseAnalysis, ReadingNoise};
+
+use crate::evaluation::Shown;
+use crate::number::{self, with_uncertainty};
+
+/// The analysis as text: for each column its deviations with their intervals, its spectrum by octaves, its terms.
+pub fn noise_table(analysis: &NoiseAnalysis) -> String {
+    let [from, to] = analysis.window;
+    let mut text = format!("{}, {from:.3} s to {to:.3} s\n", analysis.file_name());
+    let _ = writeln!(
+        text,
+        "intervals [lower, upper] hold the true value with {:.1} %; 1 g = 9.80665 m/s^2",
+        100.0 * analysis.confidence
+    );
+    for reading in &analysis.readings {
+        heading(&mut text, reading);
+        stability(&mut text, reading);
+        spectrum(&mut text, reading);
+        terms(&mut text, reading);
+    }
+    text
+}
+
+fn heading(text: &mut String, reading: &ReadingNoise) {
+    let ReadingNoise { name, noise: Analysis { samples, interval, spikes, repeated, gaps, .. }, .. } = reading;
+    let _ = write!(text, "\n{}  {samples} readings every {interval:.6} s", name.to_uppercase());
+    if gaps.missing > 0 {
+        let _ = write!(text, "; missing: {}, the longest run {}", gaps.missing, gaps.longest);
+    }
+    if *repeated > 0 {
+        let _ = write!(text, "; repeated: {repeated}");
+    }
+    if *spikes > 0 {
+        let _ = write!(text, "; left out as spikes: {spikes}");
+    }
+    text.push('\n');
+}
+
+/// One table: a row for each averaging time, a column for each estimator.
+fn stability(text: &mut String, reading: &ReadingNoise) {
+    const CELL: usize = 34;
+    let title = |e: Estimator| format!("{}, {}", e.name(), Shown::deviation(reading, e).unit);
+    let mut line = format!("  {:<12}", "tau, s");
+    line.extend(reading.noise.deviations.iter().map(|(e, _)| format!("{:<CELL$}", title(*e))));
+    let _ = writeln!(text, "{}", line.trim_end());
+    let mut factors: Vec<(usize, f64)> = Vec::new();
+    for deviation in reading.noise.deviations.iter().flat_map(|(_, family)| family) {
+        if let Err(place) = factors.binary_search_by_key(&deviation.factor, |f| f.0) {
+            factors.insert(place, (deviation.factor, deviation.tau));
+        }
+    }
+    for (factor, tau) in factors {
+        let mut line = format!("  {:<12}", significant(tau, 4));
+        for (estimator, family) in &reading.noise.deviations {
+            let shown = Shown::deviation(reading, *estimator);
+            let cell = family.iter().find(|d| d.factor == factor).map_or(String::new(), |d| interval(d, shown.factor));
+            let _ = write!(line, "{cell:<CELL$}");
+        }
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+}
+
+fn interval(d: &Deviation, factor: f64) -> String {
+    let [value, lower, upper] = [d.value, d.lower, d.upper].map(|v| significant(factor * v, 4));
+    format!("{value:<9} [{lower}, {upper}]")
+}
+
+/// The spectrum in a line an octave, and the lines in it.
+fn spectrum(text: &mut String, reading: &ReadingNoise) {
+    let Shown { factor, unit } = Shown::reading(reading);
+    let spectrum = match &reading.noise.spectrum {
+        Ok(spectrum) => spectrum,
+        Err(error) => {
+            let _ = writeln!(text, "  no spectrum: {error}");
+            return;
+        }
+    };
+    let _ = writeln!(
+        text,
+        "  spectrum, one-sided, means of octaves; {} segments, resolution {} Hz",
+        spectrum.segments,
+        significant(spectrum.resolution, 3)
+    );
+    let _ = writeln!(text, "  {:<12}{unit}/sqrt(Hz)", "Hz");
+    for band in spectrum.bands(1.0) {
+        let density = factor * band.density.sqrt();
+        let _ = writeln!(text, "  {:<12}{}", significant(band.frequency, 4), significant(density, 4));
+    }
+    for line in spectrum.lines() {
+        let (frequency, amplitude) = (significant(line.frequency, 5), significant(factor * line.amplitude, 3));
+        let excess = significant(line.excess, 2);
+        let _ =
+            writeln!(text, "  line at {frequency} Hz, amplitude {amplitude} {unit}, {excess} times the noise about it");
+    }
+}
+
+fn terms(text: &mut String, reading: &ReadingNoise) {
+    let Some(terms) = reading.noise.quotable() else { return };
+    let _ = writeln!(
+        text,
+        "  noise terms (IEEE Std 952); chi^2 {:.1} with {} degrees of freedom",
+        terms.chi_squared, terms.degrees_of_freedom
+    );
+    for term in NoiseTerm::ALL {
+        let Shown { factor, unit } = Shown::coefficient(reading, term);
+        let value = match terms.coefficient(term) {
+            Coefficient::Determined { value, standard_uncertainty } => {
+                let (value, uncertainty) = with_uncertainty(factor * value, factor * standard_uncertainty);
+                format!("{value} ± {uncertainty} {unit}")
+            }
+            Coefficient::NotDetermined { upper_bound } if upper_bound.is_finite() => {
+                format!("not seen, below {} {unit} (95 %)", significant(factor * upper_bound, 2))
+            }
+            Coefficient::NotDetermined { .. } => "not seen".to_owned(),
+        };
+        let _ = writeln!(text, "  {}  {:<18}{value}", term.symbol(), term.name());
+    }
+}
+
+/// Why the coefficients of a column are not quoted, a sentence for each such column.
+pub fn noise_warnings(analysis: &NoiseAnalysis) -> Vec<String> {
+    let warning = |reading: &ReadingNoise| match &reading.noise.terms {
+        Ok(terms) if terms.is_consistent() => None,
+        Ok(terms) => Some(format!(
+            "{}: no sum of quantisation, white noise, bias instability, random walk and ramp describes the deviations \
+             (chi^2 {:.1} with {} degrees of freedom); its coefficients are not quoted",
+            reading.name, terms.chi_squared, terms.degrees_of_freedom
+        )),
+        Err(error) => Some(format!("{}: no noise terms: {error}", reading.name)),
+    };
+    analysis.readings.iter().filter_map(warning).collect()
+}
+
+/// A number to `digits` significant digits; with an exponent only where it would be long without.
+fn significant(value: f64, digits: u8) -> String {
+    number::significant(value, digits, -4..7)
+}

@@ -1,0 +1,87 @@
+//! Groups of parameters: what is alike in kind and unit.
+
+/// A group of parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Group {
+    /// Bias of a newtonometer.
+    Bias,
+    /// Scale of a newtonometer.
+    Scale,
+    /// Direction of a sensitive axis.
+    Misalignment,
+    /// Terms of second degree in one component.
+    Quadratic,
+    /// Terms of third degree in one component.
+    Cubic,
+    /// Products of several components.
+    CrossCoupling,
+    /// Difference of the scales for positive and negative forces.
+    Asymmetry,
+    /// Terms of fourth degree and higher in one component.
+    HigherOrder,
+    /// Tilt of the rotation axis.
+    Tilt,
+    /// Turn of the unit in a position.
+    Turn,
+    /// Shift of the unit in a position.
+    Shift,
+    /// Place of a proof mass.
+    ProofMass,
+    /// Elastic turn of the unit.
+    ElasticTurn,
+    /// Stretch of the arm.
+    ArmStretch,
+    /// Common scale of all radii.
+    RadiusScale,
+    /// Common scale of all speeds.
+    SpeedScale,
+}
+
+impl Group {
+    /// All groups.
+    pub const ALL: [Self; 16] = [
+        Self::Bias,
+        Self::Scale,
+        Self::Misalignment,
+        Self::Quadratic,
+        Self::Cubic,
+        Self::CrossCoupling,
+        Self::Asymmetry,
+        Self::HigherOrder,
+        Self::Tilt,
+        Self::Turn,
+        Self::Shift,
+        Self::ProofMass,
+        Self::ElasticTurn,
+        Self::ArmStretch,
+        Self::RadiusScale,
+        Self::SpeedScale,
+    ];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bias => "bias",
+            Self::Scale => "scale",
+            Self::Misalignment => "misalignment",
+            Self::Quadratic => "quadratic",
+            Self::Cubic => "cubic",
+            Self::CrossCoupling => "cross-coupling",
+            Self::Asymmetry => "asymmetry",
+            Self::HigherOrder => "higher order",
+            Self::Tilt => "tilt",
+            Self::Turn => "turn",
+            Self::Shift => "shift",
+            Self::ProofMass => "proof mass",
+            Self::ElasticTurn => "elastic turn",
+            Self::ArmStretch => "arm stretch",
+            Self::RadiusScale => "scale of radii",
+            Self::SpeedScale => "scale of speed",
+        }
+    }
+
+    /// Whether its parameters describe how the unit was mounted: an axis each, of a position or of all.
+    pub fn is_of_mounting(self) -> bool {
+        matches!(self, Self::Tilt | Self::Turn | Self::Shift | Self::ProofMass)
+    }
+}

@@ -1,0 +1,191 @@
+//! What is to be planned, and the search over goals.
+//!
+//! Goals are combined uncertainties, but a schedule lowers type A alone. So the search is for the part that type B leaves of
+//! each goal, `sqrt(wanted^2 - B^2)`; type B hardly depends on the plan, and settles within a few plans.
+
+use super::candidates::{Candidates, Schedule, Visit};
+use super::criterion::{Criterion, Goal};
+use super::error::PlanError;
+use super::prediction::{Prediction, predict};
+use super::search::{Effort, Plan, best_for_time, shortest_for_goals};
+use crate::model::{FitError, MeasurementModel, Parameter};
+use crate::uncertainty::TypeB;
+
+/// The assumed type B exceeds that of the plan before by this factor, so that the next plan keeps within it.
+const MARGIN: f64 = 1.01;
+
+/// The shortest plan is sought to this part of its time.
+const RESOLUTION: f64 = 0.01;
+
+/// What is to be planned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Task {
+    /// What can be chosen.
+    pub candidates: Candidates,
+    /// What is made small within `time`, or the goals to be reached in the shortest time.
+    pub criterion: Criterion,
+    /// Available time [s].
+    pub time: Option<f64>,
+    /// Standard uncertainties that the data will not show.
+    pub type_b: TypeB,
+}
+
+/// A goal as a schedule is predicted to reach it; `None` where it is not determined.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reached {
+    /// Standard uncertainty by noise, speeds and priors.
+    pub type_a: Option<f64>,
+    /// By the stated type B, which no plan lowers by much.
+    pub type_b: Option<f64>,
+    /// Combined standard uncertainty.
+    pub combined: Option<f64>,
+}
+
+impl Reached {
+    fn new(prediction: &Prediction, goal: &Goal) -> Self {
+        let [type_a, combined] = match goal {
+            Goal::Parameter { name, .. } => {
+                let j = prediction.model().parameters().find(name);
+                [j.and_then(|j| prediction.type_a(j)), j.and_then(|j| prediction.standard_uncertainty(j))]
+            }
+            Goal::Reading { range, .. } => {
+                let reading = prediction.reading(*range);
+                [reading.map(|[a, _]| a), reading.map(|[_, all]| all)]
+            }
+        };
+        let rest = |(all, a): (f64, f64)| (all * all - a * a).max(0.0).sqrt();
+        Self { type_a, type_b: combined.zip(type_a).map(rest), combined }
+    }
+}
+
+impl Task {
+    /// The best plan for the time, or the shortest for the goals; `certify`: searched until every set of mountings is decided
+    /// on.
+    ///
+    /// A plan that leaves combinations of unknowns open may meet its goals for a unit without errors and miss them for any other
+    /// (see [`predict`]). One that does is planned again for a unit of typical errors, which `self` expects from then on.
+    ///
+    /// # Errors
+    /// [`PlanError`] when there is no plan.
+    pub fn plan(&mut self, certify: bool) -> Result<Plan, PlanError> {
+        let effort = self.effort(certify);
+        let expects_none = self.candidates.scenarios.iter().all(|s| s.nominal.iter().all(|value| *value == 0.0));
+        if self.time.is_some() || !expects_none {
+            return self.search(effort);
+        }
+        // A hasty plan mostly shows whether a good one would meet the goals.
+        let hasty = self.search(Effort::QUICK)?;
+        if self.meets_goals(&hasty)? {
+            let plan = self.search(effort)?;
+            if self.meets_goals(&plan)? {
+                return Ok(plan);
+            }
+        }
+        for scenario in &mut self.candidates.scenarios {
+            scenario.nominal = scenario.model.parameters().typical_alternating();
+        }
+        self.search(effort)
+    }
+
+    /// The model of the first scenario.
+    pub fn model(&self) -> &MeasurementModel {
+        &self.candidates.scenarios[0].model
+    }
+
+    /// The goals, if the criterion is the worst of them.
+    pub fn goals(&self) -> &[Goal] {
+        if let Criterion::Worst(goals) = &self.criterion { goals } else { &[] }
+    }
+
+    /// The uncertainties after a schedule in the first scenario.
+    ///
+    /// # Errors
+    /// [`FitError`] when its numbers are beyond all measure.
+    pub fn predict(&self, schedule: &Schedule) -> Result<Prediction, FitError> {
+        let (experiment, weights) = self.candidates.experiment_of(schedule);
+        let scenario = &self.candidates.scenarios[0];
+        let model = scenario.model.in_experiment(experiment);
+        let expected = |p: &Parameter| scenario.model.parameters().find(&p.name).map_or(0.0, |j| scenario.nominal[j]);
+        let nominal: Vec<f64> = model.parameters().iter().map(expected).collect();
+        predict(&model, &weights, &self.type_b, &nominal)
+    }
+
+    /// The goals as a prediction reaches them.
+    pub fn reached(&self, prediction: &Prediction) -> Vec<Reached> {
+        self.goals().iter().map(|goal| Reached::new(prediction, goal)).collect()
+    }
+
+    fn effort(&self, certify: bool) -> Effort {
+        let usual = Effort::usual(self.candidates.len());
+        match self.time {
+            _ if certify => Effort::CERTIFIED,
+            Some(_) => usual,
+            // The shortest plan is sought by a search for each of some times.
+            None => Effort { nodes: 2 + usual.nodes / 6, ..usual },
+        }
+    }
+
+    /// Whether every goal is met as predicted, type B included.
+    fn meets_goals(&self, plan: &Plan) -> Result<bool, PlanError> {
+        let reached = self.reached(&self.predict(&plan.schedule)?);
+        let is_met = |(goal, reached): (&Goal, Reached)| reached.combined.is_some_and(|u| u <= goal.uncertainty());
+        Ok(self.goals().iter().zip(reached).all(is_met))
+    }
+
+    fn search(&self, effort: Effort) -> Result<Plan, PlanError> {
+        let goals = self.goals();
+        if goals.is_empty() || self.type_b == TypeB::default() {
+            return self.best(&self.criterion, effort);
+        }
+        let mut floors = self.floors(&self.everything())?;
+        for (goal, floor) in goals.iter().zip(&floors).filter(|_| self.time.is_none()) {
+            if *floor >= goal.uncertainty() {
+                let factor = floor / goal.uncertainty();
+                return Err(PlanError::BelowTypeB { name: goal.name().to_owned(), factor });
+            }
+        }
+        for now in [Effort::QUICK, Effort::QUICK, Effort::QUICK, effort, effort] {
+            let plan = self.best(&for_type_a(goals, &floors), now)?;
+            let there = self.floors(&plan.schedule)?;
+            let is_settled = there.iter().zip(&floors).all(|(there, floor)| there <= floor);
+            floors.iter_mut().zip(there).for_each(|(floor, there)| *floor = floor.max(MARGIN * there));
+            // A shortest plan that meets the goals is one, whatever type B was assumed for it.
+            let is_met = self.time.is_none() && self.meets_goals(&plan)?;
+            if (is_settled || is_met) && now == effort {
+                return Ok(plan);
+            }
+        }
+        self.best(&for_type_a(goals, &floors), effort)
+    }
+
+    fn best(&self, criterion: &Criterion, effort: Effort) -> Result<Plan, PlanError> {
+        match self.time {
+            Some(time) => best_for_time(&self.candidates, criterion, time, effort),
+            None => shortest_for_goals(&self.candidates, criterion, RESOLUTION, effort),
+        }
+    }
+
+    /// Every candidate as often and as long as possible.
+    fn everything(&self) -> Schedule {
+        let candidates = &self.candidates;
+        let longest = candidates.durations.last().copied().unwrap_or(0.0);
+        let visit = |n: usize| Visit { candidate: n % candidates.len(), duration: longest };
+        candidates.schedule((0..candidates.len() * candidates.repeats).map(visit).collect())
+    }
+
+    /// Type B of each goal with a schedule, 0 where it is not determined.
+    fn floors(&self, schedule: &Schedule) -> Result<Vec<f64>, PlanError> {
+        let reached = self.reached(&self.predict(schedule)?);
+        Ok(reached.iter().map(|goal| goal.type_b.unwrap_or(0.0)).collect())
+    }
+}
+
+/// The worst of the goals for type A, `sqrt(wanted^2 - floor^2)`; a goal below its type B is sought as it stands.
+fn for_type_a(goals: &[Goal], floors: &[f64]) -> Criterion {
+    let left = |(goal, floor): (&Goal, &f64)| {
+        let wanted = goal.uncertainty();
+        let rest = (wanted - floor) * (wanted + floor);
+        goal.with_uncertainty(if rest > 0.0 { rest.sqrt() } else { wanted })
+    };
+    Criterion::Worst(goals.iter().zip(floors).map(left).collect())
+}

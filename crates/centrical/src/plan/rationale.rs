@@ -1,0 +1,115 @@
+//! The rationale of a schedule: what is lost without each of its visits and mountings.
+
+use super::atom::Atom;
+use super::candidates::{Candidates, Schedule};
+use super::criterion::{Criterion, Goal};
+use super::error::PlanError;
+use super::information::LinearisedScenario;
+use super::search::Problem;
+
+/// The purpose of a part of a schedule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reason {
+    /// The criterion without it over that with it, less 1 (variance units).
+    pub rise: f64,
+    /// Time that it takes [s], with the set-up that would fall away.
+    pub time: f64,
+    /// Parameter of the instrument whose uncertainty suffers most, in the first scenario.
+    pub parameter: usize,
+    /// Its uncertainty without it over that with it.
+    pub factor: f64,
+}
+
+/// The reasons for the parts of a schedule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rationale {
+    /// By visit of the schedule.
+    pub visits: Vec<Reason>,
+    /// By mounting of the candidates: all its visits together; `None` for one that is not used.
+    pub mountings: Vec<Option<Reason>>,
+}
+
+impl Rationale {
+    /// The rationale of a `schedule` that was planned by `criterion`.
+    ///
+    /// # Errors
+    /// As [`super::best_for_time`].
+    pub fn of(candidates: &Candidates, criterion: &Criterion, schedule: &Schedule) -> Result<Self, PlanError> {
+        let reference = Reference::new(candidates, criterion, schedule)?;
+        let set_points = &candidates.experiment().set_points;
+        let of_mounting = |m: usize| {
+            let there = |n: usize| set_points[schedule.visits[n].candidate].mounting == m;
+            let visits: Vec<usize> = (0..schedule.visits.len()).filter(|&n| there(n)).collect();
+            (!visits.is_empty()).then(|| reference.without(&visits))
+        };
+        Ok(Self {
+            visits: (0..schedule.visits.len()).map(|n| reference.without(&[n])).collect(),
+            mountings: (0..candidates.experiment().mountings.len()).map(of_mounting).collect(),
+        })
+    }
+}
+
+/// The whole schedule, with which its parts are compared: its criterion, and the uncertainty of every parameter of the
+/// instrument.
+struct Reference<'a> {
+    schedule: &'a Schedule,
+    problem: Problem<'a>,
+    /// Every parameter of the instrument as a goal of its own.
+    by_parameter: LinearisedScenario,
+    parameters: Vec<usize>,
+    value: f64,
+    goals: Vec<f64>,
+}
+
+impl<'a> Reference<'a> {
+    fn new(candidates: &'a Candidates, criterion: &Criterion, schedule: &'a Schedule) -> Result<Self, PlanError> {
+        let problem = Problem::new(candidates, criterion)?;
+        let model = &candidates.scenarios[0].model;
+        let parameters: Vec<usize> =
+            (0..model.parameters().len()).filter(|&j| model.parameters()[j].is_of_instrument()).collect();
+        let goal = |&j: &usize| Goal::Parameter {
+            name: model.parameters()[j].name.clone(),
+            uncertainty: model.parameters()[j].typical,
+        };
+        let goals = Criterion::Worst(parameters.iter().map(goal).collect());
+        let by_parameter = LinearisedScenario::new(&candidates.scenarios[0], candidates, &goals, 1.0)?;
+        let mut reference = Self { schedule, problem, by_parameter, parameters, value: 0.0, goals: Vec::new() };
+        (reference.value, reference.goals) = reference.judged(&[]);
+        Ok(reference)
+    }
+
+    /// Logarithm of the criterion, and squares of the parameters' uncertainties, with some visits left out.
+    fn judged(&self, left_out: &[usize]) -> (f64, Vec<f64>) {
+        let visits = self.visits(left_out);
+        let information = self.by_parameter.information(self.problem.candidates.atoms(), |x| f64::from(visits[x]));
+        let goals = self.by_parameter.factor(&information).goals;
+        (self.problem.schedule(visits).value, goals)
+    }
+
+    /// Visits by atom, some left out.
+    fn visits(&self, left_out: &[usize]) -> Vec<u32> {
+        let candidates = self.problem.candidates;
+        let atoms = candidates.atoms();
+        let mut visits = vec![0; atoms.count()];
+        for (_, visit) in self.schedule.visits.iter().enumerate().filter(|(n, _)| !left_out.contains(n)) {
+            if let Some(duration) = candidates.durations.iter().position(|d| *d == visit.duration) {
+                visits[atoms.number(Atom { candidate: visit.candidate, duration })] += 1;
+            }
+        }
+        visits
+    }
+
+    fn without(&self, visits: &[usize]) -> Reason {
+        let (value, goals) = self.judged(visits);
+        let factor = |n: usize| (goals[n] / self.goals[n]).sqrt();
+        let most = (0..goals.len()).max_by(|&a, &b| factor(a).total_cmp(&factor(b)).then(b.cmp(&a))).unwrap_or(0);
+        let kept = (0..self.schedule.visits.len()).filter(|n| !visits.contains(n)).map(|n| self.schedule.visits[n]);
+        let kept: Vec<_> = kept.collect();
+        Reason {
+            rise: (value - self.value).exp() - 1.0,
+            time: self.schedule.time - self.problem.candidates.time_of(&kept),
+            parameter: self.parameters[most],
+            factor: factor(most),
+        }
+    }
+}
