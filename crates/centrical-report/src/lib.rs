@@ -16,11 +16,10 @@ pub mod plot;
 mod render;
 mod terminal;
 
-pub use dcc::digital_certificate;
 pub use document::{
     Align, Block, Column, Document, Fact, Margins, Opening, Row, Section, Table, TableKind, Tone, certificate, report,
 };
-pub use figure::{Figure, figures, frontier_plot, history_figure, noise_plots, positions_figure};
+pub use figure::{Figure, figures, frontier_plot, positions_figure};
 pub use files::{DocumentRequest, write_all_documents, write_documents, write_history_plot, write_noise};
 pub use language::Language;
 pub use number::with_uncertainty;

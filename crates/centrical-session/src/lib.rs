@@ -43,7 +43,7 @@ pub use document::{
     PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program,
     ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, ResultObjection, SCHEMA, SessionDriftVerdict,
     SessionSummary, SessionTrend, SightReport, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary,
-    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, append_history, keep_history, read_history,
+    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history,
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{

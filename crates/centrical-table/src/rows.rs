@@ -68,7 +68,9 @@ impl RowNumber {
     /// Takes them out of rows that are to be filled again.
     pub fn remove(self, rows: &mut [Rows]) {
         if let Some(place) = self.0 {
-            rows.iter_mut().for_each(|rows| drop(rows.remove(place)));
+            for rows in rows {
+                drop(rows.remove(place));
+            }
         }
     }
 }

@@ -39,6 +39,5 @@ pub use grid::{Grid, regular_grid};
 pub use phase::{BridgedGaps, Phase};
 pub use power_law::PowerLaw;
 pub use spectrum::{Spectrum, SpectrumBand, SpectrumLine, power_spectrum};
-pub use spikes::leave_out_spikes;
 pub use terms::{Coefficient, NoiseTerm, NoiseTerms, fit_noise_terms};
 pub use variance::RawVariance;

@@ -37,5 +37,5 @@ pub use repeats::{Repeat, repeats};
 pub use selection::{Candidate, NestedTest, Rival, Selection, TermVerdict, rivals_of, select};
 pub use source::{Source, TypeB};
 pub use tilt::{OncePerRevolution, TiltComparison};
-pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity, f_tail};
+pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity};
 pub use verdict::{Findings, Level, Objection, objections};

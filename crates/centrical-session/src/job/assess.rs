@@ -73,7 +73,7 @@ fn of_problem(session: &Session, problem: Problem, request: &AssessmentRequest) 
     let cleaned = cleaned.as_ref().zip(without.as_ref());
     let cleaned = cleaned.map(|(cleaned, without)| (without.fit().clone(), cleaned.left_out.clone()));
     let fit = whole.into_fit();
-    Ok(Assessment { fit, cleaned, budget, validity, patterns, prediction, model })
+    Ok(Assessment { model, fit, cleaned, budget, validity, patterns, prediction })
 }
 
 /// Highest nominal specific force of the plateaus [m/s^2].

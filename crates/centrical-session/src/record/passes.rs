@@ -43,7 +43,9 @@ impl<'a> RecordFile<'a> {
                 let condense = || batch.par_iter().map(|rows| survey.condense(stretch(rows))).collect();
                 let keep = || batch.iter().for_each(|rows| cache.extend(stretch(rows)));
                 let (condensed, ()): (Vec<_>, ()) = rayon::join(condense, keep);
-                condensed.into_iter().for_each(|stretch| survey.append(stretch));
+                for stretch in condensed {
+                    survey.append(stretch);
+                }
             } else {
                 for rows in batch {
                     cache.extend(stretch(rows));

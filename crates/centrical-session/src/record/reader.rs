@@ -91,7 +91,9 @@ impl RecordReader {
     fn into_record(mut self) -> Result<Record, Error> {
         let mut record = Record::default();
         while let Some(batch) = self.next_batch()? {
-            batch.iter().for_each(|rows| record.extend(stretch(rows)));
+            for rows in batch {
+                record.extend(stretch(rows));
+            }
         }
         Ok(record)
     }

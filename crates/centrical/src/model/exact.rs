@@ -130,10 +130,14 @@ impl MeasurementModel {
             }
             Kind::RadiusScale => Share::Arm(*r0_y),
             Kind::SpeedScale => Share::Rate,
-            // Of another position or seat.
-            Kind::ElasticTurn { .. } | Kind::ArmStretch { .. } => Share::None,
-            // Not extensions: the geometry and the error model have them already.
-            Kind::Tilt(_) | Kind::Turn { .. } | Kind::Shift { .. } | Kind::ProofMass(_) | Kind::Term(_) => Share::None,
+            // Of another position or seat; or no extension, and in the geometry or the error model already.
+            Kind::ElasticTurn { .. }
+            | Kind::ArmStretch { .. }
+            | Kind::Tilt(_)
+            | Kind::Turn { .. }
+            | Kind::Shift { .. }
+            | Kind::ProofMass(_)
+            | Kind::Term(_) => Share::None,
         }
     }
 

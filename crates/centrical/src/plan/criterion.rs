@@ -78,6 +78,7 @@ impl Goal {
     }
 
     /// The same goal with another wanted standard uncertainty.
+    #[must_use]
     pub fn with_uncertainty(&self, wanted: f64) -> Self {
         let mut goal = self.clone();
         match &mut goal {
