@@ -7,7 +7,7 @@ use super::incumbent::Incumbent;
 use super::node::Node;
 use super::problem::{Effort, Problem};
 use crate::plan::exchange::IntegerSchedule;
-use crate::plan::relaxation::{Polytope, Precision, Relaxed, relax};
+use crate::plan::relaxation::{Polytope, Relaxed, relax};
 
 /// A rounding that costs more than this part of the criterion is improved by exchange at once.
 const ROUGH: f64 = 0.01;
@@ -15,8 +15,8 @@ const ROUGH: f64 = 0.01;
 /// Beyond this, whole visits are sought by fixing some after the other.
 const VERY_ROUGH: f64 = 0.05;
 
-/// One of this many parts of visits is made whole before the next continuous design.
-const AT_ONCE: usize = 8;
+/// One of this many parts of visits is made whole before the next continuous design: in haste, and one part at a time.
+const AT_ONCE: [usize; 2] = [8, usize::MAX];
 
 /// Visits count as whole within this.
 const WHOLE: f64 = 1e-6;
@@ -123,9 +123,12 @@ impl<'a> Heuristics<'a> {
             let is_rough = schedule.value > relaxed.value + VERY_ROUGH;
             is_done = is_thorough || !is_rough;
             if is_thorough && is_rough {
-                let dived = exchange.improve(exchange.fill(exchange.schedule(self.dive(&set, &relaxed))));
-                if dived.value < schedule.value {
-                    schedule = dived;
+                for at_once in AT_ONCE {
+                    let dived = exchange.fill(exchange.schedule(self.dive(&set, &relaxed, at_once)));
+                    let dived = exchange.improve(dived);
+                    if dived.value < schedule.value {
+                        schedule = dived;
+                    }
                 }
             }
             if schedule.value < self.incumbent.value() - 1e-12 {
@@ -139,7 +142,7 @@ impl<'a> Heuristics<'a> {
 
     /// Whole visits by fixing some after the other: those that the continuous design makes whole, and the largest parts, with a
     /// new continuous design of the rest each time. An indispensable visit is so never rounded away.
-    fn dive(&self, set: &[bool], relaxed: &Relaxed) -> Vec<u32> {
+    fn dive(&self, set: &[bool], relaxed: &Relaxed, at_once: usize) -> Vec<u32> {
         let mut polytope = Node::on(set).polytope(self.problem, self.time);
         let mut visits = relaxed.visits.clone();
         loop {
@@ -148,7 +151,7 @@ impl<'a> Heuristics<'a> {
             let mut parts: Vec<usize> =
                 (0..visits.len()).filter(|x| part(x) > WHOLE && polytope.high[*x] > polytope.low[*x]).collect();
             parts.sort_by(|a, b| part(b).total_cmp(&part(a)).then(a.cmp(b)));
-            parts.truncate(parts.len().div_ceil(AT_ONCE));
+            parts.truncate(parts.len().div_ceil(at_once));
             if parts.is_empty() {
                 break;
             }
@@ -162,7 +165,7 @@ impl<'a> Heuristics<'a> {
             if !polytope.is_feasible() {
                 break;
             }
-            let precision: Precision = self.incumbent.precision(Some(DIVING));
+            let precision = self.incumbent.precision(Some(DIVING));
             let rest = relax(&self.problem.scenarios, &polytope, Some(&visits), precision);
             if rest.bound >= self.incumbent.threshold() {
                 break;
