@@ -12,7 +12,7 @@ fn root() -> PathBuf {
 fn pages() -> Vec<(String, String)> {
     let mut names: Vec<String> = ["README.md", "CONTRIBUTING.md"].map(str::to_owned).into();
     let folders = ["docs", "examples"].map(|folder| below(&root().join(folder)));
-    names.extend(folders.into_iter().flatten().filter(|name| name.ends_with(".md")));
+    names.extend(folders.into_iter().flatten().filter(|name| has_extension(name, "md")));
     names.into_iter().map(|name| (name.clone(), fs::read_to_string(root().join(&name)).unwrap())).collect()
 }
 
@@ -70,7 +70,7 @@ fn links_in_pages_lead_somewhere() {
 /// What the column "in the code" names is in the code.
 #[test]
 fn names_in_the_glossary_exist() {
-    let files = below(&root().join("crates")).into_iter().filter(|name| name.ends_with(".rs"));
+    let files = below(&root().join("crates")).into_iter().filter(|name| has_extension(name, "rs"));
     let sources: String = files.map(|name| fs::read_to_string(root().join(name)).unwrap()).collect();
     let code = sources.lines().filter(|line| !line.trim_start().starts_with("//"));
     let words: HashSet<&str> = code.flat_map(|line| line.split(|c: char| !c.is_alphanumeric() && c != '_')).collect();
@@ -90,4 +90,8 @@ fn the_design_page_is_short_and_its_sentences_too() {
     for sentence in prose.join(" ").split(". ").flat_map(|part| part.split("? ")) {
         assert!(sentence.split_whitespace().count() <= 35, "{sentence}");
     }
+}
+
+fn has_extension(name: &str, extension: &str) -> bool {
+    Path::new(name).extension().is_some_and(|found| found == extension)
 }

@@ -26,7 +26,9 @@ fn block(layout: &mut Layout, block: &Block) {
         Block::Subheading(text) => layout.heading(text, 4),
         Block::Paragraph(text) | Block::Note(text) => layout.paragraph(text),
         Block::List(items) | Block::Formulas(items) => {
-            items.iter().for_each(|item| layout.paragraph(&format!("– {item}")));
+            for item in items {
+                layout.paragraph(&format!("– {item}"));
+            }
         }
         Block::Facts(facts) => layout.facts(facts),
         Block::Table(table) => layout.table(table),
