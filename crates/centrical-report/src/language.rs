@@ -30,11 +30,6 @@ impl Language {
         }
     }
 
-    /// The language of a code.
-    pub fn of_code(code: &str) -> Option<Self> {
-        [Self::English, Self::Russian].into_iter().find(|language| language.code() == code)
-    }
-
     /// Everything the documents say.
     pub(crate) fn messages(self) -> &'static Messages {
         match self {
