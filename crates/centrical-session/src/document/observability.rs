@@ -249,7 +249,7 @@ impl ObservabilityReport {
     /// Studies a design, and the combinations that are asked for.
     ///
     /// # Errors
-    /// [`Error`] when a combination is none, or as [`Subject::study`].
+    /// [`Error`] when a combination is invalid, or as [`Subject::study`].
     pub fn of(subject: &Subject, combinations: &[String]) -> Result<Self, Error> {
         let study = subject.study()?;
         let seen = study.observability();

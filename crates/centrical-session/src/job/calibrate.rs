@@ -18,8 +18,8 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Reads and reduces a session. `progress` is told of bytes of records as they are read, from any
-    /// thread, twice of nearly each.
+    /// Reads and reduces a session. `progress` is called with the number of bytes read, from any thread; most bytes
+    /// are read twice.
     ///
     /// # Errors
     /// [`Error`] naming the file, the place, what was found and what was expected.
@@ -30,8 +30,8 @@ impl Problem {
     }
 }
 
-/// Reads, reduces and fits a session. `progress` is told of bytes of records as they are read, from any
-/// thread, twice of nearly each.
+/// Reads, reduces and fits a session. `progress` is called with the number of bytes read, from any thread; most bytes
+/// are read twice.
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.

@@ -10,8 +10,8 @@ use crate::document::Subject;
 use crate::error::Error;
 use crate::experiment::Session;
 
-/// Reads a plan, or a session and the noise of its records. `progress` is told of bytes of records as
-/// they are read, from any thread, twice of nearly each.
+/// Reads a plan, or a session and the noise of its records. `progress` is called with the number
+/// of bytes read, from any thread; most bytes are read twice.
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
