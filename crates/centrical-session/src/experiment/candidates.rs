@@ -121,13 +121,10 @@ fn set_points(at: &TomlPath, table: &CandidatesTable, experiment: &Experiment) -
     let angles = angles.collect::<Result<Vec<f64>, Error>>()?;
     let mut set_points = Vec::new();
     for (mounting, place) in experiment.mountings.iter().enumerate() {
-        set_points.extend(angles.iter().map(|&angle| SetPoint { mounting, omega: 0.0, angle }));
+        set_points.extend(angles.iter().map(|&angle| SetPoint::at_rest(mounting, angle)));
         let borne = speeds.iter().filter(|omega| **omega <= fastest && **omega * **omega * place.arm_y.x <= most);
-        set_points.extend(borne.map(|omega| SetPoint {
-            mounting,
-            omega: experiment.centrifuge.rotation.sign() * omega,
-            angle: 0.0,
-        }));
+        set_points
+            .extend(borne.map(|omega| SetPoint::spinning(mounting, experiment.centrifuge.rotation.sign() * omega)));
     }
     if set_points.is_empty() || set_points.len() > MOST_PLATEAUS {
         let expected =

@@ -54,8 +54,12 @@ impl PlateauTable {
     }
 
     pub(crate) fn set_points(&self, rotation: Rotation) -> Vec<SetPoint> {
-        let set_point =
-            |p: &PlateauMean| SetPoint { mounting: p.mounting, omega: rotation.sign() * p.speed + 0.0, angle: p.angle };
+        let set_point = |p: &PlateauMean| SetPoint {
+            mounting: p.mounting,
+            omega: rotation.sign() * p.speed + 0.0,
+            angle: p.angle,
+            speed_uncertainty: None,
+        };
         self.rows.iter().map(set_point).collect()
     }
 }

@@ -73,7 +73,7 @@ impl MeasurementModel {
         };
         Linearisation {
             reading,
-            speed_error: self.by_log_speed(set_point, x, &partials) * self.experiment.centrifuge.speed_uncertainty,
+            speed_error: self.by_log_speed(set_point, x, &partials) * self.experiment.speed_uncertainty_of(set_point),
             columns: self.columns(set_point, &partials, &monomials),
         }
     }

@@ -10,6 +10,10 @@ pub const STANDARD_GRAVITY: f64 = 9.80665;
 /// Mean sidereal rate of the Earth's rotation [rad/s], IERS conventions.
 pub const EARTH_RATE: f64 = 7.292_115e-5;
 
+/// Relative difference of two measured speeds that were set alike: far above the stability of a precision centrifuge, far
+/// below the steps between the speeds of a schedule.
+const SAME_SPEED: f64 = 1e-3;
+
 /// An experiment: everything that is known before any reading is taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
@@ -52,7 +56,7 @@ pub struct Unit {
 pub struct Centrifuge {
     /// Sense of its rotation.
     pub rotation: Rotation,
-    /// Relative standard uncertainty of the speed of a plateau.
+    /// Relative standard uncertainty of the speed of a plateau that states none of its own.
     pub speed_uncertainty: f64,
 }
 
@@ -105,6 +109,8 @@ pub struct SetPoint {
     pub omega: f64,
     /// Carousel angle `alpha_3` at rest [rad]; of no meaning while spinning.
     pub angle: f64,
+    /// Relative standard uncertainty of this speed, as of a speed that was measured; `None`: that of the centrifuge.
+    pub speed_uncertainty: Option<f64>,
 }
 
 impl ReferencePoint {
@@ -147,6 +153,25 @@ impl Unit {
 }
 
 impl SetPoint {
+    /// A plateau at rest at `angle` [rad].
+    pub fn at_rest(mounting: usize, angle: f64) -> Self {
+        Self { mounting, omega: 0.0, angle, speed_uncertainty: None }
+    }
+
+    /// A plateau at the speed `omega` [rad/s], as uncertain as the centrifuge states.
+    pub fn spinning(mounting: usize, omega: f64) -> Self {
+        Self { mounting, omega, angle: 0.0, speed_uncertainty: None }
+    }
+
+    /// Whether it is the same plateau run again: equal set points, or speeds of which one at least was measured and which
+    /// agree to [`SAME_SPEED`].
+    pub fn repeats(&self, other: &Self) -> bool {
+        let is_measured = self.speed_uncertainty.is_some() || other.speed_uncertainty.is_some();
+        let close = (self.omega - other.omega).abs() <= SAME_SPEED * other.omega.abs();
+        let is_same_speed = self.omega == other.omega || (is_measured && close);
+        self.mounting == other.mounting && self.angle == other.angle && is_same_speed
+    }
+
     /// Whether the centrifuge stands still.
     pub fn is_rest(&self) -> bool {
         self.omega == 0.0
@@ -170,6 +195,11 @@ impl Experiment {
     /// Nominal place `R0` of a plateau, arm axes [m].
     pub fn arm_of(&self, set_point: &SetPoint) -> &Vector3<f64> {
         &self.mountings[set_point.mounting].arm_y
+    }
+
+    /// Relative standard uncertainty of the speed of a plateau: its own, or that of the centrifuge.
+    pub fn speed_uncertainty_of(&self, set_point: &SetPoint) -> f64 {
+        set_point.speed_uncertainty.unwrap_or(self.centrifuge.speed_uncertainty)
     }
 
     /// Index of the first mounting on the same seat (same `R0`) as mounting `m`.

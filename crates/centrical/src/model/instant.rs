@@ -54,7 +54,7 @@ impl MeasurementModel {
 
     /// The unit on the arm in mounting `mounting` as `omega` deforms it.
     pub(crate) fn mounted_unit(&self, mounting: usize, x: &[f64], omega: f64) -> MountedUnit {
-        let set_point = SetPoint { mounting, omega, angle: 0.0 };
+        let set_point = SetPoint::spinning(mounting, omega);
         let geometry = self.geometry(&set_point, x);
         let square_scale = 1.0
             + (self.parameters.extensions())

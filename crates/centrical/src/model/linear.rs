@@ -37,7 +37,7 @@ impl MeasurementModel {
             .collect();
         let omega = set_point.omega;
         let by_log_speed = n.by_rate() * (omega * (2.0 * omega + experiment.site.coriolis()));
-        let speed_error = by_log_speed * experiment.centrifuge.speed_uncertainty;
+        let speed_error = by_log_speed * experiment.speed_uncertainty_of(set_point);
         Linearisation { reading: f0, speed_error, columns }
     }
 

@@ -58,10 +58,10 @@ impl Addition {
         let mut model = None;
         match self {
             Self::Rest { mountings, angle } => {
-                draft.add(mountings.iter().map(|&mounting| SetPoint { mounting, omega: 0.0, angle: *angle }));
+                draft.add(mountings.iter().map(|&mounting| SetPoint::at_rest(mounting, *angle)));
             }
             Self::Speed { mountings, omega } => {
-                draft.add(mountings.iter().map(|&mounting| SetPoint { mounting, omega: *omega, angle: 0.0 }));
+                draft.add(mountings.iter().map(|&mounting| SetPoint::spinning(mounting, *omega)));
             }
             Self::Prior { parameter, standard_uncertainty } => {
                 // A prior that cannot be one adds nothing.

@@ -79,9 +79,9 @@ impl Normalised {
         let mut schedule = Vec::new();
         for &m in &self.levels {
             if m == 0.0 {
-                schedule.extend(self.rest_angles.iter().map(|&angle| SetPoint { mounting, omega: 0.0, angle }));
+                schedule.extend(self.rest_angles.iter().map(|&angle| SetPoint::at_rest(mounting, angle)));
             } else {
-                schedule.push(SetPoint { mounting, omega: self.unit_speed() * m.sqrt(), angle: 0.0 });
+                schedule.push(SetPoint::spinning(mounting, self.unit_speed() * m.sqrt()));
             }
         }
         schedule

@@ -10,7 +10,7 @@ use crate::model::{MeasurementModel, Observation};
 pub struct Repeat {
     /// Set points of the first and the second plateau.
     pub set_points: [usize; 2],
-    /// Second mean less the first [m/s^2].
+    /// Second mean less the first, and less what a difference of measured speeds explains [m/s^2].
     pub difference: Vector3<f64>,
     /// Square of the difference over its covariance, speeds included: chi^2 of three degrees of freedom.
     pub chi_squared: f64,
@@ -24,11 +24,12 @@ pub fn repeats(model: &MeasurementModel, x: &[f64], plateaus: &[Observation]) ->
     let set_points = &model.experiment().set_points;
     let repeat = |second: usize| {
         let set_point = &set_points[second];
-        let first = set_points[..second].iter().position(|other| other == set_point)?;
+        let first = set_points[..second].iter().position(|other| set_point.repeats(other))?;
         let [one, two] = [first, second].map(|n| &plateaus[n]);
-        let along = model.linearise(set_point, x).speed_error;
-        let difference = two.mean - one.mean;
-        let covariance = one.covariance + two.covariance + 2.0 * along * along.transpose();
+        let [at_one, at_two] = [first, second].map(|n| model.linearise(&set_points[n], x));
+        let difference = two.mean - one.mean - (at_two.reading - at_one.reading);
+        let [by_one, by_two] = [at_one, at_two].map(|at| at.speed_error * at.speed_error.transpose());
+        let covariance = one.covariance + two.covariance + (by_one + by_two);
         let chi_squared = difference.dot(&covariance.cholesky()?.solve(&difference));
         let probability = chi_squared_tail(chi_squared, 3);
         Some(Repeat { set_points: [first, second], difference, chi_squared, probability })

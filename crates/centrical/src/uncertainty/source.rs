@@ -148,7 +148,7 @@ pub(super) fn influences(experiment: &Experiment, stated: &TypeB) -> Vec<Influen
         if set_point.is_rest() {
             add(Source::RestAngle, Quantity::RestAngle(n), stated.rest_angle);
         } else {
-            add(Source::PlateauSpeed, Quantity::PlateauSpeed(n), experiment.centrifuge.speed_uncertainty);
+            add(Source::PlateauSpeed, Quantity::PlateauSpeed(n), experiment.speed_uncertainty_of(set_point));
         }
     }
     add(Source::Gravity, Quantity::Gravity, stated.gravity);

@@ -166,3 +166,20 @@ fn mean_over_a_revolution_is_exact() {
         assert!((coarse - fine).amax() <= 1e-14 * coarse.amax());
     }
 }
+
+/// A plateau with a speed uncertainty of its own has the speed error of a centrifuge as uncertain, in both models.
+#[test]
+fn own_speed_uncertainty_stands_for_that_of_the_centrifuge() {
+    let mut uncertain = experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]);
+    uncertain.centrifuge.speed_uncertainty = 3e-6;
+    let mut measured = experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]);
+    measured.centrifuge.speed_uncertainty = 1e-4;
+    measured.set_points.iter_mut().for_each(|s| s.speed_uncertainty = Some(3e-6));
+    let (uncertain, measured) = (everything(uncertain), everything(measured));
+    let x = truth(&measured, 10.0, &mut Random::new(10));
+    for (a, b) in uncertain.experiment().set_points.iter().zip(&measured.experiment().set_points) {
+        assert_eq!(uncertain.linearise(a, &x), measured.linearise(b, &x));
+        assert_eq!(uncertain.linearise_at_zero(a), measured.linearise_at_zero(b));
+    }
+    assert!(measured.linearise(&measured.experiment().set_points[3], &x).speed_error.norm() > 0.0);
+}

@@ -29,15 +29,15 @@ pub fn random_design(random: &mut Random) -> Study {
     let mut set_points = Vec::new();
     for mounting in 0..mountings.len() {
         for angle in [0.0, FRAC_PI_2].into_iter().take(angles) {
-            set_points.push(SetPoint { mounting, omega: 0.0, angle });
+            set_points.push(SetPoint::at_rest(mounting, angle));
         }
         for n in 0..speeds {
-            set_points.push(SetPoint { mounting, omega: 14.0 * ((n + 1) as f64).sqrt(), angle: 0.0 });
+            set_points.push(SetPoint::spinning(mounting, 14.0 * ((n + 1) as f64).sqrt()));
         }
     }
     set_points.retain(|_| random.below(8) > 0);
     if set_points.is_empty() {
-        set_points.push(SetPoint { mounting: 0, omega: 14.0, angle: 0.0 });
+        set_points.push(SetPoint::spinning(0, 14.0));
     }
     let experiment = Experiment {
         centrifuge: Centrifuge::default(),

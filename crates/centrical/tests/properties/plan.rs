@@ -32,8 +32,8 @@ fn small(random: &mut Random) -> Candidates {
     let set_points: Vec<SetPoint> = (0..mountings.len())
         .flat_map(|mounting| (0..5 - count.min(3)).map(move |n| (mounting, n)))
         .map(|(mounting, n)| match n {
-            0 => SetPoint { mounting, omega: 0.0, angle: 6.0 * random.uniform() },
-            _ => SetPoint { mounting, omega: 10.0 + 40.0 * random.uniform(), angle: 0.0 },
+            0 => SetPoint::at_rest(mounting, 6.0 * random.uniform()),
+            _ => SetPoint::spinning(mounting, 10.0 + 40.0 * random.uniform()),
         })
         .collect();
     let mut experiment = Experiment {
@@ -264,13 +264,8 @@ pub fn large(speeds: usize, durations: &[f64]) -> Candidates {
     let top = (200.0 * 9.80665 / 0.5_f64).sqrt();
     experiment.set_points = (0..experiment.mountings.len())
         .flat_map(|mounting| {
-            let rest =
-                (0..2).map(move |n| SetPoint { mounting, omega: 0.0, angle: std::f64::consts::PI * f64::from(n) });
-            let spin = (1..=speeds).map(move |n| SetPoint {
-                mounting,
-                omega: top * (n as f64 / speeds as f64).sqrt(),
-                angle: 0.0,
-            });
+            let rest = (0..2).map(move |n| SetPoint::at_rest(mounting, std::f64::consts::PI * f64::from(n)));
+            let spin = (1..=speeds).map(move |n| SetPoint::spinning(mounting, top * (n as f64 / speeds as f64).sqrt()));
             rest.chain(spin)
         })
         .collect();

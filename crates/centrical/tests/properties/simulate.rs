@@ -126,8 +126,10 @@ fn specific_force(place: &dyn Fn(f64) -> Vector3<f64>, experiment: &Experiment) 
 fn tour(sense: f64) -> MeasurementModel {
     let mut experiment = experiment(AxisOneUp, PairRelation::Common, &[1.0]);
     let stops = [(0.0, 0.3), (14.0, 0.0), (31.0, 0.0), (0.0, 2.9), (0.0, 6.0), (9.0, 0.0), (0.0, 1.2)];
-    experiment.set_points =
-        stops.iter().map(|&(omega, angle)| SetPoint { mounting: 0, omega: sense * omega, angle }).collect();
+    experiment.set_points = stops
+        .iter()
+        .map(|&(omega, angle)| SetPoint { mounting: 0, omega: sense * omega, angle, speed_uncertainty: None })
+        .collect();
     kozlov(experiment)
 }
 

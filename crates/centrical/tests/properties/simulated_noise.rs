@@ -13,7 +13,7 @@ use crate::common::{experiment, kozlov};
 /// A unit at rest.
 fn at_rest() -> MeasurementModel {
     let mut experiment = experiment(AxisOneUp, PairRelation::Common, &[1.0]);
-    experiment.set_points = (0..6).map(|mounting| SetPoint { mounting, omega: 0.0, angle: 0.0 }).collect();
+    experiment.set_points = (0..6).map(|mounting| SetPoint::at_rest(mounting, 0.0)).collect();
     kozlov(experiment)
 }
 

@@ -43,7 +43,7 @@ fn z1_at_rest_as_printed() {
         let (s, c) = alpha_3.sin_cos();
         compare(
             &model,
-            &SetPoint { mounting: 0, omega: 0.0, angle: alpha_3 },
+            &SetPoint::at_rest(0, alpha_3),
             &[
                 ("alpha_1", [s, c, 0.0]),
                 ("alpha_2", [-c, s, 0.0]),
@@ -60,7 +60,7 @@ fn z1_at_rest_as_printed() {
 fn z6_as_printed() {
     let model = model();
     let experiment = model.experiment();
-    let set_point = SetPoint { mounting: 5, omega: 31.0, angle: 0.0 };
+    let set_point = SetPoint::spinning(5, 31.0);
     let w = set_point.omega * set_point.omega / experiment.site.gravity;
     let arm = experiment.mountings[5].arm_y;
     let (r_16, r_26) = (arm.x, arm.y);

@@ -72,9 +72,9 @@ fn normalised_set_points(experiment: &Experiment, levels: &[f64]) -> Vec<SetPoin
     for mounting in 0..experiment.mountings.len() {
         for &m in levels {
             if m == 0.0 {
-                chosen.extend([0.0, std::f64::consts::PI].map(|angle| SetPoint { mounting, omega: 0.0, angle }));
+                chosen.extend([0.0, std::f64::consts::PI].map(|angle| SetPoint::at_rest(mounting, angle)));
             } else {
-                chosen.push(SetPoint { mounting, omega: sign * unit * m.sqrt(), angle: 0.0 });
+                chosen.push(SetPoint::spinning(mounting, sign * unit * m.sqrt()));
             }
         }
     }
