@@ -99,12 +99,18 @@ impl Monomial {
     }
 }
 
-/// `f1*f2`, `f2*|f2|`, `f1^3`, `1`: components in order, the absolute value last of its component.
+/// `f1*f2`, `f2*|f2|`, `f1^3`, `sgn(f1)`, `1`: components in order, the absolute value last of its component.
 impl fmt::Display for Monomial {
     fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut times = "";
         for (j, power) in self.powers.into_iter().enumerate() {
-            let absolute = u8::from(self.sign_of == Some(j) && power > 0);
+            let is_signed = self.sign_of == Some(j);
+            if is_signed && power == 0 {
+                write!(text, "{times}sgn(f{})", j + 1)?;
+                times = "*";
+                continue;
+            }
+            let absolute = u8::from(is_signed);
             match power - absolute {
                 0 => {}
                 1 => write!(text, "{times}f{}", j + 1)?,

@@ -12,6 +12,8 @@ mod observe;
 mod pattern;
 mod plan;
 mod prediction;
+mod rests_on;
+mod rivals;
 mod watch;
 
 pub use self::assess::assessment_text;

@@ -41,9 +41,9 @@ pub use document::{
     MountingSummary, NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary,
     ObservedParameter, OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting,
     PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program,
-    ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, ResultObjection, SCHEMA, SessionDriftVerdict,
-    SessionSummary, SessionTrend, SightReport, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary,
-    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history,
+    ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary,
+    SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport, StabilityCurve, StepReport, Subject,
+    TermSummary, TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history,
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{

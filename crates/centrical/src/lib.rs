@@ -62,10 +62,11 @@ pub use centrical_compensate::Monomial;
 pub use fit::{Calibration, Checkpoint, Data, Fit, Termination};
 pub use linalg::least_squares::{LeastSquares, Solution};
 pub use model::{
-    ArmMotion, Centrifuge, EARTH_RATE, ErrorModel, Experiment, Extension, Extra, FitError, Group, Kind, Law,
-    Linearisation, MeasurementModel, Mounting, NULL_HOLD, Observation, PairRelation, Parameter, Parameters, Position,
-    Prior, PriorError, PriorUse, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint, Site, Term, Unit, Weight,
-    carousel, hat, is_rotation, linear, position, rotation, rotation_rate,
+    ArmMotion, Centrifuge, Course, Difference, EARTH_RATE, Effect, ErrorModel, Experiment, Extension, Extra, FitError,
+    Group, History, Influence, Kind, Law, Linearisation, MeasurementModel, Mounting, NULL_HOLD, Observation,
+    PairRelation, Parameter, Parameters, Position, Prior, PriorError, PriorUse, ReferencePoint, Rival, Rotation,
+    STANDARD_GRAVITY, SetPoint, Site, Source, Term, TypeB, Unit, Weight, carousel, hat, is_rotation, linear, position,
+    rotation, rotation_rate,
 };
 pub use nalgebra;
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};

@@ -8,33 +8,46 @@
 //!
 //! `H` is the Jacobian of the exact model at `X = 0` (test `h_is_the_jacobian_at_zero`).
 
+mod effect;
 mod error;
 mod error_model;
 mod exact;
 mod experiment;
+mod extension;
 mod frame;
 mod group;
+mod history;
 mod instant;
+mod kind;
 pub mod linear;
 mod measurement;
+mod nominal;
 mod observation;
 mod parameter;
 pub mod position;
 pub(crate) mod prior;
+mod rival;
+mod share;
+mod stated;
 pub(crate) mod whitening;
 
+pub use effect::{Course, Effect, Law};
 pub use error::FitError;
 pub use error_model::{ErrorModel, Extra, Term};
 pub use experiment::{
-    Centrifuge, EARTH_RATE, Experiment, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY, SetPoint,
-    Site, Unit,
+    Centrifuge, EARTH_RATE, Experiment, History, Mounting, PairRelation, ReferencePoint, Rotation, STANDARD_GRAVITY,
+    SetPoint, Site, Unit,
 };
+pub use extension::{Difference, Extension};
 pub use frame::{carousel, hat, is_rotation, rotation, rotation_rate};
 pub use group::Group;
 pub use instant::ArmMotion;
 pub(crate) use instant::MountedUnit;
+pub use kind::Kind;
 pub use measurement::{Linearisation, MeasurementModel};
 pub use observation::{Observation, Weight};
-pub use parameter::{Extension, Kind, Law, NULL_HOLD, Parameter, Parameters};
+pub use parameter::{NULL_HOLD, Parameter, Parameters};
 pub use position::Position;
 pub use prior::{Prior, PriorError, PriorUse};
+pub use rival::Rival;
+pub use stated::{Influence, Source, TypeB};

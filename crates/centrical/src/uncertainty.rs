@@ -9,19 +9,20 @@
 //! - [`compare`]: two calibrations of one unit.
 //!
 //! Type A is what the data show: the noise of the plateau means. Type B is what they cannot show and the laboratory
-//! states ([`TypeB`]): quantities that the fit takes as exact, gravity or a radius, enter as *consider parameters*: not
-//! estimated, their doubt carried through the gain of the fit.
+//! states ([`TypeB`]): errors of quantities that the model takes as exact, gravity or a radius, are further unknowns of the
+//! fit, zero with the stated uncertainty.
 
 mod budget;
 mod comparison;
 mod compensated;
 mod coverage;
 mod drift;
+mod holm;
 mod monte_carlo;
 mod pattern;
 mod repeats;
+mod rivals;
 mod selection;
-mod source;
 mod tilt;
 mod validity;
 mod verdict;
@@ -34,8 +35,11 @@ pub use drift::{PlateauDrift, SessionDrift, Slope};
 pub use monte_carlo::{Method, MonteCarlo, ParameterStatistics, Settings, WeightedSquare, monte_carlo};
 pub use pattern::{Pattern, Trend};
 pub use repeats::{Repeat, repeats};
-pub use selection::{Candidate, NestedTest, Rival, Selection, TermVerdict, rivals_of, select};
-pub use source::{Source, TypeB};
+pub use rivals::{RivalTest, Rivals, Suspects, Unseen};
+pub use selection::{
+    Candidate, FittedCandidate, NestedTest, Selection, TermVerdict, candidates_of, select, select_beside,
+};
+
 pub use tilt::{OncePerRevolution, TiltComparison};
 pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity};
 pub use verdict::{Findings, Level, Objection, objections};

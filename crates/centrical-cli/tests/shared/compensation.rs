@@ -90,8 +90,9 @@ fn plateaus(clean: &Clean) -> Vec<Plateau> {
         let mean = Vector3::from(summary.mean);
         let noise = Matrix3::from_fn(|i, j| summary.covariance[i][j]);
         let after = Vector3::from(compensation.apply(summary.mean).unwrap()) - truth.reading;
-        let covariance =
-            prediction.covariance(&truth.reading).unwrap() + noise + truth.speed_error * truth.speed_error.transpose();
+        let covariance = prediction.covariance(&truth.reading).unwrap()
+            + noise
+            + truth.setting_error * truth.setting_error.transpose();
         Plateau { before: mean - truth.reading, after, covariance }
     };
     clean.result.plateaus.iter().zip(set_points).map(plateau).collect()

@@ -8,8 +8,12 @@ use super::content::{Align, Block, Document, Margins, Opening, Section, Table, T
 use super::drift::drift_facts;
 use super::objection::objection;
 use super::reading_error::error_table;
+use super::rests_on::rests_on_sentence;
 use crate::evaluation::{by_group, conformity, equations, expanded};
 use crate::language::Language;
+
+/// Effects that a certificate names: more than these tell a reader no more.
+const PRESUPPOSED: usize = 3;
 
 /// The certificate, with the results `before` an adjustment beside those after it if the unit was adjusted.
 pub fn certificate(
@@ -211,6 +215,7 @@ fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let values = [
         Block::Table(Table::numbers(columns, rows)),
         Block::paragraph(messages.uncertainty_statement),
+        Block::paragraph(&presupposed(result, language)),
         Block::paragraph(messages.covariance_note),
     ];
     model.into_iter().chain(equations(result).map(Block::Paragraph)).chain(values).collect()
@@ -235,6 +240,20 @@ fn adjustment(
         blocks.push(Block::paragraph(messages.residual_error_note));
     }
     blocks
+}
+
+/// What the stated uncertainties presuppose, in a sentence for each of the worst effects.
+fn presupposed(result: &CalibrationResult, language: Language) -> String {
+    let messages = language.messages();
+    let worst: Vec<String> =
+        result.rests_on.iter().take(PRESUPPOSED).map(|effect| rests_on_sentence(effect, language)).collect();
+    let exact = if result.stated_sources().is_empty() { messages.presupposed_exact } else { "" };
+    let effects = if worst.is_empty() {
+        String::new()
+    } else {
+        format!(" {}: {}.", messages.rests_on_sentence, worst.join("; "))
+    };
+    format!("{}{exact}{effects}", messages.presupposed)
 }
 
 /// The parameters of the instrument before its adjustment and after.

@@ -1,9 +1,13 @@
 //! Objections and patterns as sentences.
 
 use centrical::uncertainty::Objection;
-use centrical_session::{Follows, MICRO_G, PatternSummary, ResultObjection};
+use centrical::{Extension, Rival};
+use centrical_session::{Follows, MICRO_G, PatternSummary, ResultObjection, RivalSummary};
 
 use crate::language::Language;
+
+/// Rivals that a sentence names beside the first.
+const ALIKE: usize = 3;
 
 /// An objection to a result.
 pub(crate) fn objection(objection: &ResultObjection, language: Language) -> String {
@@ -12,6 +16,7 @@ pub(crate) fn objection(objection: &ResultObjection, language: Language) -> Stri
         Objection::NotConverged { termination, iterations } => {
             format!("{} ({}, {iterations})", messages.not_converged, (messages.words.termination)(*termination))
         }
+        Objection::LeftOut(rivals) => left_out(rivals, language),
         Objection::Residuals { chi_squared, degrees_of_freedom, chance } => {
             let (chi_squared, chance) = (language.fixed(*chi_squared, 1), language.probability(*chance));
             format!(
@@ -28,6 +33,46 @@ pub(crate) fn objection(objection: &ResultObjection, language: Language) -> Stri
             format!("{}: {}", messages.patterns_found, found.join("; "))
         }
         Objection::NotDetermined(names) => format!("{}: {}", messages.lost_parameters, names.join(", ")),
+    }
+}
+
+/// What the model leaves out: the rival that explains most, and those which the data cannot tell from it.
+fn left_out(rivals: &[RivalSummary], language: Language) -> String {
+    let messages = language.messages();
+    let Some((first, alike)) = rivals.split_first() else { return messages.left_out.to_owned() };
+    let explained = language.fixed(first.chi_squared, 1);
+    let mut text = format!(
+        "{}: {}, {} {explained} {}, {} {}",
+        messages.left_out,
+        rival(first, language),
+        messages.explains,
+        messages.of_chi_squared,
+        messages.chance,
+        language.probability(first.probability)
+    );
+    if !alike.is_empty() {
+        let names: Vec<String> = alike.iter().take(ALIKE).map(|other| rival(other, language)).collect();
+        let more = if alike.len() > ALIKE { "; …" } else { "" };
+        text.push_str(&format!("; {}: {}{more}", messages.left_out_alike, names.join("; ")));
+    }
+    text
+}
+
+/// A rival by its cause, its formula and its name in sessions.
+pub(crate) fn rival(rival: &RivalSummary, language: Language) -> String {
+    format!("{} ({}; {})", cause(&rival.name, language), rival.formula, rival.name)
+}
+
+/// The cause of a rival, by its name in sessions; of one mounting with its number.
+pub(crate) fn cause(name: &str, language: Language) -> String {
+    let messages = language.messages();
+    match Rival::named(name) {
+        Some(rival @ Rival::Effect(Extension::OneMounting(_, mounting))) => {
+            format!("{} ({} {})", (messages.words.rival)(rival), messages.in_mounting, mounting + 1)
+        }
+        Some(rival) => (messages.words.rival)(rival).to_owned(),
+        // A result of a later program may know more.
+        None => name.to_owned(),
     }
 }
 

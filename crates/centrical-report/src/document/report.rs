@@ -4,8 +4,9 @@ use centrical_session::{CalibrationResult, ValiditySummary};
 
 use super::content::{Align, Block, Document, Margins, Opening, Section, Table, TableKind, Tone};
 use super::drift::drift_facts;
-use super::objection::{objection, pattern};
+use super::objection::{objection, pattern, rival};
 use super::reading_error::error_table;
+use super::rests_on::rests_on;
 use super::tables::{budget, parameters};
 use crate::evaluation::by_group;
 use crate::figure::{Figure, figures, positions};
@@ -21,6 +22,7 @@ pub fn report(result: &CalibrationResult, further: &[Figure], language: Language
         drift(result, language),
         parameter_tables(result, language),
         uncertainty_budget(result, language),
+        rests_on(result, language),
         mounting_positions(result, language),
         plots(result, further, language),
         inputs(result, language),
@@ -87,6 +89,11 @@ fn checks(validity: &ValiditySummary, language: Language) -> Vec<(String, String
         (capitalised(messages.outlying_plateaus), listed(outlying)),
         (capitalised(messages.patterns_found), listed(patterns)),
     ];
+    if validity.rivals_tested > 0 {
+        let shown =
+            validity.rivals.iter().filter(|shown| shown.explains_most).map(|shown| rival(shown, language)).collect();
+        facts.push((format!("{} ({})", messages.rivals_tested, validity.rivals_tested), listed(shown)));
+    }
     if let Some(worst) = validity.mountings.iter().min_by(|a, b| a.probability.total_cmp(&b.probability)) {
         let chance = (validity.mountings.len() as f64 * worst.probability).min(1.0);
         let chi_squared = language.fixed(worst.chi_squared, 1);

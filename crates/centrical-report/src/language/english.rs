@@ -1,7 +1,8 @@
 //! English.
 
-use centrical::uncertainty::Source;
-use centrical::{Group, PairRelation, ReferencePoint, Termination};
+use centrical::{
+    Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
+};
 use centrical_session::{Follows, Method};
 
 use super::messages::{Messages, Words};
@@ -225,11 +226,33 @@ pub(crate) const ENGLISH: Messages = Messages {
     uncertainty: "Expanded uncertainty",
     covariance: "Covariance matrix of the parameters",
     specific_force: "Specific force",
-    words: Words { group, source, method, termination, pair_relation, reference, follows },
+    words: Words { group, source, method, termination, pair_relation, reference, rival, follows },
     not_converged: "the fit did not converge",
     residuals_too_large: "residuals are larger than the stated uncertainties explain",
     degrees_of_freedom: "degrees of freedom",
     chance: "chance",
+    left_out: "the model leaves out what the residuals show",
+    left_out_alike: "the data cannot tell it from",
+    explains: "explains",
+    of_chi_squared: "of χ²",
+    in_mounting: "mounting",
+    rivals_tested: "Effects left out, of those tested",
+    rests_on: "What the result rests on",
+    rests_on_note: "Effects that the model leaves out. For each: the smallest size that this session would have shown with a \
+        probability of 80 %, and what one of that size, not shown, does to the parameter of the instrument that it moves most \
+        and to a compensated reading within the forces of the session. Where no size would show, the error is that of a \
+        typical size.",
+    rests_on_effect: "Effect",
+    rests_on_size: "Smallest size shown",
+    rests_on_moves: "Moves most",
+    rests_on_reading: "Error of a compensated reading",
+    not_shown: "not shown at any size",
+    rests_on_sentence: "They presuppose that effects are absent which the measurement would not have shown (smallest size shown \
+        with a probability of 80 %; what it would do, in standard uncertainties u and to a compensated reading)",
+    presupposed: "The stated uncertainties presuppose a rigid arm, a constant temperature of the unit, and speeds whose errors \
+        are independent from plateau to plateau.",
+    presupposed_exact: " Gravity, radii, attitudes and the places of the proof masses count as exact.",
+    chi_squared_small: "Residuals are smaller than the stated uncertainties allow: these are too large.",
     lost_parameters: "parameters of the instrument are not determined",
 };
 
@@ -251,6 +274,13 @@ fn group(group: Group) -> &'static str {
         Group::ArmStretch => "Stretch of the arm",
         Group::RadiusScale => "Scale of the radii",
         Group::SpeedScale => "Scale of the speed",
+        Group::ArmTurn => "Elastic turn of the arm's end",
+        Group::SpinTurn => "Turn of the unit while spinning",
+        Group::Seat => "Place of a seat",
+        Group::MountingShift => "Shift of one mounting",
+        Group::MountingTurn => "Turn of one mounting",
+        Group::MountingTilt => "Tilt of the axis in one mounting",
+        Group::Disturbance => "Disturbance of the readings",
     }
 }
 
@@ -268,6 +298,7 @@ fn source(source: Source) -> &'static str {
         Source::ProofMasses => "Proof masses",
         Source::Attitude => "Attitudes",
         Source::Resolution => "Resolution",
+        Source::Effects => "Effects left out",
     }
 }
 
@@ -312,5 +343,51 @@ fn follows(follows: &Follows) -> &'static str {
         Follows::Load => "load",
         Follows::Mounting { .. } => "step in mounting",
         Follows::Time => "drift over the session",
+    }
+}
+
+fn rival(rival: Rival) -> &'static str {
+    match rival {
+        Rival::Terms(Extra::CrossProducts) => "products of two components of the force",
+        Rival::Terms(Extra::OddQuadratic) => "odd square of the force",
+        Rival::Terms(Extra::Asymmetry) => "scale that differs with the sign of the force",
+        Rival::Terms(Extra::FourthPower) => "fourth power of the force",
+        Rival::Terms(Extra::FifthPower) => "fifth power of the force",
+        Rival::Terms(Extra::Jump) => "jump of the bias at zero force",
+        Rival::Effect(extension) => match extension {
+            Extension::ElasticTurn(Law::Speed) => {
+                "elastic turn of the unit by position, growing with the square of the speed"
+            }
+            Extension::ElasticTurn(Law::Load) => "elastic turn of the unit by position, growing with the load",
+            Extension::ArmStretch(Law::Speed) => "stretch of the arm with the square of the speed",
+            Extension::ArmStretch(Law::Load) => "stretch of the arm with the load",
+            Extension::SeatStretch(Law::Speed) => "stretch of the arm by seat with the square of the speed",
+            Extension::SeatStretch(Law::Load) => "stretch of the arm by seat with the load",
+            Extension::RadiusScale => "common scale of the radii",
+            Extension::SpeedScale => "common scale of the speeds",
+            Extension::ArmTurn(Law::Speed) => "turn of the arm's end with the square of the speed",
+            Extension::ArmTurn(Law::Load) => "turn of the arm's end with the load: an arm that is not rigid",
+            Extension::SeatRadius => "radius of a seat",
+            Extension::SeatLateral => "lateral place of a seat",
+            Extension::PositionShift => "shift of its own in each position: another relation of the pairs",
+            Extension::MountingShift => "shift of its own in each mounting",
+            Extension::MountingTurn => "turn of its own in each mounting",
+            Extension::MountingTilt => "tilt of the axis that differs by mounting",
+            Extension::SpinTurn => "turn of the unit between rest and spinning",
+            Extension::Disturbance(Course::Spinning) => {
+                "step between rest and spinning: an aliased line or rectified vibration"
+            }
+            Extension::Disturbance(Course::SquaredSpeed) => {
+                "disturbance with the square of the speed: rectified vibration"
+            }
+            Extension::Disturbance(Course::Yield) => "proof mass that yields to its force",
+            Extension::Disturbance(Course::Time) => "bias that changes over the session",
+            Extension::Disturbance(Course::TimeScale) => "scale that changes over the session",
+            Extension::Disturbance(Course::Rise) => "difference after a rise and after a fall of the speed",
+            Extension::Disturbance(Course::Memory) => "memory of earlier forces",
+            Extension::OneMounting(Difference::Shift, _) => "shift of the unit in one mounting",
+            Extension::OneMounting(Difference::Turn, _) => "turn of the unit in one mounting",
+            Extension::OneMounting(Difference::Unit, _) => "another unit in one mounting",
+        },
     }
 }

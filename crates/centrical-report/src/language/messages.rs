@@ -2,8 +2,7 @@
 //!
 //! One field a message and one function a set of words, so that a language that lacks one does not compile.
 
-use centrical::uncertainty::Source;
-use centrical::{Group, PairRelation, ReferencePoint, Termination};
+use centrical::{Group, PairRelation, ReferencePoint, Rival, Source, Termination};
 use centrical_session::{Follows, Method};
 
 /// What the documents say, in one language.
@@ -197,6 +196,23 @@ pub(crate) struct Messages {
     pub residuals_too_large: &'static str,
     pub degrees_of_freedom: &'static str,
     pub chance: &'static str,
+    pub left_out: &'static str,
+    pub left_out_alike: &'static str,
+    pub explains: &'static str,
+    pub of_chi_squared: &'static str,
+    pub in_mounting: &'static str,
+    pub rivals_tested: &'static str,
+    pub rests_on: &'static str,
+    pub rests_on_note: &'static str,
+    pub rests_on_effect: &'static str,
+    pub rests_on_size: &'static str,
+    pub rests_on_moves: &'static str,
+    pub rests_on_reading: &'static str,
+    pub not_shown: &'static str,
+    pub rests_on_sentence: &'static str,
+    pub presupposed: &'static str,
+    pub presupposed_exact: &'static str,
+    pub chi_squared_small: &'static str,
     pub lost_parameters: &'static str,
 }
 
@@ -208,6 +224,8 @@ pub(crate) struct Words {
     pub termination: fn(Termination) -> &'static str,
     pub pair_relation: fn(PairRelation) -> &'static str,
     pub reference: fn(ReferencePoint) -> &'static str,
+    /// The cause of a rival.
+    pub rival: fn(Rival) -> &'static str,
     /// What a pattern follows, without its place.
     pub follows: fn(&Follows) -> &'static str,
 }

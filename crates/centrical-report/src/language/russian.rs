@@ -1,7 +1,8 @@
 //! Russian.
 
-use centrical::uncertainty::Source;
-use centrical::{Group, PairRelation, ReferencePoint, Termination};
+use centrical::{
+    Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
+};
 use centrical_session::{Follows, Method};
 
 use super::messages::{Messages, Words};
@@ -223,11 +224,33 @@ pub(crate) const RUSSIAN: Messages = Messages {
     uncertainty: "Расширенная неопределённость",
     covariance: "Ковариационная матрица параметров",
     specific_force: "Удельная сила",
-    words: Words { group, source, method, termination, pair_relation, reference, follows },
+    words: Words { group, source, method, termination, pair_relation, reference, rival, follows },
     not_converged: "оценивание не сошлось",
     residuals_too_large: "остатки больше, чем допускают заявленные неопределённости",
     degrees_of_freedom: "степеней свободы",
     chance: "вероятность",
+    left_out: "модель не учитывает того, что видно по невязкам",
+    left_out_alike: "по данным неотличимо",
+    explains: "объясняет",
+    of_chi_squared: "от χ²",
+    in_mounting: "установка",
+    rivals_tested: "Неучтённые эффекты из числа проверенных",
+    rests_on: "На чём держится результат",
+    rests_on_note: "Эффекты, которых нет в модели. Для каждого: наименьшая величина, которую этот эксперимент обнаружил бы с \
+        вероятностью 80 %, и погрешность, которую эффект такой величины, оставшись незамеченным, вносит в параметр прибора и \
+        в скорректированное показание в пределах нагрузок эксперимента. Если эффект не обнаруживается ни при какой величине, \
+        указана погрешность от эффекта типичной величины.",
+    rests_on_effect: "Эффект",
+    rests_on_size: "Наименьшая обнаруживаемая величина",
+    rests_on_moves: "Сильнее всего меняет",
+    rests_on_reading: "Погрешность скорректированного показания",
+    not_shown: "не обнаруживается",
+    rests_on_sentence: "Они предполагают отсутствие эффектов, которых измерение не обнаружило бы (наименьшая величина, \
+        обнаруживаемая с вероятностью 80 %; её влияние в стандартных неопределённостях u и на скорректированное показание)",
+    presupposed: "Указанные неопределённости предполагают жёсткое плечо, постоянную температуру прибора и независимость \
+        погрешностей скорости на разных площадках.",
+    presupposed_exact: " Ускорение силы тяжести, радиусы, ориентация и положения чувствительных масс считаются точными.",
+    chi_squared_small: "Невязки меньше, чем допускают заявленные неопределённости: последние завышены.",
     lost_parameters: "не определены параметры прибора",
 };
 
@@ -249,6 +272,13 @@ fn group(group: Group) -> &'static str {
         Group::ArmStretch => "Растяжение плеча",
         Group::RadiusScale => "Масштаб радиусов",
         Group::SpeedScale => "Масштаб скорости",
+        Group::ArmTurn => "Упругий поворот конца плеча",
+        Group::SpinTurn => "Поворот прибора при вращении",
+        Group::Seat => "Положение посадочного места",
+        Group::MountingShift => "Смещение в одной установке",
+        Group::MountingTurn => "Поворот в одной установке",
+        Group::MountingTilt => "Наклон оси в одной установке",
+        Group::Disturbance => "Возмущение показаний",
     }
 }
 
@@ -266,6 +296,7 @@ fn source(source: Source) -> &'static str {
         Source::ProofMasses => "Чувствительные массы",
         Source::Attitude => "Ориентация",
         Source::Resolution => "Разрешение",
+        Source::Effects => "Неучтённые эффекты",
     }
 }
 
@@ -310,5 +341,49 @@ fn follows(follows: &Follows) -> &'static str {
         Follows::Load => "нагрузка",
         Follows::Mounting { .. } => "скачок в установке",
         Follows::Time => "уход",
+    }
+}
+
+fn rival(rival: Rival) -> &'static str {
+    match rival {
+        Rival::Terms(Extra::CrossProducts) => "произведения двух составляющих силы",
+        Rival::Terms(Extra::OddQuadratic) => "нечётный квадрат силы",
+        Rival::Terms(Extra::Asymmetry) => "масштаб, зависящий от знака силы",
+        Rival::Terms(Extra::FourthPower) => "четвёртая степень силы",
+        Rival::Terms(Extra::FifthPower) => "пятая степень силы",
+        Rival::Terms(Extra::Jump) => "скачок нуля при смене знака силы",
+        Rival::Effect(extension) => match extension {
+            Extension::ElasticTurn(Law::Speed) => {
+                "упругий поворот прибора по положениям, растущий с квадратом скорости"
+            }
+            Extension::ElasticTurn(Law::Load) => "упругий поворот прибора по положениям, растущий с нагрузкой",
+            Extension::ArmStretch(Law::Speed) => "растяжение плеча с квадратом скорости",
+            Extension::ArmStretch(Law::Load) => "растяжение плеча с нагрузкой",
+            Extension::SeatStretch(Law::Speed) => "растяжение плеча по местам с квадратом скорости",
+            Extension::SeatStretch(Law::Load) => "растяжение плеча по местам с нагрузкой",
+            Extension::RadiusScale => "общий масштаб радиусов",
+            Extension::SpeedScale => "общий масштаб скоростей",
+            Extension::ArmTurn(Law::Speed) => "поворот конца плеча с квадратом скорости",
+            Extension::ArmTurn(Law::Load) => "поворот конца плеча с нагрузкой: нежёсткое плечо",
+            Extension::SeatRadius => "радиус посадочного места",
+            Extension::SeatLateral => "боковое положение посадочного места",
+            Extension::PositionShift => "собственное смещение в каждом положении: иное соотношение пар",
+            Extension::MountingShift => "собственное смещение в каждой установке",
+            Extension::MountingTurn => "собственный поворот в каждой установке",
+            Extension::MountingTilt => "наклон оси, различный по установкам",
+            Extension::SpinTurn => "поворот прибора между покоем и вращением",
+            Extension::Disturbance(Course::Spinning) => {
+                "ступень между покоем и вращением: наложение частот или выпрямленная вибрация"
+            }
+            Extension::Disturbance(Course::SquaredSpeed) => "возмущение с квадратом скорости: выпрямленная вибрация",
+            Extension::Disturbance(Course::Yield) => "чувствительная масса, податливая силе",
+            Extension::Disturbance(Course::Time) => "изменение нуля за время эксперимента",
+            Extension::Disturbance(Course::TimeScale) => "изменение масштаба за время эксперимента",
+            Extension::Disturbance(Course::Rise) => "различие после роста и после спада скорости",
+            Extension::Disturbance(Course::Memory) => "память о прежних силах",
+            Extension::OneMounting(Difference::Shift, _) => "смещение прибора в одной установке",
+            Extension::OneMounting(Difference::Turn, _) => "поворот прибора в одной установке",
+            Extension::OneMounting(Difference::Unit, _) => "другой прибор в одной установке",
+        },
     }
 }

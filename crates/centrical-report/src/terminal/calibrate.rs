@@ -2,11 +2,16 @@
 
 use std::fmt::Write;
 
-use centrical_session::{CalibrationResult, ParameterEstimate, ResultObjection, TermSummary, customary};
+use centrical::uncertainty::Level;
+use centrical_session::{
+    CalibrationResult, ParameterEstimate, ResultObjection, RivalSummary, TermSummary, ValiditySummary, customary,
+};
 
 use super::drift::drift;
 use super::pattern::pattern_in_words;
-use crate::document::objection;
+use super::rests_on::rests_on_text;
+use super::rivals::lines_of;
+use crate::document::{objection, rival};
 use crate::evaluation::{combination, monomial};
 use crate::language::Language;
 use crate::number::with_uncertainty;
@@ -32,6 +37,7 @@ pub fn terminal_table(result: &CalibrationResult) -> String {
     fit(&mut text, result);
     uncertainties(&mut text, result);
     validity(&mut text, result);
+    text.push_str(&rests_on_text(&result.rests_on));
     text
 }
 
@@ -230,6 +236,9 @@ fn validity(text: &mut String, result: &CalibrationResult) {
         "VALID chi^2 as large or larger comes by chance with a probability of {:.3}",
         validity.probability
     );
+    if Level::Real.is_passed_by(1.0 - validity.probability) {
+        let _ = writeln!(text, "      {}", Language::English.messages().chi_squared_small);
+    }
     let fitted = result.plateaus.iter().filter(|plateau| !plateau.held_out).count();
     if validity.outlying.is_empty() {
         let _ = writeln!(text, "      none of the {fitted} plateaus stands out");
@@ -245,6 +254,7 @@ fn validity(text: &mut String, result: &CalibrationResult) {
             plateau.probability
         );
     }
+    rivals(text, validity);
     if validity.patterns.is_empty() {
         let _ = writeln!(
             text,
@@ -263,6 +273,27 @@ fn validity(text: &mut String, result: &CalibrationResult) {
             "      each mounting predicted from all others: the worst, {}, chi^2 {:.1} with {} degrees, chance {family_wise:.3}",
             worst.mounting, worst.chi_squared, worst.degrees_of_freedom
         );
+    }
+}
+
+/// What the residuals show of effects that the model leaves out, and how to put the first into the model.
+fn rivals(text: &mut String, validity: &ValiditySummary) {
+    let (shown, tested) = (&validity.rivals, validity.rivals_tested);
+    if shown.is_empty() && tested > 0 {
+        let _ = writeln!(text, "      none of {tested} effects that the model leaves out shows in the residuals");
+    }
+    for summary in shown.iter().filter(|summary| summary.explains_most) {
+        let _ = writeln!(
+            text,
+            "      LEFT OUT  {} explains {:.1} of chi^2 by {}, chance {:.1e}",
+            rival(summary, Language::English),
+            summary.chi_squared,
+            summary.degrees_of_freedom,
+            summary.probability
+        );
+    }
+    if let Some(first) = shown.first().and_then(RivalSummary::rival) {
+        let _ = writeln!(text, "      models fits it in full; to add it: {}", lines_of(&[first]).join("; "));
     }
 }
 

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use centrical::STANDARD_GRAVITY;
 use centrical_session::{MICRO_G, PredictionReport, customary};
 
+use super::rests_on::rests_on_text;
 use crate::number::digits;
 
 /// Said of a parameter in which lost combinations leave doubt that no number beside it holds.
@@ -56,5 +57,6 @@ pub fn prediction_text(prediction: &PredictionReport) -> String {
             let _ = writeln!(text, "  {:>14.0} g{a:>14}{b:>14}{c:>14}", force / STANDARD_GRAVITY);
         }
     }
+    text.push_str(&rests_on_text(&prediction.rests_on));
     text
 }

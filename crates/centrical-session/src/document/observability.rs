@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use centrical::observability::{Condition, CorrelatedGroup, Need, Reason, Remedy};
 use centrical::plan::{ReadingRange, predict};
-use centrical::uncertainty::TypeB;
 use centrical::{Combination, Group, MeasurementModel, SetPoint, Study, Weight, linear};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -36,20 +35,19 @@ pub struct Subject {
     pub nominal: Vec<f64>,
     /// How well each mean is known, or will be.
     pub weights: Vec<Weight>,
-    /// Standard uncertainties that the data cannot show.
-    pub type_b: TypeB,
 }
 
 impl Subject {
     /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
     /// the experiment.
     fn prediction(&self) -> Result<PredictionReport, Error> {
-        let prediction = predict(&self.model, &self.weights, &self.type_b, &self.nominal)
+        let prediction = predict(&self.model, &self.weights, &self.nominal)
             .map_err(|source| Error::Fit { file: self.file.clone(), source })?;
         let experiment = self.model.experiment();
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
         let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
-        Ok(PredictionReport::of(&prediction, ReadingRange { force }, COVERAGE))
+        PredictionReport::of(&prediction, ReadingRange { force }, COVERAGE)
+            .map_err(|source| Error::Fit { file: self.file.clone(), source })
     }
 
     /// Studies the design at zero unknowns, where its structure is exact.
@@ -72,7 +70,6 @@ impl From<Plan> for Subject {
             model: plan.model,
             nominal: plan.nominal,
             weights: plan.weights,
-            type_b: plan.type_b,
         }
     }
 }

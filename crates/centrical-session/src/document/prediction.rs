@@ -1,9 +1,11 @@
 //! What a plan will know, as data for documents.
 
-use centrical::Group;
 use centrical::plan::{Prediction, ReadingRange};
 use centrical::uncertainty::{Degrees, coverage_factor};
+use centrical::{FitError, Group};
 use serde::Serialize;
+
+use super::result::RestsOn;
 
 /// Points of the curve of the compensated reading, from 0 to the range.
 const POINTS: usize = 5;
@@ -24,6 +26,8 @@ pub struct PredictionReport {
     pub reading: Option<[f64; 2]>,
     /// Along each instrument axis: specific force, and standard uncertainty of the compensated reading [m/s^2].
     pub curves: Vec<[f64; 4]>,
+    /// The effects whose absence the calibration will rest on, the worst first.
+    pub rests_on: Vec<RestsOn>,
 }
 
 /// An unknown before the experiment, SI; null where it is not determined.
@@ -51,7 +55,10 @@ pub struct PredictedParameter {
 
 impl PredictionReport {
     /// The report of a prediction.
-    pub fn of(prediction: &Prediction, range: ReadingRange, coverage: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn of(prediction: &Prediction, range: ReadingRange, coverage: f64) -> Result<Self, FitError> {
         let budget = prediction.budget();
         let parameters = prediction.model().parameters();
         let parameter = |j: usize| {
@@ -76,13 +83,14 @@ impl PredictionReport {
             let rows = a.iter().zip(&b).zip(&c).skip(POINTS - 1);
             rows.map(|((a, b), c)| [a.force, a.along, b.along, c.along]).collect()
         });
-        Self {
+        Ok(Self {
             coverage,
             sources: budget.contributions().iter().map(|c| c.source.name()).collect(),
             parameters: (0..parameters.len()).map(parameter).collect(),
             range: range.force,
             reading: prediction.reading(range),
             curves,
-        }
+            rests_on: RestsOn::all(prediction.model(), prediction.rests_on()?),
+        })
     }
 }

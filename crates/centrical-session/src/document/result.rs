@@ -3,12 +3,14 @@
 mod budget_and_checks;
 mod error_terms;
 mod from_calibration;
+mod rivals;
 mod schema;
 mod verdict;
 
 pub use self::budget_and_checks::{
     BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
 };
+pub use self::rivals::{RestsOn, RivalSize, RivalSummary};
 pub use self::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
     ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,

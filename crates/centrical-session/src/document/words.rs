@@ -1,6 +1,6 @@
 //! The words that documents write for what is one of several: reading and writing them by name.
 
-use centrical::uncertainty::Source;
+use centrical::Source;
 use centrical::{Group, PairRelation, ReferencePoint, Termination};
 use serde::de::{Deserialize, Deserializer, Error as _};
 use serde::ser::Serializer;

@@ -65,7 +65,7 @@ impl Planning {
         Ok(Self {
             file: path.to_owned(),
             title: session.title.clone(),
-            task: Task { candidates, criterion, time, type_b: session.type_b },
+            task: Task { candidates, criterion, time },
             range,
         })
     }

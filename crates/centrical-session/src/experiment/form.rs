@@ -7,10 +7,10 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
-pub(crate) use self::entries::{ColumnEntry, ColumnTable, TermEntry, TermList, TermTable};
+pub(crate) use self::entries::{ColumnEntry, ColumnTable, PriorValue, TermEntry, TermList, TermTable};
 pub(crate) use self::tables::{
     CandidatesTable, ColumnsTable, CountsTable, Form, ModelTable, MountingTable, PlanTable, PlateauEntry,
-    PositionTable, PresetForm, PresetTable, SiteTable, Steps, UncertaintyTable, UnitTable,
+    PositionTable, PresetForm, PresetTable, SiteTable, Steps, UnitTable,
 };
 use crate::error::{Error, Place};
 

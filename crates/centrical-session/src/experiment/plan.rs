@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use centrical::plan::{Noise, Normalised};
 use centrical::position::ThirdPosition;
-use centrical::uncertainty::TypeB;
 use centrical::{MeasurementModel, Parameter, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;
@@ -38,8 +37,6 @@ pub struct Plan {
     pub weights: Vec<Weight>,
     /// The assumed noise.
     pub noise: Noise,
-    /// Standard uncertainties that the data will not show, as stated in `[uncertainty]`.
-    pub type_b: TypeB,
 }
 
 /// The noise unless a file says otherwise: 20 ug/sqrt(Hz) and no floor, an ordinary quartz newtonometer.
@@ -107,7 +104,6 @@ impl Plan {
             model,
             weights: weights(&noise, durations),
             noise,
-            type_b: session.type_b,
         })
     }
 
@@ -136,7 +132,6 @@ impl Plan {
             model: prior::with_priors(file, model, &prior::entries(&form.prior))?,
             weights,
             noise,
-            type_b: TypeB::default(),
         })
     }
 }

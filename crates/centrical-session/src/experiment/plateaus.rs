@@ -58,7 +58,7 @@ impl PlateauTable {
             mounting: p.mounting,
             omega: rotation.sign() * p.speed + 0.0,
             angle: p.angle,
-            speed_uncertainty: None,
+            ..SetPoint::default()
         };
         self.rows.iter().map(set_point).collect()
     }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use centrical::{Group, MeasurementModel, Parameter, PriorError};
 
+use super::form::PriorValue;
 use super::toml_path::TomlPath;
 use crate::error::Error;
 use crate::quantity::{Dimension, Quantity};
@@ -14,15 +15,12 @@ use crate::units::writable;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PriorEntry {
     name: String,
-    standard_uncertainty: Quantity,
+    value: PriorValue,
 }
 
 /// The entries of the table `[prior]`, by name.
-pub(crate) fn entries(table: &BTreeMap<String, Quantity>) -> Vec<PriorEntry> {
-    let entry = |(name, quantity): (&String, &Quantity)| PriorEntry {
-        name: name.clone(),
-        standard_uncertainty: quantity.clone(),
-    };
+pub(crate) fn entries(table: &BTreeMap<String, PriorValue>) -> Vec<PriorEntry> {
+    let entry = |(name, value): (&String, &PriorValue)| PriorEntry { name: name.clone(), value: value.clone() };
     table.iter().map(entry).collect()
 }
 
@@ -34,8 +32,10 @@ pub(crate) fn with_priors(
 ) -> Result<MeasurementModel, Error> {
     let at = TomlPath::table(file, "prior");
     for entry in entries {
-        let sigma = in_si(&at, &model, entry)?;
-        model = model.with_prior(&entry.name, sigma).map_err(|error| refusal(&at, entry, error))?;
+        let PriorEntry { name, value: PriorValue { mean, standard_uncertainty } } = entry;
+        let sigma = in_si(&at, &model, name, standard_uncertainty)?;
+        let mean = mean.as_ref().map_or(Ok(0.0), |mean| in_si(&at, &model, name, mean))?;
+        model = model.with_prior_about(name, mean, sigma).map_err(|error| refusal(&at, name, error))?;
     }
     Ok(model)
 }
@@ -47,8 +47,7 @@ pub(crate) fn uncertainty_of(
     name: &str,
     quantity: &Quantity,
 ) -> Result<f64, Error> {
-    let entry = PriorEntry { name: name.to_owned(), standard_uncertainty: quantity.clone() };
-    let value = in_si(at, model, &entry)?;
+    let value = in_si(at, model, name, quantity)?;
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
@@ -57,28 +56,33 @@ pub(crate) fn uncertainty_of(
 }
 
 /// The uncertainty in the unit of the parameters that are meant.
-fn in_si(at: &TomlPath, model: &MeasurementModel, entry: &PriorEntry) -> Result<f64, Error> {
-    let Some(first) = model.parameters().select(&entry.name).first().map(|&j| &model.parameters()[j]) else {
-        let unknown = PriorError::Unknown { name: entry.name.clone(), example: model.parameters()[0].name.clone() };
-        return Err(refusal(at, entry, unknown));
+fn in_si(at: &TomlPath, model: &MeasurementModel, name: &str, quantity: &Quantity) -> Result<f64, Error> {
+    let Some(first) = model.parameters().select(name).first().map(|&j| &model.parameters()[j]) else {
+        let unknown = PriorError::Unknown { name: name.to_owned(), example: model.parameters()[0].name.clone() };
+        return Err(refusal(at, name, unknown));
     };
-    let dimension = match first.unit.as_str() {
+    in_unit_of(at, name, quantity, first)
+}
+
+/// A quantity in the unit of a parameter.
+pub(crate) fn in_unit_of(at: &TomlPath, key: &str, quantity: &Quantity, parameter: &Parameter) -> Result<f64, Error> {
+    let dimension = match parameter.unit.as_str() {
         "rad" => Dimension::Angle,
         "m" => Dimension::Length,
         "m/s^2" => Dimension::Acceleration,
-        "1" if first.group == Group::Misalignment => {
-            return at.finite(&entry.name, &entry.standard_uncertainty, Dimension::Ratio).or_else(|error| {
-                at.finite(&entry.name, &entry.standard_uncertainty, Dimension::Angle).map_err(|_| error)
-            });
+        "1" if parameter.group == Group::Misalignment => {
+            return at
+                .finite(key, quantity, Dimension::Ratio)
+                .or_else(|error| at.finite(key, quantity, Dimension::Angle).map_err(|_| error));
         }
         "1" => Dimension::Ratio,
-        _ => return in_derived_unit(at, entry, first),
+        _ => return in_derived_unit(at, key, quantity, parameter),
     };
-    at.finite(&entry.name, &entry.standard_uncertainty, dimension)
+    at.finite(key, quantity, dimension)
 }
 
 /// A coefficient in its SI unit or a unit in which people are shown it.
-fn in_derived_unit(at: &TomlPath, entry: &PriorEntry, parameter: &Parameter) -> Result<f64, Error> {
+fn in_derived_unit(at: &TomlPath, key: &str, quantity: &Quantity, parameter: &Parameter) -> Result<f64, Error> {
     let unit = &parameter.unit;
     let known = writable(unit, parameter.group);
     let units: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
@@ -86,7 +90,7 @@ fn in_derived_unit(at: &TomlPath, entry: &PriorEntry, parameter: &Parameter) -> 
         "" => Some(1.0),
         _ => known.iter().find(|(name, _)| *name == written).map(|(_, factor)| *factor),
     };
-    let value = match &entry.standard_uncertainty {
+    let value = match quantity {
         Quantity::Number(number) => Some(*number),
         Quantity::Text(text) => {
             let (number, written) = text.trim().split_once(char::is_whitespace).unwrap_or((text.trim(), ""));
@@ -94,10 +98,10 @@ fn in_derived_unit(at: &TomlPath, entry: &PriorEntry, parameter: &Parameter) -> 
         }
     };
     let expected = || format!("a number in {unit} or with a unit (units: {})", units.join(", "));
-    value.ok_or_else(|| at.unexpected(&entry.name, entry.standard_uncertainty.to_string(), expected()))
+    value.ok_or_else(|| at.unexpected(key, quantity.to_string(), expected()))
 }
 
-fn refusal(at: &TomlPath, entry: &PriorEntry, error: PriorError) -> Error {
+fn refusal(at: &TomlPath, name: &str, error: PriorError) -> Error {
     let (found, expected) = match error {
         PriorError::Unknown { example, .. } => {
             ("no such parameter or group".to_owned(), format!("a name such as {example}, or the stem of several, dR"))
@@ -108,7 +112,8 @@ fn refusal(at: &TomlPath, entry: &PriorEntry, error: PriorError) -> Error {
         PriorError::NotPositive { found, .. } => {
             (format!("a standard uncertainty of {found}"), "a positive number".to_owned())
         }
+        PriorError::Mean { found, .. } => (format!("a mean of {found}"), "a finite number".to_owned()),
         PriorError::Duplicate { parameter, .. } => (format!("a second prior on {parameter}"), "one".to_owned()),
     };
-    at.unexpected(&entry.name, found, expected)
+    at.unexpected(name, found, expected)
 }

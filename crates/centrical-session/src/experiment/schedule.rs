@@ -57,12 +57,7 @@ pub(crate) fn set_points(file: &Path, tables: &[MountingTable], rotation: Rotati
         for (index, entry) in table.plateaus.iter().enumerate() {
             let (speed, angle) = plateau(&at, index, entry)?;
             // The sum makes -0 a 0.
-            set_points.push(SetPoint {
-                mounting,
-                omega: rotation.sign() * speed + 0.0,
-                angle,
-                speed_uncertainty: None,
-            });
+            set_points.push(SetPoint { mounting, omega: rotation.sign() * speed + 0.0, angle, ..SetPoint::default() });
         }
     }
     Ok(set_points)

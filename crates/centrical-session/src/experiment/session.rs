@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use centrical::TypeB;
 use centrical::reduction::{Record, SpeedTrace};
-use centrical::uncertainty::TypeB;
 use centrical::{
     Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
 };
@@ -47,7 +47,7 @@ pub struct Session {
     pub error_model: ErrorModel,
     /// Unknowns beyond those of the source.
     pub extensions: Vec<Extension>,
-    /// Standard uncertainties that the data cannot show, as stated in `[uncertainty]`.
+    /// Standard uncertainties of what the model takes as exact, as stated in `[uncertainty]`.
     pub type_b: TypeB,
     /// Columns of the records and the telemetry.
     pub columns: Columns,
@@ -103,7 +103,8 @@ impl Session {
     /// # Errors
     /// If a prior names no parameter, or is none: only for a session changed since it was read.
     pub fn model(&self) -> Result<MeasurementModel, Error> {
-        let model = MeasurementModel::new(self.experiment.clone(), self.error_model.clone(), &self.extensions);
+        let model = MeasurementModel::new(self.experiment.clone(), self.error_model.clone(), &self.extensions)
+            .with_stated(self.type_b);
         prior::with_priors(&self.file, model, &self.priors)
     }
 
@@ -125,6 +126,7 @@ impl Session {
             mountings,
             set_points: Vec::new(),
         };
+        let error_model = terms::error_model(file, &form.model.error_model)?;
         let path = |name: &Option<String>| name.as_ref().map(|name| folder.join(name));
         Ok(Self {
             file: file.to_owned(),
@@ -134,9 +136,9 @@ impl Session {
             unit_model: form.unit.model.clone(),
             unit_serial: form.unit.serial.clone(),
             output_unit: form.unit.output_unit.clone(),
-            type_b: uncertainty::type_b(file, &form.uncertainty, experiment.centrifuge.speed_uncertainty)?,
+            type_b: uncertainty::type_b(file, &form.uncertainty, &experiment, &error_model)?,
             experiment,
-            error_model: terms::error_model(file, &form.model.error_model)?,
+            error_model,
             extensions: extensions(file, &form.model)?,
             columns: columns::columns(file, &form.columns, &form.unit)?,
             mountings: (form.mounting.iter())

@@ -34,10 +34,13 @@ fn expand(at: &TomlPath, entry: &TermEntry) -> Result<Vec<Term>, Error> {
         TermEntry::Named(name) => {
             let term = || preset.into_iter().find(|t| t.name == *name).map(|t| vec![t]);
             Extra::named(name).map(Extra::terms).or_else(term).ok_or_else(|| {
-            let expected = "\"kozlov-2017\", one of its terms such as \"G0_11\", \"cross-products\", \"odd-quadratic\", \
-                            or { axis = 1, term = \"f1*f2\" }";
-            at.unexpected("error_model", quoted(name.as_bytes()), expected)
-        })
+                let families: Vec<String> = Extra::NAMED.iter().map(|(name, _)| format!("{name:?}")).collect();
+                let expected = format!(
+                    "\"kozlov-2017\", one of its terms such as \"G0_11\", {}, or {{ axis = 1, term = \"f1*f2\" }}",
+                    families.join(", ")
+                );
+                at.unexpected("error_model", quoted(name.as_bytes()), expected)
+            })
         }
         TermEntry::Written(table) => Ok(vec![written(at, table, &preset)?]),
     }
@@ -74,6 +77,11 @@ fn monomial(text: &str) -> Option<Monomial> {
         let (base, power) = factor.split_once('^').unwrap_or((factor, "1"));
         let power: u8 = power.trim().parse().ok().filter(|p| *p > 0)?;
         let base = base.trim();
+        if let Some(signed) = base.strip_prefix("sgn(").and_then(|b| b.strip_suffix(')')) {
+            let axis = ["f1", "f2", "f3"].iter().position(|name| *name == signed.trim())?;
+            absolute[axis] ^= power % 2 == 1;
+            continue;
+        }
         let inner = base.strip_prefix('|').and_then(|b| b.strip_suffix('|'));
         let axis = ["f1", "f2", "f3"].iter().position(|name| *name == inner.unwrap_or(base).trim())?;
         monomial.powers[axis] = monomial.powers[axis].checked_add(power)?;
@@ -99,6 +107,8 @@ mod tests {
             ("|f1|^2", "f1^2"),
             ("|f1|^3", "f1^2*|f1|"),
             ("|f3|", "|f3|"),
+            ("sgn(f2)", "sgn(f2)"),
+            ("sgn(f1)*f1", "|f1|"),
             ("f1*f1*f2^2*|f3|", "f1^2*f2^2*|f3|"),
         ];
         for (text, expected) in cases {

@@ -1,46 +1,141 @@
 //! The table `[uncertainty]`: what the laboratory states of the quantities that the fit takes as exact.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use centrical::uncertainty::TypeB;
+use centrical::{Course, Effect, ErrorModel, Experiment, Kind, Law, Parameter, Rival, TypeB};
 
-use super::form::UncertaintyTable;
+use super::prior;
 use super::toml_path::TomlPath;
-use crate::error::Error;
+use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
 
+/// The quantities beside effects.
+const QUANTITIES: [&str; 11] = [
+    "gravity",
+    "latitude",
+    "radius",
+    "radius_difference",
+    "speed_scale",
+    "plateau_speed",
+    "rest_angle",
+    "proof_masses",
+    "attitude",
+    "resolution",
+    "doubt",
+];
+
 /// Standard uncertainties, SI; `plateau_speed` is the same as `speed_uncertainty` of `[centrifuge]` or absent.
-pub(crate) fn type_b(file: &Path, table: &UncertaintyTable, plateau_speed: f64) -> Result<TypeB, Error> {
+pub(crate) fn type_b(
+    file: &Path,
+    table: &BTreeMap<String, Quantity>,
+    experiment: &Experiment,
+    error_model: &ErrorModel,
+) -> Result<TypeB, Error> {
     let at = TomlPath::table(file, "uncertainty");
-    let read = |key: &str, quantity: &Option<Quantity>, dimension, largest| {
+    let read = |key: &str, dimension, largest| {
         let meaning = "a standard uncertainty, zero or more and not beyond reason";
-        quantity.as_ref().map(|q| at.bounded(key, q, dimension, (0.0, largest), meaning)).transpose()
+        table.get(key).map(|q| at.bounded(key, q, dimension, (0.0, largest), meaning)).transpose()
     };
     // Beyond these a unit was mistaken: 1 m, 1 rad, 10 m/s^2, 100 %.
-    let length = |key, quantity| read(key, quantity, Dimension::Length, 1.0);
-    let angle = |key, quantity| read(key, quantity, Dimension::Angle, 1.0);
-    let acceleration = |key, quantity| read(key, quantity, Dimension::Acceleration, 10.0);
-    let ratio = |key, quantity| read(key, quantity, Dimension::Ratio, 1.0);
-    let radius = length("radius", &table.radius)?.unwrap_or(0.0);
-    let radius_difference = length("radius_difference", &table.radius_difference)?;
+    let length = |key| read(key, Dimension::Length, 1.0);
+    let angle = |key| read(key, Dimension::Angle, 1.0);
+    let acceleration = |key| read(key, Dimension::Acceleration, 10.0);
+    let ratio = |key| read(key, Dimension::Ratio, 1.0);
+    let radius = length("radius")?.unwrap_or(0.0);
+    let radius_difference = length("radius_difference")?;
     if let Some(difference) = radius_difference.filter(|d| *d > std::f64::consts::SQRT_2 * radius) {
         let expected = "at most sqrt(2) times radius, the difference of seats measured independently";
         return Err(at.unexpected("radius_difference", format!("{difference} m"), expected));
     }
-    if let Some(speed) = ratio("plateau_speed", &table.plateau_speed)?.filter(|speed| *speed != plateau_speed) {
+    let plateau_speed = experiment.centrifuge.speed_uncertainty;
+    if let Some(speed) = ratio("plateau_speed")?.filter(|speed| *speed != plateau_speed) {
         let expected = format!("{plateau_speed}, the speed_uncertainty of [centrifuge], or nothing");
         return Err(at.unexpected("plateau_speed", speed.to_string(), expected));
     }
     Ok(TypeB {
-        gravity: acceleration("gravity", &table.gravity)?.unwrap_or(0.0),
-        latitude: angle("latitude", &table.latitude)?.unwrap_or(0.0),
+        gravity: acceleration("gravity")?.unwrap_or(0.0),
+        latitude: angle("latitude")?.unwrap_or(0.0),
         radius,
         radius_difference,
-        speed_scale: ratio("speed_scale", &table.speed_scale)?.unwrap_or(0.0),
-        rest_angle: angle("rest_angle", &table.rest_angle)?.unwrap_or(0.0),
-        proof_masses: length("proof_masses", &table.proof_masses)?.unwrap_or(0.0),
-        attitude: angle("attitude", &table.attitude)?.unwrap_or(0.0),
-        resolution: acceleration("resolution", &table.resolution)?.unwrap_or(0.0),
-        doubt: ratio("doubt", &table.doubt)?.unwrap_or(0.0),
+        speed_scale: ratio("speed_scale")?.unwrap_or(0.0),
+        rest_angle: angle("rest_angle")?.unwrap_or(0.0),
+        proof_masses: length("proof_masses")?.unwrap_or(0.0),
+        attitude: angle("attitude")?.unwrap_or(0.0),
+        resolution: acceleration("resolution")?.unwrap_or(0.0),
+        doubt: ratio("doubt")?.unwrap_or(0.0),
+        effects: effects(&at, table, experiment, error_model)?,
     })
+}
+
+/// Bounds of effects, by the name of the rival with underscores: `arm_turn_load = "0.3 urad at 100 g"`.
+fn effects(
+    at: &TomlPath,
+    table: &BTreeMap<String, Quantity>,
+    experiment: &Experiment,
+    error_model: &ErrorModel,
+) -> Result<[f64; Rival::COUNT], Error> {
+    let names: Vec<String> = Rival::COMMON.iter().map(|rival| rival.name().replace('-', "_")).collect();
+    let mut bounds = [0.0; Rival::COUNT];
+    for (key, quantity) in table.iter().filter(|(key, _)| !QUANTITIES.contains(&key.as_str())) {
+        let Some(place) = names.iter().position(|name| name == key) else {
+            let effects = names.iter().map(String::as_str).filter(|name| !QUANTITIES.contains(name));
+            let known: Vec<&str> = QUANTITIES.into_iter().chain(effects).collect();
+            let found = format!("the unknown quantity {}", quoted(key.as_bytes()));
+            return Err(at.unexpected(key, found, format!("one of {}", known.join(", "))));
+        };
+        let unknowns = Rival::COMMON[place].parameters(experiment, error_model);
+        let Some(unknown) = unknowns.first() else {
+            let expected =
+                "no such bound: the model has the effect, or the experiment has nothing that it could act on";
+            return Err(at.unexpected(key, quantity.to_string(), expected));
+        };
+        bounds[place] = bound(at, key, quantity, unknown)?;
+    }
+    Ok(bounds)
+}
+
+/// A standard uncertainty in the unit of an effect's unknowns; of an effect that grows with a load or a speed, its value there:
+/// "0.3 urad at 100 g".
+fn bound(at: &TomlPath, key: &str, quantity: &Quantity, unknown: &Parameter) -> Result<f64, Error> {
+    let text = quantity.to_string();
+    let value = match (text.split_once(" at "), growth(unknown)) {
+        (Some((size, place)), Some((of_size, of_place, power))) => {
+            let [size, place] = [size, place].map(|part| Quantity::Text(part.trim().to_owned()));
+            at.finite(key, &size, of_size)? / at.finite(key, &place, of_place)?.powi(power)
+        }
+        _ => prior::in_unit_of(at, key, quantity, unknown)?,
+    };
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(at.unexpected(key, text, "a standard uncertainty above 0"))
+    }
+}
+
+/// What an effect that grows is the size of, what it grows with, and to which power.
+fn growth(unknown: &Parameter) -> Option<(Dimension, Dimension, i32)> {
+    let by = |law: Law| match law {
+        Law::Load => (Dimension::Acceleration, 1),
+        Law::Speed => (Dimension::Speed, 2),
+    };
+    let Kind::Effect(effect) = unknown.kind else { return None };
+    match effect {
+        Effect::ElasticTurn { law, .. } | Effect::ArmTurn { law, .. } => {
+            let (place, power) = by(law);
+            Some((Dimension::Angle, place, power))
+        }
+        Effect::ArmStretch { law, .. } => {
+            let (place, power) = by(law);
+            Some((Dimension::Ratio, place, power))
+        }
+        Effect::Monomial { monomial, .. } if monomial.degree() > 0 => {
+            Some((Dimension::Acceleration, Dimension::Acceleration, i32::from(monomial.degree())))
+        }
+        Effect::Disturbance { follows: Course::SquaredSpeed, .. } => {
+            Some((Dimension::Acceleration, Dimension::Speed, 2))
+        }
+        Effect::Disturbance { follows: Course::Yield, .. } => Some((Dimension::Length, Dimension::Acceleration, 1)),
+        _ => None,
+    }
 }

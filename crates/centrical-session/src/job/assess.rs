@@ -53,17 +53,17 @@ pub fn assess(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Assessment, Error> {
     let problem = Problem::of(session, progress)?;
-    of_problem(session, problem, request).map_err(|source| Error::Fit { file: session.file.clone(), source })
+    of_problem(problem, request).map_err(|source| Error::Fit { file: session.file.clone(), source })
 }
 
-fn of_problem(session: &Session, problem: Problem, request: &AssessmentRequest) -> Result<Assessment, FitError> {
+fn of_problem(problem: Problem, request: &AssessmentRequest) -> Result<Assessment, FitError> {
     let Problem { model, reduced } = problem;
     let all = Data::new(&model, reduced.observations())?;
     let whole = Calibration::exact(&all)?;
     let cleaned = request.without_outliers.map(|alpha| all.without_outliers(alpha)).transpose()?;
     let without = cleaned.as_ref().map(|cleaned| Calibration::exact(&cleaned.data)).transpose()?;
     let used = without.as_ref().unwrap_or(&whole);
-    let mut budget = used.budget(&session.type_b)?;
+    let mut budget = used.budget()?;
     if request.scale_by_residuals {
         budget = budget.scaled_by_residuals(used.fit());
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical::plan::unit_of;
-use centrical::uncertainty::{Method, MonteCarlo, Settings, TypeB, monte_carlo};
+use centrical::uncertainty::{Method, MonteCarlo, Settings, monte_carlo};
 use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight};
 use nalgebra::Vector3;
 
@@ -34,7 +34,6 @@ pub struct MonteCarloCase {
     file: PathBuf,
     /// Their means are not used.
     observations: Vec<Observation>,
-    stated: TypeB,
 }
 
 impl MonteCarloCase {
@@ -48,7 +47,7 @@ impl MonteCarloCase {
         let (observations, file) = (reduced.observations(), session.file.clone());
         let truth =
             estimated(&model, observations.clone()).map_err(|source| Error::Fit { file: file.clone(), source })?;
-        Ok(Self { model, truth, file, observations, stated: session.type_b })
+        Ok(Self { model, truth, file, observations })
     }
 
     /// A plan: the unit that it is predicted for. `noise` is the white noise of every mean in micro-g, in place of the
@@ -57,14 +56,14 @@ impl MonteCarloCase {
     /// # Errors
     /// [`Error::Fit`] when a weight is invalid.
     pub fn planned(plan: Plan, noise: Option<f64>) -> Result<Self, Error> {
-        let Plan { file, model, nominal, weights, type_b, .. } = plan;
+        let Plan { file, model, nominal, weights, .. } = plan;
         let truth = unit_of(&model, &weights, &nominal).map_err(|source| Error::Fit { file: file.clone(), source })?;
         let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
         let weights = noise.map_or_else(|| weights.clone(), equal);
         let observation =
             |Weight { set_point, covariance }| Observation { set_point, mean: Vector3::zeros(), covariance };
         let observations = weights.into_iter().map(observation).collect();
-        Ok(Self { model, truth, file, observations, stated: type_b })
+        Ok(Self { model, truth, file, observations })
     }
 
     /// Takes a unit of typical errors with alternating signs for the true one.
@@ -84,7 +83,6 @@ impl MonteCarloCase {
             seed: request.seed,
             coverage: request.coverage,
             method: if request.linear { Method::Linear } else { Method::Exact },
-            stated: self.stated,
         };
         Data::new(&self.model, self.observations.clone())
             .and_then(|data| monte_carlo(&data, &self.truth, &settings, done))

@@ -32,6 +32,5 @@ fn of_session(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Subj
         nominal: vec![0.0; model.parameters().len()],
         model,
         weights: reduced.observations().iter().map(Weight::from).collect(),
-        type_b: session.type_b,
     })
 }

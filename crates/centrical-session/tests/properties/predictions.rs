@@ -3,8 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
+use centrical::TypeB;
 use centrical::plan::predict;
-use centrical::uncertainty::{Method, Settings, TypeB, monte_carlo};
+use centrical::uncertainty::{Method, Settings, monte_carlo};
 use centrical::{Data, MeasurementModel, Observation, Weight};
 use centrical_session::{Plan, read_plan, read_planning};
 use nalgebra::Vector3;
@@ -55,7 +56,8 @@ impl Case {
         let plan = planning.task.plan(false).unwrap();
         let (experiment, weights) = planning.task.candidates.experiment_of(&plan.schedule);
         let model = planning.task.model().in_experiment(experiment);
-        (Self { model, weights }, planning.task.type_b)
+        let stated = *model.stated();
+        (Self { model, weights }, stated)
     }
 
     /// Unknowns of so many typical magnitudes, signs in turn.
@@ -75,12 +77,13 @@ impl Case {
 
     /// Scatter over prediction of every parameter that is determined: by both alike.
     fn compared(&self, name: &str, truth: &[f64], stated: TypeB) -> Vec<Compared> {
-        let prediction = predict(&self.model, &self.weights, &stated, truth).unwrap();
+        let model = self.model.clone().with_stated(stated);
+        let prediction = predict(&model, &self.weights, truth).unwrap();
         let observation =
             |w: &Weight| Observation { set_point: w.set_point, mean: Vector3::zeros(), covariance: w.covariance };
         let observations: Vec<Observation> = self.weights.iter().map(observation).collect();
-        let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact, stated };
-        let data = Data::new(&self.model, observations).unwrap();
+        let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact };
+        let data = Data::new(&model, observations).unwrap();
         let shown = monte_carlo(&data, truth, &settings, &|_| {}).unwrap();
         let mut compared = Vec::new();
         for (j, statistics) in shown.parameters.iter().enumerate() {
@@ -137,7 +140,7 @@ fn every_parameter_of_the_best_plan_scatters_as_predicted() {
 #[ignore = "some minutes; run by .ci/run predictions"]
 fn every_parameter_of_the_source_scatters_as_predicted() {
     let normalised = Case::normalised();
-    let stated = read_planning(&example("best.toml")).unwrap().task.type_b;
+    let stated = *read_planning(&example("best.toml")).unwrap().task.model().stated();
     let all = normalised.model.parameters().len();
     assert_eq!(normalised.compare("[K5.5], type A", &normalised.truth(0.0), TypeB::default()), all);
     normalised.compare("[K5.5] of a unit with errors, type A and B", &normalised.truth(0.3), stated);
@@ -150,7 +153,7 @@ fn every_parameter_of_the_source_scatters_as_predicted() {
 fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
     let printed = Case::of("normalised.toml", "opposite");
     assert_eq!(printed.compare("[K5.5] as printed, type A", &printed.truth(1.0), TypeB::default()), 43);
-    let prediction = |truth: &[f64]| predict(&printed.model, &printed.weights, &TypeB::default(), truth).unwrap();
+    let prediction = |truth: &[f64]| predict(&printed.model, &printed.weights, truth).unwrap();
     let (of_none, of_typical) = (prediction(&printed.truth(0.0)), prediction(&printed.truth(1.0)));
     for j in 0..printed.model.parameters().len() {
         assert_eq!(of_none.standard_uncertainty(j), of_typical.standard_uncertainty(j));
@@ -168,7 +171,7 @@ fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
         .iter()
         .map(|w| Observation { set_point: w.set_point, mean: Vector3::zeros(), covariance: w.covariance })
         .collect();
-    let settings = Settings { runs: 4000, seed: 3, coverage: 0.95, method: Method::Exact, stated: TypeB::default() };
+    let settings = Settings { runs: 4000, seed: 3, coverage: 0.95, method: Method::Exact };
     let zero = quiet.truth(0.0);
     let data = Data::new(model, observations).unwrap();
     let shown = monte_carlo(&data, &zero, &settings, &|_| {}).unwrap();

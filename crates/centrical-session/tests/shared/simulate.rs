@@ -68,7 +68,7 @@ fn compare(name: &str, seed: u64) {
     let mut squares = Vector3::zeros();
     for ((a, b), set_point) in ours.iter().zip(&theirs).zip(&truth.model.experiment().set_points) {
         let stated = truth.model.experiment().centrifuge.speed_uncertainty;
-        let speed = truth.model.linearise(set_point, &truth.values).speed_error
+        let speed = truth.model.linearise(set_point, &truth.values).setting_error
             * (truth.equipment.machine.speed_error / stated);
         let covariance = a.covariance + b.covariance + 2.0 * speed * speed.transpose();
         let factor = Cholesky::new(covariance).unwrap();

@@ -21,6 +21,6 @@ impl Assembly {
             Self::Batch => Design::of(data, linearisations)?,
             Self::Filter => filter::smoothed(data, linearisations)?,
         };
-        Ok(design.with_priors(data.model().priors(), x))
+        Ok(design.with_priors(data.model().priors(), data.model().influences().len(), x))
     }
 }

@@ -66,7 +66,7 @@ impl<'a> Start<'a> {
         (equations, equations.solve(self.design.misfit.clone()))
     }
 
-    /// Degrees of freedom left by the estimable combinations.
+    /// Degrees of freedom left by the estimable combinations. An influence brings an equation and an unknown.
     fn degrees_of_freedom(&self) -> usize {
         let rows = 3 * self.data.observations().len() + self.data.model().priors().len();
         rows.saturating_sub(self.structure.observability.rank())
@@ -75,17 +75,20 @@ impl<'a> Start<'a> {
     /// The linear fit: the residual of `Z - H X`.
     pub fn solve(self) -> Fit {
         let (equations, step) = self.step();
+        let parameters = self.data.model().parameters().len();
         let covariance = equations.covariance();
         let residuals = (self.data.observations().iter())
             .zip(&self.structure.linearisations)
             .map(|(o, l)| {
                 let predicted: Vector3<f64> = l.columns.iter().map(|(j, column)| column * step.x[*j]).sum();
-                o.mean - l.reading - predicted
+                let stated: Vector3<f64> = l.stated.iter().map(|(n, change)| change * step.x[parameters + n]).sum();
+                o.mean - l.reading - predicted - stated
             })
             .collect();
         let whitened = &self.design.misfit - &self.design.rows * &step.x;
         Fit {
-            values: step.x.as_slice().to_vec(),
+            values: step.x.rows(0, parameters).as_slice().to_vec(),
+            deviations: step.x.rows_range(parameters..).as_slice().to_vec(),
             covariance,
             chi_squared: whitened.norm_squared() + self.design.rest.powi(2),
             degrees_of_freedom: self.degrees_of_freedom(),
@@ -225,8 +228,10 @@ impl<'a> Search<'a> {
     /// less than a millionth of a standard uncertainty away.
     fn into_fit(self) -> Result<Fit, FitError> {
         let residuals = self.start.data.residuals(self.x.as_slice());
+        let parameters = self.start.data.model().parameters().len();
         Ok(Fit {
-            values: self.x.as_slice().to_vec(),
+            values: self.x.rows(0, parameters).as_slice().to_vec(),
+            deviations: self.x.rows_range(parameters..).as_slice().to_vec(),
             chi_squared: self.chi_squared(&residuals, &self.x)?,
             covariance: self.covariance,
             degrees_of_freedom: self.start.degrees_of_freedom(),

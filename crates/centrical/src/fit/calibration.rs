@@ -2,13 +2,16 @@
 
 use std::sync::OnceLock;
 
+use nalgebra::{Matrix3, Vector3};
+
 use super::assembly::Assembly;
 use super::batch::{Search, Start};
 use super::data::Data;
 use super::estimates::Fit;
 use super::gain::Gain;
 use super::structure::Structure;
-use crate::model::FitError;
+use crate::model::whitening::total_covariance;
+use crate::model::{FitError, SetPoint};
 
 /// The data, the structure of their design, and the fit: all that a budget, checks and residual patterns ask for.
 #[derive(Debug, Clone)]
@@ -84,6 +87,17 @@ impl<'d> Calibration<'d> {
     /// The fit.
     pub fn fit(&self) -> &Fit {
         &self.fit
+    }
+
+    /// What the fit expects of a plateau that has no part in it: the covariance of its mean, whose noise has `covariance`, with
+    /// the errors of its setting and rounding [m^2/s^4], and its reading [m/s^2].
+    pub fn expected(&self, set_point: &SetPoint, covariance: &Matrix3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
+        let mut there = self.data.model().linearise(set_point, self.fit.state());
+        let deviations = self.fit.deviations();
+        for (n, change) in &there.stated {
+            there.reading += change * deviations[*n].0;
+        }
+        (total_covariance(covariance, &there), there.reading)
     }
 
     /// Whether the equations went through the filter.

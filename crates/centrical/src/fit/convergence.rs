@@ -23,20 +23,23 @@ impl Calibration<'_> {
     /// Standard uncertainties at no more than `most` evenly spread stages of the session; the last stage has all plateaus.
     pub fn convergence(&self, most: usize) -> Vec<Checkpoint> {
         let (model, observations, fit) = (self.data().model(), self.data().observations(), self.fit());
-        let p = model.parameters().len();
-        let typical = DVector::from_iterator(p, model.parameters().iter().map(|p| p.typical));
+        let (parameters, typical) = (model.parameters().len(), self.data().typical());
+        let p = typical.len();
         let every = observations.len().div_ceil(most.max(1)).max(1);
         let mut stack = DMatrix::zeros(p + 3, p);
         stack.fill_diagonal(1.0 / NULL_HOLD);
+        (parameters..p).for_each(|influence| stack[(influence, influence)] = 1.0);
         let mut checkpoints = Vec::new();
-        let linearisations = self.data().linearised(fit.state());
+        let linearisations = self.data().linearised(&fit.unknowns());
         for (n, (linearisation, covariance)) in linearisations.iter().zip(&fit.observation_covariances).enumerate() {
-            stack.rows_mut(p, 3).copy_from(&whitened_rows(linearisation, covariance, &typical));
+            stack.rows_mut(p, 3).copy_from(&whitened_rows(linearisation, covariance, &typical, parameters));
             let equations = LeastSquares::new(stack.clone(), typical.clone());
             stack.rows_mut(0, p).copy_from(equations.triangle());
             let plateaus = n + 1;
             if plateaus % every == 0 || plateaus == observations.len() {
-                checkpoints.push(Checkpoint { plateaus, standard_uncertainty: equations.standard_uncertainties() });
+                let mut standard_uncertainty = equations.standard_uncertainties();
+                standard_uncertainty.truncate(parameters);
+                checkpoints.push(Checkpoint { plateaus, standard_uncertainty });
             }
         }
         checkpoints
@@ -44,13 +47,20 @@ impl Calibration<'_> {
 }
 
 /// The rows of one plateau at the fit, whitened, in typical units.
-fn whitened_rows(linearisation: &Linearisation, covariance: &Matrix3<f64>, typical: &DVector<f64>) -> DMatrix<f64> {
+fn whitened_rows(
+    linearisation: &Linearisation,
+    covariance: &Matrix3<f64>,
+    typical: &DVector<f64>,
+    parameters: usize,
+) -> DMatrix<f64> {
     let mut rows = DMatrix::zeros(3, typical.len());
     // A fit accepts positive definite covariances only.
     let Some(factor) = covariance.cholesky() else { return rows };
-    for (column, derivative) in &linearisation.columns {
+    let influences = linearisation.stated.iter().map(|(n, change)| (parameters + n, change));
+    let columns = linearisation.columns.iter().map(|(column, derivative)| (*column, derivative));
+    for (column, derivative) in columns.chain(influences) {
         if let Some(whitened) = factor.l_dirty().solve_lower_triangular(derivative) {
-            rows.column_mut(*column).copy_from(&(whitened * typical[*column]));
+            rows.column_mut(column).copy_from(&(whitened * typical[column]));
         }
     }
     rows

@@ -61,15 +61,39 @@ impl<'m> Data<'m> {
         self.set_points().map(|set_point| self.model.linearise_at_zero(set_point)).collect()
     }
 
-    /// The exact model of each plateau, linearised at `x`.
-    pub(super) fn linearised(&self, x: &[f64]) -> Vec<Linearisation> {
-        self.set_points().map(|set_point| self.model.linearise(set_point, x)).collect()
+    /// Number of unknowns of a fit: parameters, then influences in their standard uncertainties.
+    pub(super) fn unknowns(&self) -> usize {
+        self.model.parameters().len() + self.model.influences().len()
     }
 
-    /// Readings less those of the exact model at `x` [m/s^2].
+    /// Sizes of the unknowns of a fit: typical magnitudes of the parameters, 1 for the influences.
+    pub(super) fn typical(&self) -> DVector<f64> {
+        let parameters = self.model.parameters().iter().map(|p| p.typical);
+        let influences = self.model.influences().iter().map(|_| 1.0);
+        DVector::from_iterator(self.unknowns(), parameters.chain(influences))
+    }
+
+    /// The exact model of each plateau, linearised at the unknowns `x` of a fit. The influences act linearly.
+    pub(super) fn linearised(&self, x: &[f64]) -> Vec<Linearisation> {
+        let (parameters, influences) = x.split_at(self.model.parameters().len());
+        let linearised = self.set_points().map(|set_point| {
+            let mut at = self.model.linearise(set_point, parameters);
+            for (n, change) in &at.stated {
+                at.reading += change * influences[*n];
+            }
+            at
+        });
+        linearised.collect()
+    }
+
+    /// Readings less those of the exact model at the unknowns `x` of a fit [m/s^2].
     pub(super) fn residuals(&self, x: &[f64]) -> Vec<Vector3<f64>> {
-        let pairs = self.observations.iter().zip(self.set_points());
-        pairs.map(|(observation, set_point)| observation.mean - self.model.reading(set_point, x)).collect()
+        if self.model.influences().is_empty() {
+            let pairs = self.observations.iter().zip(self.set_points());
+            return pairs.map(|(observation, set_point)| observation.mean - self.model.reading(set_point, x)).collect();
+        }
+        let pairs = self.observations.iter().zip(self.linearised(x));
+        pairs.map(|(observation, at)| observation.mean - at.reading).collect()
     }
 
     /// Sum of squares of `residuals`, which are those at `x`, with the weights of the linearisations; and the priors' share.
@@ -80,17 +104,18 @@ impl<'m> Data<'m> {
         x: &DVector<f64>,
     ) -> Result<f64, FitError> {
         let priors = self.model.priors().iter();
-        let mut sum: f64 = priors.map(|p| (x[p.parameter] / p.standard_uncertainty).powi(2)).sum();
+        let mut sum: f64 = priors.map(|p| ((x[p.parameter] - p.mean) / p.standard_uncertainty).powi(2)).sum();
+        sum += x.rows_range(self.model.parameters().len()..).norm_squared();
         for ((observation, linearisation), residual) in self.observations.iter().zip(linearisations).zip(residuals) {
-            sum += Whitener::new(&observation.into(), &linearisation.speed_error)?.apply(residual).norm_squared();
+            sum += Whitener::new(&observation.into(), linearisation)?.apply(residual).norm_squared();
         }
         Ok(sum)
     }
 
-    /// Covariance of each plateau with its speed term [m^2/s^4].
+    /// Covariance of each plateau with the errors of it alone [m^2/s^4].
     pub(super) fn covariances(&self, linearisations: &[Linearisation]) -> Vec<Matrix3<f64>> {
         let pairs = self.observations.iter().zip(linearisations);
-        pairs.map(|(o, l)| total_covariance(&o.covariance, &l.speed_error)).collect()
+        pairs.map(|(o, l)| total_covariance(&o.covariance, l)).collect()
     }
 
     fn set_points(&self) -> impl Iterator<Item = &'m SetPoint> {

@@ -23,12 +23,15 @@ pub enum Termination {
 pub struct Fit {
     /// Estimates in the order of the model's parameters, SI; those that are not estimable have no meaning.
     pub(super) values: Vec<f64>,
+    /// Estimates of the influences, in their standard uncertainties.
+    pub(super) deviations: Vec<f64>,
+    /// Of the parameters, then the influences.
     pub(super) covariance: DMatrix<f64>,
     pub(super) observability: Observability,
     /// What the data determine without the priors, if there are any.
     pub(super) of_data: Option<Observability>,
     pub(super) priors: Vec<Prior>,
-    /// Sum of squared whitened residuals, of the priors too.
+    /// Sum of squared whitened residuals, of the priors and the influences too.
     pub chi_squared: f64,
     /// Whether the null directions, if any, had to be held to the end (see the module's text).
     pub null_directions_held: bool,
@@ -40,7 +43,7 @@ pub struct Fit {
     pub termination: Termination,
     /// Mean less model, per observation [m/s^2].
     pub residuals: Vec<Vector3<f64>>,
-    /// Covariance of each observation with its speed term [m^2/s^4].
+    /// Covariance of each observation with the errors of its setting and rounding [m^2/s^4].
     pub observation_covariances: Vec<Matrix3<f64>>,
 }
 
@@ -65,6 +68,19 @@ impl Fit {
     /// readings, never as estimates.
     pub fn state(&self) -> &[f64] {
         &self.values
+    }
+
+    /// Estimates of the influences on the experiment, in standard uncertainties and in the model's order, each with the
+    /// standard uncertainty that the data leave it: near 1 where they say nothing of it.
+    pub fn deviations(&self) -> Vec<(f64, f64)> {
+        let first = self.values.len();
+        let estimates = self.deviations.iter().enumerate();
+        estimates.map(|(n, value)| (*value, self.covariance[(first + n, first + n)].sqrt())).collect()
+    }
+
+    /// Where the fit stands: the parameters, then the influences.
+    pub(super) fn unknowns(&self) -> Vec<f64> {
+        self.values.iter().chain(&self.deviations).copied().collect()
     }
 
     /// What the experiment sees.

@@ -13,9 +13,11 @@
 mod information;
 pub(super) mod innovation;
 mod lifetimes;
+mod readings;
 
 pub use crate::linalg::factor::Factor;
+pub use information::Filter;
 pub(super) use information::smoothed;
-pub use information::{Filter, Readings};
 pub use innovation::Innovation;
 pub use lifetimes::Lifetimes;
+pub use readings::Readings;

@@ -44,8 +44,9 @@ pub struct Progress {
 impl<'m> Follower<'m> {
     /// Before the first plateau.
     pub fn new(model: &'m MeasurementModel) -> Self {
-        let point = DVector::zeros(model.parameters().len());
-        Self { data: Data::none(model), point }
+        let data = Data::none(model);
+        let point = DVector::zeros(data.unknowns());
+        Self { data, point }
     }
 
     /// Where a follower stood that had taken up some plateaus and reached [`Follower::point`]; it goes on as if it had never
@@ -65,7 +66,7 @@ impl<'m> Follower<'m> {
         self.data.observations()
     }
 
-    /// Point of linearisation, SI.
+    /// Point of linearisation: parameters, SI, then influences in standard uncertainties.
     pub fn point(&self) -> &[f64] {
         self.point.as_slice()
     }
@@ -93,8 +94,7 @@ impl<'m> Follower<'m> {
     /// [`FitError`] when the observation cannot be one.
     pub fn take(&mut self, observation: Observation) -> Result<(), FitError> {
         self.data.push(observation)?;
-        let typical =
-            DVector::from_iterator(self.point.len(), self.data.model().parameters().iter().map(|p| p.typical));
+        let typical = self.data.typical();
         for _ in 0..STEP_LIMIT {
             let linearisations = self.linearised();
             let design = self.design_of(&linearisations)?;
@@ -144,8 +144,9 @@ impl<'m> Follower<'m> {
         let (equations, misfit) = structure.equations(&self.design()?, &self.point, 1.0 / NULL_HOLD);
         let (step, covariance) = (equations.solve(misfit), equations.covariance());
         let known = |j: usize| (self.point[j] + step.x[j], covariance[(j, j)].sqrt());
-        let estimates =
-            (0..self.point.len()).map(|j| structure.observability.is_estimable(j).then(|| known(j))).collect();
+        let estimates = (0..structure.observability.columns())
+            .map(|j| structure.observability.is_estimable(j).then(|| known(j)))
+            .collect();
         Ok(Progress { rank: structure.observability.rank(), estimates })
     }
 
@@ -156,7 +157,8 @@ impl<'m> Follower<'m> {
     pub fn expected(&self, set_point: usize, covariance: Matrix3<f64>) -> Result<Progress, FitError> {
         let set_points = &self.data.model().experiment().set_points;
         let unknown = FitError::Unknown { set_point, count: set_points.len() };
-        let mean = self.data.model().reading(set_points.get(set_point).ok_or(unknown)?, self.point());
+        let parameters = &self.point()[..self.data.model().parameters().len()];
+        let mean = self.data.model().reading(set_points.get(set_point).ok_or(unknown)?, parameters);
         let mut with = self.clone();
         with.data.push(Observation { set_point, mean, covariance })?;
         with.progress()

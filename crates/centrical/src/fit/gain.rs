@@ -11,42 +11,70 @@ use super::estimates::Fit;
 use super::structure::Structure;
 use crate::linalg::least_squares::LeastSquares;
 use crate::model::whitening::Whitener;
-use crate::model::{FitError, NULL_HOLD};
+use crate::model::{FitError, Linearisation, NULL_HOLD};
 
 /// The factored design at the estimate of a fit.
 #[derive(Debug, Clone)]
 pub struct Gain {
-    /// Three equations per observation, one per prior, one per null direction.
+    /// Three equations per observation, one per prior, per influence and per null direction.
     equations: LeastSquares,
     whiteners: Vec<Whitener>,
-    /// Whitened residuals of the observations and the priors.
+    /// The observations at the estimate.
+    linearisations: Vec<Linearisation>,
+    /// Rows of the observations in an orthonormal basis of the fitted columns, `3 n x (p + q)`.
+    basis: DMatrix<f64>,
+    parameters: usize,
+    priors: usize,
+    /// Whitened residuals of the observations, the priors and the influences.
     residuals: DVector<f64>,
 }
 
 impl Gain {
     /// Gain of the fit of `data`, whose design has that structure.
     pub(super) fn of(data: &Data, structure: &Structure, fit: &Fit) -> Result<Self, FitError> {
-        let linearisations = data.linearised(fit.state());
-        let design = Assembly::Batch.design(data, fit.state(), &linearisations)?;
+        let at = fit.unknowns();
+        let linearisations = data.linearised(&at);
+        let design = Assembly::Batch.design(data, &at, &linearisations)?;
         let pairs = data.observations().iter().zip(&linearisations);
-        let whiteners = pairs.map(|(o, l)| Whitener::new(&o.into(), &l.speed_error)).collect::<Result<_, _>>()?;
+        let whiteners = pairs.map(|(o, l)| Whitener::new(&o.into(), l)).collect::<Result<_, _>>()?;
         let null_weight = if fit.null_directions_held { 1.0 / NULL_HOLD } else { 0.0 };
-        let (equations, _) = structure.equations(&design, &DVector::from_column_slice(fit.state()), null_weight);
-        Ok(Self { equations, whiteners, residuals: design.misfit })
+        let (equations, _) = structure.equations(&design, &DVector::from_vec(at), null_weight);
+        let (parameters, priors) = (data.model().parameters().len(), data.model().priors().len());
+        let basis = equations.basis(3 * data.observations().len());
+        Ok(Self { equations, whiteners, linearisations, basis, parameters, priors, residuals: design.misfit })
     }
 
     /// Changes of the estimates, `p x m` [units of the parameters], that `m` changes of the readings make,
     /// `3 n x m` [m/s^2], three rows per observation.
     pub fn apply(&self, readings: &DMatrix<f64>) -> DMatrix<f64> {
-        self.equations.unknowns(&self.rotated(readings))
+        self.parameters_of(&self.rotated(readings))
     }
 
     /// Changes of the estimates, `p x m`, that each of the `m` priors makes when it is off by one standard uncertainty.
     pub(crate) fn apply_priors(&self) -> DMatrix<f64> {
-        let (data, all) = (3 * self.whiteners.len(), self.residuals.len());
-        let mut priors = DMatrix::zeros(all, all - data);
-        priors.rows_mut(data, all - data).fill_with_identity();
-        self.equations.unknowns(&self.equations.rotated(priors))
+        self.apply_rows(3 * self.whiteners.len(), self.priors)
+    }
+
+    /// Changes of the estimates, `p x q`, that each influence makes when it is off by one standard uncertainty.
+    pub(crate) fn apply_influences(&self) -> DMatrix<f64> {
+        let first = 3 * self.whiteners.len() + self.priors;
+        self.apply_rows(first, self.residuals.len() - first)
+    }
+
+    /// Those that one unit of `count` equations makes, from the row `first`.
+    fn apply_rows(&self, first: usize, count: usize) -> DMatrix<f64> {
+        let mut units = DMatrix::zeros(self.residuals.len(), count);
+        units.rows_mut(first, count).fill_with_identity();
+        self.parameters_of(&self.equations.rotated(units))
+    }
+
+    fn parameters_of(&self, rotated: &DMatrix<f64>) -> DMatrix<f64> {
+        self.equations.unknowns(rotated).rows(0, self.parameters).into_owned()
+    }
+
+    /// The observations linearised at the estimate.
+    pub(crate) fn linearisations(&self) -> &[Linearisation] {
+        &self.linearisations
     }
 
     /// The part of `m` changes of the readings, `3 n x m` [m/s^2], that no change of the unknowns can follow: whitened,
@@ -65,13 +93,20 @@ impl Gain {
         self.residuals.rows(0, 3 * self.whiteners.len()).into_owned()
     }
 
-    /// The share of each whitened reading in its own fitted value and those of the others: `Q Q^T` of the orthonormal
-    /// columns, `3 n x 3 n`. Its trace is the number of unknowns determined.
-    pub(crate) fn hat(&self) -> DMatrix<f64> {
-        let data = 3 * self.whiteners.len();
-        let rotated = self.equations.rotated(DMatrix::identity(data, data));
-        let q = rotated.rows_range(..self.equations.columns());
-        q.transpose() * q
+    /// `Q`: the rows of the observations in an orthonormal basis of the fitted columns. The share of the readings in their own
+    /// fitted values and those of others is `Q Q^T`; its trace is the number of unknowns determined.
+    pub(crate) fn basis(&self) -> &DMatrix<f64> {
+        &self.basis
+    }
+
+    /// Changes of the estimates, `p x m`, by changes of the readings of which the fit follows `Q^T W dy = followed`.
+    pub(crate) fn shifts(&self, followed: &DMatrix<f64>) -> DMatrix<f64> {
+        self.parameters_of(followed)
+    }
+
+    /// What whitens observation `n`.
+    pub(crate) fn whitener(&self, n: usize) -> &Whitener {
+        &self.whiteners[n]
     }
 
     /// Whitened readings, three per observation.

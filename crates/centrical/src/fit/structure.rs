@@ -20,7 +20,7 @@ pub struct Structure {
     pub(super) observability: Observability,
     /// What the data determine without the priors, if there are any.
     pub(super) of_data: Option<Observability>,
-    /// Orthonormal basis of the null space in typical units, `p x (p - rank)`.
+    /// Orthonormal basis of the null space in typical units, `(p + q) x (p - rank)`.
     pub(super) null_basis: DMatrix<f64>,
     pub(super) typical: DVector<f64>,
     /// Of the observations at `X = 0`.
@@ -42,14 +42,15 @@ impl Structure {
     pub(super) fn by(assembly: Assembly, data: &Data) -> Result<(Self, Design), FitError> {
         let model = data.model();
         let linearisations = data.linearised_at_zero();
-        let columns = model.parameters().len();
-        let design = assembly.design(data, &vec![0.0; columns], &linearisations)?;
-        let rows_of_data = design.rows.nrows() - model.priors().len();
-        let of_data = || Observability::of(&design.rows.rows(0, rows_of_data).into_owned());
-        let of_data = (!model.priors().is_empty()).then(of_data);
-        let observability = Observability::of(&design.rows);
-        let typical = DVector::from_iterator(columns, model.parameters().iter().map(|p| p.typical));
-        let mut null_basis = observability.null_basis().clone();
+        let (columns, influences) = (model.parameters().len(), model.influences().len());
+        let design = assembly.design(data, &vec![0.0; data.unknowns()], &linearisations)?;
+        // The influences have proper distributions of their own: they take part in no null direction.
+        let rows_with_priors = design.rows.nrows() - influences;
+        let of_rows = |count: usize| Observability::of(&design.rows.view((0, 0), (count, columns)).into_owned());
+        let of_data = (!model.priors().is_empty()).then(|| of_rows(rows_with_priors - model.priors().len()));
+        let observability = of_rows(rows_with_priors);
+        let typical = data.typical();
+        let mut null_basis = observability.null_basis().clone().resize_vertically(data.unknowns(), 0.0);
         null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);
         let (null_basis, start) = (orthonormal(null_basis), OnceLock::new());
         Ok((Self { assembly, observability, of_data, null_basis, typical, linearisations, start }, design))

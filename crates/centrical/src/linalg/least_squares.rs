@@ -68,6 +68,11 @@ impl LeastSquares {
         rotated.rows_range(self.columns()..).into_owned()
     }
 
+    /// The first `rows` rows of `Q`, an orthonormal basis of the columns.
+    pub fn basis(&self, rows: usize) -> DMatrix<f64> {
+        self.qr.q().rows(0, rows).into_owned()
+    }
+
     /// Number of unknowns.
     pub fn columns(&self) -> usize {
         self.sizes.len()
@@ -102,4 +107,20 @@ impl LeastSquares {
         rows.row_iter_mut().zip(self.sizes.iter()).for_each(|(mut row, size)| row *= *size);
         rows
     }
+}
+
+/// The equations of the first `columns` unknowns alone, where the others are zero with a standard uncertainty of 1 and are
+/// eliminated: with `[B J; E 0] = Q [R_b R_bj; 0 R_j]`, the rows `R_j`. The equations themselves where there are no others.
+pub(crate) fn marginal(rows: DMatrix<f64>, columns: usize) -> DMatrix<f64> {
+    let (count, others) = (rows.nrows(), rows.ncols() - columns);
+    if others == 0 {
+        return rows;
+    }
+    let mut stacked = DMatrix::zeros(count + others, columns + others);
+    stacked.view_mut((0, 0), (count, others)).copy_from(&rows.columns(columns, others));
+    stacked.view_mut((0, others), (count, columns)).copy_from(&rows.columns(0, columns));
+    stacked.view_mut((count, 0), (others, others)).fill_with_identity();
+    let triangle = stacked.qr().r();
+    let left = triangle.nrows().saturating_sub(others);
+    triangle.view((others, others), (left, columns)).into_owned()
 }

@@ -35,7 +35,6 @@ pub(crate) struct Expanded {
 
 /// Terms beyond the source's model, which its text permits ("for example"), each off by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Extra {
     /// The cross terms `K_ip f_i f_p`, `K_io f_i f_o`, `K_po f_p f_o` of IEEE Std 1293: for every newtonometer `i`
     /// the products of two of the three components, 9 coefficients `K_1[f1*f2]`, ... Which of the other two axes is
@@ -43,16 +42,35 @@ pub enum Extra {
     CrossProducts,
     /// The odd quadratic terms `K_oq f_i |f_i|` of IEEE Std 1293: 3 coefficients `K_1[f1*|f1|]`, ...
     OddQuadratic,
+    /// The difference of the scales for positive and negative forces, `|f_i|` (IEEE Std 1293): 3 coefficients `K_1[|f1|]`, ...
+    Asymmetry,
+    /// `f_i^4`: 3 coefficients `K_1[f1^4]`, ...
+    FourthPower,
+    /// `f_i^5`: 3 coefficients `K_1[f1^5]`, ...
+    FifthPower,
+    /// A jump of the bias where the force changes its sign, `sgn f_i`: 3 coefficients `K_1[sgn f1]`, ...
+    Jump,
 }
 
 impl Extra {
-    /// The extra of a name as written in sessions: `cross-products`, `odd-quadratic`.
+    /// Every extra with its name as written in sessions.
+    pub const NAMED: [(&'static str, Self); 6] = [
+        ("cross-products", Self::CrossProducts),
+        ("odd-quadratic", Self::OddQuadratic),
+        ("asymmetry", Self::Asymmetry),
+        ("fourth-power", Self::FourthPower),
+        ("fifth-power", Self::FifthPower),
+        ("jump", Self::Jump),
+    ];
+
+    /// The extra of a name, if it is one of [`Extra::NAMED`].
     pub fn named(name: &str) -> Option<Self> {
-        match name {
-            "cross-products" => Some(Self::CrossProducts),
-            "odd-quadratic" => Some(Self::OddQuadratic),
-            _ => None,
-        }
+        Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, extra)| *extra)
+    }
+
+    /// Its name as written in sessions.
+    pub fn name(self) -> &'static str {
+        Self::NAMED.iter().find(|(_, extra)| *extra == self).map_or("", |(name, _)| name)
     }
 
     /// Its terms, newtonometer by newtonometer.
@@ -63,6 +81,10 @@ impl Extra {
                 vec![Monomial::product(axis, p), Monomial::product(axis, o), Monomial::product(p, o)]
             }
             Self::OddQuadratic => vec![Monomial::odd_square(axis)],
+            Self::Asymmetry => vec![Monomial { sign_of: Some(axis), ..Monomial::power(axis, 1) }],
+            Self::FourthPower => vec![Monomial::power(axis, 4)],
+            Self::FifthPower => vec![Monomial::power(axis, 5)],
+            Self::Jump => vec![Monomial { sign_of: Some(axis), ..Monomial::ONE }],
         };
         (0..3).flat_map(|axis| monomials(axis).into_iter().map(move |m| Term::new(axis, m))).collect()
     }
@@ -74,8 +96,8 @@ impl Term {
         let axes = monomial.powers.iter().filter(|p| **p > 0).count();
         let group = match (axes, monomial.degree()) {
             (2.., _) => Group::CrossCoupling,
+            (_, 0 | 1) if monomial.sign_of.is_some() => Group::Asymmetry,
             (_, 0) => Group::Bias,
-            (_, 1) if monomial.sign_of.is_some() => Group::Asymmetry,
             (_, 1) if monomial.powers[axis] == 1 => Group::Scale,
             (_, 1) => Group::Misalignment,
             (_, 2) => Group::Quadratic,

@@ -8,13 +8,15 @@
 //! error model [K4.1] of `f`, averaged over a revolution while spinning, at the known `alpha_3` at rest.
 
 use std::borrow::Cow;
+use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Matrix3, Matrix3x2, Vector3};
 
+use super::effect::Effect;
 use super::experiment::SetPoint;
 use super::frame::{carousel, hat, rotation, rotation_rate};
 use super::measurement::{Linearisation, MeasurementModel};
-use super::parameter::Kind;
+use super::share::Share;
 
 impl MeasurementModel {
     /// Mean reading `f'` [m/s^2] of a plateau at the unknowns `x` (in the order of [`super::Parameters`]).
@@ -27,7 +29,7 @@ impl MeasurementModel {
             .iter()
             .map(|turn| self.error_model.reading(coefficients, &(pull + geometry.weight_of(turn) * geometry.up)))
             .sum();
-        sum / turns.len() as f64
+        sum / turns.len() as f64 + self.disturbance(set_point, x)
     }
 
     /// Mean specific force `f` [m/s^2] along the three sensitive axes on a plateau at the unknowns `x`: what an
@@ -51,6 +53,7 @@ impl MeasurementModel {
         let mut gain_mean = Matrix3::zeros();
         let mut by_tilt = Matrix3x2::zeros();
         let mut by_weight_turn = Matrix3::zeros();
+        let mut by_gravity = Vector3::zeros();
         let mut monomials = vec![0.0; self.error_model.terms.len()];
         let up_by_tilt = geometry.up_by_tilt();
         for turn in turns.iter() {
@@ -63,18 +66,24 @@ impl MeasurementModel {
             gain_mean += gain;
             by_tilt += gain * (weight_of * up_by_tilt);
             by_weight_turn += gain * turned(&weight);
+            by_gravity += gain * weight / geometry.gravity;
         }
         let partials = Partials {
             tilt: by_tilt,
             turn: (by_weight_turn + gain_mean * geometry.pull_by_turn()) * rotation_rate(&geometry.turn),
             arm: gain_mean * geometry.pull_by_arm(),
             proof_mass: gain_mean * Matrix3::from_diagonal(&geometry.pull_by_proof_mass()),
+            coordinate: geometry.m() * geometry.rate_squared,
             rate: gain_mean * geometry.pull_by_rate(),
+            gravity: by_gravity,
+            gain: gain_mean,
         };
         Linearisation {
-            reading,
-            speed_error: self.by_log_speed(set_point, x, &partials) * self.experiment.speed_uncertainty_of(set_point),
+            reading: reading + self.disturbance(set_point, x),
+            setting_error: self.setting_error(set_point, x, &geometry, &partials),
+            rounding: self.own_rounding(set_point),
             columns: self.columns(set_point, &partials, &monomials),
+            stated: self.stated_columns(set_point, &partials),
         }
     }
 
@@ -82,7 +91,6 @@ impl MeasurementModel {
     pub(super) fn geometry(&self, set_point: &SetPoint, x: &[f64]) -> Geometry {
         let (experiment, parameters) = (&self.experiment, &self.parameters);
         let mounting = &experiment.mountings[set_point.mounting];
-        let omega_squared = set_point.omega * set_point.omega;
         let turn = parameters.turn_of(mounting.position);
         let shift = parameters.shift_of(mounting.position);
         let shift_y = Vector3::new(x[shift.column], x[shift.column + 1], 0.0) * shift.sign;
@@ -101,12 +109,16 @@ impl MeasurementModel {
             geometry.rho_z[(1, 1)] += x[column];
             geometry.rho_z[(2, 2)] += x[column + 1];
         }
-        for (column, kind) in parameters.extensions() {
-            match self.extension_share(set_point, kind) {
-                Share::None => {}
-                Share::Turn(axis, per_unit) => geometry.turn[axis] += per_unit * x[column],
-                Share::Arm(per_unit) => geometry.arm_y += per_unit * x[column],
-                Share::Rate => geometry.rate_squared += omega_squared * x[column],
+        for (effect, size) in self.acting(x) {
+            match self.share(set_point, effect) {
+                Share::Tilt(axis) => geometry.tilt[axis] += size,
+                Share::Turn(turn) => geometry.turn += turn * size,
+                Share::Arm(displacement) => geometry.arm_y += displacement * size,
+                Share::Coordinate { coordinate, mass } => geometry.rho_z[(coordinate, mass)] += size,
+                Share::Rate(rate) => geometry.rate_squared += rate * size,
+                Share::Gravity => geometry.gravity += size,
+                // Readings are added behind the error model.
+                Share::None | Share::Reading(_) => {}
             }
         }
         geometry.up = rotation(&geometry.tilt) * Vector3::z();
@@ -114,31 +126,21 @@ impl MeasurementModel {
         geometry
     }
 
-    /// How an extension's parameter enters the geometry of a plateau.
-    pub(super) fn extension_share(&self, set_point: &SetPoint, kind: Kind) -> Share {
-        let omega_squared = set_point.omega * set_point.omega;
-        let position = self.experiment.mountings[set_point.mounting].position;
-        let r0_y = self.experiment.arm_of(set_point);
-        match kind {
-            Kind::ElasticTurn { law, axis, position: k } if k == position => {
-                Share::Turn(axis, law.value(omega_squared, r0_y.x))
+    /// Effects beyond the source's unknowns with their sizes: those that are unknowns, and influences that are off.
+    pub(super) fn acting<'a>(&'a self, x: &'a [f64]) -> impl Iterator<Item = (Effect, f64)> + 'a {
+        let unknown = self.parameters.effects().map(|(column, effect)| (effect, x[column]));
+        unknown.chain(self.deviating())
+    }
+
+    /// What the effects add to the readings behind the error model [m/s^2].
+    pub(super) fn disturbance(&self, set_point: &SetPoint, x: &[f64]) -> Vector3<f64> {
+        let mut sum = Vector3::zeros();
+        for (effect, size) in self.acting(x) {
+            if let Share::Reading(reading) = self.share(set_point, effect) {
+                sum += reading * size;
             }
-            Kind::ArmStretch { law, seat }
-                if seat.is_none_or(|seat| seat == self.experiment.seat_of(set_point.mounting)) =>
-            {
-                Share::Arm(Vector3::x() * (r0_y.x * law.value(omega_squared, r0_y.x)))
-            }
-            Kind::RadiusScale => Share::Arm(*r0_y),
-            Kind::SpeedScale => Share::Rate,
-            // Of another position or seat; or no extension, and in the geometry or the error model already.
-            Kind::ElasticTurn { .. }
-            | Kind::ArmStretch { .. }
-            | Kind::Tilt(_)
-            | Kind::Turn { .. }
-            | Kind::Shift { .. }
-            | Kind::ProofMass(_)
-            | Kind::Term(_) => Share::None,
         }
+        sum
     }
 
     /// Turns of the carousel whose mean is the mean of the reading: the known one at rest, equal steps while spinning.
@@ -146,21 +148,57 @@ impl MeasurementModel {
         if set_point.is_rest() { Cow::Owned(vec![carousel(set_point.angle)]) } else { Cow::Borrowed(&self.revolution) }
     }
 
-    /// `d f' / d ln Omega`: through the rate and through every deformation that grows with its square.
+    /// Change of the reading by one standard uncertainty of what the plateau was set to.
+    fn setting_error(&self, set_point: &SetPoint, x: &[f64], geometry: &Geometry, partials: &Partials) -> Vector3<f64> {
+        if set_point.is_rest() {
+            // d carousel(a) / da = carousel(a + pi/2) without the axis.
+            let mut rate = carousel(set_point.angle + FRAC_PI_2);
+            rate[(2, 2)] = 0.0;
+            return partials.gain * (geometry.weight_of(&rate) * geometry.up) * self.stated().rest_angle;
+        }
+        self.by_log_speed(set_point, x, partials) * self.experiment.speed_uncertainty_of(set_point)
+    }
+
+    /// `d f' / d ln Omega`: through the rate and through every effect that changes with it.
     fn by_log_speed(&self, set_point: &SetPoint, x: &[f64], partials: &Partials) -> Vector3<f64> {
         let omega = set_point.omega;
         let mut speed = partials.rate * (omega * (2.0 * omega + self.experiment.site.coriolis()));
-        for (column, kind) in self.parameters.extensions() {
-            speed += match self.extension_share(set_point, kind) {
-                Share::Turn(axis, per_unit) if kind.is_elastic() => {
-                    partials.turn.column(axis) * (2.0 * per_unit * x[column])
-                }
-                Share::Arm(per_unit) if kind.is_elastic() => partials.arm * per_unit * (2.0 * x[column]),
-                Share::Rate => partials.rate * (2.0 * omega * omega * x[column]),
-                Share::Turn(..) | Share::Arm(_) | Share::None => Vector3::zeros(),
+        for (effect, size) in self.acting(x) {
+            speed += match self.share(set_point, effect) {
+                Share::Turn(turn) if effect.is_elastic() => partials.turn * turn * (2.0 * size),
+                Share::Arm(displacement) if effect.is_elastic() => partials.arm * displacement * (2.0 * size),
+                Share::Rate(rate) => partials.rate * (2.0 * rate * size),
+                Share::Reading(_) => self.reading_by_log_speed(set_point, effect) * size,
+                Share::Tilt(_)
+                | Share::Turn(_)
+                | Share::Arm(_)
+                | Share::Coordinate { .. }
+                | Share::Gravity
+                | Share::None => Vector3::zeros(),
             };
         }
         speed
+    }
+
+    /// Derivative of what one unit of an effect adds to the readings, by the logarithm of the speed.
+    fn reading_by_log_speed(&self, set_point: &SetPoint, effect: Effect) -> Vector3<f64> {
+        /// Polynomials of low degree in `Omega^2` are differenced to some 1e-8.
+        const STEP: f64 = 1e-4;
+        let at = |factor: f64| match self.share(&SetPoint { omega: set_point.omega * factor, ..*set_point }, effect) {
+            Share::Reading(reading) => reading,
+            _ => Vector3::zeros(),
+        };
+        (at(1.0 + STEP) - at(1.0 - STEP)) / (2.0 * STEP)
+    }
+
+    /// Changes of the reading by one standard uncertainty of each influence.
+    fn stated_columns(&self, set_point: &SetPoint, partials: &Partials) -> Vec<(usize, Vector3<f64>)> {
+        let influences = self.influences().iter().enumerate();
+        let changes = influences.filter_map(|(n, influence)| {
+            let change = partials.by_share(&self.share(set_point, influence.effect))?;
+            Some((n, change * influence.standard_uncertainty))
+        });
+        changes.collect()
     }
 
     fn columns(&self, set_point: &SetPoint, partials: &Partials, monomials: &[f64]) -> Vec<(usize, Vector3<f64>)> {
@@ -185,28 +223,13 @@ impl MeasurementModel {
         for ((column, term), monomial) in (parameters.first_term()..).zip(&self.error_model.terms).zip(monomials) {
             columns.push((column, Vector3::ith(term.axis, *monomial)));
         }
-        for (column, kind) in parameters.extensions() {
-            match self.extension_share(set_point, kind) {
-                Share::None => {}
-                Share::Turn(axis, per_unit) => columns.push((column, partials.turn.column(axis) * per_unit)),
-                Share::Arm(per_unit) => columns.push((column, partials.arm * per_unit)),
-                Share::Rate => columns.push((column, partials.rate * (set_point.omega * set_point.omega))),
+        for (column, effect) in parameters.effects() {
+            if let Some(change) = partials.by_share(&self.share(set_point, effect)) {
+                columns.push((column, change));
             }
         }
         columns
     }
-}
-
-/// How one unit of an extension's parameter enters the geometry.
-pub(super) enum Share {
-    /// Not in this plateau.
-    None,
-    /// Turn about an instrument axis [rad per unit].
-    Turn(usize, f64),
-    /// Displacement in arm axes [m per unit].
-    Arm(Vector3<f64>),
-    /// Relative change of `Omega^2`.
-    Rate,
 }
 
 /// Derivatives of the mean reading by the geometry.
@@ -219,8 +242,32 @@ struct Partials {
     arm: Matrix3<f64>,
     /// By `rho_11, rho_22, rho_33`.
     proof_mass: Matrix3<f64>,
+    /// `w M`: pull along axis `j` by coordinate `i` of proof mass `j`, as entry `(j, i)`.
+    coordinate: Matrix3<f64>,
     /// By `w`.
     rate: Vector3<f64>,
+    /// By gravity.
+    gravity: Vector3<f64>,
+    /// By the specific force.
+    gain: Matrix3<f64>,
+}
+
+impl Partials {
+    /// Change of the reading by one unit of an effect.
+    fn by_share(&self, share: &Share) -> Option<Vector3<f64>> {
+        match *share {
+            Share::None => None,
+            Share::Tilt(axis) => Some(self.tilt.column(axis).into_owned()),
+            Share::Turn(turn) => Some(self.turn * turn),
+            Share::Arm(displacement) => Some(self.arm * displacement),
+            Share::Coordinate { coordinate, mass } => {
+                Some(self.gain.column(mass) * self.coordinate[(mass, coordinate)])
+            }
+            Share::Rate(rate) => Some(self.rate * rate),
+            Share::Gravity => Some(self.gravity),
+            Share::Reading(reading) => Some(reading),
+        }
+    }
 }
 
 /// Geometry of one plateau.

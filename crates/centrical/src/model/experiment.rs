@@ -101,7 +101,7 @@ pub struct Mounting {
 }
 
 /// What was set for one plateau.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SetPoint {
     /// Index of its mounting in [`Experiment::mountings`].
     pub mounting: usize,
@@ -111,6 +111,21 @@ pub struct SetPoint {
     pub angle: f64,
     /// Relative standard uncertainty of this speed, as of a speed that was measured; `None`: that of the centrifuge.
     pub speed_uncertainty: Option<f64>,
+    /// What came before it in the session; a [`MeasurementModel`](super::MeasurementModel) fills it in for its set points.
+    pub history: History,
+}
+
+/// What came before a plateau, as far as a unit or a machine may remember it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct History {
+    /// Place in the order of the session, -1/2 to 1/2.
+    pub time: f64,
+    /// +1 after a rise of the speed, -1 after a fall, 0 before the first.
+    pub rise: f64,
+    /// Nominal specific force of the plateaus before, each half as much as the next [m/s^2].
+    pub memory: Vector3<f64>,
+    /// Index of the first of the rests of this mounting at this angle, where there are several: equal forces round alike.
+    pub repeats: Option<usize>,
 }
 
 impl ReferencePoint {
@@ -155,12 +170,12 @@ impl Unit {
 impl SetPoint {
     /// A plateau at rest at `angle` [rad].
     pub fn at_rest(mounting: usize, angle: f64) -> Self {
-        Self { mounting, omega: 0.0, angle, speed_uncertainty: None }
+        Self { mounting, angle, ..Self::default() }
     }
 
     /// A plateau at the speed `omega` [rad/s], as uncertain as the centrifuge states.
     pub fn spinning(mounting: usize, omega: f64) -> Self {
-        Self { mounting, omega, angle: 0.0, speed_uncertainty: None }
+        Self { mounting, omega, ..Self::default() }
     }
 
     /// Whether it is the same plateau run again: equal set points, or speeds of which one at least was measured and which

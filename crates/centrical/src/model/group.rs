@@ -35,11 +35,25 @@ pub enum Group {
     RadiusScale,
     /// Common scale of all speeds.
     SpeedScale,
+    /// Elastic turn of the arm's end.
+    ArmTurn,
+    /// Turn of the unit while spinning.
+    SpinTurn,
+    /// Place of a seat.
+    Seat,
+    /// Shift of the unit in one mounting.
+    MountingShift,
+    /// Turn of the unit in one mounting.
+    MountingTurn,
+    /// Tilt of the axis in one mounting.
+    MountingTilt,
+    /// Disturbance of the readings.
+    Disturbance,
 }
 
 impl Group {
     /// All groups.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 23] = [
         Self::Bias,
         Self::Scale,
         Self::Misalignment,
@@ -56,6 +70,13 @@ impl Group {
         Self::ArmStretch,
         Self::RadiusScale,
         Self::SpeedScale,
+        Self::ArmTurn,
+        Self::SpinTurn,
+        Self::Seat,
+        Self::MountingShift,
+        Self::MountingTurn,
+        Self::MountingTilt,
+        Self::Disturbance,
     ];
 
     /// Its name in files.
@@ -77,6 +98,13 @@ impl Group {
             Self::ArmStretch => "arm stretch",
             Self::RadiusScale => "scale of radii",
             Self::SpeedScale => "scale of speed",
+            Self::ArmTurn => "turn of the arm's end",
+            Self::SpinTurn => "turn while spinning",
+            Self::Seat => "seat",
+            Self::MountingShift => "shift of one mounting",
+            Self::MountingTurn => "turn of one mounting",
+            Self::MountingTilt => "tilt in one mounting",
+            Self::Disturbance => "disturbance",
         }
     }
 

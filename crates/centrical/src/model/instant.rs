@@ -12,10 +12,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::exact::{Geometry, Share};
+use super::effect::Effect;
+use super::exact::Geometry;
 use super::experiment::{EARTH_RATE, SetPoint, Site};
 use super::frame::rotation;
 use super::measurement::MeasurementModel;
+use super::parameter::Parameter;
 
 /// Where the arm is in its turn and how it moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,30 +45,39 @@ pub(crate) struct MountedUnit {
     twice_axial_rate: f64,
     /// `Omega^2` is this many times the square of the speed set.
     square_scale: f64,
+    /// Added to the readings behind the error model [m/s^2].
+    pub disturbance: Vector3<f64>,
 }
 
 impl MeasurementModel {
     /// Reading `f'` [m/s^2] of the unit in mounting `mounting` at the unknowns `x`, at one instant of the arm's motion.
     pub fn reading_at(&self, mounting: usize, x: &[f64], motion: &ArmMotion) -> Vector3<f64> {
-        let f = self.mounted_unit(mounting, x, motion.speed).specific_force(motion);
-        self.error_model.reading(self.parameters.coefficients(x), &f)
+        let unit = self.mounted_unit(mounting, x, motion.speed);
+        let f = unit.specific_force(motion);
+        self.error_model.reading(self.parameters.coefficients(x), &f) + unit.disturbance
     }
 
     /// The unit on the arm in mounting `mounting` as `omega` deforms it.
     pub(crate) fn mounted_unit(&self, mounting: usize, x: &[f64], omega: f64) -> MountedUnit {
         let set_point = SetPoint::spinning(mounting, omega);
         let geometry = self.geometry(&set_point, x);
-        let square_scale = 1.0
-            + (self.parameters.extensions())
-                .filter(|(_, kind)| matches!(self.extension_share(&set_point, *kind), Share::Rate))
-                .map(|(column, _)| x[column])
-                .sum::<f64>();
-        MountedUnit::new(&geometry, &earth_rate(&self.experiment.site), square_scale)
+        let square_scale =
+            1.0 + self.acting(x).filter(|(effect, _)| *effect == Effect::SpeedScale).map(|(_, size)| size).sum::<f64>();
+        let disturbance = self.disturbance(&set_point, x);
+        MountedUnit { disturbance, ..MountedUnit::new(&geometry, &earth_rate(&self.experiment.site), square_scale) }
     }
 
-    /// Whether the speed deforms anything.
-    pub(crate) fn deforms(&self) -> bool {
-        self.parameters.extensions().any(|(_, kind)| kind.is_elastic())
+    /// Whether anything but the rate changes with the speed.
+    pub(crate) fn changes_with_speed(&self) -> bool {
+        self.parameters.effects().any(|(_, effect)| effect.changes_with_speed())
+    }
+
+    /// A parameter that acts at `x` through what came before a plateau: at an instant of a motion it has no meaning.
+    pub fn of_history(&self, x: &[f64]) -> Option<&Parameter> {
+        let of_history =
+            |effect: Effect| matches!(effect, Effect::Disturbance { follows, .. } if follows.is_of_history());
+        let mut acting = self.parameters.effects().filter(|(column, effect)| x[*column] != 0.0 && of_history(*effect));
+        acting.next().map(|(column, _)| &self.parameters[column])
     }
 }
 
@@ -90,6 +101,7 @@ impl MountedUnit {
             coriolis: [along_axis(w.x, w.y), along_axis(w.y, -w.x)],
             twice_axial_rate: 2.0 * w.z,
             square_scale,
+            disturbance: Vector3::zeros(),
         }
     }
 

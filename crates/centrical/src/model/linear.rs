@@ -4,20 +4,14 @@
 //! Unlike the source, `Omega^2` here stands for `Omega^2 + 2 Omega omega_E sin(latitude)` when the site gives
 //! a latitude (docs/source-and-findings.md): the Coriolis term is not of zero mean in the arm frame.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
-use super::exact::Share;
 use super::experiment::{Experiment, SetPoint};
-use super::frame::hat;
+use super::kind::Kind;
 use super::measurement::{Linearisation, MeasurementModel};
-use super::parameter::Kind;
-
-/// Nominal ideal reading `f0_z` [m/s^2] of a plateau [K5.1]:
-/// `P_k (g e3 + D R0_k) + sum_i e_i e_i^T M_k rho0 e_i`.
-pub fn nominal(experiment: &Experiment, set_point: &SetPoint) -> Vector3<f64> {
-    let Nominal { g_e3, d, p, m, r0, rho0 } = Nominal::of(experiment, set_point);
-    p * (g_e3 + d * r0) + (m * rho0).diagonal()
-}
+use super::nominal::Nominal;
+pub use super::nominal::nominal;
+use super::share::Share;
 
 /// The source's small measurement `z = (mean f' - f0_z) / g` [K5.2], dimensionless.
 pub fn small_measurement(experiment: &Experiment, set_point: &SetPoint, mean: &Vector3<f64>) -> Vector3<f64> {
@@ -36,9 +30,15 @@ impl MeasurementModel {
             .filter(|(_, derivative)| *derivative != Vector3::zeros())
             .collect();
         let omega = set_point.omega;
+        // A tilt turns gravity over the carousel angle; without one, the angle at rest changes nothing.
         let by_log_speed = n.by_rate() * (omega * (2.0 * omega + experiment.site.coriolis()));
-        let speed_error = by_log_speed * experiment.speed_uncertainty_of(set_point);
-        Linearisation { reading: f0, speed_error, columns }
+        let setting_error = by_log_speed * experiment.speed_uncertainty_of(set_point);
+        let stated = self.influences().iter().enumerate();
+        let stated = stated.map(|(j, influence)| {
+            (j, by_share(&n, &self.share(set_point, influence.effect), set_point) * influence.standard_uncertainty)
+        });
+        let stated = stated.filter(|(_, derivative)| *derivative != Vector3::zeros()).collect();
+        Linearisation { reading: f0, setting_error, rounding: self.own_rounding(set_point), columns, stated }
     }
 
     /// Column of `g H`, by what the parameter is.
@@ -61,67 +61,21 @@ impl MeasurementModel {
             }
             // Of another position or pair.
             Kind::Turn { .. } | Kind::Shift { .. } => Vector3::zeros(),
-            Kind::ElasticTurn { .. } | Kind::ArmStretch { .. } | Kind::RadiusScale | Kind::SpeedScale => {
-                match self.extension_share(set_point, kind) {
-                    Share::None => Vector3::zeros(),
-                    Share::Turn(axis, per_unit) => n.by_turn(axis) * per_unit,
-                    Share::Arm(per_unit) => n.p * n.d * per_unit,
-                    Share::Rate => n.by_rate() * (set_point.omega * set_point.omega),
-                }
-            }
+            Kind::Effect(effect) => by_share(n, &self.share(set_point, effect), set_point),
         }
     }
 }
 
-/// The source's letters for one plateau.
-struct Nominal {
-    g_e3: Vector3<f64>,
-    /// `D = -Omega^2 diag(1, 1, 0)`.
-    d: Matrix3<f64>,
-    /// `P_k`.
-    p: Matrix3<f64>,
-    /// `M_k = P_k D P_k^T`.
-    m: Matrix3<f64>,
-    /// `R0_k`.
-    r0: Vector3<f64>,
-    rho0: Matrix3<f64>,
-}
-
-impl Nominal {
-    fn of(experiment: &Experiment, set_point: &SetPoint) -> Self {
-        let w = experiment.rate_squared(set_point);
-        let d = Matrix3::from_diagonal(&Vector3::new(-w, -w, 0.0));
-        let p = experiment.position_of(set_point).p_zy;
-        Self {
-            g_e3: Vector3::z() * experiment.site.gravity,
-            d,
-            p,
-            m: p * d * p.transpose(),
-            r0: *experiment.arm_of(set_point),
-            rho0: experiment.unit.rho_z,
-        }
-    }
-
-    /// Centripetal part of `f0_z` for a unit of `Omega^2`.
-    fn by_rate(&self) -> Vector3<f64> {
-        let d = Matrix3::from_diagonal(&Vector3::new(-1.0, -1.0, 0.0));
-        self.p * d * self.r0 + (self.p * d * self.p.transpose() * self.rho0).diagonal()
-    }
-
-    /// `g P_k (u(alpha) - e3)`, at rest only; its mean over a revolution is zero.
-    fn by_tilt(&self, axis: usize, set_point: &SetPoint) -> Vector3<f64> {
-        if !set_point.is_rest() {
-            return Vector3::zeros();
-        }
-        let (s, c) = set_point.angle.sin_cos();
-        let u = if axis == 0 { Vector3::new(s, c, 0.0) } else { Vector3::new(-c, s, 0.0) };
-        self.p * u * self.g_e3.z
-    }
-
-    /// `hat(delta_k) P_k (g e3 + D R0_k) + sum_i e_i e_i^T (hat(delta_k) M_k - M_k hat(delta_k)) rho0 e_i`.
-    fn by_turn(&self, axis: usize) -> Vector3<f64> {
-        let hat_delta = hat(&Vector3::ith(axis, 1.0));
-        let spread = (hat_delta * self.m - self.m * hat_delta) * self.rho0;
-        hat_delta * self.p * (self.g_e3 + self.d * self.r0) + spread.diagonal()
+/// Change of the nominal reading by one unit of an effect.
+fn by_share(n: &Nominal, share: &Share, set_point: &SetPoint) -> Vector3<f64> {
+    match *share {
+        Share::None => Vector3::zeros(),
+        Share::Tilt(axis) => n.by_tilt(axis, set_point),
+        Share::Turn(turn) => (0..3).map(|axis| n.by_turn(axis) * turn[axis]).sum(),
+        Share::Arm(displacement) => n.p * n.d * displacement,
+        Share::Coordinate { coordinate, mass } => Vector3::ith(mass, n.m[(mass, coordinate)]),
+        Share::Rate(rate) => n.by_rate() * rate,
+        Share::Gravity => n.p * Vector3::z(),
+        Share::Reading(reading) => reading,
     }
 }

@@ -2,11 +2,16 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::effect::Effect;
 use super::error_model::ErrorModel;
-use super::experiment::Experiment;
+use super::experiment::{Experiment, SetPoint};
+use super::extension::{Difference, Extension};
 use super::frame::carousel;
-use super::parameter::{Extension, Parameters};
+use super::history;
+use super::parameter::Parameters;
 use super::prior::{self, Prior, PriorError};
+use super::rival::Rival;
+use super::stated::{Influence, TypeB};
 
 /// An experiment, the unit's error model, and the unknowns that follow from the two.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +21,10 @@ pub struct MeasurementModel {
     extensions: Vec<Extension>,
     pub(super) parameters: Parameters,
     priors: Vec<Prior>,
+    stated: TypeB,
+    influences: Vec<Influence>,
+    /// What the influences are off by, in standard uncertainties; empty when they are not.
+    deviations: Vec<f64>,
     /// Turns of the carousel over which a reading is averaged while spinning.
     pub(super) revolution: Vec<Matrix3<f64>>,
 }
@@ -25,31 +34,87 @@ pub struct MeasurementModel {
 pub struct Linearisation {
     /// Mean reading `f'` [m/s^2].
     pub reading: Vector3<f64>,
-    /// Change of `f'` by one standard uncertainty of the plateau's speed [m/s^2]: `sigma d f' / d ln Omega`. Zero at rest.
-    pub speed_error: Vector3<f64>,
+    /// Change of `f'` by one standard uncertainty of what the plateau was set to [m/s^2]: of its speed,
+    /// `sigma d f' / d ln Omega`; at rest of its angle.
+    pub setting_error: Vector3<f64>,
+    /// Standard uncertainty of the plateau's own rounding [m/s^2].
+    pub rounding: f64,
     /// Non-zero columns of the Jacobian: (index of the parameter, `d f' / d x`), each index once.
     pub columns: Vec<(usize, Vector3<f64>)>,
+    /// Non-zero changes of `f'` by one standard uncertainty of an influence [m/s^2]: (index of the influence, change).
+    pub stated: Vec<(usize, Vector3<f64>)>,
 }
 
 impl MeasurementModel {
     /// Model of `experiment` with the unknowns of [K5.4] and `extensions`.
-    pub fn new(experiment: Experiment, error_model: ErrorModel, extensions: &[Extension]) -> Self {
+    pub fn new(mut experiment: Experiment, error_model: ErrorModel, extensions: &[Extension]) -> Self {
+        history::fill(&mut experiment);
         let parameters = Parameters::new(&experiment, &error_model, extensions);
         let revolution = revolution(&error_model);
-        Self { experiment, error_model, extensions: extensions.to_vec(), parameters, priors: Vec::new(), revolution }
+        Self {
+            experiment,
+            error_model,
+            extensions: extensions.to_vec(),
+            parameters,
+            priors: Vec::new(),
+            stated: TypeB::default(),
+            influences: Vec::new(),
+            deviations: Vec::new(),
+            revolution,
+        }
     }
 
     /// The same unit, extensions and priors in another experiment. A prior on a parameter that the other experiment
     /// does not have falls away.
     #[must_use]
     pub fn in_experiment(&self, experiment: Experiment) -> Self {
-        let mut other = Self::new(experiment, self.error_model.clone(), &self.extensions);
+        self.carried_to(Self::new(experiment, self.error_model.clone(), &self.extensions))
+    }
+
+    /// The model with what the laboratory states of the quantities that it takes as exact.
+    #[must_use]
+    pub fn with_stated(mut self, stated: TypeB) -> Self {
+        self.influences = stated.influences(&self.experiment, &self.error_model);
+        self.stated = stated;
+        self
+    }
+
+    /// The model as it is if its influences are off by `deviations` standard uncertainties, in their order.
+    #[must_use]
+    pub fn deviated(mut self, deviations: Vec<f64>) -> Self {
+        self.deviations = deviations;
+        self
+    }
+
+    /// The rivals that the model leaves out, neither unknown nor stated: of the session, and of each of its mountings.
+    pub fn left_out(&self) -> Vec<Rival> {
+        let common = Rival::COMMON.into_iter().zip(self.stated.effects).filter(|(_, u)| *u == 0.0);
+        let of_mounting = |mounting: usize| {
+            let differences = [Difference::Shift, Difference::Turn, Difference::Unit];
+            differences.map(|difference| Rival::Effect(Extension::OneMounting(difference, mounting)))
+        };
+        let mountings = (0..self.experiment.mountings.len()).flat_map(of_mounting);
+        let all = common.map(|(rival, _)| rival).chain(mountings);
+        all.filter(|rival| !rival.is_in(&self.error_model, &self.extensions)).collect()
+    }
+
+    /// The model with `rivals` as unknowns: terms behind those of the error model, effects behind the extensions.
+    #[must_use]
+    pub fn with_rivals(&self, rivals: &[Rival]) -> Self {
+        let (mut error_model, mut extensions) = (self.error_model.clone(), self.extensions.clone());
+        for rival in rivals {
+            rival.add_to(&mut error_model, &mut extensions);
+        }
+        self.carried_to(Self::new(self.experiment.clone(), error_model, &extensions))
+    }
+
+    fn carried_to(&self, mut other: Self) -> Self {
         let renamed = |prior: &Prior| {
             let parameter = other.parameters.find(&self.parameters[prior.parameter].name)?;
             Some(Prior { parameter, ..*prior })
         };
         other.priors = self.priors.iter().filter_map(renamed).collect();
-        other
+        other.with_stated(self.stated)
     }
 
     /// The model with a prior of `standard_uncertainty` [the unit of the parameter] about zero on every parameter that
@@ -58,8 +123,16 @@ impl MeasurementModel {
     /// # Errors
     /// [`PriorError`] when there is no such parameter, when the selected ones differ in unit, when one of them has a
     /// prior already, or when the uncertainty is not a positive number.
-    pub fn with_prior(mut self, name: &str, standard_uncertainty: f64) -> Result<Self, PriorError> {
-        let priors = prior::select(&self.parameters, &self.priors, name, standard_uncertainty)?;
+    pub fn with_prior(self, name: &str, standard_uncertainty: f64) -> Result<Self, PriorError> {
+        self.with_prior_about(name, 0.0, standard_uncertainty)
+    }
+
+    /// [`MeasurementModel::with_prior`] about a `mean` that was measured.
+    ///
+    /// # Errors
+    /// As [`MeasurementModel::with_prior`]; and when the mean is not finite.
+    pub fn with_prior_about(mut self, name: &str, mean: f64, standard_uncertainty: f64) -> Result<Self, PriorError> {
+        let priors = prior::select(&self.parameters, &self.priors, name, mean, standard_uncertainty)?;
         self.priors.extend(priors);
         Ok(self)
     }
@@ -77,6 +150,32 @@ impl MeasurementModel {
     /// The unknowns.
     pub fn parameters(&self) -> &Parameters {
         &self.parameters
+    }
+
+    /// The unknowns beyond the source's.
+    pub fn extensions(&self) -> &[Extension] {
+        &self.extensions
+    }
+
+    /// What the laboratory states.
+    pub fn stated(&self) -> &TypeB {
+        &self.stated
+    }
+
+    /// The same as independent influences on more than one plateau.
+    pub fn influences(&self) -> &[Influence] {
+        &self.influences
+    }
+
+    /// Effects that are there without being unknowns: the influences that are off, with their amounts.
+    pub(super) fn deviating(&self) -> impl Iterator<Item = (Effect, f64)> + '_ {
+        let pairs = self.influences.iter().zip(&self.deviations);
+        pairs.map(|(influence, deviation)| (influence.effect, deviation * influence.standard_uncertainty))
+    }
+
+    /// Standard uncertainty of a plateau's own rounding [m/s^2].
+    pub(super) fn own_rounding(&self, set_point: &SetPoint) -> f64 {
+        self.stated.own_rounding(set_point)
     }
 
     /// What is known of the unknowns beforehand.

@@ -4,9 +4,12 @@ use std::ops::Index;
 
 use centrical_compensate::Monomial;
 
-use super::error_model::ErrorModel;
+use super::effect::Effect;
+use super::error_model::{ErrorModel, Term};
 use super::experiment::{Experiment, PairRelation, ReferencePoint, STANDARD_GRAVITY};
+use super::extension::Extension;
 use super::group::Group;
+use super::kind::Kind;
 
 /// Standard deviation with which null directions are held about zero, in typical magnitudes of the parameters
 /// (5 mm, 10 mrad, 1e-2 of scale): ten times what any real unit shows, so that it holds and does not inform.
@@ -38,162 +41,10 @@ impl Parameter {
     }
 }
 
-/// What a parameter is in the measurement model. Axes are 0, 1, 2.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Kind {
-    /// `alpha_1`, `alpha_2`: tilt of the rotation axis [rad].
-    Tilt(usize),
-    /// `delta_ik`: turn of the unit in position `k` about instrument axis `i` [rad].
-    Turn {
-        /// Instrument axis.
-        axis: usize,
-        /// Index of the position.
-        position: usize,
-    },
-    /// `dR_ik`: error of the place of the reference point along arm axis `i` [m].
-    Shift {
-        /// Arm axis, 0 or 1.
-        axis: usize,
-        /// Index of the position, the first of its pair, whose `dR` this is.
-        position: usize,
-    },
-    /// `drho_ii`: error of the place of proof mass `i` along its own axis [m].
-    ProofMass(usize),
-    /// Coefficient of a term of the error model, by its index.
-    Term(usize),
-    /// Elastic turn of the unit in position `k` about instrument axis `i`, per unit of its law.
-    ElasticTurn {
-        /// What it grows with.
-        law: Law,
-        /// Instrument axis.
-        axis: usize,
-        /// Index of the position.
-        position: usize,
-    },
-    /// Relative stretch of the arm, `R_1 (1 + kappa law)` (IEEE Std 836), of one seat or of all.
-    ArmStretch {
-        /// What it grows with.
-        law: Law,
-        /// Index of the first mounting on the seat; `None` when all seats share one stretch.
-        seat: Option<usize>,
-    },
-    /// One relative error of all radii: `R0 (1 + s)`.
-    RadiusScale,
-    /// One relative error of the square of all speeds: `Omega^2 (1 + s)`.
-    SpeedScale,
-}
-
-impl Kind {
-    /// Whether it is a deformation that grows with the square of the speed.
-    pub(crate) fn is_elastic(self) -> bool {
-        match self {
-            Self::ElasticTurn { .. } | Self::ArmStretch { .. } => true,
-            Self::Tilt(_)
-            | Self::Turn { .. }
-            | Self::Shift { .. }
-            | Self::ProofMass(_)
-            | Self::Term(_)
-            | Self::RadiusScale
-            | Self::SpeedScale => false,
-        }
-    }
-
-    /// Whether it belongs to a position or to a pair of positions.
-    pub(crate) fn is_of_position(self) -> bool {
-        match self {
-            Self::Turn { .. } | Self::Shift { .. } | Self::ElasticTurn { .. } => true,
-            Self::Tilt(_)
-            | Self::ProofMass(_)
-            | Self::Term(_)
-            | Self::ArmStretch { .. }
-            | Self::RadiusScale
-            | Self::SpeedScale => false,
-        }
-    }
-}
-
 impl Parameter {
     /// Whether it belongs to the instrument: a coefficient of its error model, as opposed to the geometry.
     pub fn is_of_instrument(&self) -> bool {
         matches!(self.kind, Kind::Term(_))
-    }
-}
-
-/// What an elastic deformation grows with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Law {
-    /// `Omega^2` [rad^2/s^2].
-    Speed,
-    /// The load `Omega^2 |R0_1|` [m/s^2].
-    Load,
-}
-
-impl Law {
-    /// Value at a rate squared [rad^2/s^2] and a radius [m].
-    pub fn value(self, omega_squared: f64, radius: f64) -> f64 {
-        match self {
-            Self::Speed => omega_squared,
-            Self::Load => omega_squared * radius.abs(),
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Speed => "speed",
-            Self::Load => "load",
-        }
-    }
-
-    fn unit_of_inverse(self) -> &'static str {
-        match self {
-            Self::Speed => "s^2",
-            Self::Load => "s^2/m",
-        }
-    }
-
-    /// Largest value the machines of the field reach (10 rev/s, 200 g): what turns a deformation into a coefficient.
-    fn full_scale(self) -> f64 {
-        match self {
-            Self::Speed => (20.0 * std::f64::consts::PI).powi(2),
-            Self::Load => 200.0 * STANDARD_GRAVITY,
-        }
-    }
-}
-
-/// Unknowns beyond the source's 49, each off by default.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Extension {
-    /// Elastic turn of the unit, three per position.
-    ElasticTurn(Law),
-    /// Stretch of the arm, one for all seats.
-    ArmStretch(Law),
-    /// Stretch of the arm, one per seat (distinct `R0`).
-    SeatStretch(Law),
-    /// One scale of all radii.
-    RadiusScale,
-    /// One scale of the square of all speeds.
-    SpeedScale,
-}
-
-impl Extension {
-    /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 8] = [
-        ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
-        ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
-        ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
-        ("arm-stretch-load", Self::ArmStretch(Law::Load)),
-        ("seat-stretch-speed", Self::SeatStretch(Law::Speed)),
-        ("seat-stretch-load", Self::SeatStretch(Law::Load)),
-        ("radius-scale", Self::RadiusScale),
-        ("speed-scale", Self::SpeedScale),
-    ];
-
-    /// The extension of a name, if it is one of [`Extension::NAMED`].
-    pub fn named(name: &str) -> Option<Self> {
-        Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, extension)| *extension)
     }
 }
 
@@ -235,15 +86,11 @@ impl Parameters {
         });
         let terms = list.len();
         for (index, term) in error_model.terms.iter().enumerate() {
-            let unit = term.unit();
-            let typical = typical_coefficient(&term.monomial);
-            let power_of_acceleration = 1 - i32::from(term.monomial.degree());
-            let coefficient = parameter(term.name.clone(), &unit, term.group, Kind::Term(index), typical);
-            list.push(Parameter { power_of_acceleration, ..coefficient });
+            list.push(Parameter { kind: Kind::Term(index), ..coefficient(term) });
         }
         let first_extension = list.len();
-        for &extension in extensions {
-            extend(experiment, extension, &mut list);
+        for extension in extensions {
+            list.extend(extension.parameters(experiment, error_model));
         }
         Self { list, turn, shift, proof_mass, terms, extensions: first_extension }
     }
@@ -310,9 +157,12 @@ impl Parameters {
         self.proof_mass
     }
 
-    /// Columns and kinds of the extensions.
-    pub(crate) fn extensions(&self) -> impl Iterator<Item = (usize, Kind)> + '_ {
-        self.list.iter().enumerate().skip(self.extensions).map(|(column, p)| (column, p.kind))
+    /// Columns and effects of the extensions.
+    pub(crate) fn effects(&self) -> impl Iterator<Item = (usize, Effect)> + '_ {
+        self.list.iter().enumerate().skip(self.extensions).filter_map(|(column, parameter)| match parameter.kind {
+            Kind::Effect(effect) => Some((column, effect)),
+            Kind::Tilt(_) | Kind::Turn { .. } | Kind::Shift { .. } | Kind::ProofMass(_) | Kind::Term(_) => None,
+        })
     }
 }
 
@@ -333,7 +183,7 @@ impl Index<usize> for Parameters {
     }
 }
 
-fn parameter(name: String, unit: &str, group: Group, kind: Kind, typical: f64) -> Parameter {
+pub(super) fn parameter(name: String, unit: &str, group: Group, kind: Kind, typical: f64) -> Parameter {
     Parameter { name, unit: unit.to_owned(), group, kind, power_of_acceleration: 0, typical }
 }
 
@@ -372,51 +222,18 @@ fn shifts(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<Shared> {
     shared
 }
 
+/// The coefficient of a term, as an effect of its own.
+pub(super) fn coefficient(term: &Term) -> Parameter {
+    let Term { axis, monomial, .. } = *term;
+    let kind = Kind::Effect(Effect::Monomial { axis, monomial, mounting: None });
+    let unknown = parameter(term.name.clone(), &term.unit(), term.group, kind, typical_coefficient(&monomial));
+    Parameter { power_of_acceleration: 1 - i32::from(monomial.degree()), ..unknown }
+}
+
 fn typical_coefficient(monomial: &Monomial) -> f64 {
     match monomial.degree() {
         0 => 5e-3 * STANDARD_GRAVITY,
         1 => 1e-3,
         d => 1e-3 / (100.0 * STANDARD_GRAVITY).powi(i32::from(d) - 1),
     }
-}
-
-fn extend(experiment: &Experiment, extension: Extension, list: &mut Vec<Parameter>) {
-    match extension {
-        Extension::ElasticTurn(law) => {
-            for (k, position) in experiment.positions.iter().enumerate() {
-                for axis in 0..3 {
-                    let name = format!("elastic_{}_{}[{}]", law.name(), axis + 1, position.id);
-                    let kind = Kind::ElasticTurn { law, axis, position: k };
-                    list.push(per_law(name, Group::ElasticTurn, law, kind));
-                }
-            }
-        }
-        Extension::ArmStretch(law) => list.push(stretch(format!("stretch_{}", law.name()), law, None)),
-        Extension::SeatStretch(law) => {
-            for seat in 0..experiment.mountings.len() {
-                if experiment.seat_of(seat) == seat {
-                    let radius = experiment.mountings[seat].arm_y.x;
-                    list.push(stretch(format!("stretch_{}[{radius}]", law.name()), law, Some(seat)));
-                }
-            }
-        }
-        Extension::RadiusScale => {
-            list.push(parameter("radius_scale".to_owned(), "1", Group::RadiusScale, Kind::RadiusScale, 1e-3));
-        }
-        Extension::SpeedScale => {
-            list.push(parameter("speed_scale".to_owned(), "1", Group::SpeedScale, Kind::SpeedScale, 1e-3));
-        }
-    }
-}
-
-fn stretch(name: String, law: Law, seat: Option<usize>) -> Parameter {
-    let kind = Kind::ArmStretch { law, seat };
-    per_law(name, Group::ArmStretch, law, kind)
-}
-
-/// A deformation per unit of its law.
-fn per_law(name: String, group: Group, law: Law, kind: Kind) -> Parameter {
-    let power_of_acceleration = if law == Law::Load { -1 } else { 0 };
-    let deformation = parameter(name, law.unit_of_inverse(), group, kind, 1e-3 / law.full_scale());
-    Parameter { power_of_acceleration, ..deformation }
 }

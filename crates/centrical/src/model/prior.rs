@@ -1,19 +1,21 @@
-//! Priors: what is known of an unknown before any reading, as one more equation `x_j / sigma_j = 0 +- 1`.
+//! Priors: what is known of an unknown before any reading, as one more equation `(x_j - m_j) / sigma_j = 0 +- 1`.
 //!
-//! Unknowns are errors against nominal values, so a prior is always about zero. A prior is never silent: an
+//! Unknowns are errors against nominal values, so the mean `m_j` of a prior is zero unless it was measured. A prior is never silent: an
 //! estimate can be asked how much of its variance comes from priors ([`share`]), and a prior how much the data
 //! have added to it ([`PriorUse`]).
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::parameter::Parameters;
 
-/// Prior knowledge of one parameter: zero, with a standard uncertainty.
+/// Prior knowledge of one parameter: a mean with a standard uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prior {
     /// Index of the parameter.
     pub parameter: usize,
+    /// Mean, in the parameter's unit.
+    pub mean: f64,
     /// Standard uncertainty, in the parameter's unit.
     pub standard_uncertainty: f64,
 }
@@ -47,6 +49,14 @@ pub enum PriorError {
         /// Two of the units.
         units: [String; 2],
     },
+    /// The mean is no number.
+    #[error("prior {name:?}: found a mean of {found}, expected a finite number")]
+    Mean {
+        /// As given.
+        name: String,
+        /// As given.
+        found: f64,
+    },
     /// The uncertainty is not one.
     #[error("prior {name:?}: found a standard uncertainty of {found}, expected a positive number")]
     NotPositive {
@@ -70,11 +80,15 @@ pub(crate) fn select(
     parameters: &Parameters,
     present: &[Prior],
     name: &str,
+    mean: f64,
     standard_uncertainty: f64,
 ) -> Result<Vec<Prior>, PriorError> {
     let name = name.to_owned();
     if !(standard_uncertainty > 0.0 && standard_uncertainty.is_finite()) {
         return Err(PriorError::NotPositive { name, found: standard_uncertainty });
+    }
+    if !mean.is_finite() {
+        return Err(PriorError::Mean { name, found: mean });
     }
     let selected = parameters.select(&name);
     let Some(first) = selected.first().map(|&j| &parameters[j]) else {
@@ -89,7 +103,7 @@ pub(crate) fn select(
             return Err(PriorError::Duplicate { name, parameter: parameter.name.clone() });
         }
     }
-    Ok(selected.into_iter().map(|parameter| Prior { parameter, standard_uncertainty }).collect())
+    Ok(selected.into_iter().map(|parameter| Prior { parameter, mean, standard_uncertainty }).collect())
 }
 
 /// What the data add to each prior, from the covariance of the estimates with the priors in.
@@ -106,6 +120,12 @@ pub(crate) fn uses(priors: &[Prior], covariance: impl Fn(usize, usize) -> f64) -
 pub(crate) fn share(priors: &[Prior], j: usize, covariance: impl Fn(usize, usize) -> f64) -> f64 {
     let from = |p: &Prior| (covariance(j, p.parameter) / p.standard_uncertainty).powi(2);
     priors.iter().map(from).sum::<f64>() / covariance(j, j)
+}
+
+/// What the rows of the priors miss at `x`: `(m_j - x_j) / sigma_j`.
+pub(crate) fn misfit(priors: &[Prior], x: &DVector<f64>) -> DVector<f64> {
+    let missed = |prior: &Prior| (prior.mean - x[prior.parameter]) / prior.standard_uncertainty;
+    DVector::from_iterator(priors.len(), priors.iter().map(missed))
 }
 
 /// The rows `e_j / sigma_j` of the priors.

@@ -1,7 +1,7 @@
 //! From plateaus to rows of independent errors of unit variance, three per plateau.
 //!
-//! A plateau's covariance is that of its mean plus the speed error's rank-one term `d d^T`,
-//! `d = sigma d f' / d ln Omega` of the full model (`docs/source-and-findings.md`). Rows are whitened by its Cholesky factor,
+//! A plateau's covariance is that of its mean plus the rank-one term `d d^T` of the error of its speed,
+//! `d = sigma d f' / d ln Omega` of the full model (`docs/source-and-findings.md`), or of its angle at rest, and its rounding. Rows are whitened by its Cholesky factor,
 //! so that least squares on them is the generalised least squares of the plateaus.
 
 use nalgebra::{Cholesky, Const, DMatrix, Matrix3, Vector3};
@@ -10,18 +10,19 @@ use super::error::FitError;
 use super::measurement::Linearisation;
 use super::observation::Weight;
 
-/// The whitened rows of plateaus of given weights, `3 n x p`.
+/// The whitened rows of plateaus of given weights, `3 n x (p + q)`: `parameters`, then influences.
 ///
 /// # Errors
 /// [`FitError::Covariance`] when a covariance is not positive definite.
 pub(crate) fn whitened_rows(
     weights: &[Weight],
     linearisations: &[Linearisation],
-    columns: usize,
+    parameters: usize,
+    influences: usize,
 ) -> Result<DMatrix<f64>, FitError> {
-    let mut rows = DMatrix::zeros(3 * weights.len(), columns);
+    let mut rows = DMatrix::zeros(3 * weights.len(), parameters + influences);
     for (n, (weight, linearisation)) in weights.iter().zip(linearisations).enumerate() {
-        Whitener::new(weight, &linearisation.speed_error)?.fill(&mut rows, n, linearisation);
+        Whitener::new(weight, linearisation)?.fill(&mut rows, n, linearisation, parameters);
     }
     Ok(rows)
 }
@@ -31,9 +32,9 @@ pub(crate) fn whitened_rows(
 pub(crate) struct Whitener(Cholesky<f64, Const<3>>);
 
 impl Whitener {
-    /// From the covariance of the mean and the speed term.
-    pub fn new(weight: &Weight, speed_error: &Vector3<f64>) -> Result<Self, FitError> {
-        let total = total_covariance(&weight.covariance, speed_error);
+    /// From the covariance of the mean and the errors of the plateau alone.
+    pub fn new(weight: &Weight, linearisation: &Linearisation) -> Result<Self, FitError> {
+        let total = total_covariance(&weight.covariance, linearisation);
         Cholesky::new(total)
             .map(Self)
             .ok_or(FitError::Covariance { set_point: weight.set_point, diagonal: weight.covariance.diagonal().into() })
@@ -45,16 +46,20 @@ impl Whitener {
         self.0.l_dirty().solve_lower_triangular(v).unwrap_or_else(Vector3::zeros)
     }
 
-    /// Writes the three rows of plateau `n`.
-    pub fn fill(&self, rows: &mut DMatrix<f64>, n: usize, linearisation: &Linearisation) {
+    /// Writes the three rows of plateau `n`: the `parameters` columns of the unknowns, then those of the influences.
+    pub fn fill(&self, rows: &mut DMatrix<f64>, n: usize, linearisation: &Linearisation, parameters: usize) {
         let mut block = rows.fixed_rows_mut::<3>(3 * n);
         for (column, derivative) in &linearisation.columns {
             block.set_column(*column, &self.apply(derivative));
         }
+        for (influence, derivative) in &linearisation.stated {
+            block.set_column(parameters + influence, &self.apply(derivative));
+        }
     }
 }
 
-/// `C + d d^T` [m^2/s^4], `d` the change of the mean by one standard uncertainty of the speed.
-pub(crate) fn total_covariance(mean: &Matrix3<f64>, speed_error: &Vector3<f64>) -> Matrix3<f64> {
-    mean + speed_error * speed_error.transpose()
+/// `C + d d^T + r^2 E` [m^2/s^4]: the covariance of the mean with the errors of what was set and of the plateau's rounding.
+pub(crate) fn total_covariance(mean: &Matrix3<f64>, at: &Linearisation) -> Matrix3<f64> {
+    let set = mean + at.setting_error * at.setting_error.transpose();
+    if at.rounding > 0.0 { set + Matrix3::from_diagonal_element(at.rounding * at.rounding) } else { set }
 }

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::addition::Addition;
 use super::rank::Observability;
 use super::study::Study;
-use crate::model::{Kind, PairRelation, Position, rotation};
+use crate::model::{Effect, Kind, PairRelation, Position, rotation};
 
 /// Two angles, speeds or radii closer than this part of the largest are one: a schedule's "180 deg" is no new angle
 /// beside 3.1416 rad.
@@ -223,9 +223,9 @@ fn ease(kind: Kind) -> Option<u8> {
         Kind::ProofMass(_) => Some(0),
         Kind::Shift { .. } => Some(1),
         Kind::Tilt(_) => Some(2),
-        Kind::RadiusScale | Kind::SpeedScale => Some(3),
+        Kind::Effect(Effect::RadiusScale | Effect::SpeedScale) => Some(3),
         Kind::Turn { .. } => Some(4),
-        Kind::ArmStretch { .. } | Kind::ElasticTurn { .. } => Some(5),
+        Kind::Effect(_) => Some(5),
         Kind::Term(_) => None,
     }
 }

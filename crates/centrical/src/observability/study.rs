@@ -1,5 +1,6 @@
 //! A design under study: a session, a plan or the normalised experiment, with the weights of its plateaus.
 
+use crate::linalg::least_squares::marginal;
 use crate::model::prior;
 use crate::model::whitening::whitened_rows;
 use crate::model::{FitError, Linearisation, MeasurementModel, PriorUse, Weight};
@@ -42,8 +43,8 @@ impl Study {
     }
 
     fn of(model: MeasurementModel, weights: Vec<Weight>, linearisations: Vec<Linearisation>) -> Result<Self, FitError> {
-        let columns = model.parameters().len();
-        let mut rows = whitened_rows(&weights, &linearisations, columns)?;
+        let (columns, influences) = (model.parameters().len(), model.influences().len());
+        let mut rows = marginal(whitened_rows(&weights, &linearisations, columns, influences)?, columns);
         if rows.iter().any(|entry| !entry.is_finite()) {
             return Err(FitError::Overflow);
         }

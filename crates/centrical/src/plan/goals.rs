@@ -1,7 +1,6 @@
 //! What is to be planned, and the search over goals.
 //!
-//! Goals are combined uncertainties, but a schedule lowers type A alone. So the search is for the part that type B leaves of
-//! each goal, `sqrt(wanted^2 - B^2)`; type B hardly depends on the plan, and settles within a few plans.
+//! Goals are combined uncertainties: the search knows of what the laboratory states as a fit does, as unknowns with priors.
 
 use super::candidates::{Candidates, Schedule, Visit};
 use super::criterion::{Criterion, Goal};
@@ -9,10 +8,6 @@ use super::error::PlanError;
 use super::prediction::{Prediction, predict};
 use super::search::{Effort, Plan, best_for_time, shortest_for_goals};
 use crate::model::{FitError, MeasurementModel, Parameter};
-use crate::uncertainty::TypeB;
-
-/// The assumed type B exceeds that of the plan before by this factor, so that the next plan keeps within it.
-const MARGIN: f64 = 1.01;
 
 /// The shortest plan is sought to this part of its time.
 const RESOLUTION: f64 = 0.01;
@@ -26,8 +21,6 @@ pub struct Task {
     pub criterion: Criterion,
     /// Available time [s].
     pub time: Option<f64>,
-    /// Standard uncertainties that the data will not show.
-    pub type_b: TypeB,
 }
 
 /// A goal as a schedule is predicted to reach it; `None` where it is not determined.
@@ -107,7 +100,7 @@ impl Task {
         let model = scenario.model.in_experiment(experiment);
         let expected = |p: &Parameter| scenario.model.parameters().find(&p.name).map_or(0.0, |j| scenario.nominal[j]);
         let nominal: Vec<f64> = model.parameters().iter().map(expected).collect();
-        predict(&model, &weights, &self.type_b, &nominal)
+        predict(&model, &weights, &nominal)
     }
 
     /// The goals as a prediction reaches them.
@@ -133,29 +126,22 @@ impl Task {
     }
 
     fn search(&self, effort: Effort) -> Result<Plan, PlanError> {
-        let goals = self.goals();
-        if goals.is_empty() || self.type_b == TypeB::default() {
-            return self.best(&self.criterion, effort);
+        if self.time.is_none() && !self.model().influences().is_empty() {
+            self.check_type_b()?;
         }
-        let mut floors = self.floors(&self.everything())?;
-        for (goal, floor) in goals.iter().zip(&floors).filter(|_| self.time.is_none()) {
-            if *floor >= goal.uncertainty() {
-                let factor = floor / goal.uncertainty();
+        self.best(&self.criterion, effort)
+    }
+
+    /// A goal below what type B leaves of it with every candidate as often and as long as possible cannot be reached.
+    fn check_type_b(&self) -> Result<(), PlanError> {
+        let reached = self.reached(&self.predict(&self.everything())?);
+        for (goal, reached) in self.goals().iter().zip(reached) {
+            let factor = reached.type_b.unwrap_or(0.0) / goal.uncertainty();
+            if factor >= 1.0 {
                 return Err(PlanError::BelowTypeB { name: goal.name().to_owned(), factor });
             }
         }
-        for now in [Effort::QUICK, Effort::QUICK, Effort::QUICK, effort, effort] {
-            let plan = self.best(&for_type_a(goals, &floors), now)?;
-            let there = self.floors(&plan.schedule)?;
-            let is_settled = there.iter().zip(&floors).all(|(there, floor)| there <= floor);
-            floors.iter_mut().zip(there).for_each(|(floor, there)| *floor = floor.max(MARGIN * there));
-            // A shortest plan that meets the goals is one, whatever type B was assumed for it.
-            let is_met = self.time.is_none() && self.meets_goals(&plan)?;
-            if (is_settled || is_met) && now == effort {
-                return Ok(plan);
-            }
-        }
-        self.best(&for_type_a(goals, &floors), effort)
+        Ok(())
     }
 
     fn best(&self, criterion: &Criterion, effort: Effort) -> Result<Plan, PlanError> {
@@ -172,20 +158,4 @@ impl Task {
         let visit = |n: usize| Visit { candidate: n % candidates.len(), duration: longest };
         candidates.schedule((0..candidates.len() * candidates.repeats).map(visit).collect())
     }
-
-    /// Type B of each goal with a schedule, 0 where it is not determined.
-    fn floors(&self, schedule: &Schedule) -> Result<Vec<f64>, PlanError> {
-        let reached = self.reached(&self.predict(schedule)?);
-        Ok(reached.iter().map(|goal| goal.type_b.unwrap_or(0.0)).collect())
-    }
-}
-
-/// The worst of the goals for type A, `sqrt(wanted^2 - floor^2)`; a goal below its type B is sought as it stands.
-fn for_type_a(goals: &[Goal], floors: &[f64]) -> Criterion {
-    let left = |(goal, floor): (&Goal, &f64)| {
-        let wanted = goal.uncertainty();
-        let rest = (wanted - floor) * (wanted + floor);
-        goal.with_uncertainty(if rest > 0.0 { rest.sqrt() } else { wanted })
-    };
-    Criterion::Worst(goals.iter().zip(floors).map(left).collect())
 }

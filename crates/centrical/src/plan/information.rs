@@ -1,6 +1,6 @@
 //! The information of a design, as a triangular factor, and how the criterion answers to more of it.
 //!
-//! Unknowns are in units of ten typical magnitudes, so the hold is the identity: `M = E + priors + sum J^T N J` over the
+//! Unknowns are in units of ten typical magnitudes, influences in their standard uncertainties, so the hold is the identity: `M = E + priors + sum J^T N J` over the
 //! visits, `N = Sigma^-1`. With `M = R^T R` by QR of the stacked rows and `P = R^-1`, the covariance is `P P^T` and
 //! is never formed. A change `dN` at candidate `c` changes it by `-C J^T Q J C`, `Q = dN (E + A dN)^-1`, `A = J C J^T`, so a
 //! goal `r = sum |P^T k|^2` changes by `-tr(Q G)`, `G = sum (J C k)(J C k)^T`: all in 3x3.
@@ -82,10 +82,14 @@ impl LinearisedScenario {
 
     /// The rows of all set points of `model` and the columns of the criterion, without precisions.
     pub fn of(model: &MeasurementModel, nominal: &[f64], criterion: &Criterion) -> Result<Self, PlanError> {
-        let scale: Vec<f64> = model.parameters().iter().map(|p| NULL_HOLD * p.typical).collect();
+        let parameters = model.parameters().len();
+        // An influence is known to its standard uncertainty, 1: the hold is its prior.
+        let influences = model.influences().iter().map(|_| 1.0);
+        let scale: Vec<f64> = model.parameters().iter().map(|p| NULL_HOLD * p.typical).chain(influences).collect();
         let jacobian = |set_point| {
-            let columns = linearised(model, nominal, set_point).columns.into_iter();
-            columns.map(|(j, column)| (j, column * scale[j])).collect::<Vec<_>>()
+            let Linearisation { columns, stated, .. } = linearised(model, nominal, set_point);
+            let influences = stated.into_iter().map(|(n, change)| (parameters + n, change));
+            columns.into_iter().chain(influences).map(|(j, column)| (j, column * scale[j])).collect::<Vec<_>>()
         };
         let jacobians: Vec<_> = model.experiment().set_points.iter().map(jacobian).collect();
         let mut squares = vec![1.0; scale.len()];
@@ -93,6 +97,7 @@ impl LinearisedScenario {
             squares[prior.parameter] += (scale[prior.parameter] / prior.standard_uncertainty).powi(2);
         }
         let mut columns = criterion.columns(model)?;
+        columns.k = columns.k.resize_vertically(scale.len(), 0.0);
         columns.k.row_iter_mut().zip(&scale).for_each(|(mut row, scale)| row *= *scale);
         let goals = columns.goal.iter().max().map_or(0, |last| last + 1);
         let prior = squares.into_iter().map(f64::sqrt).collect();
@@ -309,8 +314,8 @@ fn linearised(model: &MeasurementModel, nominal: &[f64], set_point: &SetPoint) -
 /// `Sigma^-1` of the mean of a plateau, its speed error included.
 pub(super) fn precision(model: &MeasurementModel, nominal: &[f64], weight: &Weight) -> Result<Matrix3<f64>, PlanError> {
     let set_points = &model.experiment().set_points;
-    let speed_error = linearised(model, nominal, &set_points[weight.set_point]).speed_error;
-    let total = total_covariance(&weight.covariance, &speed_error);
+    let at = linearised(model, nominal, &set_points[weight.set_point]);
+    let total = total_covariance(&weight.covariance, &at);
     let precision = total.cholesky().map(|factor| factor.inverse());
     precision.filter(|p| p.iter().all(|v| v.is_finite())).ok_or(PlanError::Noise { candidate: weight.set_point })
 }

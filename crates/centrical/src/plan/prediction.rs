@@ -19,12 +19,15 @@ use super::candidates::{Candidates, Schedule, Visit};
 use super::criterion::ReadingRange;
 use crate::fit::{Calibration, Data, Structure};
 use crate::model::{Experiment, FitError, MeasurementModel, Mounting, Observation, Weight};
-use crate::uncertainty::{Budget, Compensated, CurvePoint, TypeB};
+use crate::uncertainty::{Budget, Compensated, CurvePoint, Rivals, Unseen};
 
 /// The uncertainties that are expected of a plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
     model: MeasurementModel,
+    weights: Vec<Weight>,
+    /// The unknowns that it is for.
+    truth: Vec<f64>,
     budget: Budget,
     /// By parameter: whether the null space affects it.
     affected: Vec<bool>,
@@ -35,18 +38,13 @@ pub struct Prediction {
 ///
 /// # Errors
 /// [`FitError`] when a weight is invalid.
-pub fn predict(
-    model: &MeasurementModel,
-    weights: &[Weight],
-    stated: &TypeB,
-    truth: &[f64],
-) -> Result<Prediction, FitError> {
+pub fn predict(model: &MeasurementModel, weights: &[Weight], truth: &[f64]) -> Result<Prediction, FitError> {
     let (truth, structure) = unit_with_structure(model, weights, truth)?;
     let perfect = Data::new(model, readings(model, weights, &truth))?;
     let calibration = Calibration::with_structure(structure, &perfect)?;
-    let budget = calibration.budget(stated)?;
+    let budget = calibration.budget()?;
     let affected = (0..truth.len()).map(|j| budget.is_affected_by_null_space(calibration.fit(), j)).collect();
-    Ok(Prediction { model: model.clone(), budget, affected })
+    Ok(Prediction { model: model.clone(), weights: weights.to_vec(), truth, budget, affected })
 }
 
 /// The unknowns that a plan is predicted for, and its calibrations are drawn for: those expected, or where none is and the
@@ -84,6 +82,15 @@ impl Prediction {
     /// The model it is for.
     pub fn model(&self) -> &MeasurementModel {
         &self.model
+    }
+
+    /// The effects whose absence the calibration will rest on, the worst first.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn rests_on(&self) -> Result<Vec<Unseen>, FitError> {
+        let perfect = Data::new(&self.model, readings(&self.model, &self.weights, &self.truth))?;
+        Rivals::of(&Calibration::exact(&perfect)?)?.rests_on()
     }
 
     /// The budget by source.

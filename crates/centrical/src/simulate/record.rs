@@ -88,24 +88,26 @@ pub(super) struct Physics<'a> {
     truth: &'a [f64],
     mounting: usize,
     response: Response,
-    /// The unit on the arm at any speed, unless speed deforms it.
+    /// The unit on the arm at any speed, unless it changes with the speed.
     rigid: Option<MountedUnit>,
 }
 
 impl<'a> Physics<'a> {
     pub fn new(model: &'a MeasurementModel, truth: &'a [f64], mounting: usize) -> Self {
         let response = Response::new(model.error_model(), model.parameters().coefficients(truth));
-        let rigid = (!model.deforms()).then(|| model.mounted_unit(mounting, truth, 0.0));
+        let rigid = (!model.changes_with_speed()).then(|| model.mounted_unit(mounting, truth, 0.0));
         Self { model, truth, mounting, response, rigid }
     }
 
     #[inline]
     fn reading(&self, motion: &ArmMotion) -> Vector3<f64> {
-        let f = match &self.rigid {
-            Some(carried) => carried.specific_force(motion),
-            None => self.model.mounted_unit(self.mounting, self.truth, motion.speed).specific_force(motion),
-        };
-        self.response.reading(&f)
+        match &self.rigid {
+            Some(unit) => self.response.reading(&unit.specific_force(motion)),
+            None => {
+                let unit = self.model.mounted_unit(self.mounting, self.truth, motion.speed);
+                self.response.reading(&unit.specific_force(motion)) + unit.disturbance
+            }
+        }
     }
 }
 

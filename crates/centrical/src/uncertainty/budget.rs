@@ -1,16 +1,14 @@
 //! The budget: the uncertainty that each source leaves in each parameter.
 //!
-//! A source is a set of independent influences. The effect of each on the readings, for one standard uncertainty, is
-//! half the difference of the exact model's readings with the quantity one standard uncertainty up and down (GUM,
-//! 5.1.3, note 2); the gain of the fit takes it to the parameters. With these changes as the columns of `S`, the source
-//! leaves the covariance `S S^T`, and sources add.
+//! A source is a set of independent errors: of single plateaus, of priors, of influences. The gain of the fit takes one
+//! standard uncertainty of each to the parameters. With these changes as the columns of `S`, the source leaves the
+//! covariance `S S^T`. Sources add, and their sum is the covariance of the fit.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Vector3};
 
 use super::coverage::{Degrees, effective_degrees_of_freedom};
-use super::source::{Influence, Quantity, Source, TypeB, influences};
-use crate::fit::{Calibration, Fit};
-use crate::model::{FitError, MeasurementModel, Observation};
+use crate::fit::{Calibration, Fit, Gain};
+use crate::model::{FitError, MeasurementModel, Observation, Source};
 
 /// A parameter is affected by the null space when that leaves more than this part of its variance.
 const AFFECTED: f64 = 0.1;
@@ -35,7 +33,7 @@ pub struct Contribution {
     changes: DMatrix<f64>,
 }
 
-/// What would be gained if a source were perfect.
+/// What would be gained at least if a source were perfect: the fit would then weigh the data anew.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Improvement {
     /// The source.
@@ -57,23 +55,35 @@ struct ResidualScale {
 }
 
 impl Calibration<'_> {
-    /// The budget of the estimates with what the laboratory states.
+    /// The budget of the estimates.
     ///
     /// # Errors
     /// [`FitError`] when numbers overflow.
-    pub fn budget(&self, stated: &TypeB) -> Result<Budget, FitError> {
+    pub fn budget(&self) -> Result<Budget, FitError> {
         let (gain, model, observations) = (self.gain()?, self.data().model(), self.data().observations());
-        let influences = influences(model.experiment(), stated);
+        let (stated, of_influences) = (model.stated(), gain.apply_influences());
         let of_type_b =
             if stated.doubt > 0.0 { Degrees::Finite(0.5 / (stated.doubt * stated.doubt)) } else { Degrees::Infinite };
         let mut contributions = Vec::new();
         for source in Source::ALL {
-            let changes = match source {
+            let own = match source {
                 Source::Noise => gain.apply(&noise(observations)?),
+                Source::PlateauSpeed => gain.apply(&settings(gain, model, observations, false)),
+                Source::RestAngle => gain.apply(&settings(gain, model, observations, true)),
+                Source::Resolution => gain.apply(&rounding(gain)),
                 Source::Priors => gain.apply_priors(),
-                Source::Resolution => gain.apply(&resolution(stated.resolution, observations.len())),
-                _ => gain.apply(&effects_of(source, &influences, model, self.fit().state(), observations)),
+                Source::Gravity
+                | Source::Latitude
+                | Source::Radius
+                | Source::RadiusDifference
+                | Source::SpeedScale
+                | Source::ProofMasses
+                | Source::Attitude
+                | Source::Effects => DMatrix::zeros(model.parameters().len(), 0),
             };
+            let of_source = model.influences().iter().enumerate().filter(|(_, influence)| influence.source == source);
+            let shared: Vec<usize> = of_source.map(|(n, _)| n).collect();
+            let changes = side_by_side(&own, &of_influences.select_columns(&shared));
             if changes.ncols() > 0 {
                 let degrees = if source.is_weighed() { Degrees::Infinite } else { of_type_b };
                 contributions.push(Contribution { source, degrees, changes });
@@ -200,48 +210,34 @@ fn noise(observations: &[Observation]) -> Result<DMatrix<f64>, FitError> {
     Ok(effects)
 }
 
-/// A rectangular error of each mean.
-fn resolution(step: f64, observations: usize) -> DMatrix<f64> {
-    let u = step / 12.0_f64.sqrt();
-    if u > 0.0 {
-        DMatrix::from_diagonal_element(3 * observations, 3 * observations, u)
-    } else {
-        DMatrix::zeros(3 * observations, 0)
-    }
-}
-
-/// Half the differences of the readings with each influence of `source` up and down.
-fn effects_of(
-    source: Source,
-    influences: &[Influence],
-    model: &MeasurementModel,
-    x: &[f64],
-    observations: &[Observation],
-) -> DMatrix<f64> {
-    let own: Vec<&Influence> = influences.iter().filter(|i| i.source == source).collect();
-    let mut effects = DMatrix::zeros(3 * observations.len(), own.len());
-    for (influence, mut column) in own.into_iter().zip(effects.column_iter_mut()) {
-        let off = |deviation| {
-            let mut experiment = model.experiment().clone();
-            influence.apply(&mut experiment, deviation);
-            model.in_experiment(experiment)
-        };
-        let (up, down) = (off(1.0), off(-1.0));
-        for (n, observation) in observations.iter().enumerate().filter(|(_, o)| influence.quantity.acts_on(o)) {
-            let reading =
-                |model: &MeasurementModel| model.reading(&model.experiment().set_points[observation.set_point], x);
-            column.fixed_rows_mut::<3>(3 * n).copy_from(&(0.5 * (reading(&up) - reading(&down))));
-        }
+/// Changes of the readings by one standard uncertainty of the speed of each plateau, or of the angle of each at rest.
+fn settings(gain: &Gain, model: &MeasurementModel, observations: &[Observation], at_rest: bool) -> DMatrix<f64> {
+    let set_points = &model.experiment().set_points;
+    let acting: Vec<(usize, Vector3<f64>)> = (gain.linearisations().iter().zip(observations).enumerate())
+        .filter(|(_, (at, o))| set_points[o.set_point].is_rest() == at_rest && at.setting_error != Vector3::zeros())
+        .map(|(n, (at, _))| (n, at.setting_error))
+        .collect();
+    let mut effects = DMatrix::zeros(3 * observations.len(), acting.len());
+    for ((n, change), mut column) in acting.iter().zip(effects.column_iter_mut()) {
+        column.fixed_rows_mut::<3>(3 * n).copy_from(change);
     }
     effects
 }
 
-impl Quantity {
-    /// Whether it can change this reading at all.
-    fn acts_on(self, observation: &Observation) -> bool {
-        match self {
-            Self::PlateauSpeed(n) | Self::RestAngle(n) => n == observation.set_point,
-            _ => true,
-        }
+/// One standard uncertainty of the rounding of each mean that is a plateau's own.
+fn rounding(gain: &Gain) -> DMatrix<f64> {
+    let rounded = gain.linearisations().iter().enumerate().filter(|(_, at)| at.rounding > 0.0);
+    let entries: Vec<(usize, f64)> =
+        rounded.flat_map(|(n, at)| (3 * n..3 * n + 3).map(|row| (row, at.rounding))).collect();
+    let mut effects = DMatrix::zeros(3 * gain.linearisations().len(), entries.len());
+    for (column, (row, u)) in entries.into_iter().enumerate() {
+        effects[(row, column)] = u;
     }
+    effects
+}
+
+fn side_by_side(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut both = left.clone().resize_horizontally(left.ncols() + right.ncols(), 0.0);
+    both.columns_mut(left.ncols(), right.ncols()).copy_from(right);
+    both
 }

@@ -4,15 +4,14 @@
 //! prior, their true values from it; lets the exact model make the readings, and fits them as if nothing were off. Run `n` uses stream `n` of the seed, and runs are gathered
 //! in their order, so the outcome does not depend on the number of threads.
 
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::budget::Budget;
 use super::comparison::weighted_square;
 use super::coverage::{Degrees, chi_squared_tail, coverage_factor};
-use super::source::{Influence, TypeB, influences};
 use crate::fit::{Calibration, Data, Fit, Structure, Termination};
-use crate::model::{FitError, MeasurementModel, Observation};
+use crate::model::{FitError, MeasurementModel, Observation, SetPoint};
 use crate::random::Random;
 
 /// What to draw, and how often.
@@ -26,8 +25,6 @@ pub struct Settings {
     pub coverage: f64,
     /// The fit that is repeated.
     pub method: Method,
-    /// Type B uncertainties to draw.
-    pub stated: TypeB,
 }
 
 /// The fit that is repeated.
@@ -116,15 +113,12 @@ struct Laboratory<'a> {
     data: &'a Data<'a>,
     truth: &'a [f64],
     noise_factors: Vec<Matrix3<f64>>,
-    influences: Vec<Influence>,
     structure: Structure,
     /// Indices of the parameters that the data determine.
     determined: Vec<usize>,
     budget: Budget,
     /// By parameter: whether the null space affects it.
     affected: Vec<bool>,
-    /// Combined covariance of type B, of the determined parameters.
-    type_b: DMatrix<f64>,
     coverage_factor: f64,
     settings: &'a Settings,
 }
@@ -145,18 +139,14 @@ impl<'a> Laboratory<'a> {
         let (model, observations) = (data.model(), data.observations());
         let perfect = Data::new(model, readings_of(model, truth, observations))?;
         let calibration = Calibration::exact(&perfect)?;
-        let (budget, fit) = (calibration.budget(&settings.stated)?, calibration.fit());
+        let (budget, fit) = (calibration.budget()?, calibration.fit());
         let determined: Vec<usize> = (0..truth.len()).filter(|&j| fit.value(j).is_some()).collect();
-        let beyond_weights = budget.contributions().iter().filter(|c| !c.source.is_weighed());
-        let type_b = beyond_weights.fold(DMatrix::zeros(truth.len(), truth.len()), |sum, c| sum + c.covariance());
         let noise_factors = observations.iter().map(Observation::noise_factor).collect::<Result<_, _>>()?;
         Ok(Self {
             data,
             truth,
             noise_factors,
-            influences: influences(model.experiment(), &settings.stated),
             structure: calibration.structure().clone(),
-            type_b: type_b.select_rows(&determined).select_columns(&determined),
             determined,
             affected: (0..truth.len()).map(|j| budget.is_affected_by_null_space(fit, j)).collect(),
             budget,
@@ -182,35 +172,54 @@ impl<'a> Laboratory<'a> {
     fn draw_truth(&self, random: &mut Random) -> Vec<f64> {
         let mut truth = self.truth.to_vec();
         for prior in self.data.model().priors() {
-            truth[prior.parameter] = prior.standard_uncertainty * random.normal();
+            truth[prior.parameter] = prior.mean + prior.standard_uncertainty * random.normal();
         }
         truth
     }
 
     /// Readings with everything drawn.
     fn draw(&self, truth: &[f64], random: &mut Random) -> Vec<Observation> {
-        let mut experiment = self.data.model().experiment().clone();
-        for influence in &self.influences {
-            influence.apply(&mut experiment, random.normal());
-        }
-        let mut drawn = readings_of(&self.data.model().in_experiment(experiment), truth, self.data.observations());
-        for (observation, factor) in drawn.iter_mut().zip(&self.noise_factors) {
-            let noise = nalgebra::Vector3::from_fn(|_, _| random.normal());
-            observation.mean += factor * noise;
-            if self.settings.stated.resolution > 0.0 {
-                let half_step = 0.5 * self.settings.stated.resolution;
-                observation.mean += nalgebra::Vector3::from_fn(|_, _| half_step * random.symmetric());
+        let model = self.data.model();
+        let set_points = self.draw_settings(random);
+        let deviations = model.influences().iter().map(|_| random.normal()).collect();
+        let deviated = model.clone().deviated(deviations);
+        let half_step = 0.5 * model.stated().resolution;
+        let pairs = self.data.observations().iter().zip(&self.noise_factors);
+        let drawn = pairs.map(|(observation, factor)| {
+            let set_point = &set_points[observation.set_point];
+            let noise = Vector3::from_fn(|_, _| random.normal());
+            let mut mean = deviated.reading(set_point, truth) + factor * noise;
+            // Rests that round alike share an influence.
+            if half_step > 0.0 && set_point.history.repeats.is_none() {
+                mean += Vector3::from_fn(|_, _| half_step * random.symmetric());
+            }
+            Observation { mean, ..observation.clone() }
+        });
+        drawn.collect()
+    }
+
+    /// The set points with their own errors drawn: speeds, and angles at rest.
+    fn draw_settings(&self, random: &mut Random) -> Vec<SetPoint> {
+        let (experiment, stated) = (self.data.model().experiment(), self.data.model().stated());
+        let mut set_points = experiment.set_points.clone();
+        for set_point in &mut set_points {
+            let speed = experiment.speed_uncertainty_of(set_point);
+            if set_point.is_rest() && stated.rest_angle > 0.0 {
+                set_point.angle += stated.rest_angle * random.normal();
+            } else if !set_point.is_rest() && speed > 0.0 {
+                set_point.omega *= 1.0 + speed * random.normal();
             }
         }
-        drawn
+        set_points
     }
 
     fn judge(&self, fit: &Fit, truth: &[f64]) -> Option<Run> {
         let errors: Vec<f64> = self.determined.iter().map(|&j| fit.state()[j] - truth[j]).collect();
-        let mut covariance = self.type_b.clone();
+        let count = self.determined.len();
+        let mut covariance = DMatrix::zeros(count, count);
         for (a, &i) in self.determined.iter().enumerate() {
             for (b, &j) in self.determined.iter().enumerate() {
-                covariance[(a, b)] += fit.covariance(i, j)?;
+                covariance[(a, b)] = fit.covariance(i, j)?;
             }
         }
         let converged = matches!(fit.termination, Termination::Converged | Termination::Linear);

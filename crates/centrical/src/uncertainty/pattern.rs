@@ -5,11 +5,14 @@
 //! uncertainty `1 / |z_r|`: the value it would have as one more unknown of the fit. `(a/u)^2` over what is left of chi^2 per
 //! degree of freedom is an F statistic, free of the scale of the weights.
 
-use nalgebra::DMatrix;
+use nalgebra::Vector3;
 
+use super::holm::holm;
+use super::rivals::Rivals;
+use super::rivals::columns::{Columns, Seen};
 use super::validity::f_tail;
 use crate::fit::Calibration;
-use crate::model::{Experiment, FitError, Observation, SetPoint};
+use crate::model::{Experiment, FitError, Rival, SetPoint};
 
 /// What the residuals of one newtonometer could follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,37 +68,54 @@ impl Calibration<'_> {
     /// # Errors
     /// As [`Calibration::patterns`].
     pub fn patterns_of(&self, trends: &[Trend]) -> Result<Vec<Pattern>, FitError> {
-        let gain = self.gain()?;
-        let e = gain.redundant_residuals();
-        let candidates: Vec<(usize, Trend)> = trends.iter().flat_map(|t| (0..3).map(move |axis| (axis, *t))).collect();
-        let columns = columns(&candidates, self.data().model().experiment(), self.data().observations());
-        let (whitened, redundant) = (gain.whitened(&columns), gain.redundant(&columns));
+        self.tested(trends, None)
+    }
+
+    /// The patterns of what `rival`, one of `rivals`, does not explain.
+    ///
+    /// # Errors
+    /// As [`Calibration::patterns`].
+    pub fn patterns_beside(&self, rivals: &Rivals, rival: Rival) -> Result<Vec<Pattern>, FitError> {
+        self.tested(&trends(self.data().model().experiment()), rivals.columns_of(rival))
+    }
+
+    fn tested(&self, trends: &[Trend], explained: Option<&Columns>) -> Result<Vec<Pattern>, FitError> {
+        let (gain, experiment) = (self.gain()?, self.data().model().experiment());
+        let taken = explained.map_or((0, 0.0), |columns| {
+            let seen = Seen::of(columns.redundancy());
+            (seen.rank(), seen.statistic(&columns.along))
+        });
+        let left = self.fit().degrees_of_freedom.saturating_sub(taken.0 + 1);
         let mut list = Vec::new();
-        for (n, (axis, trend)) in candidates.into_iter().enumerate() {
-            let (z, size) = (redundant.column(n), redundant.column(n).norm());
-            if size > REDUNDANT * whitened.column(n).norm() {
-                let amplitude = z.dot(&e) / (size * size);
-                let square = (amplitude * size).powi(2);
-                let left = self.fit().degrees_of_freedom.saturating_sub(1);
-                let f = square / ((self.fit().chi_squared - square).max(0.0) / left as f64);
-                let probability = f_tail(f, 1, left);
-                let standard_uncertainty = 1.0 / size;
-                list.push(Pattern { axis, trend, amplitude, standard_uncertainty, probability, family_wise: 1.0 });
+        for (trend, axis) in trends.iter().flat_map(|trend| (0..3).map(move |axis| (*trend, axis))) {
+            let values: Vec<f64> =
+                self.data().observations().iter().map(|o| trend.value(experiment, o.set_point)).collect();
+            let largest = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            let acting: Vec<usize> = (0..values.len()).filter(|&n| values[n] != 0.0).collect();
+            let columns = Columns::new(gain, acting, 1, |n, _| Vector3::ith(axis, values[n] / largest));
+            let (redundancy, along) =
+                explained.map_or_else(|| (columns.redundancy(), columns.along.clone()), |other| columns.beside(other));
+            let (square, along) = (redundancy[(0, 0)], along[0]);
+            if square > REDUNDANT.powi(2) {
+                let statistic = along * along / square;
+                let rest = (self.fit().chi_squared - taken.1 - statistic).max(0.0);
+                let probability = f_tail(statistic / (rest / left as f64), 1, left);
+                let (amplitude, standard_uncertainty) = (along / square, 1.0 / square.sqrt());
+                let length = columns.lengths[0];
+                list.push(Pattern {
+                    axis,
+                    trend,
+                    amplitude: amplitude / length,
+                    standard_uncertainty: standard_uncertainty / length,
+                    probability,
+                    family_wise: 1.0,
+                });
             }
         }
         list.sort_by(|a, b| a.probability.total_cmp(&b.probability));
-        holm(&mut list);
+        let family_wise = holm(list.iter().map(|pattern| pattern.probability));
+        list.iter_mut().zip(family_wise).for_each(|(pattern, probability)| pattern.family_wise = probability);
         Ok(list)
-    }
-}
-
-/// Holm's step-down probabilities of a list that rises in probability.
-fn holm(list: &mut [Pattern]) {
-    let count = list.len();
-    let mut highest: f64 = 0.0;
-    for (n, pattern) in list.iter_mut().enumerate() {
-        highest = highest.max((count - n) as f64 * pattern.probability).min(1.0);
-        pattern.family_wise = highest;
     }
 }
 
@@ -107,21 +127,6 @@ fn trends(experiment: &Experiment) -> Vec<Trend> {
     list.extend(mountings.clone().filter(|&m| experiment.seat_of(m) == m).map(Trend::SpeedOnSeat));
     list.extend(mountings.map(Trend::Mounting));
     list
-}
-
-/// The columns, `3 n x m`, each with a largest entry of 1.
-fn columns(candidates: &[(usize, Trend)], experiment: &Experiment, observations: &[Observation]) -> DMatrix<f64> {
-    let mut columns = DMatrix::zeros(3 * observations.len(), candidates.len());
-    for ((axis, trend), mut column) in candidates.iter().zip(columns.column_iter_mut()) {
-        for (n, observation) in observations.iter().enumerate() {
-            column[3 * n + axis] = trend.value(experiment, observation.set_point);
-        }
-        let largest = column.amax();
-        if largest > 0.0 {
-            column /= largest;
-        }
-    }
-    columns
 }
 
 impl Trend {

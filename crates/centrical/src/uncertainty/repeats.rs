@@ -28,7 +28,7 @@ pub fn repeats(model: &MeasurementModel, x: &[f64], plateaus: &[Observation]) ->
         let [one, two] = [first, second].map(|n| &plateaus[n]);
         let [at_one, at_two] = [first, second].map(|n| model.linearise(&set_points[n], x));
         let difference = two.mean - one.mean - (at_two.reading - at_one.reading);
-        let [by_one, by_two] = [at_one, at_two].map(|at| at.speed_error * at.speed_error.transpose());
+        let [by_one, by_two] = [at_one, at_two].map(|at| at.setting_error * at.setting_error.transpose());
         let covariance = one.covariance + two.covariance + (by_one + by_two);
         let chi_squared = difference.dot(&covariance.cholesky()?.solve(&difference));
         let probability = chi_squared_tail(chi_squared, 3);

@@ -11,28 +11,32 @@ use nalgebra::DMatrix;
 
 use super::coverage::chi_squared_tail;
 use super::validity::f_tail;
-use crate::fit::{Calibration, Data, Termination};
-use crate::model::{ErrorModel, Extension, Extra, FitError, Kind, Law, MeasurementModel, Observation, Parameter, Term};
+use crate::fit::{Calibration, Data, Fit, Termination};
+use crate::model::{ErrorModel, Extension, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
 
 /// A model that could be meant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
     /// Its name for people.
     pub name: String,
+    /// What it adds to the model as stated.
+    pub rivals: Vec<Rival>,
     /// The model.
     pub model: MeasurementModel,
 }
 
 /// A candidate after its fit.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rival {
+pub struct FittedCandidate {
     /// Its name.
     pub name: String,
+    /// What it adds to the model as stated.
+    pub rivals: Vec<Rival>,
     /// Unknowns that the data determine.
     pub rank: usize,
     /// Unknowns that it has.
     pub unknowns: usize,
-    /// Whether the fit converged; a rival that did not is never recommended.
+    /// Whether the fit converged; a candidate that did not is never recommended.
     pub converged: bool,
     /// Sum of squared whitened residuals.
     pub chi_squared: f64,
@@ -42,14 +46,14 @@ pub struct Rival {
     pub bic: f64,
     /// Score of the prediction of each mounting from the others ([`Validity::hold_out_score`]): the lower the better.
     pub hold_out_score: f64,
-    /// Test against the largest rival nested in it, if there is one.
+    /// Test against the largest candidate nested in it, if there is one.
     pub against: Option<NestedTest>,
 }
 
 /// F test of a model against one nested in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NestedTest {
-    /// Index of the nested rival.
+    /// Index of the nested candidate.
     pub nested: usize,
     /// F statistic of the further unknowns.
     pub f: f64,
@@ -59,12 +63,12 @@ pub struct NestedTest {
     pub probability: f64,
 }
 
-/// The rivals and what follows.
+/// The candidates and what follows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selection {
     /// In the order of the candidates.
-    pub rivals: Vec<Rival>,
-    /// Index of the rival recommended: the lowest BIC of those that converged.
+    pub candidates: Vec<FittedCandidate>,
+    /// Index of the candidate recommended: the lowest BIC of those that converged.
     pub recommended: usize,
     /// The optional terms one by one: those of the recommended model, then those that richer candidates have beyond it.
     pub terms: Vec<TermVerdict>,
@@ -82,36 +86,69 @@ pub struct TermVerdict {
     pub kept: bool,
 }
 
-/// The usual rivals of a model: the linear part of its error model alone, with squares, with cubes, the model itself,
-/// and the model with cross terms, elastic turns or a stretch of the arm.
-pub fn rivals_of(model: &MeasurementModel) -> Vec<Candidate> {
+/// The candidates beside a model: the linear part of its error model alone, with squares, with cubes, the model itself, and the
+/// model with each rival of the catalogue that it leaves out.
+pub fn candidates_of(model: &MeasurementModel) -> Vec<Candidate> {
     let part = |keep: &dyn Fn(&Monomial) -> bool| ErrorModel {
         terms: model.error_model().terms.iter().filter(|t| keep(&t.monomial)).cloned().collect(),
     };
-    let mut crossed = model.error_model().clone();
-    let is_new = |term: &Term| crossed.terms.iter().all(|t| (t.axis, t.monomial) != (term.axis, term.monomial));
-    let further: Vec<Term> = Extra::CrossProducts.terms().into_iter().filter(is_new).collect();
-    crossed.terms.extend(further);
-    let whole = || model.error_model().clone();
-    let list = [
-        ("linear", part(&|m| m.degree() <= 1), vec![]),
-        ("linear + squares", part(&|m| m.degree() <= 2), vec![]),
-        ("linear + cubes", part(&|m| m.degree() != 2), vec![]),
-        ("as stated", whole(), vec![]),
-        ("as stated + cross terms", crossed, vec![]),
-        ("as stated + stretch of the arm", whole(), vec![Extension::ArmStretch(Law::Load)]),
-        ("as stated + elastic turn", whole(), vec![Extension::ElasticTurn(Law::Speed)]),
+    let parts = [
+        ("linear", part(&|m| m.degree() <= 1)),
+        ("linear + squares", part(&|m| m.degree() <= 2)),
+        ("linear + cubes", part(&|m| m.degree() != 2)),
+        (AS_STATED, model.error_model().clone()),
     ];
     let mut candidates: Vec<Candidate> = Vec::new();
-    for (name, error_model, extensions) in list {
-        let model = MeasurementModel::new(model.experiment().clone(), error_model, &extensions);
+    for (name, error_model) in parts {
+        let model = MeasurementModel::new(model.experiment().clone(), error_model, &[]).with_stated(*model.stated());
         let names = |m: &MeasurementModel| m.parameters().iter().map(|p| p.name.clone()).collect::<Vec<_>>();
         if candidates.iter().all(|c| names(&c.model) != names(&model)) {
-            candidates.push(Candidate { name: name.to_owned(), model });
+            candidates.push(Candidate { name: name.to_owned(), rivals: Vec::new(), model });
         }
     }
+    let of_session = |rival: &Rival| !matches!(rival, Rival::Effect(Extension::OneMounting(..)));
+    candidates.extend(model.left_out().into_iter().filter(of_session).map(|rival| with_rivals(model, vec![rival])));
     candidates
 }
+
+const AS_STATED: &str = "as stated";
+
+fn with_rivals(model: &MeasurementModel, rivals: Vec<Rival>) -> Candidate {
+    let names: Vec<String> = rivals.iter().map(|rival| rival.name()).collect();
+    Candidate { name: format!("{AS_STATED} + {}", names.join(" + ")), model: model.with_rivals(&rivals), rivals }
+}
+
+/// Compares the candidates beside `model`, and the model with pairs of the [`PAIRED`] rivals that lower BIC most.
+///
+/// # Errors
+/// [`FitError`] when an observation is invalid.
+pub fn select_beside(model: &MeasurementModel, observations: &[Observation]) -> Result<Selection, FitError> {
+    let mut candidates = candidates_of(model);
+    let data = |candidate: &Candidate| -> Result<f64, FitError> {
+        let data = Data::new(&candidate.model, observations.to_vec())?;
+        let fit = Calibration::exact(&data)?.into_fit();
+        Ok(bic(&fit, observations.len()))
+    };
+    let as_stated = candidates.iter().find(|candidate| candidate.name == AS_STATED).map(data).transpose()?;
+    let mut lower: Vec<(f64, Rival)> = Vec::new();
+    for candidate in &candidates {
+        if let [rival] = candidate.rivals[..] {
+            let bic = data(candidate)?;
+            if as_stated.is_some_and(|as_stated| bic < as_stated) {
+                lower.push((bic, rival));
+            }
+        }
+    }
+    lower.sort_by(|a, b| a.0.total_cmp(&b.0));
+    lower.truncate(PAIRED);
+    for (n, (_, first)) in lower.iter().enumerate() {
+        candidates.extend(lower[n + 1..].iter().map(|(_, second)| with_rivals(model, vec![*first, *second])));
+    }
+    select(&candidates, observations)
+}
+
+/// Rivals that are tried in pairs.
+const PAIRED: usize = 3;
 
 /// Fits all `candidates` to the same plateaus and compares them.
 ///
@@ -123,44 +160,51 @@ pub fn select(candidates: &[Candidate], observations: &[Observation]) -> Result<
         .collect::<Result<_, _>>()?;
     let calibrations: Vec<Calibration> = data.iter().map(Calibration::exact).collect::<Result<_, _>>()?;
     let named = candidates.iter().zip(&calibrations);
-    let mut rivals: Vec<Rival> = named.map(|(c, calibration)| rival(&c.name, calibration)).collect::<Result<_, _>>()?;
-    for n in 0..rivals.len() {
-        rivals[n].against = nested_test(candidates, &rivals, n);
+    let mut fitted: Vec<FittedCandidate> =
+        named.map(|(c, calibration)| candidate_fitted(c, calibration)).collect::<Result<_, _>>()?;
+    for n in 0..fitted.len() {
+        fitted[n].against = nested_test(candidates, &fitted, n);
     }
-    let converged = (0..rivals.len()).filter(|&n| rivals[n].converged);
-    let recommended = converged.min_by(|&a, &b| rivals[a].bic.total_cmp(&rivals[b].bic)).ok_or(FitError::Empty)?;
+    let converged = (0..fitted.len()).filter(|&n| fitted[n].converged);
+    let recommended = converged.min_by(|&a, &b| fitted[a].bic.total_cmp(&fitted[b].bic)).ok_or(FitError::Empty)?;
     let best = Best(&calibrations[recommended]);
     let mut terms = best.own_terms();
     terms.extend(best.further_terms(candidates)?);
-    Ok(Selection { rivals, recommended, terms })
+    Ok(Selection { candidates: fitted, recommended, terms })
 }
 
-fn rival(name: &str, calibration: &Calibration) -> Result<Rival, FitError> {
+fn candidate_fitted(candidate: &Candidate, calibration: &Calibration) -> Result<FittedCandidate, FitError> {
     let (fit, data) = (calibration.fit(), calibration.data());
     let rank = fit.observability().rank();
-    Ok(Rival {
-        name: name.to_owned(),
+    Ok(FittedCandidate {
+        name: candidate.name.clone(),
+        rivals: candidate.rivals.clone(),
         rank,
         unknowns: data.model().parameters().len(),
         converged: fit.termination == Termination::Converged,
         chi_squared: fit.chi_squared,
         degrees_of_freedom: fit.degrees_of_freedom,
-        bic: fit.chi_squared + rank as f64 * (3.0 * data.observations().len() as f64).ln(),
+        bic: bic(fit, data.observations().len()),
         hold_out_score: calibration.validity()?.hold_out_score(),
         against: None,
     })
 }
 
-/// Test of rival `n` against the largest one whose unknowns are all among its own.
-fn nested_test(candidates: &[Candidate], rivals: &[Rival], n: usize) -> Option<NestedTest> {
+/// `chi^2 + k ln n` for `k` unknowns determined and `n` readings, three per plateau (Schwarz).
+fn bic(fit: &Fit, plateaus: usize) -> f64 {
+    fit.chi_squared + fit.observability().rank() as f64 * (3.0 * plateaus as f64).ln()
+}
+
+/// Test of candidate `n` against the largest one whose unknowns are all among its own.
+fn nested_test(candidates: &[Candidate], fitted: &[FittedCandidate], n: usize) -> Option<NestedTest> {
     let names = |m: usize| candidates[m].model.parameters().iter().map(|p| p.name.as_str()).collect::<HashSet<_>>();
     let own = names(n);
-    let is_nested = |m: &usize| rivals[*m].rank < rivals[n].rank && names(*m).is_subset(&own);
-    let nested = (0..rivals.len()).filter(is_nested).max_by_key(|&m| rivals[m].rank)?;
-    let further = rivals[n].rank - rivals[nested].rank;
-    let left = rivals[n].degrees_of_freedom;
+    let is_nested = |m: &usize| fitted[*m].rank < fitted[n].rank && names(*m).is_subset(&own);
+    let nested = (0..fitted.len()).filter(is_nested).max_by_key(|&m| fitted[m].rank)?;
+    let further = fitted[n].rank - fitted[nested].rank;
+    let left = fitted[n].degrees_of_freedom;
     let f =
-        ((rivals[nested].chi_squared - rivals[n].chi_squared) / further as f64) / (rivals[n].chi_squared / left as f64);
+        ((fitted[nested].chi_squared - fitted[n].chi_squared) / further as f64) / (fitted[n].chi_squared / left as f64);
     Some(NestedTest { nested, f, further, probability: f_tail(f, further, left) })
 }
 
@@ -250,7 +294,7 @@ const REDUNDANT: f64 = 1e-6;
 fn can_go(model: &MeasurementModel, kind: Kind) -> bool {
     match kind {
         Kind::Term(index) => model.error_model().terms[index].monomial.degree() >= 2,
-        Kind::ElasticTurn { .. } | Kind::ArmStretch { .. } | Kind::RadiusScale | Kind::SpeedScale => true,
+        Kind::Effect(_) => true,
         Kind::Tilt(_) | Kind::Turn { .. } | Kind::Shift { .. } | Kind::ProofMass(_) => false,
     }
 }

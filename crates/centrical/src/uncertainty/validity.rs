@@ -86,7 +86,7 @@ impl Calibration<'_> {
         let observations = self.data().observations();
         let blocks = Blocks {
             residuals: gain.whitened_residuals(),
-            hat: gain.hat(),
+            basis: gain.basis(),
             chi_squared: fit.chi_squared,
             degrees_of_freedom: fit.degrees_of_freedom,
         };
@@ -153,21 +153,22 @@ pub fn f_tail(f: f64, m: usize, n: usize) -> f64 {
     if f.is_infinite() { 0.0 } else { beta_reg(0.5 * n, 0.5 * m, n / (n + m * f)) }
 }
 
-/// Whitened residuals and the hat matrix.
-struct Blocks {
+/// Whitened residuals, and the basis whose products are the hat matrix.
+struct Blocks<'g> {
     residuals: DVector<f64>,
-    hat: DMatrix<f64>,
+    basis: &'g DMatrix<f64>,
     chi_squared: f64,
     degrees_of_freedom: usize,
 }
 
-impl Blocks {
+impl Blocks<'_> {
     fn plateau(&self, n: usize, set_point: usize) -> PlateauCheck {
+        let hat = |i: usize| self.basis.row(3 * n + i).norm_squared();
         let standardised = Vector3::from_fn(|i, _| {
-            let free = 1.0 - self.hat[(3 * n + i, 3 * n + i)];
+            let free = 1.0 - hat(i);
             if free > REDUNDANT { self.residuals[3 * n + i] / free.sqrt() } else { 0.0 }
         });
-        let leverage = (0..3).map(|i| self.hat[(3 * n + i, 3 * n + i)]).sum::<f64>() / 3.0;
+        let leverage = (0..3).map(hat).sum::<f64>() / 3.0;
         PlateauCheck { set_point, standardised, leverage, prediction: self.predict(&[n]) }
     }
 
@@ -175,8 +176,8 @@ impl Blocks {
     /// in which nothing is redundant are left out.
     fn predict(&self, members: &[usize]) -> Prediction {
         let rows: Vec<usize> = members.iter().flat_map(|n| 3 * n..3 * n + 3).collect();
-        let free =
-            DMatrix::from_fn(rows.len(), rows.len(), |a, b| f64::from(u8::from(a == b)) - self.hat[(rows[a], rows[b])]);
+        let q = self.basis.select_rows(&rows);
+        let free = DMatrix::identity(rows.len(), rows.len()) - &q * q.transpose();
         let residuals = DVector::from_fn(rows.len(), |a, _| self.residuals[rows[a]]);
         let eigen = SymmetricEigen::new(free);
         let components = eigen.eigenvectors.transpose() * residuals;

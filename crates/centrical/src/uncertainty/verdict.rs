@@ -37,9 +37,9 @@ impl Level {
     }
 }
 
-/// What the checks of a calibration found; `P` names a plateau, `Q` a pattern.
+/// What the checks of a calibration found; `P` names a plateau, `Q` a pattern, `R` a rival.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Findings<P, Q> {
+pub struct Findings<P, Q, R> {
     /// How the fit ended.
     pub termination: Termination,
     /// Linearisations made.
@@ -50,6 +50,8 @@ pub struct Findings<P, Q> {
     pub degrees_of_freedom: usize,
     /// Plateaus that stand out, each with its family-wise probability, the most outlying first.
     pub outlying: Vec<(P, f64)>,
+    /// The rival that explains most and those which the data cannot tell from it, each with its family-wise probability.
+    pub rivals: Vec<(R, f64)>,
     /// Patterns in the residuals, each with its family-wise probability.
     pub patterns: Vec<(Q, f64)>,
     /// Names of the instrument's parameters that are not determined.
@@ -58,7 +60,7 @@ pub struct Findings<P, Q> {
 
 /// An objection to a result.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Objection<P, Q> {
+pub enum Objection<P, Q, R> {
     /// The fit did not converge.
     NotConverged {
         /// How it ended.
@@ -66,6 +68,8 @@ pub enum Objection<P, Q> {
         /// Linearisations made.
         iterations: usize,
     },
+    /// The model leaves out what the residuals show: the rival that explains most, and those which the data cannot tell from it.
+    LeftOut(Vec<R>),
     /// Residuals are larger than the stated uncertainties explain.
     Residuals {
         /// chi^2.
@@ -84,9 +88,17 @@ pub enum Objection<P, Q> {
 }
 
 /// The objections to a calibration; empty if it is acceptable.
-pub fn objections<P, Q>(findings: Findings<P, Q>) -> Vec<Objection<P, Q>> {
-    let Findings { termination, iterations, chi_squared, degrees_of_freedom, outlying, patterns, not_determined } =
-        findings;
+pub fn objections<P, Q, R>(findings: Findings<P, Q, R>) -> Vec<Objection<P, Q, R>> {
+    let Findings {
+        termination,
+        iterations,
+        chi_squared,
+        degrees_of_freedom,
+        outlying,
+        rivals,
+        patterns,
+        not_determined,
+    } = findings;
     let is_beyond = |probability: f64| Level::Objection.is_passed_by(probability);
     let mut objections = Vec::new();
     match termination {
@@ -94,6 +106,9 @@ pub fn objections<P, Q>(findings: Findings<P, Q>) -> Vec<Objection<P, Q>> {
             objections.push(Objection::NotConverged { termination, iterations });
         }
         Termination::Linear | Termination::Converged => {}
+    }
+    if rivals.iter().any(|(_, probability)| is_beyond(*probability)) {
+        objections.push(Objection::LeftOut(rivals.into_iter().map(|(rival, _)| rival).collect()));
     }
     let chance = chi_squared_tail(chi_squared, degrees_of_freedom);
     if is_beyond(chance) {

@@ -8,8 +8,8 @@ pub mod rank_table;
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
 use centrical::{
-    Calibration, Data, ErrorModel, Experiment, Extension, Fit, FitError, Law, LeastSquares, MeasurementModel,
-    Observation, PairRelation,
+    Calibration, Data, ErrorModel, Experiment, Extension, Fit, FitError, LeastSquares, MeasurementModel, Observation,
+    PairRelation,
 };
 use nalgebra::{DMatrix, DVector, Matrix3};
 pub use random::Random;
@@ -46,14 +46,7 @@ pub fn everything(experiment: Experiment) -> MeasurementModel {
             error_model.terms.push(Term { name: format!("{name}_{axis}"), group: Group::HigherOrder, axis, monomial });
         }
     }
-    let extensions = [
-        Extension::ElasticTurn(Law::Speed),
-        Extension::ElasticTurn(Law::Load),
-        Extension::ArmStretch(Law::Load),
-        Extension::SeatStretch(Law::Speed),
-        Extension::RadiusScale,
-        Extension::SpeedScale,
-    ];
+    let extensions = Extension::NAMED.map(|(_, extension)| extension);
     MeasurementModel::new(experiment, error_model, &extensions)
 }
 

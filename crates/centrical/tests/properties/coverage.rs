@@ -1,7 +1,8 @@
 //! The intervals of the exact fit cover what they say, and those of the linear fit do not.
 
 use centrical::PairRelation;
-use centrical::uncertainty::{Method, MonteCarlo, TypeB};
+use centrical::TypeB;
+use centrical::uncertainty::{Method, MonteCarlo};
 
 use crate::uncertainty::{Case, STATED};
 

@@ -22,10 +22,12 @@ mod prior;
 mod recursive;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod reduction;
+mod rivals;
 mod selection;
 mod simulate;
 mod simulated_noise;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
+mod stated;
 mod stream;
 #[allow(clippy::cast_possible_truncation, reason = "seeds")]
 mod tilt;

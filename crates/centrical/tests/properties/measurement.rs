@@ -50,7 +50,7 @@ fn h_is_the_jacobian_at_zero() {
                         assert!(error <= 1e-14 * size, "{}: {error:e} of {size:e}", model.parameters()[column].name);
                     }
                     assert!((h.reading - exact.reading).amax() <= 1e-14 * h.reading.amax());
-                    assert!((h.speed_error - exact.speed_error).amax() <= 1e-13 * (1.0 + h.speed_error.amax()));
+                    assert!((h.setting_error - exact.setting_error).amax() <= 1e-13 * (1.0 + h.setting_error.amax()));
                 }
             }
         }
@@ -135,7 +135,7 @@ fn speed_direction_equals_differences() {
         model.reading(&SetPoint { omega: set_point.omega * factor, ..*set_point }, &x)
     };
     for set_point in &model.experiment().set_points {
-        let speed = model.linearise(set_point, &x).speed_error;
+        let speed = model.linearise(set_point, &x).setting_error;
         let h = 1e-4;
         let numeric = (8.0 * (at(set_point, 1.0 + h) - at(set_point, 1.0 - h))
             - (at(set_point, 1.0 + 2.0 * h) - at(set_point, 1.0 - 2.0 * h)))
@@ -181,5 +181,5 @@ fn own_speed_uncertainty_stands_for_that_of_the_centrifuge() {
         assert_eq!(uncertain.linearise(a, &x), measured.linearise(b, &x));
         assert_eq!(uncertain.linearise_at_zero(a), measured.linearise_at_zero(b));
     }
-    assert!(measured.linearise(&measured.experiment().set_points[3], &x).speed_error.norm() > 0.0);
+    assert!(measured.linearise(&measured.experiment().set_points[3], &x).setting_error.norm() > 0.0);
 }

@@ -5,7 +5,7 @@ use centrical::plan::{
 use centrical::position::{ThirdPosition, kozlov_2017};
 use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, plateau_means, reduce};
 use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
-use centrical::uncertainty::{Compensated, Method, Settings, TypeB, monte_carlo};
+use centrical::uncertainty::{Compensated, Method, Settings, monte_carlo};
 use centrical::{
     Centrifuge, Data, ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, NULL_HOLD,
     Observation, PairRelation, ReferencePoint, SetPoint, Site, Term, Unit, Weight, linear,
@@ -78,8 +78,8 @@ fn covariance(scenario: &Scenario, visits: &[Visit]) -> DMatrix<f64> {
     rows.fill_diagonal(1.0 / NULL_HOLD);
     for (n, visit) in visits.iter().enumerate() {
         let l = model.linearise(&model.experiment().set_points[visit.candidate], &scenario.nominal);
-        let sigma =
-            Matrix3::identity() * scenario.noise.variance(visit.duration) + l.speed_error * l.speed_error.transpose();
+        let sigma = Matrix3::identity() * scenario.noise.variance(visit.duration)
+            + l.setting_error * l.setting_error.transpose();
         let whitener = sigma.cholesky().unwrap().l().try_inverse().unwrap();
         for (j, column) in &l.columns {
             let typical = model.parameters()[*j].typical;
@@ -312,9 +312,9 @@ fn predictions_are_what_monte_carlo_shows() {
     let (candidates, schedule) = planned();
     let (experiment, weights) = candidates.experiment_of(&schedule);
     let scenario = &candidates.scenarios[0];
-    let model = scenario.model.in_experiment(experiment);
+    let model = scenario.model.in_experiment(experiment).with_stated(STATED);
     let zero = vec![0.0; model.parameters().len()];
-    let prediction = predict(&model, &weights, &STATED, &zero).unwrap();
+    let prediction = predict(&model, &weights, &zero).unwrap();
     let observations: Vec<Observation> = weights
         .iter()
         .map(|w| Observation {
@@ -323,7 +323,7 @@ fn predictions_are_what_monte_carlo_shows() {
             covariance: w.covariance,
         })
         .collect();
-    let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact, stated: STATED };
+    let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact };
     let data = Data::new(&model, observations).unwrap();
     let shown = monte_carlo(&data, &zero, &settings, &|_| {}).unwrap();
     let mut ratios = Vec::new();
@@ -364,7 +364,7 @@ fn predictions_are_the_scatter_of_simulated_sessions() {
     let noise = Noise { density: 20e-6 * 9.80665, floor: 0.0 };
     let weights: Vec<Weight> = (0..model.experiment().set_points.len()).map(|n| noise.weight(n, 40.0)).collect();
     let truth = truth(&model, 1.0, &mut Random::new(100));
-    let prediction = predict(&model, &weights, &TypeB::default(), &truth).unwrap();
+    let prediction = predict(&model, &weights, &truth).unwrap();
     let p = model.parameters().len();
     let scale = nalgebra::DVector::from_fn(p, |j, _| prediction.budget().standard_uncertainty(j).unwrap());
     let correlation = DMatrix::from_fn(p, p, |i, j| prediction.budget().correlation(i, j).unwrap());
@@ -432,7 +432,7 @@ fn reading_criterion_is_the_mean_over_forces() {
     let (experiment, weights) = candidates.experiment_of(&schedule);
     let model = candidates.scenarios[0].model.in_experiment(experiment);
     let zero = vec![0.0; model.parameters().len()];
-    let prediction = predict(&model, &weights, &TypeB::default(), &zero).unwrap();
+    let prediction = predict(&model, &weights, &zero).unwrap();
     let [_, cubature] = prediction.reading(RANGE).unwrap();
     let first = model.parameters().find("df_1").unwrap();
     let covariance = DMatrix::from_fn(21, 21, |i, j| prediction.budget().covariance(first + i, first + j).unwrap());
@@ -533,8 +533,7 @@ fn next_best_is_the_best() {
     let benefits = next_best(model, &criterion, taken, rest).unwrap();
     assert_eq!(benefits.len(), 6);
     let zero = vec![0.0; model.parameters().len()];
-    let reading =
-        |weights: &[Weight]| predict(model, weights, &TypeB::default(), &zero).unwrap().reading(RANGE).unwrap()[1];
+    let reading = |weights: &[Weight]| predict(model, weights, &zero).unwrap().reading(RANGE).unwrap()[1];
     let before = reading(taken);
     for pair in benefits.windows(2) {
         assert!(pair[0].factor <= pair[1].factor);

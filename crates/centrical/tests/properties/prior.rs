@@ -2,7 +2,7 @@
 
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::{
-    Combination, ErrorModel, Extension, Extra, Law, MeasurementModel, PairRelation, PriorError, Study, Weight,
+    Combination, Course, ErrorModel, Extension, Extra, Law, MeasurementModel, PairRelation, PriorError, Study, Weight,
 };
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
@@ -118,18 +118,31 @@ fn optional_groups_are_recovered() {
     cases.push((kozlov().with(Extra::OddQuadratic), vec![]));
     cases.push((kozlov().with(Extra::CrossProducts), vec![]));
     cases.push((kozlov(), vec![Extension::ArmStretch(Law::Speed), Extension::ArmStretch(Law::Load)]));
+    // Of these some direction is lost: ranks are tested in `rank_table.rs`.
+    let mut lossy = Vec::new();
     for (error_model, extensions) in cases {
         let experiment = experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]);
         let model = MeasurementModel::new(experiment, error_model, &extensions);
         // Null space and estimability are tested elsewhere: here every estimable parameter must come back.
         let x = truth(&model, 0.5, &mut random);
         let fit = crate::common::exact(&model, &observations(&model, &x)).unwrap();
+        if fit.observability().lost() > 0 {
+            lossy.push(extensions);
+            continue;
+        }
         for (j, parameter) in model.parameters().iter().enumerate() {
             if let Some(value) = fit.value(j) {
                 let error = (value - x[j]).abs() / parameter.typical;
                 assert!(error < 1e-6, "{extensions:?} {}: {error:e}", parameter.name);
             }
         }
-        assert_eq!(fit.observability().lost(), 0, "{extensions:?}");
     }
+    let expected = [
+        Extension::SeatLateral,
+        Extension::MountingShift,
+        Extension::MountingTurn,
+        Extension::SpinTurn,
+        Extension::Disturbance(Course::Rise),
+    ];
+    assert_eq!(lossy, expected.map(|extension| vec![extension]));
 }

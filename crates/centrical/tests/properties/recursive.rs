@@ -90,7 +90,7 @@ fn noisy(model: &MeasurementModel, random: &mut Random) -> Vec<Observation> {
         let spread = Matrix3::from_fn(|_, _| 1e-5 * random.normal()) + Matrix3::identity() * 3e-5;
         observation.covariance = spread * spread.transpose();
         let set_point = &model.experiment().set_points[observation.set_point];
-        let speed = model.linearise(set_point, &x).speed_error * random.normal();
+        let speed = model.linearise(set_point, &x).setting_error * random.normal();
         observation.mean += spread * Vector3::from_fn(|_, _| random.normal()) + speed;
     }
     data
@@ -103,7 +103,7 @@ fn linear_noise(model: &MeasurementModel, random: &mut Random) -> Vec<Observatio
         let at_zero = model.linearise_at_zero(&model.experiment().set_points[observation.set_point]);
         let root = observation.covariance.cholesky().unwrap().unpack();
         let noise = root * Vector3::from_fn(|_, _| random.normal());
-        observation.mean = at_zero.reading + noise + at_zero.speed_error * random.normal();
+        observation.mean = at_zero.reading + noise + at_zero.setting_error * random.normal();
     }
     data
 }

@@ -1,5 +1,5 @@
-use centrical::uncertainty::{Candidate, rivals_of, select};
-use centrical::{ErrorModel, Group, MeasurementModel, Monomial, Term};
+use centrical::uncertainty::{Candidate, select, select_beside};
+use centrical::{ErrorModel, Group, MeasurementModel, Monomial, Rival, Term};
 use rayon::prelude::*;
 
 use crate::common::{Random, observations, truth};
@@ -41,8 +41,11 @@ fn five_sigma_is_kept_and_nothing_is_rejected() {
                     let mut x = truth(larger, 1.0, &mut random);
                     x[j] = if present { size } else { 0.0 };
                     let data = session(larger, &x, &mut random);
-                    let candidates =
-                        [smaller, larger].map(|model| Candidate { name: String::new(), model: model.clone() });
+                    let candidates = [smaller, larger].map(|model| Candidate {
+                        name: String::new(),
+                        rivals: Vec::new(),
+                        model: model.clone(),
+                    });
                     let selection = select(&candidates, &data).unwrap();
                     let verdict = selection.terms.iter().find(|t| t.name == term).unwrap();
                     ((selection.recommended == 1) == present, verdict.kept == present)
@@ -61,17 +64,18 @@ fn five_sigma_is_kept_and_nothing_is_rejected() {
 fn the_true_model_is_recommended() {
     let (model, mut random) = (source_model(), Random::new(21));
     let data = session(&model, &truth(&model, 1.0, &mut random), &mut random);
-    let selection = select(&rivals_of(&model), &data).unwrap();
-    let names: Vec<&str> = selection.rivals.iter().map(|r| r.name.as_str()).collect();
-    assert_eq!(names.len(), 7, "{names:?}");
+    let selection = select_beside(&model, &data).unwrap();
+    let names: Vec<&str> = selection.candidates.iter().map(|r| r.name.as_str()).collect();
+    // Three parts of the model, the model, and every rival of the catalogue.
+    assert!(names.len() >= 4 + Rival::COUNT, "{names:?}");
     assert_eq!(names[selection.recommended], "as stated");
-    let best = &selection.rivals[selection.recommended];
-    for rival in &selection.rivals {
+    let best = &selection.candidates[selection.recommended];
+    for rival in &selection.candidates {
         assert!(rival.hold_out_score >= best.hold_out_score - 0.05, "{}: {}", rival.name, rival.hold_out_score);
         if rival.unknowns < best.unknowns {
             assert!(rival.hold_out_score > 2.0 * best.hold_out_score, "{}: {}", rival.name, rival.hold_out_score);
         }
-        if rival.unknowns > best.unknowns {
+        if rival.rank > best.rank {
             let test = rival.against.unwrap();
             assert_eq!(names[test.nested], "as stated");
             assert!(test.probability > 1e-3, "{}: {test:?}", rival.name);

@@ -4,7 +4,9 @@
 
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition::{self, AxisOneDown, AxisOneUp};
-use centrical::{ErrorModel, Extension, Group, Law, MeasurementModel, Observability, PairRelation, Study, Weight};
+use centrical::{
+    ErrorModel, Extension, Group, Law, MeasurementModel, Observability, PairRelation, Rival, Study, Weight,
+};
 use nalgebra::Matrix3;
 
 use crate::common::rank_table::{self, CASES, Case, RELATIONS, spread};
@@ -161,5 +163,39 @@ fn arm_stretch_and_scales() {
         let printed = with(extensions, PairRelation::Opposite);
         assert_eq!(rank_of_columns(printed.observability()), (columns - 2, columns), "{extensions:?}");
         assert_eq!(directions(&printed), ["dR_2[A] + dR_1[B] - drho_22", "dR_2[B] + dR_1[C] - drho_33"]);
+    }
+}
+
+/// The rivals of docs/source-and-findings.md by an independent program: rank with the common and with the printed relation, and
+/// how many unknowns there are with the common one.
+#[test]
+fn rivals() {
+    let all = |name: &str| Rival::named(name).unwrap();
+    let table: [(&[&str], usize, usize, usize); 16] = [
+        (&["odd-quadratic"], 52, 52, 50),
+        (&["asymmetry"], 52, 52, 50),
+        (&["fourth-power"], 52, 52, 50),
+        (&["cross-products"], 58, 58, 54),
+        (&["arm-turn-speed"], 52, 52, 50),
+        (&["arm-turn-load"], 52, 52, 50),
+        (&["arm-turn-speed", "arm-turn-load"], 55, 55, 53),
+        (&["elastic-turn-speed"], 67, 67, 65),
+        (&["elastic-turn-load"], 67, 66, 64),
+        (&["seat-radius"], 50, 50, 48),
+        (&["seat-radius", "radius-scale"], 51, 50, 49),
+        (&["mounting-shift"], 67, 58, 58),
+        (&["mounting-turn"], 67, 64, 62),
+        (&["spin-turn"], 67, 61, 59),
+        (&["yield"], 52, 52, 50),
+        (&["arm-stretch-speed"], 50, 50, 48),
+    ];
+    for (names, columns, common, printed) in table {
+        let rivals: Vec<Rival> = names.iter().map(|name| all(name)).collect();
+        for (relation, rank) in [(PairRelation::Common, common), (PairRelation::Opposite, printed)] {
+            let model = with(&[], relation).model().with_rivals(&rivals);
+            let weights = Weight::equal(model.experiment().set_points.len(), 1.0);
+            let study = Study::at_zero(model, weights).unwrap();
+            assert_eq!(rank_of_columns(study.observability()), (rank, columns), "{names:?}, {relation:?}");
+        }
     }
 }

@@ -1,8 +1,11 @@
 //! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
 
-use centrical::uncertainty::{Budget, Degrees, Level, Pattern, Prediction, Source, Trend, Validity};
+use centrical::Source;
+use centrical::uncertainty::{Budget, Degrees, Level, Pattern, Prediction, Rivals, Trend, Validity};
 use centrical::{Calibration, Experiment, FitError};
 use serde::{Deserialize, Serialize};
+
+use super::rivals::RivalSummary;
 
 /// The uncertainties by their sources.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -40,8 +43,18 @@ pub struct ValiditySummary {
     pub mountings: Vec<MountingPrediction>,
     /// Patterns that were looked for in the residuals.
     pub patterns_tested: usize,
-    /// Those found at a family-wise error of 5 % (Holm), the likeliest to be real first.
+    /// Those found at a family-wise error of 5 % (Holm), the likeliest to be real first: beside what the first rival explains.
     pub patterns: Vec<PatternSummary>,
+    /// Effects left out by the model that the residuals were asked for.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rivals_tested: usize,
+    /// Those shown at a family-wise error of 5 % (Holm), the one that explains most first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rivals: Vec<RivalSummary>,
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// A plateau that stands out.
@@ -140,9 +153,15 @@ impl BudgetSummary {
 
 impl ValiditySummary {
     /// The checks of a calibration.
-    pub(crate) fn of(calibration: &Calibration) -> Result<Self, FitError> {
+    pub(crate) fn of(calibration: &Calibration, rivals: &Rivals) -> Result<Self, FitError> {
         let experiment = calibration.data().model().experiment();
-        Ok(Self::new(experiment, &calibration.validity()?, &calibration.patterns()?))
+        let suspects = rivals.suspects(Level::Reported.probability());
+        let patterns = match suspects.shown.first() {
+            Some(first) => calibration.patterns_beside(rivals, first.rival)?,
+            None => calibration.patterns()?,
+        };
+        let checks = Self::new(experiment, &calibration.validity()?, &patterns);
+        Ok(Self { rivals_tested: suspects.tested, rivals: RivalSummary::all(&suspects), ..checks })
     }
 
     /// The checks of a fit in the form of the file.
@@ -177,6 +196,8 @@ impl ValiditySummary {
             mountings: validity.mountings.iter().map(|m| prediction(m.mounting, &m.prediction)).collect(),
             patterns_tested: patterns.len(),
             patterns: reported.map(|pattern| PatternSummary::new(experiment, pattern)).collect(),
+            rivals_tested: 0,
+            rivals: Vec::new(),
         }
     }
 }

@@ -1,9 +1,11 @@
 //! From a fit to the result's form.
 
+use centrical::uncertainty::Rivals;
 use centrical::{Calibration, Fit, FitError, MeasurementModel, Mounting, Position, PriorUse, SetPoint, Termination};
 use nalgebra::{Matrix3, Vector3};
 
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
+use super::rivals::RestsOn;
 use super::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
     ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, TermSummary,
@@ -14,17 +16,23 @@ use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
 
 impl CalibrationResult {
     /// Puts a calibration and the reduced session that it rests on into the form of the file: with its budget and, for a fit
-    /// on the exact model, its checks. Where the session states uncertainties beyond what the fit weighs, the uncertainties
-    /// and the covariance are the combined ones.
+    /// on the exact model, its checks.
     ///
     /// # Errors
     /// [`FitError`] when numbers overflow.
     pub fn from(calibration: &Calibration, session: &Session, reduced: &Reduced) -> Result<Self, FitError> {
         let (model, fit) = (calibration.data().model(), calibration.fit());
-        let budget = calibration.budget(&session.type_b)?;
-        let is_combined = budget.contributions().iter().any(|c| !c.source.is_weighed());
-        let covariance = |i, j| if is_combined { budget.covariance(i, j) } else { fit.covariance(i, j) };
+        let budget = calibration.budget()?;
+        let covariance = |i, j| fit.covariance(i, j);
         let count = model.parameters().len();
+        let (validity, rests_on) = match fit.termination {
+            Termination::Linear => (None, Vec::new()),
+            _ => {
+                let rivals = Rivals::of(calibration)?;
+                let checks = ValiditySummary::of(calibration, &rivals)?;
+                (Some(checks), RestsOn::all(model, rivals.rests_on()?))
+            }
+        };
         Ok(Self {
             schema: SCHEMA.to_owned(),
             program: Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
@@ -41,10 +49,8 @@ impl CalibrationResult {
             plateaus: plateaus(calibration, reduced),
             convergence: Some(ConvergenceSummary::new(calibration)),
             budget: Some(BudgetSummary::new(&budget, count)),
-            validity: match fit.termination {
-                Termination::Linear => None,
-                _ => Some(ValiditySummary::of(calibration)?),
-            },
+            validity,
+            rests_on,
             stability: None,
             drift: DriftSummary::of(calibration, reduced)?,
             tilt: TiltSummary::of(calibration, reduced),
@@ -218,8 +224,8 @@ fn plateaus(calibration: &Calibration, reduced: &Reduced) -> Vec<PlateauSummary>
 
 /// Covariance with the speed's term and residual of a plateau against a fit that it has no part in.
 fn against(calibration: &Calibration, set_point: &SetPoint, plateau: &ReducedPlateau) -> (Matrix3<f64>, Vector3<f64>) {
-    let there = calibration.data().model().linearise(set_point, calibration.fit().state());
-    (plateau.covariance + there.speed_error * there.speed_error.transpose(), plateau.mean - there.reading)
+    let (covariance, reading) = calibration.expected(set_point, &plateau.covariance);
+    (covariance, plateau.mean - reading)
 }
 
 fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {

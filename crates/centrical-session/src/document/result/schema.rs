@@ -7,13 +7,14 @@
 use std::fs;
 use std::path::Path;
 
-use centrical::uncertainty::{Estimates, Source};
-use centrical::{Group, PairRelation, ReferencePoint, Termination};
+use centrical::uncertainty::Estimates;
+use centrical::{Group, PairRelation, ReferencePoint, Source, Termination};
 use centrical_table::write_whole;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
+use super::rivals::RestsOn;
 use crate::document::json;
 use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
 use crate::error::{Error, Place};
@@ -57,6 +58,9 @@ pub struct CalibrationResult {
     /// The checks of the fit, if they were made.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub validity: Option<ValiditySummary>,
+    /// The effects whose absence the result rests on, the worst first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rests_on: Vec<RestsOn>,
     /// Stability of the reading at rest, if it was computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<Vec<StabilityCurve>>,

@@ -3,16 +3,18 @@
 use centrical::uncertainty::{Findings, Objection, objections};
 
 use super::budget_and_checks::PatternSummary;
+use super::rivals::RivalSummary;
 use super::schema::CalibrationResult;
 
 /// An objection to a result: plateaus as `mounting:plateau`, counted from 1.
-pub type ResultObjection = Objection<String, PatternSummary>;
+pub type ResultObjection = Objection<String, PatternSummary, RivalSummary>;
 
 impl CalibrationResult {
     /// The objections to the result; empty if it is acceptable.
     pub fn objections(&self) -> Vec<ResultObjection> {
         let validity = self.validity.iter();
         let outlying = validity.clone().flat_map(|validity| &validity.outlying);
+        let rivals = validity.clone().flat_map(|validity| &validity.rivals).filter(|rival| rival.explains_most);
         let patterns = validity.flat_map(|validity| &validity.patterns);
         let terms = self.model.error_model.iter().map(|term| &term.name);
         let is_lost = |name: &&String| self.parameter(name).is_none_or(|p| !p.estimable);
@@ -22,6 +24,7 @@ impl CalibrationResult {
             chi_squared: self.fit.chi_squared,
             degrees_of_freedom: self.fit.degrees_of_freedom,
             outlying: outlying.map(|p| (format!("{}:{}", p.mounting, p.index + 1), p.probability)).collect(),
+            rivals: rivals.map(|rival| (rival.clone(), rival.probability)).collect(),
             patterns: patterns.map(|pattern| (pattern.clone(), pattern.probability)).collect(),
             not_determined: terms.filter(is_lost).cloned().collect(),
         })

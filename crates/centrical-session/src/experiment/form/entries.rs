@@ -43,6 +43,52 @@ pub(crate) struct ColumnTable {
 #[derive(Debug)]
 pub(crate) struct ColumnLabel(pub ColumnName);
 
+/// A prior: a standard uncertainty about zero, or about a mean.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PriorValue {
+    pub mean: Option<Quantity>,
+    pub standard_uncertainty: Quantity,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PriorTable {
+    mean: Quantity,
+    standard_uncertainty: Quantity,
+}
+
+impl<'de> Deserialize<'de> for PriorValue {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PriorVisitor;
+        impl<'de> Visitor<'de> for PriorVisitor {
+            type Value = PriorValue;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a standard uncertainty, or { mean = ..., standard_uncertainty = ... }")
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<PriorValue, E> {
+                Ok(PriorValue { mean: None, standard_uncertainty: Quantity::Text(text.to_owned()) })
+            }
+
+            fn visit_i64<E: de::Error>(self, number: i64) -> Result<PriorValue, E> {
+                Ok(PriorValue { mean: None, standard_uncertainty: Quantity::Number(number as f64) })
+            }
+
+            fn visit_f64<E: de::Error>(self, number: f64) -> Result<PriorValue, E> {
+                Ok(PriorValue { mean: None, standard_uncertainty: Quantity::Number(number) })
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PriorValue, A::Error> {
+                let PriorTable { mean, standard_uncertainty } =
+                    PriorTable::deserialize(de::value::MapAccessDeserializer::new(map))?;
+                Ok(PriorValue { mean: Some(mean), standard_uncertainty })
+            }
+        }
+        deserializer.deserialize_any(PriorVisitor)
+    }
+}
+
 /// A date as TOML has it, or any text.
 pub(crate) fn date_as_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
     struct DateVisitor;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use super::entries::{ColumnEntry, TermList, date_as_text, name_or_number};
+use super::entries::{ColumnEntry, PriorValue, TermList, date_as_text, name_or_number};
 use crate::quantity::Quantity;
 
 /// The whole file.
@@ -30,7 +30,7 @@ pub(crate) struct Form {
     pub centrifuge: CentrifugeTable,
     pub model: ModelTable,
     #[serde(default)]
-    pub uncertainty: UncertaintyTable,
+    pub uncertainty: BTreeMap<String, Quantity>,
     #[serde(default)]
     pub columns: ColumnsTable,
     #[serde(default)]
@@ -39,7 +39,7 @@ pub(crate) struct Form {
     pub mounting: Vec<MountingTable>,
     /// Standard uncertainties of parameters and groups, by name.
     #[serde(default)]
-    pub prior: BTreeMap<String, Quantity>,
+    pub prior: BTreeMap<String, PriorValue>,
 }
 
 /// The noise that a plan reckons with.
@@ -131,7 +131,7 @@ pub(crate) struct PresetForm {
     pub centrifuge: PresetCentrifugeTable,
     pub model: ModelTable,
     #[serde(default)]
-    pub prior: BTreeMap<String, Quantity>,
+    pub prior: BTreeMap<String, PriorValue>,
 }
 
 /// A preset experiment. Lengths in units of R* but `arm`, which is R*.
@@ -200,22 +200,6 @@ pub(crate) struct CountsTable {
 pub(crate) struct CentrifugeTable {
     pub speed_uncertainty: Quantity,
     pub rotation: String,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct UncertaintyTable {
-    pub gravity: Option<Quantity>,
-    pub latitude: Option<Quantity>,
-    pub radius: Option<Quantity>,
-    pub radius_difference: Option<Quantity>,
-    pub speed_scale: Option<Quantity>,
-    pub plateau_speed: Option<Quantity>,
-    pub rest_angle: Option<Quantity>,
-    pub proof_masses: Option<Quantity>,
-    pub attitude: Option<Quantity>,
-    pub resolution: Option<Quantity>,
-    pub doubt: Option<Quantity>,
 }
 
 #[derive(Debug, Deserialize)]

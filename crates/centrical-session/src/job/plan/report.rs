@@ -56,7 +56,8 @@ pub(super) fn report(planning: &Planning, plan: &Plan, request: &PlanRequest) ->
         time_by_use: [measuring, visits - measuring, schedule.time - visits],
         mountings: mountings(task, plan, &rationale),
         goals: goals(task, &prediction),
-        prediction: PredictionReport::of(&prediction, planning.range, request.coverage),
+        prediction: PredictionReport::of(&prediction, planning.range, request.coverage)
+            .map_err(|source| failed(PlanError::from(source)))?,
         frontier: frontier_rows(planning, schedule.time, request)?,
     })
 }

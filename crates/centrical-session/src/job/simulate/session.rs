@@ -33,6 +33,15 @@ pub fn simulate_session(
     if experiment_file.exists() {
         return Err(Error::content(&experiment_file, Place::Whole, "a session", "a folder without one"));
     }
+    if let Some(parameter) = truth.model.of_history(&truth.values) {
+        let found = format!("{}, which acts through what came before a plateau", parameter.name);
+        return Err(Error::content(
+            &truth.file,
+            Place::Whole,
+            found,
+            "effects that act at an instant: it cannot be simulated",
+        ));
+    }
     let columns = Headers::of(plan)?;
     let text = with_files(plan, format)?;
     // Plateaus last as long as the plan says, or as the machine makes them.

@@ -11,36 +11,10 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use super::super::data::Data;
 use super::super::design::Design;
 use super::lifetimes::Lifetimes;
+use super::readings::Readings;
 use crate::linalg::factor::Factor;
-use crate::model::whitening::Whitener;
-use crate::model::{FitError, Linearisation, Observation};
+use crate::model::{FitError, Linearisation};
 use crate::observability::RANK_TOLERANCE;
-
-/// Three whitened readings of a plateau, linearised about a point of the unknowns: `rows (x - point) = misfit`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Readings {
-    /// Non-zero columns: (index of the parameter, whitened derivative).
-    pub columns: Vec<(usize, Vector3<f64>)>,
-    /// Whitened reading less whitened model.
-    pub misfit: Vector3<f64>,
-    /// Norm of the whitened reading of the model.
-    magnitude: f64,
-}
-
-impl Readings {
-    /// Whitens a plateau by the covariance of its mean and the speed's rank-one term.
-    ///
-    /// # Errors
-    /// [`FitError::Covariance`] when the covariance is not positive definite.
-    pub fn new(observation: &Observation, linearisation: &Linearisation) -> Result<Self, FitError> {
-        let whitener = Whitener::new(&observation.into(), &linearisation.speed_error)?;
-        Ok(Self {
-            columns: linearisation.columns.iter().map(|(column, d)| (*column, whitener.apply(d))).collect(),
-            misfit: whitener.apply(&(observation.mean - linearisation.reading)),
-            magnitude: whitener.apply(&linearisation.reading).norm(),
-        })
-    }
-}
 
 /// A square-root information filter over the plateaus of an order.
 ///
@@ -114,9 +88,9 @@ impl<'a> Filter<'a> {
     pub fn update(&mut self, place: usize, readings: &Readings) -> Result<f64, FitError> {
         self.advance(place)?;
         self.scratch.clear();
-        for (column, derivative) in &readings.columns {
-            let slot = self.slot(*column, place)?;
-            self.scratch.push((slot, *derivative));
+        for (column, derivative) in self.lifetimes.columns_of(readings) {
+            let slot = self.slot(column, place)?;
+            self.scratch.push((slot, derivative));
         }
         for (slot, derivative) in &self.scratch {
             self.lengths[*slot] += derivative.norm_squared();
@@ -142,6 +116,11 @@ impl<'a> Filter<'a> {
             }
         }
         Ok(())
+    }
+
+    /// The lifetimes of the unknowns.
+    pub(super) fn lifetimes(&self) -> &'a Lifetimes {
+        self.lifetimes
     }
 
     /// Unknowns carried now, in the order of the states of [`Filter::factor`].

@@ -1,10 +1,13 @@
 //! Which unknowns a filter has to carry at each plateau of an order.
 //!
-//! An unknown that acts in every position is carried all along. One that belongs to a position (`delta`), a pair
+//! An unknown that acts in every position is carried all along, and so is every influence. One that belongs to a position (`delta`), a pair
 //! (`dR`) or a seat is carried from the first plateau there to the last, and then retired. With the experiments
 //! ordered by position these are 30 of the source's 49 at a time: 19 fewer, 15 `delta` and 4 `dR` (source, section 6).
 
-use crate::model::{Kind, MeasurementModel, SetPoint};
+use nalgebra::Vector3;
+
+use super::readings::Readings;
+use crate::model::{Effect, Experiment, Kind, MeasurementModel, SetPoint};
 
 /// The lifetimes of the unknowns in an order of plateaus.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,6 +16,8 @@ pub struct Lifetimes {
     order: Vec<usize>,
     /// First and last place in the order, per unknown; `None` for one that no plateau of the order sees.
     spans: Vec<Option<(usize, usize)>>,
+    /// Number of parameters; the other unknowns are influences.
+    parameters: usize,
     /// The most states carried at a time if the same plateaus are grouped by pair and position.
     grouped_states: usize,
 }
@@ -25,7 +30,17 @@ impl Lifetimes {
     pub fn new(model: &MeasurementModel, order: &[usize]) -> Self {
         let spans = spans(model, order);
         let grouped_states = most_at_a_time(&self::spans(model, &grouped(model, order)));
-        Self { order: order.to_vec(), spans, grouped_states }
+        Self { order: order.to_vec(), spans, parameters: model.parameters().len(), grouped_states }
+    }
+
+    /// Unknowns and whitened columns of a plateau, the influences behind the parameters.
+    pub(super) fn columns_of<'r>(
+        &self,
+        readings: &'r Readings,
+    ) -> impl Iterator<Item = (usize, Vector3<f64>)> + use<'r> {
+        let parameters = self.parameters;
+        let influences = readings.stated.iter().map(move |(n, change)| (parameters + n, *change));
+        readings.columns.iter().copied().chain(influences)
     }
 
     /// Set points in the order in which they come.
@@ -82,7 +97,9 @@ fn spans(model: &MeasurementModel, order: &[usize]) -> Vec<Option<(usize, usize)
         let first = (0..order.len()).find(there)?;
         Some((first, (first..order.len()).rev().find(there)?))
     };
-    (0..model.parameters().len()).map(span).collect()
+    let influence = (!order.is_empty()).then(|| (0, order.len() - 1));
+    let influences = model.influences().iter().map(|_| influence);
+    (0..model.parameters().len()).map(span).chain(influences).collect()
 }
 
 fn most_at_a_time(spans: &[Option<(usize, usize)>]) -> usize {
@@ -110,14 +127,38 @@ fn belongs(model: &MeasurementModel, column: usize, set_point: &SetPoint) -> boo
     let experiment = model.experiment();
     let position = experiment.mountings[set_point.mounting].position;
     match model.parameters()[column].kind {
-        Kind::Turn { position: k, .. } | Kind::ElasticTurn { position: k, .. } => k == position,
+        Kind::Turn { position: k, .. } => k == position,
         Kind::Shift { axis, .. } => model.parameters().shift_of(position).column + axis == column,
-        Kind::ArmStretch { seat: Some(seat), .. } => experiment.seat_of(set_point.mounting) == seat,
-        Kind::Tilt(_)
-        | Kind::ProofMass(_)
-        | Kind::Term(_)
-        | Kind::ArmStretch { seat: None, .. }
-        | Kind::RadiusScale
-        | Kind::SpeedScale => true,
+        Kind::Effect(effect) => acts_on(experiment, effect, set_point.mounting),
+        Kind::Tilt(_) | Kind::ProofMass(_) | Kind::Term(_) => true,
+    }
+}
+
+/// Whether an effect acts in a mounting.
+fn acts_on(experiment: &Experiment, effect: Effect, here: usize) -> bool {
+    let position = experiment.mountings[here].position;
+    match effect {
+        Effect::ElasticTurn { position: k, .. }
+        | Effect::PositionTurn { position: k, .. }
+        | Effect::SpinTurn { position: k, .. }
+        | Effect::PositionShift { position: k, .. } => k == position,
+        Effect::MountingTurn { mounting, .. }
+        | Effect::MountingTilt { mounting, .. }
+        | Effect::MountingShift { mounting, .. }
+        | Effect::Monomial { mounting: Some(mounting), .. } => mounting == here,
+        Effect::Rounding { first, .. } => experiment.set_points[first].mounting == here,
+        Effect::ArmStretch { seat: Some(seat), .. } | Effect::SeatPlace { seat: Some(seat), .. } => {
+            experiment.seat_of(here) == seat
+        }
+        Effect::ArmTurn { .. }
+        | Effect::ArmStretch { seat: None, .. }
+        | Effect::SeatPlace { seat: None, .. }
+        | Effect::RadiusScale
+        | Effect::Coordinate { .. }
+        | Effect::SpeedScale
+        | Effect::Gravity
+        | Effect::Latitude
+        | Effect::Monomial { mounting: None, .. }
+        | Effect::Disturbance { .. } => true,
     }
 }

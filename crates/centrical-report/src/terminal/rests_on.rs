@@ -1,0 +1,52 @@
+//! What a result rests on, as text for the terminal.
+
+use std::fmt::Write;
+
+use centrical::{Extension, Rival};
+use centrical_session::RestsOn;
+
+use super::rivals::lines_of;
+use crate::document::rests_on_sentence;
+use crate::language::Language;
+
+/// Effects that are shown: the others are in the JSON.
+const SHOWN: usize = 3;
+
+/// A price below this factor is worth paying: the effect is then better an unknown.
+const CHEAP: f64 = 1.5;
+
+/// The effects whose absence a result rests on most, and what would protect against each. Empty where there is none.
+pub(super) fn rests_on_text(effects: &[RestsOn]) -> String {
+    let mut text = String::new();
+    if effects.is_empty() {
+        return text;
+    }
+    text.push_str("RESTS on the absence of effects, of which these sizes would pass unseen; the worst:\n");
+    for effect in effects.iter().take(SHOWN) {
+        let _ = writeln!(text, "      {}", rests_on_sentence(effect, Language::English));
+        let _ = writeln!(text, "        {}", protection(effect));
+    }
+    text
+}
+
+/// What protects against an effect: an unknown where it costs little, else a bound.
+fn protection(effect: &RestsOn) -> String {
+    let bound = effect.name.replace('-', "_");
+    let line = Rival::named(&effect.name).map(|rival| lines_of(&[rival]).join("; ")).unwrap_or_default();
+    if let Some(Rival::Effect(Extension::OneMounting(_, mounting))) = Rival::named(&effect.name) {
+        return format!("protect: mount the unit again as in mounting {}", mounting + 1);
+    }
+    match effect.price_as_unknown {
+        Some(price) if price < CHEAP => {
+            format!("protect: {line}, at {price:.2} times the uncertainty of {}", effect.parameter)
+        }
+        Some(price) => format!(
+            "protect: state {bound} under [uncertainty]; or {line}, at {price:.1} times the uncertainty of {}",
+            effect.parameter
+        ),
+        None => format!(
+            "protect: state {bound} under [uncertainty]; as an unknown it would leave {} undetermined",
+            effect.parameter
+        ),
+    }
+}

@@ -1,0 +1,35 @@
+//! The whitened readings of one plateau.
+
+use nalgebra::Vector3;
+
+use crate::model::whitening::Whitener;
+use crate::model::{FitError, Linearisation, Observation};
+
+/// Three whitened readings of a plateau, linearised about a point of the unknowns: `rows (x - point) = misfit`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Readings {
+    /// Non-zero columns: (index of the parameter, whitened derivative).
+    pub columns: Vec<(usize, Vector3<f64>)>,
+    /// Non-zero columns of the influences.
+    pub stated: Vec<(usize, Vector3<f64>)>,
+    /// Whitened reading less whitened model.
+    pub misfit: Vector3<f64>,
+    /// Norm of the whitened reading of the model.
+    pub(super) magnitude: f64,
+}
+
+impl Readings {
+    /// Whitens a plateau by the covariance of its mean and the speed's rank-one term.
+    ///
+    /// # Errors
+    /// [`FitError::Covariance`] when the covariance is not positive definite.
+    pub fn new(observation: &Observation, linearisation: &Linearisation) -> Result<Self, FitError> {
+        let whitener = Whitener::new(&observation.into(), linearisation)?;
+        Ok(Self {
+            columns: linearisation.columns.iter().map(|(column, d)| (*column, whitener.apply(d))).collect(),
+            stated: linearisation.stated.iter().map(|(n, d)| (*n, whitener.apply(d))).collect(),
+            misfit: whitener.apply(&(observation.mean - linearisation.reading)),
+            magnitude: whitener.apply(&linearisation.reading).norm(),
+        })
+    }
+}

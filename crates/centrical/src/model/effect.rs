@@ -1,0 +1,228 @@
+//! What acts on the readings beyond the source's unknowns: as a further unknown, as a stated uncertainty, or as a rival that
+//! the residuals are asked for.
+
+use centrical_compensate::Monomial;
+
+use super::experiment::STANDARD_GRAVITY;
+
+/// An effect on the readings, per unit of its size. Axes are 0, 1, 2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effect {
+    /// Elastic turn of the unit in a position about an instrument axis, per unit of its law.
+    ElasticTurn {
+        /// What it grows with.
+        law: Law,
+        /// Instrument axis.
+        axis: usize,
+        /// Index of the position.
+        position: usize,
+    },
+    /// Elastic turn of the arm's end about an arm axis, common to all positions, per unit of its law.
+    ArmTurn {
+        /// What it grows with.
+        law: Law,
+        /// Arm axis.
+        axis: usize,
+    },
+    /// Turn of the unit in a position about an instrument axis [rad].
+    PositionTurn {
+        /// Instrument axis.
+        axis: usize,
+        /// Index of the position.
+        position: usize,
+    },
+    /// The same while the centrifuge spins only [rad].
+    SpinTurn {
+        /// Instrument axis.
+        axis: usize,
+        /// Index of the position.
+        position: usize,
+    },
+    /// Turn of the unit in one mounting about an instrument axis [rad].
+    MountingTurn {
+        /// Instrument axis.
+        axis: usize,
+        /// Index of the mounting.
+        mounting: usize,
+    },
+    /// Tilt of the rotation axis in one mounting [rad], about reference axis 1 or 2; it shows at rest.
+    MountingTilt {
+        /// Reference axis, 0 or 1.
+        axis: usize,
+        /// Index of the mounting.
+        mounting: usize,
+    },
+    /// Relative stretch of the arm, `R_1 (1 + kappa law)` (IEEE Std 836), of one seat or of all.
+    ArmStretch {
+        /// What it grows with.
+        law: Law,
+        /// Index of the first mounting on the seat; `None` when all seats share one stretch.
+        seat: Option<usize>,
+    },
+    /// One relative error of all radii: `R0 (1 + s)`.
+    RadiusScale,
+    /// Displacement of a seat along an arm axis [m], or of all seats.
+    SeatPlace {
+        /// Arm axis, 0 or 1.
+        axis: usize,
+        /// Index of the first mounting on the seat; `None` for all seats.
+        seat: Option<usize>,
+    },
+    /// Displacement of the unit in a position along an arm axis [m].
+    PositionShift {
+        /// Arm axis, 0 or 1.
+        axis: usize,
+        /// Index of the position.
+        position: usize,
+    },
+    /// Displacement of the unit in one mounting along an arm axis [m].
+    MountingShift {
+        /// Arm axis, 0 or 1.
+        axis: usize,
+        /// Index of the mounting.
+        mounting: usize,
+    },
+    /// Coordinate of a proof mass in instrument axes [m].
+    Coordinate {
+        /// Instrument axis of the coordinate.
+        coordinate: usize,
+        /// The proof mass.
+        mass: usize,
+    },
+    /// One relative error of the square of all speeds: `Omega^2 (1 + s)`.
+    SpeedScale,
+    /// Local gravity [m/s^2].
+    Gravity,
+    /// Latitude [rad].
+    Latitude,
+    /// A term of the error model at the nominal specific force, in one mounting or in all.
+    Monomial {
+        /// Newtonometer it acts on.
+        axis: usize,
+        /// What multiplies its coefficient.
+        monomial: Monomial,
+        /// Index of the mounting; `None` for all.
+        mounting: Option<usize>,
+    },
+    /// A disturbance of one newtonometer's readings.
+    Disturbance {
+        /// Newtonometer.
+        axis: usize,
+        /// What it follows.
+        follows: Course,
+    },
+    /// An error of rounding common to repeated rests of one mounting at one angle [m/s^2].
+    Rounding {
+        /// Newtonometer.
+        axis: usize,
+        /// Index of the first of the rests.
+        first: usize,
+    },
+}
+
+/// What a disturbance follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Course {
+    /// 1 while the centrifuge spins: an aliased line, rectified vibration of the drive.
+    Spinning,
+    /// `Omega^2` [rad^2/s^2]: rectified vibration that grows with the speed.
+    SquaredSpeed,
+    /// `-M_ii f_i`: a proof mass that yields to its force, in open loop or a soft loop.
+    Yield,
+    /// The order of the plateaus in the session, -1/2 to 1/2.
+    Time,
+    /// The same times `f_i`: a scale that changes with time.
+    TimeScale,
+    /// +1 after a rise of the speed, -1 after a fall.
+    Rise,
+    /// The specific force of the plateaus before, each half as much as the next.
+    Memory,
+}
+
+impl Course {
+    /// Whether it depends on what came before a plateau.
+    pub(super) fn is_of_history(self) -> bool {
+        match self {
+            Self::Time | Self::TimeScale | Self::Rise | Self::Memory => true,
+            Self::Spinning | Self::SquaredSpeed | Self::Yield => false,
+        }
+    }
+}
+
+impl Effect {
+    /// Whether it is a deformation that grows with the square of the speed.
+    pub(crate) fn is_elastic(self) -> bool {
+        matches!(self, Self::ElasticTurn { .. } | Self::ArmTurn { .. } | Self::ArmStretch { .. })
+    }
+
+    /// Whether it acts otherwise at another speed, through more than the rate.
+    pub(crate) fn changes_with_speed(self) -> bool {
+        let is_disturbance = matches!(self, Self::Disturbance { .. } | Self::Monomial { .. });
+        self.is_elastic() || is_disturbance || matches!(self, Self::SpinTurn { .. } | Self::MountingTilt { .. })
+    }
+
+    /// Whether it belongs to a position.
+    pub(crate) fn is_of_position(self) -> bool {
+        match self {
+            Self::ElasticTurn { .. }
+            | Self::PositionTurn { .. }
+            | Self::SpinTurn { .. }
+            | Self::PositionShift { .. } => true,
+            Self::ArmTurn { .. }
+            | Self::MountingTurn { .. }
+            | Self::MountingTilt { .. }
+            | Self::ArmStretch { .. }
+            | Self::RadiusScale
+            | Self::SeatPlace { .. }
+            | Self::MountingShift { .. }
+            | Self::Coordinate { .. }
+            | Self::SpeedScale
+            | Self::Gravity
+            | Self::Latitude
+            | Self::Monomial { .. }
+            | Self::Disturbance { .. }
+            | Self::Rounding { .. } => false,
+        }
+    }
+}
+
+/// What an elastic deformation grows with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Law {
+    /// `Omega^2` [rad^2/s^2].
+    Speed,
+    /// The load `Omega^2 |R0_1|` [m/s^2].
+    Load,
+}
+
+impl Law {
+    /// Value at a rate squared [rad^2/s^2] and a radius [m].
+    pub fn value(self, omega_squared: f64, radius: f64) -> f64 {
+        match self {
+            Self::Speed => omega_squared,
+            Self::Load => omega_squared * radius.abs(),
+        }
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Speed => "speed",
+            Self::Load => "load",
+        }
+    }
+
+    pub(super) fn unit_of_inverse(self) -> &'static str {
+        match self {
+            Self::Speed => "s^2",
+            Self::Load => "s^2/m",
+        }
+    }
+
+    /// Largest value the machines of the field reach (10 rev/s, 200 g): what turns a deformation into a coefficient.
+    pub(super) fn full_scale(self) -> f64 {
+        match self {
+            Self::Speed => (20.0 * std::f64::consts::PI).powi(2),
+            Self::Load => 200.0 * STANDARD_GRAVITY,
+        }
+    }
+}

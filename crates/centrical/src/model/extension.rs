@@ -1,0 +1,276 @@
+//! Effects as unknowns beyond the source's 49, each off by default.
+//!
+//! Where an effect belongs to a mounting, its unknowns are differences from the first mounting that shares the position (or
+//! the shift): the shared unknown itself remains, and no direction is lost by counting it twice.
+
+use super::effect::{Course, Effect, Law};
+use super::error_model::{ErrorModel, Term};
+use super::experiment::{Experiment, PairRelation, STANDARD_GRAVITY};
+use super::group::Group;
+use super::kind::Kind;
+use super::parameter::{Parameter, coefficient, parameter};
+
+/// Unknowns beyond the source's 49, each off by default.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extension {
+    /// Elastic turn of the unit, three per position.
+    ElasticTurn(Law),
+    /// Stretch of the arm, one for all seats.
+    ArmStretch(Law),
+    /// Stretch of the arm, one per seat (distinct `R0`).
+    SeatStretch(Law),
+    /// One scale of all radii.
+    RadiusScale,
+    /// One scale of the square of all speeds.
+    SpeedScale,
+    /// Elastic turn of the arm's end, three for all positions.
+    ArmTurn(Law),
+    /// Radius of each seat but the first.
+    SeatRadius,
+    /// Lateral place of each seat but the first.
+    SeatLateral,
+    /// `dR` of every position, where the model shares it by pair.
+    PositionShift,
+    /// Shift of every mounting, two each.
+    MountingShift,
+    /// Turn of every mounting, three each.
+    MountingTurn,
+    /// Tilt of the axis in every mounting, two each.
+    MountingTilt,
+    /// Turn of the unit while spinning against that at rest, three per position.
+    SpinTurn,
+    /// A disturbance of the readings, one per newtonometer.
+    Disturbance(Course),
+    /// One mounting, by its index, that differs from the others.
+    OneMounting(Difference, usize),
+}
+
+/// How one mounting may differ from the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Difference {
+    /// Its place, two unknowns.
+    Shift,
+    /// Its attitude, three unknowns.
+    Turn,
+    /// The unit in it: as many unknowns as the error model has terms.
+    Unit,
+}
+
+impl Extension {
+    /// Every extension with its name as written in sessions and plans.
+    pub const NAMED: [(&'static str, Self); 24] = [
+        ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
+        ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
+        ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
+        ("arm-stretch-load", Self::ArmStretch(Law::Load)),
+        ("seat-stretch-speed", Self::SeatStretch(Law::Speed)),
+        ("seat-stretch-load", Self::SeatStretch(Law::Load)),
+        ("radius-scale", Self::RadiusScale),
+        ("speed-scale", Self::SpeedScale),
+        ("arm-turn-speed", Self::ArmTurn(Law::Speed)),
+        ("arm-turn-load", Self::ArmTurn(Law::Load)),
+        ("seat-radius", Self::SeatRadius),
+        ("seat-lateral", Self::SeatLateral),
+        ("position-shift", Self::PositionShift),
+        ("mounting-shift", Self::MountingShift),
+        ("mounting-turn", Self::MountingTurn),
+        ("mounting-tilt", Self::MountingTilt),
+        ("spin-turn", Self::SpinTurn),
+        ("spin-step", Self::Disturbance(Course::Spinning)),
+        ("spin-square", Self::Disturbance(Course::SquaredSpeed)),
+        ("yield", Self::Disturbance(Course::Yield)),
+        ("bias-drift", Self::Disturbance(Course::Time)),
+        ("scale-drift", Self::Disturbance(Course::TimeScale)),
+        ("rise-fall", Self::Disturbance(Course::Rise)),
+        ("memory", Self::Disturbance(Course::Memory)),
+    ];
+
+    /// The extension of a name: one of [`Extension::NAMED`], or that of one mounting, counted from 1: `other-unit[7]`.
+    pub fn named(name: &str) -> Option<Self> {
+        let of_session = Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, extension)| *extension);
+        let of_mounting = || {
+            let (stem, mounting) = name.strip_suffix(']')?.split_once('[')?;
+            let difference = Difference::NAMED.iter().find(|(known, _)| *known == stem)?.1;
+            Some(Self::OneMounting(difference, mounting.parse::<usize>().ok()?.checked_sub(1)?))
+        };
+        of_session.or_else(of_mounting)
+    }
+
+    /// Its name as written in sessions and plans.
+    pub fn name(self) -> String {
+        if let Self::OneMounting(difference, mounting) = self {
+            let stem = Difference::NAMED.iter().find(|(_, known)| *known == difference).map_or("", |(name, _)| name);
+            return format!("{stem}[{}]", mounting + 1);
+        }
+        Self::NAMED.iter().find(|(_, extension)| *extension == self).map_or("", |(name, _)| name).to_owned()
+    }
+
+    /// Its unknowns in `experiment` beside an error model; none where the experiment has nothing that it could act on.
+    pub fn parameters(self, experiment: &Experiment, error_model: &ErrorModel) -> Vec<Parameter> {
+        match self {
+            Self::ElasticTurn(law) => by_position(experiment, |axis, position, id| {
+                let name = format!("elastic_{}_{}[{id}]", law.name(), axis + 1);
+                per_law(name, Group::ElasticTurn, law, Effect::ElasticTurn { law, axis, position })
+            }),
+            Self::ArmStretch(law) => vec![stretch(format!("stretch_{}", law.name()), law, None)],
+            Self::SeatStretch(law) => seats(experiment)
+                .map(|(seat, radius)| stretch(format!("stretch_{}[{radius}]", law.name()), law, Some(seat)))
+                .collect(),
+            Self::RadiusScale => {
+                vec![effect("radius_scale".to_owned(), "1", Group::RadiusScale, Effect::RadiusScale, 1e-3)]
+            }
+            Self::SpeedScale => {
+                vec![effect("speed_scale".to_owned(), "1", Group::SpeedScale, Effect::SpeedScale, 1e-3)]
+            }
+            Self::ArmTurn(law) => three(|axis| {
+                let name = format!("arm_turn_{}_{}", law.name(), axis + 1);
+                per_law(name, Group::ArmTurn, law, Effect::ArmTurn { law, axis })
+            }),
+            Self::SeatRadius => seat_places(experiment, "seat_radius", 0),
+            Self::SeatLateral => seat_places(experiment, "seat_lateral", 1),
+            Self::PositionShift => position_shifts(experiment),
+            Self::MountingShift => {
+                let shared = |a: usize, b: usize| shares_shift(experiment, a, b);
+                by_mounting(experiment, 2, shared, mounting_shift)
+            }
+            Self::MountingTurn => {
+                let shared = |a: usize, b: usize| experiment.mountings[a].position == experiment.mountings[b].position;
+                by_mounting(experiment, 3, shared, mounting_turn)
+            }
+            Self::MountingTilt => by_mounting(
+                experiment,
+                2,
+                |_, _| true,
+                |axis, mounting| {
+                    let name = format!("mounting_tilt_{}[{}]", axis + 1, mounting + 1);
+                    effect(name, "rad", Group::MountingTilt, Effect::MountingTilt { axis, mounting }, 1e-3)
+                },
+            ),
+            Self::SpinTurn => by_position(experiment, |axis, position, id| {
+                let name = format!("spin_turn_{}[{id}]", axis + 1);
+                effect(name, "rad", Group::SpinTurn, Effect::SpinTurn { axis, position }, 1e-3)
+            }),
+            Self::Disturbance(course) => three(|axis| disturbance(axis, course)),
+            Self::OneMounting(_, mounting) if mounting >= experiment.mountings.len() => Vec::new(),
+            Self::OneMounting(Difference::Shift, mounting) => {
+                (0..2).map(|axis| mounting_shift(axis, mounting)).collect()
+            }
+            Self::OneMounting(Difference::Turn, mounting) => three(|axis| mounting_turn(axis, mounting)),
+            Self::OneMounting(Difference::Unit, mounting) => {
+                error_model.terms.iter().map(|term| other_unit(term, mounting)).collect()
+            }
+        }
+    }
+}
+
+impl Difference {
+    const NAMED: [(&'static str, Self); 3] =
+        [("one-mounting-shift", Self::Shift), ("one-mounting-turn", Self::Turn), ("other-unit", Self::Unit)];
+}
+
+fn mounting_shift(axis: usize, mounting: usize) -> Parameter {
+    let name = format!("mounting_shift_{}[{}]", axis + 1, mounting + 1);
+    effect(name, "m", Group::MountingShift, Effect::MountingShift { axis, mounting }, 5e-4)
+}
+
+fn mounting_turn(axis: usize, mounting: usize) -> Parameter {
+    let name = format!("mounting_turn_{}[{}]", axis + 1, mounting + 1);
+    effect(name, "rad", Group::MountingTurn, Effect::MountingTurn { axis, mounting }, 1e-3)
+}
+
+fn other_unit(term: &Term, mounting: usize) -> Parameter {
+    let Term { axis, monomial, .. } = *term;
+    let name = format!("{}[{}]", term.name, mounting + 1);
+    let effect = Effect::Monomial { axis, monomial, mounting: Some(mounting) };
+    Parameter { name, kind: Kind::Effect(effect), ..coefficient(term) }
+}
+
+fn disturbance(axis: usize, follows: Course) -> Parameter {
+    const BIAS: f64 = 5e-3 * STANDARD_GRAVITY;
+    let (stem, unit, typical) = match follows {
+        Course::Spinning => ("spin_step", "m/s^2", BIAS),
+        Course::SquaredSpeed => ("spin_square", "m", BIAS / Law::Speed.full_scale()),
+        Course::Yield => ("yield", "s^2", 5e-4 / Law::Load.full_scale()),
+        Course::Time => ("bias_drift", "m/s^2", BIAS),
+        Course::TimeScale => ("scale_drift", "1", 1e-3),
+        Course::Rise => ("rise_fall", "m/s^2", BIAS),
+        Course::Memory => ("memory", "1", 1e-3),
+    };
+    let name = format!("{stem}_{}", axis + 1);
+    effect(name, unit, Group::Disturbance, Effect::Disturbance { axis, follows }, typical)
+}
+
+/// An unknown for each instrument axis and position.
+fn by_position(experiment: &Experiment, unknown: impl Fn(usize, usize, &str) -> Parameter) -> Vec<Parameter> {
+    let positions = experiment.positions.iter().enumerate();
+    positions
+        .flat_map(|(k, position)| (0..3).map(move |axis| (axis, k, &position.id)))
+        .map(|(axis, k, id)| unknown(axis, k, id))
+        .collect()
+}
+
+/// Unknowns for each mounting that is not the first of those it is `shared` with.
+fn by_mounting(
+    experiment: &Experiment,
+    axes: usize,
+    shared: impl Fn(usize, usize) -> bool,
+    unknown: impl Fn(usize, usize) -> Parameter,
+) -> Vec<Parameter> {
+    let further = (0..experiment.mountings.len()).filter(|&m| (0..m).any(|first| shared(first, m)));
+    further.flat_map(|m| (0..axes).map(move |axis| (axis, m))).map(|(axis, m)| unknown(axis, m)).collect()
+}
+
+fn shares_shift(experiment: &Experiment, a: usize, b: usize) -> bool {
+    let [one, other] = [a, b].map(|m| experiment.mountings[m].position);
+    one == other
+        || (experiment.pair_relation != PairRelation::Free
+            && experiment.positions[one].pair == experiment.positions[other].pair)
+}
+
+/// Displacements of every position that has the `dR` of another.
+fn position_shifts(experiment: &Experiment) -> Vec<Parameter> {
+    let positions = &experiment.positions;
+    let is_further = |k: usize| {
+        experiment.pair_relation != PairRelation::Free && (0..k).any(|first| positions[first].pair == positions[k].pair)
+    };
+    let unknown = |(axis, position): (usize, usize)| {
+        let name = format!("position_shift_{}[{}]", axis + 1, positions[position].id);
+        effect(name, "m", Group::Shift, Effect::PositionShift { axis, position }, 5e-4)
+    };
+    let further = (0..positions.len()).filter(|&k| is_further(k));
+    further.flat_map(|k| (0..2).map(move |axis| (axis, k))).map(unknown).collect()
+}
+
+/// First mounting and radius [m] of each seat.
+fn seats(experiment: &Experiment) -> impl Iterator<Item = (usize, f64)> + '_ {
+    let mountings = 0..experiment.mountings.len();
+    mountings.filter(|&m| experiment.seat_of(m) == m).map(|m| (m, experiment.mountings[m].arm_y.x))
+}
+
+/// A displacement of every seat but the first.
+fn seat_places(experiment: &Experiment, stem: &str, axis: usize) -> Vec<Parameter> {
+    let place = |(seat, radius): (usize, f64)| {
+        let name = format!("{stem}[{radius}]");
+        effect(name, "m", Group::Seat, Effect::SeatPlace { axis, seat: Some(seat) }, 5e-4)
+    };
+    seats(experiment).skip(1).map(place).collect()
+}
+
+fn three(unknown: impl Fn(usize) -> Parameter) -> Vec<Parameter> {
+    (0..3).map(unknown).collect()
+}
+
+fn stretch(name: String, law: Law, seat: Option<usize>) -> Parameter {
+    per_law(name, Group::ArmStretch, law, Effect::ArmStretch { law, seat })
+}
+
+/// A deformation per unit of its law.
+fn per_law(name: String, group: Group, law: Law, deformation: Effect) -> Parameter {
+    let power_of_acceleration = if law == Law::Load { -1 } else { 0 };
+    let unknown = effect(name, law.unit_of_inverse(), group, deformation, 1e-3 / law.full_scale());
+    Parameter { power_of_acceleration, ..unknown }
+}
+
+fn effect(name: String, unit: &str, group: Group, effect: Effect, typical: f64) -> Parameter {
+    parameter(name, unit, group, Kind::Effect(effect), typical)
+}

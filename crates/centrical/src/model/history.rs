@@ -1,0 +1,43 @@
+//! What came before each plateau of a session.
+
+use std::collections::HashMap;
+
+use nalgebra::Vector3;
+
+use super::experiment::{Experiment, History, SetPoint};
+use super::nominal::nominal;
+
+/// The part of a plateau's force that is remembered on the next.
+const REMEMBERED: f64 = 0.5;
+
+/// Fills in the history of every plateau of `experiment`, in the order of its set points.
+pub(super) fn fill(experiment: &mut Experiment) {
+    let last = experiment.set_points.len().saturating_sub(1).max(1) as f64;
+    let (mut memory, mut rise, mut previous) = (Vector3::zeros(), 0.0, None);
+    for n in 0..experiment.set_points.len() {
+        let set_point = experiment.set_points[n];
+        let speed = set_point.omega.abs();
+        // A mounting begins at rest.
+        let before = previous.filter(|(mounting, _)| *mounting == set_point.mounting).map(|(_, speed)| speed);
+        rise = match before {
+            None => f64::from(u8::from(speed > 0.0)),
+            Some(before) if speed > before => 1.0,
+            Some(before) if speed < before => -1.0,
+            Some(_) => rise,
+        };
+        previous = Some((set_point.mounting, speed));
+        experiment.set_points[n].history = History { time: n as f64 / last - 0.5, rise, memory, repeats: None };
+        memory = (memory + nominal(experiment, &set_point)) * REMEMBERED;
+    }
+    mark_repeated_rests(&mut experiment.set_points);
+}
+
+fn mark_repeated_rests(set_points: &mut [SetPoint]) {
+    let mut rests: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
+    for (n, rest) in set_points.iter().enumerate().filter(|(_, set_point)| set_point.is_rest()) {
+        rests.entry((rest.mounting, rest.angle.to_bits())).or_default().push(n);
+    }
+    for alike in rests.values().filter(|alike| alike.len() > 1) {
+        alike.iter().for_each(|&n| set_points[n].history.repeats = Some(alike[0]));
+    }
+}

@@ -1,0 +1,145 @@
+//! The catalogue of rivals: physical effects that a model may leave out, and what each would do to the readings.
+
+use super::effect::{Course, Law};
+use super::error_model::{ErrorModel, Extra, Term};
+use super::experiment::Experiment;
+use super::extension::{Difference, Extension};
+use super::parameter::{Parameter, coefficient};
+
+/// A physical effect that a model may leave out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rival {
+    /// Terms of the error model.
+    Terms(Extra),
+    /// Anything else.
+    Effect(Extension),
+}
+
+impl Rival {
+    /// Number of rivals that concern a whole session.
+    pub const COUNT: usize = Extra::NAMED.len() + Extension::NAMED.len();
+
+    /// Those that concern a whole session: every term and every extension.
+    pub const COMMON: [Self; Self::COUNT] = {
+        let mut list = [Self::Terms(Extra::CrossProducts); Self::COUNT];
+        let (mut n, terms) = (0, Extra::NAMED.len());
+        while n < Self::COUNT {
+            list[n] =
+                if n < terms { Self::Terms(Extra::NAMED[n].1) } else { Self::Effect(Extension::NAMED[n - terms].1) };
+            n += 1;
+        }
+        list
+    };
+
+    /// The rival of a name as written in sessions.
+    pub fn named(name: &str) -> Option<Self> {
+        Extra::named(name).map(Self::Terms).or_else(|| Extension::named(name).map(Self::Effect))
+    }
+
+    /// Its name as written in sessions: in `error_model` for terms, in `extensions` otherwise.
+    pub fn name(self) -> String {
+        match self {
+            Self::Terms(extra) => extra.name().to_owned(),
+            Self::Effect(extension) => extension.name(),
+        }
+    }
+
+    /// Whether a model of that error model and those extensions has it.
+    pub(super) fn is_in(self, error_model: &ErrorModel, extensions: &[Extension]) -> bool {
+        match self {
+            Self::Terms(extra) => extra.terms().iter().all(|term| has(error_model, term)),
+            Self::Effect(extension) => extensions.contains(&extension),
+        }
+    }
+
+    /// Adds it to an error model or to extensions.
+    pub(super) fn add_to(self, error_model: &mut ErrorModel, extensions: &mut Vec<Extension>) {
+        match self {
+            Self::Terms(extra) => {
+                let new: Vec<Term> = extra.terms().into_iter().filter(|term| !has(error_model, term)).collect();
+                error_model.terms.extend(new);
+            }
+            Self::Effect(extension) => extensions.push(extension),
+        }
+    }
+
+    /// Its unknowns in an experiment, those that the error model lacks.
+    pub fn parameters(self, experiment: &Experiment, error_model: &ErrorModel) -> Vec<Parameter> {
+        match self {
+            Self::Terms(extra) => {
+                extra.terms().iter().filter(|term| !has(error_model, term)).map(coefficient).collect()
+            }
+            Self::Effect(extension) => extension.parameters(experiment, error_model),
+        }
+    }
+
+    /// What it adds to newtonometer `i`, in the letters of `docs/notation.md`.
+    pub fn formula(self) -> &'static str {
+        match self {
+            Self::Terms(Extra::CrossProducts) => "f_j f_k, j < k",
+            Self::Terms(Extra::OddQuadratic) => "f_i |f_i|",
+            Self::Terms(Extra::Asymmetry) => "|f_i|",
+            Self::Terms(Extra::FourthPower) => "f_i^4",
+            Self::Terms(Extra::FifthPower) => "f_i^5",
+            Self::Terms(Extra::Jump) => "sgn f_i",
+            Self::Effect(extension) => match extension {
+                Extension::ElasticTurn(Law::Speed) => "delta_k Omega^2, by position",
+                Extension::ElasticTurn(Law::Load) => "delta_k Omega^2 |R0_1|, by position",
+                Extension::ArmStretch(Law::Speed) => "R0_1 kappa Omega^2",
+                Extension::ArmStretch(Law::Load) => "R0_1 kappa Omega^2 |R0_1|",
+                Extension::SeatStretch(Law::Speed) => "R0_1 kappa Omega^2, by seat",
+                Extension::SeatStretch(Law::Load) => "R0_1 kappa Omega^2 |R0_1|, by seat",
+                Extension::RadiusScale => "P D R0",
+                Extension::SpeedScale => "d f / d ln Omega^2",
+                Extension::ArmTurn(Law::Speed) => "P tau Omega^2",
+                Extension::ArmTurn(Law::Load) => "P tau Omega^2 |R0_1|",
+                Extension::SeatRadius => "P D e_1, by seat",
+                Extension::SeatLateral => "P D e_2, by seat",
+                Extension::PositionShift => "P D e_1, P D e_2, by position",
+                Extension::MountingShift => "P D e_1, P D e_2, by mounting",
+                Extension::MountingTurn => "delta, by mounting",
+                Extension::MountingTilt => "alpha, by mounting",
+                Extension::SpinTurn => "delta while spinning, by position",
+                Extension::Disturbance(Course::Spinning) => "1 where Omega > 0",
+                Extension::Disturbance(Course::SquaredSpeed) => "Omega^2",
+                Extension::Disturbance(Course::Yield) => "-M_ii f_i",
+                Extension::Disturbance(Course::Time) => "t",
+                Extension::Disturbance(Course::TimeScale) => "t f_i",
+                Extension::Disturbance(Course::Rise) => "+1 after a rise of Omega, -1 after a fall",
+                Extension::Disturbance(Course::Memory) => "sum_n 2^-n f_i, n plateaus before",
+                Extension::OneMounting(Difference::Shift, _) => "P D e_1, P D e_2 in one mounting",
+                Extension::OneMounting(Difference::Turn, _) => "delta in one mounting",
+                Extension::OneMounting(Difference::Unit, _) => "df0 + Gamma(f) f in one mounting",
+            },
+        }
+    }
+
+    /// Where it is described.
+    pub fn source(self) -> &'static str {
+        match self {
+            Self::Terms(Extra::CrossProducts | Extra::OddQuadratic | Extra::Asymmetry) => "IEEE Std 1293",
+            Self::Terms(Extra::FourthPower | Extra::FifthPower | Extra::Jump) => "power series of the characteristic",
+            Self::Effect(extension) => match extension {
+                Extension::ElasticTurn(_) | Extension::PositionShift => "the source's abstract and section 3",
+                Extension::ArmStretch(_)
+                | Extension::SeatStretch(_)
+                | Extension::RadiusScale
+                | Extension::SpeedScale => "IEEE Std 836",
+                Extension::ArmTurn(_)
+                | Extension::SeatRadius
+                | Extension::SeatLateral
+                | Extension::MountingShift
+                | Extension::MountingTurn
+                | Extension::MountingTilt
+                | Extension::SpinTurn
+                | Extension::OneMounting(..) => "mechanics of the arm and the seat",
+                Extension::Disturbance(Course::Yield) => "IEEE Std 1293, open loop",
+                Extension::Disturbance(_) => "electronics and material of the unit",
+            },
+        }
+    }
+}
+
+fn has(error_model: &ErrorModel, term: &Term) -> bool {
+    error_model.terms.iter().any(|known| (known.axis, known.monomial) == (term.axis, term.monomial))
+}

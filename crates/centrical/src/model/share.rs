@@ -1,0 +1,96 @@
+//! How an effect enters a plateau.
+
+use nalgebra::Vector3;
+
+use super::effect::{Course, Effect};
+use super::experiment::{EARTH_RATE, SetPoint};
+use super::measurement::MeasurementModel;
+use super::nominal::{Nominal, nominal};
+
+/// How one unit of an effect enters a plateau.
+pub(super) enum Share {
+    /// Not at all.
+    None,
+    /// Tilt of the rotation axis about a reference axis [rad per unit].
+    Tilt(usize),
+    /// Small turn of the unit, instrument axes [rad per unit].
+    Turn(Vector3<f64>),
+    /// Displacement in arm axes [m per unit].
+    Arm(Vector3<f64>),
+    /// Displacement of a coordinate of a proof mass [m per unit].
+    Coordinate { coordinate: usize, mass: usize },
+    /// Change of the rate squared `w` [rad^2/s^2 per unit].
+    Rate(f64),
+    /// Change of gravity [m/s^2 per unit].
+    Gravity,
+    /// Added to the readings [m/s^2 per unit].
+    Reading(Vector3<f64>),
+}
+
+impl MeasurementModel {
+    /// How one unit of `effect` enters a plateau.
+    pub(super) fn share(&self, set_point: &SetPoint, effect: Effect) -> Share {
+        let experiment = &self.experiment;
+        let (here, position) = (set_point.mounting, experiment.mountings[set_point.mounting].position);
+        let r0_y = experiment.arm_of(set_point);
+        let omega_squared = set_point.omega * set_point.omega;
+        let is_on = |seat: Option<usize>| seat.is_none_or(|seat| seat == experiment.seat_of(here));
+        let only = |condition: bool, share: Share| if condition { share } else { Share::None };
+        let along = |axis: usize| Vector3::ith(axis, 1.0);
+        match effect {
+            Effect::ElasticTurn { law, axis, position: k } => {
+                only(k == position, Share::Turn(Vector3::ith(axis, law.value(omega_squared, r0_y.x))))
+            }
+            Effect::ArmTurn { law, axis } => {
+                let turn_y = Vector3::ith(axis, law.value(omega_squared, r0_y.x));
+                Share::Turn(experiment.position_of(set_point).p_zy * turn_y)
+            }
+            Effect::PositionTurn { axis, position: k } => only(k == position, Share::Turn(along(axis))),
+            Effect::SpinTurn { axis, position: k } => {
+                only(k == position && !set_point.is_rest(), Share::Turn(along(axis)))
+            }
+            Effect::MountingTurn { axis, mounting } => only(mounting == here, Share::Turn(along(axis))),
+            Effect::MountingTilt { axis, mounting } => only(mounting == here && set_point.is_rest(), Share::Tilt(axis)),
+            Effect::ArmStretch { law, seat } => {
+                only(is_on(seat), Share::Arm(Vector3::x() * (r0_y.x * law.value(omega_squared, r0_y.x))))
+            }
+            Effect::RadiusScale => Share::Arm(*r0_y),
+            Effect::SeatPlace { axis, seat } => only(is_on(seat), Share::Arm(along(axis))),
+            Effect::PositionShift { axis, position: k } => only(k == position, Share::Arm(along(axis))),
+            Effect::MountingShift { axis, mounting } => only(mounting == here, Share::Arm(along(axis))),
+            Effect::Coordinate { coordinate, mass } => Share::Coordinate { coordinate, mass },
+            Effect::SpeedScale => Share::Rate(omega_squared),
+            Effect::Gravity => Share::Gravity,
+            Effect::Latitude => {
+                let cosine = experiment.site.latitude.map_or(0.0, f64::cos);
+                Share::Rate(set_point.omega * 2.0 * EARTH_RATE * cosine)
+            }
+            Effect::Monomial { axis, monomial, mounting } => {
+                let value = || monomial.value(nominal(experiment, set_point).into());
+                let is_here = mounting.is_none_or(|mounting| mounting == here);
+                if is_here { Share::Reading(Vector3::ith(axis, value())) } else { Share::None }
+            }
+            Effect::Disturbance { axis, follows } => {
+                Share::Reading(Vector3::ith(axis, self.course(set_point, axis, follows)))
+            }
+            Effect::Rounding { axis, first } => {
+                only(set_point.history.repeats == Some(first), Share::Reading(along(axis)))
+            }
+        }
+    }
+
+    /// Value on a plateau of what a disturbance follows.
+    fn course(&self, set_point: &SetPoint, axis: usize, course: Course) -> f64 {
+        let history = &set_point.history;
+        let f0 = || nominal(&self.experiment, set_point)[axis];
+        match course {
+            Course::Spinning => f64::from(u8::from(!set_point.is_rest())),
+            Course::SquaredSpeed => set_point.omega * set_point.omega,
+            Course::Yield => -Nominal::of(&self.experiment, set_point).m[(axis, axis)] * f0(),
+            Course::Time => history.time,
+            Course::TimeScale => history.time * f0(),
+            Course::Rise => history.rise,
+            Course::Memory => history.memory[axis],
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! What the laboratory states of the quantities that the model takes as exact, split into independent influences.
+//!
+//! A fit takes every influence for one more unknown, zero with a standard uncertainty of 1: data that know it better sharpen
+//! it, and chi^2, outliers and residuals know of it. The errors of one plateau alone, its speed, its angle at rest and its
+//! rounding, are in the covariance of that plateau, which comes to the same.
+
+use super::effect::Effect;
+use super::error_model::ErrorModel;
+use super::experiment::{Experiment, SetPoint};
+use super::kind::Kind;
+use super::rival::Rival;
+
+/// Standard uncertainties that a laboratory states (GUM type B), SI; zero where there is none.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TypeB {
+    /// Of local gravity [m/s^2].
+    pub gravity: f64,
+    /// Of the latitude [rad]; of no effect where the site states none.
+    pub latitude: f64,
+    /// Of the radius of each seat, common to all mountings there [m].
+    pub radius: f64,
+    /// Of the difference of the radii of any two seats [m]; `None` when the seats were measured independently.
+    pub radius_difference: Option<f64>,
+    /// Of the scale of the speed, common to all plateaus, relative.
+    pub speed_scale: f64,
+    /// Of the carousel angle of each plateau at rest [rad].
+    pub rest_angle: f64,
+    /// Of each coordinate of the proof masses that is not an unknown of the fit [m].
+    pub proof_masses: f64,
+    /// Of the nominal attitude of each position, about each instrument axis [rad].
+    pub attitude: f64,
+    /// Smallest step of the reading [m/s^2], not a standard uncertainty: it leaves a rectangular error of `step/sqrt(12)`
+    /// on each mean (GUM, F.2.2.1), independent of the others.
+    pub resolution: f64,
+    /// Of one unit of each effect that the model leaves out, in the order of [`Rival::COMMON`]: an engineer's bound.
+    pub effects: [f64; Rival::COUNT],
+    /// How doubtful these numbers themselves are: relative standard uncertainty of each, from which follow its
+    /// degrees of freedom `1/(2 r^2)` (GUM, G.4.2). Zero: they are exact, with infinitely many.
+    pub doubt: f64,
+}
+
+/// A source of uncertainty: one column of the budget.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// Noise of the plateau means (type A).
+    Noise,
+    /// Speed of each plateau, which the fit weighs with the noise.
+    PlateauSpeed,
+    /// Priors of the model.
+    Priors,
+    /// Local gravity.
+    Gravity,
+    /// Latitude.
+    Latitude,
+    /// Radius: its part common to all seats when their difference is stated, each seat by itself otherwise.
+    Radius,
+    /// Difference of the radii of the seats.
+    RadiusDifference,
+    /// Scale of the speed.
+    SpeedScale,
+    /// Carousel angle at rest.
+    RestAngle,
+    /// Coordinates of the proof masses.
+    ProofMasses,
+    /// Nominal attitudes.
+    Attitude,
+    /// Resolution of the reading.
+    Resolution,
+    /// Effects that the model leaves out, as stated.
+    Effects,
+}
+
+impl Source {
+    /// All sources in the order of the budget.
+    pub const ALL: [Self; 13] = [
+        Self::Noise,
+        Self::PlateauSpeed,
+        Self::Priors,
+        Self::Gravity,
+        Self::Latitude,
+        Self::Radius,
+        Self::RadiusDifference,
+        Self::SpeedScale,
+        Self::RestAngle,
+        Self::ProofMasses,
+        Self::Attitude,
+        Self::Resolution,
+        Self::Effects,
+    ];
+
+    /// Whether it is not stated: noise, speed of each plateau and priors.
+    pub fn is_weighed(self) -> bool {
+        matches!(self, Self::Noise | Self::PlateauSpeed | Self::Priors)
+    }
+
+    /// Its name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Noise => "noise",
+            Self::PlateauSpeed => "speed of each plateau",
+            Self::Priors => "priors",
+            Self::Gravity => "gravity",
+            Self::Latitude => "latitude",
+            Self::Radius => "radius",
+            Self::RadiusDifference => "difference of radii",
+            Self::SpeedScale => "scale of the speed",
+            Self::RestAngle => "angle at rest",
+            Self::ProofMasses => "proof masses",
+            Self::Attitude => "attitudes",
+            Self::Resolution => "resolution",
+            Self::Effects => "effects left out",
+        }
+    }
+}
+
+/// An independent error of a quantity that the model takes as exact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Influence {
+    /// What it belongs to.
+    pub source: Source,
+    /// What it does to a plateau, per unit.
+    pub effect: Effect,
+    /// Its standard uncertainty, in units of the effect.
+    pub standard_uncertainty: f64,
+}
+
+impl TypeB {
+    /// The influences on more than one plateau, those of zero uncertainty left out.
+    pub(super) fn influences(&self, experiment: &Experiment, error_model: &ErrorModel) -> Vec<Influence> {
+        let mut list = Vec::new();
+        let mut add = |source, effect, standard_uncertainty: f64| {
+            if standard_uncertainty > 0.0 {
+                list.push(Influence { source, effect, standard_uncertainty });
+            }
+        };
+        add(Source::Gravity, Effect::Gravity, self.gravity);
+        if experiment.site.latitude.is_some() {
+            add(Source::Latitude, Effect::Latitude, self.latitude);
+        }
+        let radii = Radii::of(self);
+        add(Source::Radius, Effect::SeatPlace { axis: 0, seat: None }, radii.common);
+        for seat in (0..experiment.mountings.len()).filter(|&m| experiment.seat_of(m) == m) {
+            add(radii.source, Effect::SeatPlace { axis: 0, seat: Some(seat) }, radii.own);
+        }
+        // The effect is one on the square of the speed.
+        add(Source::SpeedScale, Effect::SpeedScale, 2.0 * self.speed_scale);
+        for (mass, coordinate) in (0..3).flat_map(|mass| (0..3).map(move |coordinate| (mass, coordinate))) {
+            if experiment.unit.is_coordinate_taken_as_exact(coordinate, mass) {
+                add(Source::ProofMasses, Effect::Coordinate { coordinate, mass }, self.proof_masses);
+            }
+        }
+        for (position, axis) in (0..experiment.positions.len()).flat_map(|k| (0..3).map(move |axis| (k, axis))) {
+            add(Source::Attitude, Effect::PositionTurn { position, axis }, self.attitude);
+        }
+        for first in repeated_rests(experiment) {
+            for axis in 0..3 {
+                add(Source::Resolution, Effect::Rounding { axis, first }, self.rounding());
+            }
+        }
+        for (rival, u) in Rival::COMMON.iter().zip(self.effects) {
+            for unknown in rival.parameters(experiment, error_model) {
+                if let Kind::Effect(effect) = unknown.kind {
+                    add(Source::Effects, effect, u);
+                }
+            }
+        }
+        list
+    }
+
+    /// Standard uncertainty of the rounding of one mean [m/s^2]: of a rectangular error of one step (GUM, F.2.2.1).
+    pub fn rounding(&self) -> f64 {
+        self.resolution / 12.0_f64.sqrt()
+    }
+
+    /// That part of it which is independent of all other plateaus: none for a rest that is repeated, since equal forces round
+    /// alike.
+    pub(super) fn own_rounding(&self, set_point: &SetPoint) -> f64 {
+        if set_point.history.repeats.is_some() { 0.0 } else { self.rounding() }
+    }
+}
+
+/// The first of each group of repeated rests.
+fn repeated_rests(experiment: &Experiment) -> impl Iterator<Item = usize> + '_ {
+    let set_points = experiment.set_points.iter().enumerate();
+    set_points.filter(|(n, set_point)| set_point.history.repeats == Some(*n)).map(|(n, _)| n)
+}
+
+/// The error of a radius as a common part and an own part of each seat.
+struct Radii {
+    common: f64,
+    own: f64,
+    source: Source,
+}
+
+impl Radii {
+    /// Own parts of `u_D / sqrt 2` give the difference of two seats the uncertainty `u_D`; the common part makes up
+    /// the rest of `u_R^2`. A difference beyond `sqrt 2 u_R`, that of independent seats, leaves no common part.
+    fn of(stated: &TypeB) -> Self {
+        let Some(difference) = stated.radius_difference else {
+            return Self { common: 0.0, own: stated.radius, source: Source::Radius };
+        };
+        let own = difference / std::f64::consts::SQRT_2;
+        let common = (stated.radius * stated.radius - own * own).max(0.0).sqrt();
+        Self { common, own, source: Source::RadiusDifference }
+    }
+}

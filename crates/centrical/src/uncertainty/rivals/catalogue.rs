@@ -1,0 +1,84 @@
+//! The columns of every rival that a model leaves out.
+
+use std::collections::HashMap;
+
+use nalgebra::Vector3;
+
+use super::columns::{Columns, Seen};
+use crate::fit::Calibration;
+use crate::model::{FitError, MeasurementModel, Parameter, Rival};
+
+/// The rivals of a calibration that act on its observations.
+pub struct Rivals<'c> {
+    pub(super) calibration: &'c Calibration<'c>,
+    pub(super) list: Vec<Suspect>,
+}
+
+/// One rival with its columns.
+pub(super) struct Suspect {
+    pub rival: Rival,
+    /// Its unknowns, one per column.
+    pub unknowns: Vec<Parameter>,
+    pub columns: Columns,
+    /// What is seen of `s^T s`.
+    pub seen: Seen,
+}
+
+impl<'c> Rivals<'c> {
+    /// The rivals that the model of `calibration` leaves out.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn of(calibration: &'c Calibration<'c>) -> Result<Self, FitError> {
+        let left_out = calibration.data().model().left_out();
+        let (terms, effects): (Vec<Rival>, Vec<Rival>) =
+            left_out.into_iter().partition(|rival| matches!(rival, Rival::Terms(_)));
+        let mut list = suspects(calibration, &terms)?;
+        list.extend(suspects(calibration, &effects)?);
+        Ok(Self { calibration, list })
+    }
+}
+
+/// The columns of `rivals`, all terms or all effects, that act on the observations.
+fn suspects(calibration: &Calibration, rivals: &[Rival]) -> Result<Vec<Suspect>, FitError> {
+    let (gain, data) = (calibration.gain()?, calibration.data());
+    let model = data.model();
+    let richer = model.with_rivals(rivals);
+    let mut first = first_further(model, &richer);
+    let x = widened(calibration.fit().state(), first, &richer);
+    let set_points = &richer.experiment().set_points;
+    let linearised = data.observations().iter().map(|o| richer.linearise(&set_points[o.set_point], &x));
+    let derivatives: Vec<HashMap<usize, Vector3<f64>>> =
+        linearised.map(|at| at.columns.into_iter().collect()).collect();
+    let mut list = Vec::new();
+    for &rival in rivals {
+        let unknowns = rival.parameters(model.experiment(), model.error_model());
+        let all = first..first + unknowns.len();
+        let acts = |n: &usize| all.clone().any(|index| derivatives[*n].get(&index).is_some_and(|d| d.amax() > 0.0));
+        let acting: Vec<usize> = (0..derivatives.len()).filter(acts).collect();
+        if !acting.is_empty() {
+            let derivative =
+                |n: usize, c: usize| derivatives[n].get(&(all.start + c)).copied().unwrap_or_else(Vector3::zeros);
+            let columns = Columns::new(gain, acting, unknowns.len(), derivative);
+            let seen = Seen::of(columns.redundancy());
+            list.push(Suspect { rival, unknowns, columns, seen });
+        }
+        first = all.end;
+    }
+    Ok(list)
+}
+
+/// Where the further unknowns of a richer model begin: behind the terms if it has further terms, else at the end.
+fn first_further(model: &MeasurementModel, richer: &MeasurementModel) -> usize {
+    let terms = model.error_model().terms.len();
+    let is_of_terms = richer.error_model().terms.len() > terms;
+    if is_of_terms { model.parameters().first_term() + terms } else { model.parameters().len() }
+}
+
+/// The state `x` of a fit among the unknowns of a richer model, whose further ones, from `first`, are zero.
+fn widened(x: &[f64], first: usize, richer: &MeasurementModel) -> Vec<f64> {
+    let further = richer.parameters().len() - x.len();
+    let mut wide = x.to_vec();
+    wide.splice(first..first, std::iter::repeat_n(0.0, further));
+    wide
+}

@@ -1,0 +1,120 @@
+//! Columns in the readings, and the part of them that no unknown of a fit can follow.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
+
+use crate::fit::Gain;
+
+/// A combination of columns is seen when more than this part of its length is redundant.
+pub(in crate::uncertainty) const REDUNDANT: f64 = 1e-5;
+
+/// Columns on the plateaus where they act.
+pub(in crate::uncertainty) struct Columns {
+    /// Observations, rising.
+    acting: Vec<usize>,
+    /// Whitened columns on these observations, each of unit length.
+    z: DMatrix<f64>,
+    /// `Q^T Z`.
+    pub followed: DMatrix<f64>,
+    /// Lengths of the whitened columns.
+    pub lengths: Vec<f64>,
+    /// `Z^T e`.
+    pub along: DVector<f64>,
+}
+
+/// A positive semidefinite matrix `s^T s` by its seen eigenvectors.
+pub(in crate::uncertainty) struct Seen {
+    values: Vec<f64>,
+    vectors: DMatrix<f64>,
+}
+
+impl Columns {
+    /// `count` columns that act on the observations `acting`, rising; `derivative` gives the change of observation `n` by one
+    /// unit of column `c` [m/s^2]. A column without length stays zero.
+    pub fn new(
+        gain: &Gain,
+        acting: Vec<usize>,
+        count: usize,
+        derivative: impl Fn(usize, usize) -> Vector3<f64>,
+    ) -> Self {
+        let mut z = DMatrix::zeros(3 * acting.len(), count);
+        for (place, &n) in acting.iter().enumerate() {
+            for c in 0..count {
+                z.fixed_view_mut::<3, 1>(3 * place, c).copy_from(&gain.whitener(n).apply(&derivative(n, c)));
+            }
+        }
+        let lengths: Vec<f64> = z.column_iter().map(|column| column.norm()).collect();
+        let scaled = z.column_iter_mut().zip(&lengths).filter(|(_, length)| **length > 0.0);
+        scaled.for_each(|(mut column, length)| column /= *length);
+        let rows: Vec<usize> = acting.iter().flat_map(|n| 3 * n..3 * n + 3).collect();
+        let followed = gain.basis().select_rows(&rows).tr_mul(&z);
+        let along = z.tr_mul(&gain.whitened_residuals().select_rows(&rows));
+        Self { acting, z, followed, lengths, along }
+    }
+
+    /// Column `c` alone.
+    pub fn only(&self, c: usize) -> Self {
+        Self {
+            acting: self.acting.clone(),
+            z: self.z.columns(c, 1).into_owned(),
+            followed: self.followed.columns(c, 1).into_owned(),
+            lengths: vec![self.lengths[c]],
+            along: self.along.rows(c, 1).into_owned(),
+        }
+    }
+
+    /// `s^T s = Z^T Z - (Q^T Z)^T Q^T Z`.
+    pub fn redundancy(&self) -> DMatrix<f64> {
+        self.z.tr_mul(&self.z) - self.followed.tr_mul(&self.followed)
+    }
+
+    /// `s_a^T s_b`.
+    pub fn redundancy_with(&self, other: &Self) -> DMatrix<f64> {
+        let mut product = DMatrix::zeros(self.z.ncols(), other.z.ncols());
+        let mut there = 0;
+        for (here, n) in self.acting.iter().enumerate() {
+            there += other.acting[there..].iter().take_while(|m| *m < n).count();
+            if other.acting.get(there) == Some(n) {
+                product += self.z.rows(3 * here, 3).tr_mul(&other.z.rows(3 * there, 3));
+            }
+        }
+        product - self.followed.tr_mul(&other.followed)
+    }
+
+    /// `s^T s` and `s^T e` with what `other` explains taken off both.
+    pub fn beside(&self, other: &Self) -> (DMatrix<f64>, DVector<f64>) {
+        let across = self.redundancy_with(other);
+        let explained = &across * Seen::of(other.redundancy()).inverse();
+        (self.redundancy() - &explained * across.transpose(), &self.along - &explained * &other.along)
+    }
+}
+
+impl Seen {
+    pub fn of(square: DMatrix<f64>) -> Self {
+        let eigen = SymmetricEigen::new(square);
+        let is_seen = |k: &usize| eigen.eigenvalues[*k] > REDUNDANT * REDUNDANT;
+        let seen: Vec<usize> = (0..eigen.eigenvalues.len()).filter(is_seen).collect();
+        let values = seen.iter().map(|&k| eigen.eigenvalues[k]).collect();
+        Self { values, vectors: eigen.eigenvectors.select_columns(&seen) }
+    }
+
+    pub fn rank(&self) -> usize {
+        self.values.len()
+    }
+
+    /// `t^T S^+ t`.
+    pub fn statistic(&self, t: &DVector<f64>) -> f64 {
+        self.vectors.tr_mul(t).iter().zip(&self.values).map(|(component, value)| component * component / value).sum()
+    }
+
+    /// The part of `t` in which nothing is seen.
+    pub fn beyond(&self, t: &DVector<f64>) -> DVector<f64> {
+        t - &self.vectors * self.vectors.tr_mul(t)
+    }
+
+    /// `S^+`.
+    pub fn inverse(&self) -> DMatrix<f64> {
+        let mut root = self.vectors.clone();
+        root.column_iter_mut().zip(&self.values).for_each(|(mut column, value)| column /= value.sqrt());
+        &root * root.transpose()
+    }
+}

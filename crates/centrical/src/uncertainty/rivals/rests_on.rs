@@ -1,0 +1,161 @@
+//! What a result rests on: for every rival the smallest size that the session would have shown, and what one of that size,
+//! unseen, does to the result.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::{DVector, Vector3};
+
+use super::catalogue::{Rivals, Suspect};
+use super::columns::{Columns, REDUNDANT};
+use super::power::non_centrality;
+use crate::model::{FitError, Parameter, Rival};
+use crate::uncertainty::verdict::Level;
+
+/// Power with which the smallest size is shown.
+const POWER: f64 = 0.8;
+
+/// A rival that cannot be seen at all is mentioned when one typical magnitude moves a parameter of the instrument by more than
+/// this part of its standard uncertainty.
+const HARMFUL: f64 = 0.1;
+
+/// A change below this part of another is rounding.
+const UNSEEN: f64 = 1e-6;
+
+/// What a result rests on the absence of: the worst unknown of one rival.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unseen {
+    /// The rival.
+    pub rival: Rival,
+    /// Its worst unknown.
+    pub unknown: Parameter,
+    /// Smallest size that the session shows with a power of 80 % at the level of an objection [unit of the unknown]; `None`
+    /// when it would show none.
+    pub size: Option<f64>,
+    /// Index of the parameter of the instrument that a rival of that size, or of typical magnitude, moves most.
+    pub parameter: usize,
+    /// How far it moves it [unit of the parameter].
+    pub shift: f64,
+    /// The same over the standard uncertainty of the parameter.
+    pub standard_uncertainties: f64,
+    /// Largest error of a compensated reading at the forces of the session [m/s^2].
+    pub reading: f64,
+    /// Factor on the standard uncertainty of the parameter if the rival were an unknown of the fit; `None` if the data would then
+    /// not determine the parameter.
+    pub price: Option<f64>,
+}
+
+impl Unseen {
+    /// The same for a smaller size, if there is one.
+    fn shrink_to(&mut self, smaller: Option<f64>) {
+        if let Some((size, smaller)) = self.size.zip(smaller).filter(|(size, smaller)| smaller < size) {
+            let factor = smaller / size;
+            self.size = Some(smaller);
+            self.shift *= factor;
+            self.standard_uncertainties *= factor;
+            self.reading *= factor;
+        }
+    }
+}
+
+impl Rivals<'_> {
+    /// What the result rests on, the worst first.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn rests_on(&self) -> Result<Vec<Unseen>, FitError> {
+        let ranks = self.list.iter().map(|suspect| suspect.seen.rank()).filter(|rank| *rank > 0);
+        let level = Level::Objection.probability() / ranks.clone().count().max(1) as f64;
+        let of_all = self.calibration.fit().degrees_of_freedom;
+        let needed: BTreeMap<usize, Option<f64>> = ranks
+            .collect::<BTreeSet<usize>>()
+            .into_iter()
+            .map(|rank| (rank, non_centrality(rank, of_all.saturating_sub(rank), level, POWER)))
+            .collect();
+        let needed = |suspect: &Suspect| needed.get(&suspect.seen.rank()).copied().flatten();
+        let mut list = Vec::new();
+        for suspect in &self.list {
+            if let Some((c, mut unseen)) = self.worst_of(suspect, needed(suspect))? {
+                unseen.shrink_to(self.smallest_shown(&suspect.columns.only(c), needed));
+                list.push(unseen);
+            }
+        }
+        list.sort_by(|a, b| b.standard_uncertainties.total_cmp(&a.standard_uncertainties));
+        Ok(list)
+    }
+
+    /// Smallest size of a single column that any rival shows: with what of it lies within a rival's columns, `s_r^T s_c`, the
+    /// rival's test has the non-centrality `a^2 (s_r^T s_c)^T (s_r^T s_r)^+ s_r^T s_c`.
+    fn smallest_shown(&self, column: &Columns, needed: impl Fn(&Suspect) -> Option<f64>) -> Option<f64> {
+        let sizes = self.list.iter().filter_map(|rival| {
+            let across = rival.columns.redundancy_with(column).column(0).into_owned();
+            let per_square = rival.seen.statistic(&across);
+            let size = (needed(rival)? / per_square).sqrt() / column.lengths[0];
+            size.is_finite().then_some(size)
+        });
+        sizes.min_by(f64::total_cmp)
+    }
+
+    /// The unknown of a rival that does most harm unseen, where its own test alone would show it, with its place.
+    fn worst_of(&self, suspect: &Suspect, needed: Option<f64>) -> Result<Option<(usize, Unseen)>, FitError> {
+        let Suspect { rival, unknowns, columns, .. } = suspect;
+        let redundancy = columns.redundancy();
+        let shifts = self.calibration.gain()?.shifts(&columns.followed);
+        let candidates = unknowns.iter().enumerate().filter(|(c, _)| columns.lengths[*c] > 0.0);
+        let candidates = candidates.filter_map(|(c, unknown)| {
+            let is_seen = redundancy[(c, c)] > REDUNDANT * REDUNDANT;
+            let size =
+                needed.filter(|_| is_seen).map(|needed| (needed / redundancy[(c, c)]).sqrt() / columns.lengths[c]);
+            let moved = shifts.column(c) * (columns.lengths[c] * size.unwrap_or(unknown.typical));
+            let (parameter, standard_uncertainties) = self.most_moved(moved.as_slice())?;
+            let unseen = || Unseen {
+                rival: *rival,
+                unknown: unknown.clone(),
+                size,
+                parameter,
+                shift: moved[parameter],
+                standard_uncertainties,
+                reading: self.reading_error(moved.as_slice()),
+                price: self.price(suspect, &shifts.row(parameter).transpose(), parameter),
+            };
+            (size.is_some() || standard_uncertainties > HARMFUL).then(|| (c, unseen()))
+        });
+        Ok(candidates.max_by(|(_, a), (_, b)| a.standard_uncertainties.total_cmp(&b.standard_uncertainties)))
+    }
+
+    /// With the rival as an unknown the variance of a parameter grows by `g^T (s^T s)^+ g`, where `g` is its change by one unit
+    /// of each column; a part of `g` that is not seen leaves the parameter undetermined.
+    fn price(&self, suspect: &Suspect, g: &DVector<f64>, parameter: usize) -> Option<f64> {
+        let u = self.calibration.fit().standard_uncertainty(parameter)?;
+        let unseen = suspect.seen.beyond(g).norm();
+        let determined = unseen <= UNSEEN * g.norm() || unseen <= UNSEEN * u;
+        determined.then(|| (1.0 + suspect.seen.statistic(g) / (u * u)).sqrt())
+    }
+
+    /// The estimable parameter of the instrument that moves most, and by how many standard uncertainties.
+    fn most_moved(&self, moved: &[f64]) -> Option<(usize, f64)> {
+        let (fit, parameters) = (self.calibration.fit(), self.calibration.data().model().parameters());
+        let instrument = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument());
+        let in_uncertainties = instrument.filter_map(|j| {
+            let u = fit.standard_uncertainty(j).filter(|u| *u > 0.0)?;
+            Some((j, (moved[j] / u).abs()))
+        });
+        in_uncertainties.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Largest error of a compensated reading at the forces of the plateaus, where the coefficients are off by `moved`.
+    fn reading_error(&self, moved: &[f64]) -> f64 {
+        let (data, x) = (self.calibration.data(), self.calibration.fit().state());
+        let model = data.model();
+        let (first, terms) = (model.parameters().first_term(), &model.error_model().terms);
+        let set_points = &model.experiment().set_points;
+        let error = |set_point: usize| {
+            let f = model.specific_force(&set_points[set_point], x);
+            let mut error = Vector3::zeros();
+            for (term, coefficient) in terms.iter().zip(&moved[first..]) {
+                error[term.axis] += coefficient * term.monomial.value(f.into());
+            }
+            error.amax()
+        };
+        data.observations().iter().map(|o| error(o.set_point)).fold(0.0, f64::max)
+    }
+}
