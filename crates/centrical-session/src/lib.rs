@@ -47,8 +47,8 @@ pub use document::{
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, MountingFiles, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session, earlier_result,
-    read_plateaus, write_plateaus,
+    ExpectedValues, Measured, MountingFiles, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
+    SpeedSource, Speeds, earlier_result, read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following,
@@ -63,8 +63,8 @@ pub use laboratory::{
 };
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
 pub use record::{
-    Column, Columns, Input, RecordOverview, RecordReader, Scale, read_growing_record, read_record, read_telemetry,
-    stretch,
+    Column, Columns, Input, RecordOverview, RecordReader, Scale, read_growing_record, read_pulses, read_record,
+    read_telemetry, stretch,
 };
 pub use record_writer::RecordWriter;
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};

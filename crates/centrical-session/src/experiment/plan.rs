@@ -11,7 +11,8 @@ use nalgebra::Matrix3;
 use serde::Deserialize;
 
 use super::form::{self, Form, PlanTable, PresetForm, PresetTable};
-use super::session::{Session, extensions, pair_relation, read_text, speed_uncertainty};
+use super::session::{Session, extensions, pair_relation, read_text};
+use super::speeds::preset_speeds;
 use super::toml_path::TomlPath;
 use super::{prior, schedule, terms};
 use crate::error::{Error, quoted};
@@ -124,8 +125,8 @@ impl Plan {
         )?;
         let mut experiment = plan.experiment();
         let (noise, duration) = noise(file, table.noise.as_ref(), table.floor.as_ref(), table.duration.as_ref())?;
-        let stated = form.centrifuge.speed_uncertainty.as_ref().map(|q| speed_uncertainty(file, q)).transpose()?;
-        experiment.centrifuge.speed_uncertainty = stated.unwrap_or(0.0);
+        let speeds = preset_speeds(file, &form.centrifuge)?;
+        experiment.centrifuge.speed_uncertainty = speeds.expected_uncertainty();
         let weights = weights(&noise, vec![duration; experiment.set_points.len()]);
         let error_model = terms::error_model(file, &form.model.error_model)?;
         let model = MeasurementModel::new(experiment, error_model, &extensions(file, &form.model)?);
@@ -136,7 +137,7 @@ impl Plan {
             model: prior::with_priors(file, model, &prior::entries(&form.prior))?,
             weights,
             noise,
-            type_b: TypeB::default(),
+            type_b: TypeB { speed_scale: speeds.scale(), ..TypeB::default() },
         })
     }
 }

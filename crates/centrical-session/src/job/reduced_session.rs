@@ -6,11 +6,13 @@ use centrical_table::{TableFormat, create_folder, write_whole};
 use toml_edit::{DocumentMut, Item, TableLike, Value, value};
 
 use crate::error::{Error, Place};
-use crate::experiment::{EXPERIMENT_FILE, PlateauMean, Session, read_text, write_plateaus, write_plateaus_parquet};
+use crate::experiment::{
+    EXPERIMENT_FILE, PlateauMean, Session, SpeedSource, read_text, write_plateaus, write_plateaus_parquet,
+};
 use crate::reduced::Reduced;
 
 /// Keys of a mounting that say what the table of plateaus says now.
-const REPLACED: [&str; 3] = ["record", "telemetry", "plateaus"];
+const REPLACED: [&str; 4] = ["record", "telemetry", "pulses", "plateaus"];
 
 /// Writes the reduced session into `folder`: the table of plateaus first, and `experiment.toml`, which names it, last.
 /// Calibrating it gives the numbers that calibrating the records gives.
@@ -47,6 +49,11 @@ fn experiment(file: &Path, table: &str) -> Result<String, Error> {
             mountings.iter_mut().filter_map(Value::as_inline_table_mut).for_each(|mounting| strip(mounting));
         }
         _ => {}
+    }
+    if let Some(measured) = document.get_mut("centrifuge").and_then(|table| table.get_mut("measured"))
+        && let Some(measured) = measured.as_table_like_mut()
+    {
+        measured.insert("from", value(SpeedSource::Plateaus.name()));
     }
     document.insert("plateaus", value(table));
     Ok(document.to_string())

@@ -30,7 +30,7 @@ pub fn read_growing_record(file: &Path, columns: &Columns) -> Result<Record, Err
 /// # Errors
 /// As [`RecordReader::next_batch`].
 pub fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Error> {
-    let mut reader = RecordReader::with(file, Extent::Whole, &[&columns.time, &columns.speed], "telemetry")?;
+    let mut reader = RecordReader::with(file, Extent::Whole, &[&columns.telemetry_time, &columns.speed], "telemetry")?;
     let mut telemetry = SpeedTrace::default();
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
@@ -39,6 +39,21 @@ pub fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Erro
         }
     }
     Ok(telemetry)
+}
+
+/// Reads the times of the pulses in `file` [s].
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub fn read_pulses(file: &Path, columns: &Columns) -> Result<Vec<f64>, Error> {
+    let mut reader = RecordReader::with(file, Extent::Whole, &[&columns.pulse], "times of pulses")?;
+    let mut times = Vec::new();
+    while let Some(batch) = reader.next_batch()? {
+        for rows in batch {
+            times.extend_from_slice(&rows[0]);
+        }
+    }
+    Ok(times)
 }
 
 /// A record that is read in memory that does not grow with it.
