@@ -29,7 +29,7 @@ pub struct ClockOffset {
 /// How the ramps of the telemetry agree with those of the record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClockAgreement {
-    /// Ramps of the record.
+    /// Ramps of the record in the time that the telemetry covers.
     pub ramps: usize,
     /// Ramps of the record that the telemetry has at the same time, up to the offset of the clocks.
     pub agreeing: usize,
@@ -42,9 +42,9 @@ pub struct ClockAgreement {
 }
 
 impl ClockAgreement {
-    /// Whether the telemetry is of this record: half of the ramps at least are in both, by clocks of the same rate.
+    /// Whether the telemetry is of this record: two of three ramps at least are in both, by clocks of the same rate.
     pub fn is_of_the_record(&self) -> bool {
-        2 * self.agreeing >= self.ramps && self.rate == 1.0
+        self.agreeing > 0 && 3 * self.agreeing >= 2 * self.ramps && self.rate == 1.0
     }
 }
 
@@ -75,8 +75,10 @@ pub(super) fn compare(
     }
     let (offset, scale, rate, agreeing) = best;
     let shift = offset.map_or(0.0, |offset| offset.seconds);
-    let ends = [telemetry.t.first(), telemetry.t.last()].map(|t| rate * t.copied().unwrap_or(f64::NAN) + shift);
-    (offset, ClockAgreement { ramps: ramps.len(), agreeing, scale, rate, span: ends })
+    let span = [telemetry.t.first(), telemetry.t.last()].map(|t| rate * t.copied().unwrap_or(f64::NAN) + shift);
+    let is_covered = |ramp: &&Ramp| rate != 1.0 || offset.is_none() || (span[0]..=span[1]).contains(&ramp.t);
+    let covered = ramps.iter().filter(is_covered).count();
+    (offset, ClockAgreement { ramps: covered, agreeing, scale, rate, span })
 }
 
 /// Fastest speed of the telemetry, a lone report left out, over that of the schedule.
