@@ -24,8 +24,8 @@ pub use self::prediction::{PredictedParameter, PredictionReport};
 pub use self::result::{
     BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, Method, ModelSummary,
     MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, ParameterEstimate, PatternSummary,
-    PlateauSummary, PositionSummary, PriorSummary, Program, ResultObjection, SCHEMA, SessionSummary, StabilityCurve,
-    TermSummary, ValiditySummary,
+    PlateauSummary, PositionSummary, PriorSummary, Program, ResultObjection, SCHEMA, SessionSummary, SpeedDifference,
+    SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary, ValiditySummary,
 };
 pub use self::steadiness::{
     DriftSummary, LeftOutSummary, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary, TiltVerdict,

@@ -42,8 +42,9 @@ pub use document::{
     ObservedParameter, OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting,
     PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program,
     ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, ResultObjection, SCHEMA, SessionDriftVerdict,
-    SessionSummary, SessionTrend, SightReport, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary,
-    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history,
+    SessionSummary, SessionTrend, SightReport, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve,
+    StepReport, Subject, TermSummary, TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau,
+    read_history,
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{

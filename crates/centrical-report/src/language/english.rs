@@ -5,6 +5,7 @@ use centrical::{Group, PairRelation, ReferencePoint, Termination};
 use centrical_session::{Follows, Method};
 
 use super::messages::{Messages, Words};
+use super::speeds;
 
 /// English.
 pub(crate) const ENGLISH: Messages = Messages {
@@ -225,12 +226,23 @@ pub(crate) const ENGLISH: Messages = Messages {
     uncertainty: "Expanded uncertainty",
     covariance: "Covariance matrix of the parameters",
     specific_force: "Specific force",
-    words: Words { group, source, method, termination, pair_relation, reference, follows },
+    words: Words {
+        group,
+        source,
+        method,
+        termination,
+        pair_relation,
+        reference,
+        follows,
+        speed_finding: speeds::in_english,
+        speeds_measured: speeds::measured_in_english,
+    },
     not_converged: "the fit did not converge",
     residuals_too_large: "residuals are larger than the stated uncertainties explain",
     degrees_of_freedom: "degrees of freedom",
     chance: "chance",
     lost_parameters: "parameters of the instrument are not determined",
+    speeds: "Speeds of the plateaus",
 };
 
 fn group(group: Group) -> &'static str {

@@ -4,7 +4,7 @@
 
 use centrical::uncertainty::Source;
 use centrical::{Group, PairRelation, ReferencePoint, Termination};
-use centrical_session::{Follows, Method};
+use centrical_session::{Follows, Method, SpeedFinding, SpeedsSummary};
 
 /// What the documents say, in one language.
 #[allow(missing_docs)]
@@ -198,6 +198,7 @@ pub(crate) struct Messages {
     pub degrees_of_freedom: &'static str,
     pub chance: &'static str,
     pub lost_parameters: &'static str,
+    pub speeds: &'static str,
 }
 
 /// Words for what is one of several, in one language; each function names all of them.
@@ -210,4 +211,8 @@ pub(crate) struct Words {
     pub reference: fn(ReferencePoint) -> &'static str,
     /// What a pattern follows, without its place.
     pub follows: fn(&Follows) -> &'static str,
+    /// What the telemetry shows against the schedule, as a sentence.
+    pub speed_finding: fn(&SpeedFinding) -> String,
+    /// How the speeds of plateaus are known, as a sentence.
+    pub speeds_measured: fn(&SpeedsSummary) -> String,
 }

@@ -5,6 +5,7 @@ use centrical::{Group, PairRelation, ReferencePoint, Termination};
 use centrical_session::{Follows, Method};
 
 use super::messages::{Messages, Words};
+use super::speeds;
 
 /// Russian.
 pub(crate) const RUSSIAN: Messages = Messages {
@@ -223,12 +224,23 @@ pub(crate) const RUSSIAN: Messages = Messages {
     uncertainty: "Расширенная неопределённость",
     covariance: "Ковариационная матрица параметров",
     specific_force: "Удельная сила",
-    words: Words { group, source, method, termination, pair_relation, reference, follows },
+    words: Words {
+        group,
+        source,
+        method,
+        termination,
+        pair_relation,
+        reference,
+        follows,
+        speed_finding: speeds::in_russian,
+        speeds_measured: speeds::measured_in_russian,
+    },
     not_converged: "оценивание не сошлось",
     residuals_too_large: "остатки больше, чем допускают заявленные неопределённости",
     degrees_of_freedom: "степеней свободы",
     chance: "вероятность",
     lost_parameters: "не определены параметры прибора",
+    speeds: "Скорости на площадках",
 };
 
 fn group(group: Group) -> &'static str {

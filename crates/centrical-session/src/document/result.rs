@@ -4,6 +4,7 @@ mod budget_and_checks;
 mod error_terms;
 mod from_calibration;
 mod schema;
+mod speeds;
 mod verdict;
 
 pub use self::budget_and_checks::{
@@ -14,4 +15,5 @@ pub use self::schema::{
     ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
     TermSummary,
 };
+pub use self::speeds::{SpeedDifference, SpeedFinding, SpeedsSummary};
 pub use self::verdict::ResultObjection;

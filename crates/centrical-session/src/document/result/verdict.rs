@@ -4,9 +4,10 @@ use centrical::uncertainty::{Findings, Objection, objections};
 
 use super::budget_and_checks::PatternSummary;
 use super::schema::CalibrationResult;
+use super::speeds::SpeedFinding;
 
 /// An objection to a result: plateaus as `mounting:plateau`, counted from 1.
-pub type ResultObjection = Objection<String, PatternSummary>;
+pub type ResultObjection = Objection<String, PatternSummary, SpeedFinding>;
 
 impl CalibrationResult {
     /// The objections to the result; empty if it is acceptable.
@@ -14,6 +15,7 @@ impl CalibrationResult {
         let validity = self.validity.iter();
         let outlying = validity.clone().flat_map(|validity| &validity.outlying);
         let patterns = validity.flat_map(|validity| &validity.patterns);
+        let speeds = self.speeds.iter().flat_map(|speeds| &speeds.findings);
         let terms = self.model.error_model.iter().map(|term| &term.name);
         let is_lost = |name: &&String| self.parameter(name).is_none_or(|p| !p.estimable);
         objections(Findings {
@@ -23,6 +25,7 @@ impl CalibrationResult {
             degrees_of_freedom: self.fit.degrees_of_freedom,
             outlying: outlying.map(|p| (format!("{}:{}", p.mounting, p.index + 1), p.probability)).collect(),
             patterns: patterns.map(|pattern| (pattern.clone(), pattern.probability)).collect(),
+            speeds: speeds.map(|finding| (finding.clone(), finding.probability())).collect(),
             not_determined: terms.filter(is_lost).cloned().collect(),
         })
     }

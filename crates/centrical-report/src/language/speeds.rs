@@ -1,0 +1,163 @@
+//! Sentences about the speeds of plateaus, in each language.
+
+use centrical_session::{SpeedDifference, SpeedFinding, SpeedsSummary};
+
+/// Plateaus and mountings that a sentence names; of more it says how many.
+const NAMED: usize = 5;
+
+/// What the telemetry shows.
+pub(super) fn in_english(finding: &SpeedFinding) -> String {
+    match finding {
+        SpeedFinding::Difference(found) => difference_in_english(found),
+        SpeedFinding::Clock { mounting, ramps, agreeing, rate } => {
+            let cause = match rate {
+                Some(rate) => format!("all agree if its clock counts {} s in a second", three(1.0 / rate)),
+                None => "the telemetry of another mounting, or a clock that is wrong".to_owned(),
+            };
+            format!(
+                "telemetry of mounting {mounting} has {agreeing} of the {ramps} ramps of the record at their times: {cause}"
+            )
+        }
+        SpeedFinding::Missing { mounting, plateaus, span: [from, to] } => {
+            format!(
+                "telemetry of mounting {mounting} covers {from:.1} s to {to:.1} s of the record: {plateaus} plateaus without a speed"
+            )
+        }
+    }
+}
+
+/// As [`in_english`].
+pub(super) fn in_russian(finding: &SpeedFinding) -> String {
+    match finding {
+        SpeedFinding::Difference(found) => difference_in_russian(found),
+        SpeedFinding::Clock { mounting, ramps, agreeing, rate } => {
+            let cause = match rate {
+                Some(rate) => {
+                    format!("все совпадают, если её часы отсчитывают {} с за секунду", comma(three(1.0 / rate)))
+                }
+                None => "телеметрия другой установки или неверные часы".to_owned(),
+            };
+            format!(
+                "в телеметрии установки {mounting} совпадают по времени с записью разгоны: {agreeing} из {ramps}; {cause}"
+            )
+        }
+        SpeedFinding::Missing { mounting, plateaus, span: [from, to] } => {
+            let [from, to] = [from, to].map(|t| comma(format!("{t:.1}")));
+            format!(
+                "телеметрия установки {mounting} охватывает запись от {from} с до {to} с; площадок без скорости: {plateaus}"
+            )
+        }
+    }
+}
+
+/// How the speeds are known.
+pub(super) fn measured_in_english(speeds: &SpeedsSummary) -> String {
+    let by = match speeds.measured_by.as_deref() {
+        Some("pulses") => "by a counter of revolutions",
+        Some("plateaus") => "as the plateaus state",
+        _ => "by the telemetry",
+    };
+    let SpeedsSummary { measured, spinning, scale_uncertainty, .. } = speeds;
+    format!("measured {by} on {measured} of {spinning} plateaus that spin; common scale {}", ppm(*scale_uncertainty))
+}
+
+/// As [`measured_in_english`].
+pub(super) fn measured_in_russian(speeds: &SpeedsSummary) -> String {
+    let by = match speeds.measured_by.as_deref() {
+        Some("pulses") => "счётчиком оборотов",
+        Some("plateaus") => "как указано для площадок",
+        _ => "по телеметрии",
+    };
+    let SpeedsSummary { measured, spinning, scale_uncertainty, .. } = speeds;
+    let scale = comma(ppm(*scale_uncertainty)).replace("ppm", "млн⁻¹");
+    format!("измерены {by} на площадках с вращением: {measured} из {spinning}; общий масштаб {scale}")
+}
+
+fn difference_in_english(found: &SpeedDifference) -> String {
+    let count = found.plateaus.len();
+    let place = match found.extent.as_str() {
+        "all" if count == found.of => format!("in all {count} plateaus"),
+        "all" => format!("in {count} of {} plateaus", found.of),
+        "mountings" => format!("in all plateaus of mountings {}", list(found.mountings.iter(), "and others")),
+        "speeds" => format!("in all {count} plateaus of such speeds"),
+        _ => format!("in {count} of {} plateaus ({})", found.of, list(found.plateaus.iter(), "and others")),
+    };
+    let cause = match &found.units {
+        Some([own, read]) => format!("speeds in {own} are read in {read}"),
+        None if found.extent == "plateaus" || found.extent == "speeds" => {
+            "a wrong set-point, or the tachometer".to_owned()
+        }
+        None => "a wrong unit, a wrong set-point, or a tachometer's scale".to_owned(),
+    };
+    let record = match found.record_follows.as_deref() {
+        Some("telemetry") => "; the record follows the telemetry",
+        Some("schedule") => "; the record follows the schedule",
+        _ => "",
+    };
+    format!(
+        "telemetry says {:.2} rpm, the schedule {:.2} ({}, {} times the stated uncertainty) {place}: {cause}{record}",
+        rpm(found.shown),
+        rpm(found.set),
+        percent(found.difference),
+        times(found),
+    )
+}
+
+fn difference_in_russian(found: &SpeedDifference) -> String {
+    let count = found.plateaus.len();
+    let place = match found.extent.as_str() {
+        "all" => format!("на площадках: {count} из {}", found.of),
+        "mountings" => format!("на всех площадках установок {}", list(found.mountings.iter(), "и др.")),
+        "speeds" => format!("на всех площадках с такими скоростями: {count}"),
+        _ => format!("на площадках {} ({count} из {})", list(found.plateaus.iter(), "и др."), found.of),
+    };
+    let cause = match &found.units {
+        Some([own, read]) => format!("скорости в {own} прочитаны в {read}"),
+        None if found.extent == "plateaus" || found.extent == "speeds" => "неверная уставка или тахометр".to_owned(),
+        None => "неверная единица, неверная уставка или масштаб тахометра".to_owned(),
+    };
+    let record = match found.record_follows.as_deref() {
+        Some("telemetry") => "; запись согласуется с телеметрией",
+        Some("schedule") => "; запись согласуется с программой",
+        _ => "",
+    };
+    let numbers = format!("телеметрия показывает {:.2} об/мин, программа {:.2}", rpm(found.shown), rpm(found.set));
+    let off = format!("{}, в {} раз больше заявленной неопределённости", percent(found.difference), times(found));
+    format!("{} ({}) {place}: {cause}{record}", comma(numbers), comma(off))
+}
+
+fn times(found: &SpeedDifference) -> String {
+    three((found.difference / found.standard_uncertainty).abs())
+}
+
+/// Some names, and a word for those beyond them.
+fn list(names: impl Iterator<Item = impl ToString> + ExactSizeIterator, others: &str) -> String {
+    let more = if names.len() > NAMED { format!(" {others}") } else { String::new() };
+    let named: Vec<String> = names.take(NAMED).map(|name| name.to_string()).collect();
+    format!("{}{more}", named.join(", "))
+}
+
+fn rpm(speed: f64) -> f64 {
+    speed * 60.0 / std::f64::consts::TAU
+}
+
+/// A relative difference in percent, to two significant digits at least.
+fn percent(difference: f64) -> String {
+    let percent = 100.0 * difference;
+    let places = if percent.abs() >= 0.1 { 2 } else { 4 };
+    format!("{percent:+.places$} %")
+}
+
+/// A relative uncertainty.
+fn ppm(uncertainty: f64) -> String {
+    format!("{} ppm", 1e6 * uncertainty)
+}
+
+/// A positive number to two or three significant digits.
+fn three(number: f64) -> String {
+    if number >= 10.0 { format!("{number:.0}") } else { format!("{number:.2}") }
+}
+
+fn comma(text: String) -> String {
+    text.replace('.', ",")
+}
