@@ -13,4 +13,5 @@ pub use self::input::Input;
 pub use self::overview::RecordOverview;
 pub(crate) use self::passes::RecordFile;
 pub use self::reader::{RecordReader, read_growing_record, read_pulses, read_record, read_telemetry, stretch};
+pub(crate) use self::reader::{read_growing_pulses, read_growing_telemetry};
 pub(crate) use self::sample_cache::{MemoryBudget, SampleCache};

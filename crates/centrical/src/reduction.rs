@@ -61,8 +61,27 @@ pub fn reduce(
     schedule: &[ScheduledPlateau],
 ) -> Result<ReducedMounting, ReductionError> {
     let located = locate(&Survey::of(record)?, telemetry, schedule)?;
+    averaged(record, located, schedule.len())
+}
+
+/// The same with speeds by a counter of revolutions in place of telemetry.
+///
+/// # Errors
+/// As [`reduce`].
+pub fn reduce_counted(
+    record: &Record,
+    pulses: &PulseTrain,
+    schedule: &[ScheduledPlateau],
+) -> Result<ReducedMounting, ReductionError> {
+    let mut located = locate(&Survey::of(record)?, None, schedule)?;
+    located.time_pulses(pulses);
+    averaged(record, located, schedule.len())
+}
+
+/// The plateaus of a record that are located.
+fn averaged(record: &Record, located: Located, count: usize) -> Result<ReducedMounting, ReductionError> {
     let average = |plateau| average(&located, plateau, record.as_slice(), 0);
-    let plateaus = (0..schedule.len()).map(average).collect::<Result<_, _>>()?;
+    let plateaus = (0..count).map(average).collect::<Result<_, _>>()?;
     Ok(ReducedMounting::new(located, plateaus))
 }
 

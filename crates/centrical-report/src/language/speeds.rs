@@ -9,13 +9,16 @@ const NAMED: usize = 5;
 pub(super) fn in_english(finding: &SpeedFinding) -> String {
     match finding {
         SpeedFinding::Difference(found) => difference_in_english(found),
-        SpeedFinding::Clock { mounting, ramps, agreeing, rate } => {
-            let cause = match rate {
-                Some(rate) => format!("all agree if its clock counts {} s in a second", three(1.0 / rate)),
-                None => "the telemetry of another mounting, or a clock that is wrong".to_owned(),
-            };
+        SpeedFinding::Clock { mountings, rate: Some(rate), .. } => format!(
+            "the clock of the telemetry runs {} times as fast as that of the record in {}: a wrong sampling rate or unit of time",
+            three(1.0 / rate),
+            mountings_in_english(mountings)
+        ),
+        SpeedFinding::Clock { mountings, ramps, agreeing, rate: None } => {
+            let of = mountings_in_english(mountings);
             format!(
-                "telemetry of mounting {mounting} has {agreeing} of the {ramps} ramps of the record at their times: {cause}"
+                "telemetry of {of} has {agreeing} of the {ramps} ramps of the record at their times: the telemetry of another \
+                 mounting, or a wrong clock"
             )
         }
         SpeedFinding::Missing { mounting, plateaus, span: [from, to] } => {
@@ -30,15 +33,16 @@ pub(super) fn in_english(finding: &SpeedFinding) -> String {
 pub(super) fn in_russian(finding: &SpeedFinding) -> String {
     match finding {
         SpeedFinding::Difference(found) => difference_in_russian(found),
-        SpeedFinding::Clock { mounting, ramps, agreeing, rate } => {
-            let cause = match rate {
-                Some(rate) => {
-                    format!("все совпадают, если её часы отсчитывают {} с за секунду", comma(three(1.0 / rate)))
-                }
-                None => "телеметрия другой установки или неверные часы".to_owned(),
-            };
+        SpeedFinding::Clock { mountings, rate: Some(rate), .. } => format!(
+            "часы телеметрии идут в {} раз быстрее часов записи (установки {}): неверная частота отсчётов или единица времени",
+            comma(three(1.0 / rate)),
+            list(mountings.iter(), "и др.")
+        ),
+        SpeedFinding::Clock { mountings, ramps, agreeing, rate: None } => {
+            let of = list(mountings.iter(), "и др.");
             format!(
-                "в телеметрии установки {mounting} совпадают по времени с записью разгоны: {agreeing} из {ramps}; {cause}"
+                "в телеметрии совпадают по времени с записью разгоны: {agreeing} из {ramps} (установки {of}): телеметрия другой \
+                 установки или неверные часы"
             )
         }
         SpeedFinding::Missing { mounting, plateaus, span: [from, to] } => {
@@ -78,8 +82,9 @@ fn difference_in_english(found: &SpeedDifference) -> String {
     let place = match found.extent.as_str() {
         "all" if count == found.of => format!("in all {count} plateaus"),
         "all" => format!("in {count} of {} plateaus", found.of),
-        "mountings" => format!("in all plateaus of mountings {}", list(found.mountings.iter(), "and others")),
-        "speeds" => format!("in all {count} plateaus of such speeds"),
+        "mountings" => format!("in all {count} plateaus of {}", mountings_in_english(&found.mountings)),
+        "speeds" if found.speeds.len() == 1 => format!("in all {count} plateaus of this speed"),
+        "speeds" => format!("in all {count} plateaus of {} speeds", found.speeds.len()),
         _ => format!("in {count} of {} plateaus ({})", found.of, list(found.plateaus.iter(), "and others")),
     };
     let cause = match &found.units {
@@ -126,6 +131,12 @@ fn difference_in_russian(found: &SpeedDifference) -> String {
     format!("{} ({}) {place}: {cause}{record}", comma(numbers), comma(off))
 }
 
+/// `mounting 4`, or `mountings 1, 2`.
+fn mountings_in_english(mountings: &[usize]) -> String {
+    let plural = if mountings.len() == 1 { "" } else { "s" };
+    format!("mounting{plural} {}", list(mountings.iter(), "and others"))
+}
+
 fn times(found: &SpeedDifference) -> String {
     three((found.difference / found.standard_uncertainty).abs())
 }
@@ -144,7 +155,7 @@ fn rpm(speed: f64) -> f64 {
 /// A relative difference in percent, to two significant digits at least.
 fn percent(difference: f64) -> String {
     let percent = 100.0 * difference;
-    let places = if percent.abs() >= 0.1 { 2 } else { 4 };
+    let places = if percent.abs() >= 0.095 { 2 } else { 4 };
     format!("{percent:+.places$} %")
 }
 

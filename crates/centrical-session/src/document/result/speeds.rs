@@ -1,6 +1,6 @@
 //! How the speeds of plateaus are known, and what the telemetry shows against them.
 
-use centrical::reduction::MeasuredSpeed;
+use centrical::reduction::{ClockAgreement, MeasuredSpeed};
 use centrical::uncertainty::{Extent, ShownSpeed, SpeedContradiction, StatedSpeeds, speed_contradictions};
 use centrical::{Calibration, Data, Experiment, FitError, SetPoint, Termination};
 use serde::{Deserialize, Serialize};
@@ -34,9 +34,9 @@ pub enum SpeedFinding {
     Difference(SpeedDifference),
     /// The ramps of the telemetry are not those of the record.
     Clock {
-        /// Mounting, counted from 1.
-        mounting: usize,
-        /// Ramps of the record in the time of the telemetry.
+        /// Mountings, counted from 1.
+        mountings: Vec<usize>,
+        /// Ramps of their records in the time of the telemetry.
         ramps: usize,
         /// Those that the telemetry has at the same time.
         agreeing: usize,
@@ -63,6 +63,9 @@ pub struct SpeedDifference {
     /// Mountings, counted from 1, where they have these in common.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mountings: Vec<usize>,
+    /// Speeds that were set [rad/s], where they have these in common.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub speeds: Vec<f64>,
     /// The plateaus, as `mounting:plateau`, counted from 1.
     pub plateaus: Vec<String>,
     /// Plateaus with a speed in the telemetry.
@@ -114,7 +117,7 @@ impl SpeedsSummary {
         let shown = shown(scheduled, &reduced.speeds);
         for contradiction in speed_contradictions(&shown, &stated(session)) {
             findings.push(SpeedFinding::Difference(SpeedDifference {
-                record_follows: record_follows(calibration, scheduled, &shown, &contradiction)?,
+                record_follows: record_follows(calibration, &shown, &contradiction, session.speeds.is_in_files())?,
                 ..SpeedDifference::new(&session.experiment, &contradiction, shown.len())
             }));
         }
@@ -144,15 +147,16 @@ impl SpeedDifference {
             let before = experiment.set_points[..*n].iter().filter(|other| other.mounting == mounting).count();
             format!("{}:{}", mounting + 1, before + 1)
         };
-        let (extent, mountings) = match &found.extent {
-            Extent::All => ("all", Vec::new()),
-            Extent::Mountings(mountings) => ("mountings", mountings.iter().map(|m| m + 1).collect()),
-            Extent::Speeds(_) => ("speeds", Vec::new()),
-            Extent::Plateaus => ("plateaus", Vec::new()),
+        let (extent, mountings, speeds) = match &found.extent {
+            Extent::All => ("all", Vec::new(), Vec::new()),
+            Extent::Mountings(mountings) => ("mountings", mountings.iter().map(|m| m + 1).collect(), Vec::new()),
+            Extent::Speeds(speeds) => ("speeds", Vec::new(), speeds.clone()),
+            Extent::Plateaus => ("plateaus", Vec::new(), Vec::new()),
         };
         Self {
             extent: extent.to_owned(),
             mountings,
+            speeds,
             plateaus: found.set_points.iter().map(name).collect(),
             of,
             set: found.set,
@@ -202,14 +206,13 @@ fn shown(scheduled: &[SetPoint], speeds: &[Option<MeasuredSpeed>]) -> Vec<ShownS
 
 /// What the clocks of the telemetry show, mounting by mounting.
 fn clocks(session: &Session, reduced: &Reduced) -> Vec<SpeedFinding> {
-    let mut findings = Vec::new();
+    let mut findings: Vec<SpeedFinding> = Vec::new();
     for (m, mounting) in reduced.mountings.iter().enumerate() {
         let Some(agreement) = mounting.agreement else { continue };
         let rate = (agreement.rate != 1.0).then_some(agreement.rate);
         if !agreement.is_of_the_record() {
             if agreement.ramps >= RAMPS {
-                let (ramps, agreeing) = (agreement.ramps, agreement.agreeing);
-                findings.push(SpeedFinding::Clock { mounting: m + 1, ramps, agreeing, rate });
+                add_clock(&mut findings, m + 1, &agreement, rate);
             }
             continue;
         }
@@ -222,6 +225,26 @@ fn clocks(session: &Session, reduced: &Reduced) -> Vec<SpeedFinding> {
     findings
 }
 
+/// Adds the clock of a mounting to those that are off alike, the rates within a percent.
+fn add_clock(findings: &mut Vec<SpeedFinding>, mounting: usize, agreement: &ClockAgreement, own: Option<f64>) {
+    let is_alike = |rate: Option<f64>| match (rate, own) {
+        (Some(rate), Some(own)) => (rate / own - 1.0).abs() < 0.01,
+        (rate, own) => rate == own,
+    };
+    for finding in &mut *findings {
+        if let SpeedFinding::Clock { mountings, ramps, agreeing, rate } = finding
+            && is_alike(*rate)
+        {
+            mountings.push(mounting);
+            *ramps += agreement.ramps;
+            *agreeing += agreement.agreeing;
+            return;
+        }
+    }
+    let (ramps, agreeing) = (agreement.ramps, agreement.agreeing);
+    findings.push(SpeedFinding::Clock { mountings: vec![mounting], ramps, agreeing, rate: own });
+}
+
 /// The pair of units whose mistake makes speeds `ratio` times as large, within a percent: the telemetry's own, and that which
 /// it is read in.
 fn other_units(ratio: f64) -> Option<[String; 2]> {
@@ -230,12 +253,13 @@ fn other_units(ratio: f64) -> Option<[String; 2]> {
     pairs.next().map(|(own, read)| [own.0.to_owned(), read.0.to_owned()])
 }
 
-/// Which speeds the record follows: those of the plateaus in question as shown, or as set. The fits are compared.
+/// Which speeds the record follows: those of the plateaus in question as shown, or as set. The fits are compared. Plateaus
+/// that differ alike are taken to differ by the mean, which has little of the scatter of the telemetry.
 fn record_follows(
     calibration: &Calibration,
-    scheduled: &[SetPoint],
     shown: &[ShownSpeed],
     found: &SpeedContradiction,
+    is_measured: bool,
 ) -> Result<Option<String>, FitError> {
     // A fit by speeds in another unit says nothing.
     if calibration.fit().termination == Termination::Linear || found.difference.abs() > 0.1 {
@@ -246,8 +270,15 @@ fn record_follows(
         let model = calibration.data().model();
         let mut set_points = model.experiment().set_points.clone();
         for speed in shown.iter().filter(|speed| found.set_points.contains(&speed.set_point)) {
-            let omega = if is_shown { speed.shown.speed } else { speed.set };
-            set_points[speed.set_point].omega = omega.copysign(scheduled[speed.set_point].omega);
+            let difference = match found.extent {
+                Extent::Plateaus => speed.shown.speed / speed.set - 1.0,
+                _ => found.difference,
+            };
+            match (is_shown, is_measured) {
+                (true, false) => set_points[speed.set_point].omega *= 1.0 + difference,
+                (false, true) => set_points[speed.set_point].omega /= 1.0 + difference,
+                _ => {}
+            }
         }
         let other = model.in_experiment(Experiment { set_points, ..model.experiment().clone() });
         let data = Data::new(&other, calibration.data().observations().to_vec())?;
