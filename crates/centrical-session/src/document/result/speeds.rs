@@ -253,7 +253,8 @@ fn other_units(ratio: f64) -> Option<[String; 2]> {
     pairs.next().map(|(own, read)| [own.0.to_owned(), read.0.to_owned()])
 }
 
-/// Which speeds the record follows: those of the plateaus in question as shown, or as set. The fits are compared. Plateaus
+/// Which speeds the record follows: those of the plateaus in question as shown, or as set. The fits are compared. Of a scale
+/// common to all plateaus a record says no more than the radii are known to, which is for the laboratory to judge. Plateaus
 /// that differ alike are taken to differ by the mean, which has little of the scatter of the telemetry.
 fn record_follows(
     calibration: &Calibration,
@@ -261,8 +262,11 @@ fn record_follows(
     found: &SpeedContradiction,
     is_measured: bool,
 ) -> Result<Option<String>, FitError> {
-    // A fit by speeds in another unit says nothing.
-    if calibration.fit().termination == Termination::Linear || found.difference.abs() > 0.1 {
+    // Nor does a fit by speeds in another unit say anything.
+    if found.extent == Extent::All
+        || calibration.fit().termination == Termination::Linear
+        || found.difference.abs() > 0.1
+    {
         return Ok(None);
     }
     let mut squares = [0.0; 2];
