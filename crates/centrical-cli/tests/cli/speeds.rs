@@ -62,7 +62,7 @@ fn speeds_that_contradict_the_schedule_are_refused() {
 fn telemetry_of_another_record_is_refused_and_a_part_of_it_reported() {
     let copy = Copy::new();
     fs::copy(example().join("telemetry/m05.csv"), copy.session().join("telemetry/m02.csv")).unwrap();
-    refused(&copy, &["telemetry of mounting 2 has", "of the 8 ramps", "another mounting"]);
+    refused(&copy, &["telemetry of mounting 2 has", "of the 8 ramps", "that of another mounting"]);
     let copy = Copy::new();
     (1..=12).for_each(|m| change(&copy, m, |t, omega| (10.0 * t, omega)));
     refused(&copy, &["runs 10 times as fast", "a wrong sampling rate"]);

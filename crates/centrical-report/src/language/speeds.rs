@@ -9,21 +9,23 @@ const NAMED: usize = 5;
 pub(super) fn in_english(finding: &SpeedFinding) -> String {
     match finding {
         SpeedFinding::Difference(found) => difference_in_english(found),
-        SpeedFinding::Clock { mountings, rate: Some(rate), .. } => format!(
-            "the clock of the telemetry runs {} times as fast as that of the record in {}: a wrong sampling rate or unit of time",
+        SpeedFinding::Clock { shown_by, mountings, rate: Some(rate), .. } => format!(
+            "the clock of the {} runs {} times as fast as that of the record in {}: a wrong sampling rate or unit of time",
+            english_witness(shown_by),
             three(1.0 / rate),
             mountings_in_english(mountings)
         ),
-        SpeedFinding::Clock { mountings, ramps, agreeing, rate: None } => {
-            let of = mountings_in_english(mountings);
+        SpeedFinding::Clock { shown_by, mountings, ramps, agreeing, rate: None } => {
+            let (witness, of) = (english_witness(shown_by), mountings_in_english(mountings));
             format!(
-                "telemetry of {of} has {agreeing} of the {ramps} ramps of the record at their times: the telemetry of another \
+                "{witness} of {of} has {agreeing} of the {ramps} ramps of the record at their times: that of another \
                  mounting, or a wrong clock"
             )
         }
-        SpeedFinding::Missing { mounting, plateaus, span: [from, to] } => {
+        SpeedFinding::Missing { shown_by, mounting, plateaus, span: [from, to] } => {
+            let witness = english_witness(shown_by);
             format!(
-                "telemetry of mounting {mounting} covers {from:.1} s to {to:.1} s of the record: {plateaus} plateaus without a speed"
+                "{witness} of mounting {mounting} covers {from:.1} s to {to:.1} s of the record: {plateaus} plateaus without a speed"
             )
         }
     }
@@ -33,22 +35,25 @@ pub(super) fn in_english(finding: &SpeedFinding) -> String {
 pub(super) fn in_russian(finding: &SpeedFinding) -> String {
     match finding {
         SpeedFinding::Difference(found) => difference_in_russian(found),
-        SpeedFinding::Clock { mountings, rate: Some(rate), .. } => format!(
-            "часы телеметрии идут в {} раз быстрее часов записи (установки {}): неверная частота отсчётов или единица времени",
+        SpeedFinding::Clock { shown_by, mountings, rate: Some(rate), .. } => format!(
+            "часы {} идут в {} раз быстрее часов записи (установки {}): неверная частота отсчётов или единица времени",
+            russian_witness(shown_by)[1],
             comma(three(1.0 / rate)),
             list(mountings.iter(), "и др.")
         ),
-        SpeedFinding::Clock { mountings, ramps, agreeing, rate: None } => {
+        SpeedFinding::Clock { shown_by, mountings, ramps, agreeing, rate: None } => {
+            let witness = russian_witness(shown_by)[1];
             let of = list(mountings.iter(), "и др.");
             format!(
-                "в телеметрии совпадают по времени с записью разгоны: {agreeing} из {ramps} (установки {of}): телеметрия другой \
+                "по данным {witness} совпадают по времени с записью разгоны: {agreeing} из {ramps} (установки {of}): данные другой \
                  установки или неверные часы"
             )
         }
-        SpeedFinding::Missing { mounting, plateaus, span: [from, to] } => {
+        SpeedFinding::Missing { shown_by, mounting, plateaus, span: [from, to] } => {
+            let witness = russian_witness(shown_by)[0];
             let [from, to] = [from, to].map(|t| comma(format!("{t:.1}")));
             format!(
-                "телеметрия установки {mounting} охватывает запись от {from} с до {to} с; площадок без скорости: {plateaus}"
+                "{witness} установки {mounting} охватывает запись от {from} с до {to} с; площадок без скорости: {plateaus}"
             )
         }
     }
@@ -77,6 +82,19 @@ pub(super) fn measured_in_russian(speeds: &SpeedsSummary) -> String {
     format!("измерены {by} на площадках с вращением: {measured} из {spinning}; общий масштаб {scale}")
 }
 
+fn english_witness(shown_by: &str) -> &'static str {
+    if shown_by == "pulses" { "counter of revolutions" } else { "telemetry" }
+}
+
+/// Nominative and genitive.
+fn russian_witness(shown_by: &str) -> [&'static str; 2] {
+    if shown_by == "pulses" {
+        ["счётчик оборотов", "счётчика оборотов"]
+    } else {
+        ["телеметрия", "телеметрии"]
+    }
+}
+
 fn difference_in_english(found: &SpeedDifference) -> String {
     let count = found.plateaus.len();
     let place = match found.extent.as_str() {
@@ -100,7 +118,8 @@ fn difference_in_english(found: &SpeedDifference) -> String {
         _ => "",
     };
     format!(
-        "telemetry says {:.2} rpm, the schedule {:.2} ({}, {} times the stated uncertainty) {place}: {cause}{record}",
+        "{} says {:.2} rpm, the schedule {:.2} ({}, {} times the stated uncertainty) {place}: {cause}{record}",
+        english_witness(&found.shown_by),
         rpm(found.shown),
         rpm(found.set),
         percent(found.difference),
@@ -126,7 +145,8 @@ fn difference_in_russian(found: &SpeedDifference) -> String {
         Some("schedule") => "; запись согласуется с программой",
         _ => "",
     };
-    let numbers = format!("телеметрия показывает {:.2} об/мин, программа {:.2}", rpm(found.shown), rpm(found.set));
+    let witness = russian_witness(&found.shown_by)[0];
+    let numbers = format!("{witness} показывает {:.2} об/мин, программа {:.2}", rpm(found.shown), rpm(found.set));
     let off = format!("{}, в {} раз больше заявленной неопределённости", percent(found.difference), times(found));
     format!("{} ({}) {place}: {cause}{record}", comma(numbers), comma(off))
 }

@@ -5,7 +5,7 @@ use centrical::uncertainty::{Extent, ShownSpeed, SpeedContradiction, StatedSpeed
 use centrical::{Calibration, Data, Experiment, FitError, SetPoint, Termination};
 use serde::{Deserialize, Serialize};
 
-use crate::experiment::Session;
+use crate::experiment::{Session, SpeedSource};
 use crate::reduced::Reduced;
 
 /// How the speeds are known; in a result only where they are measured or contradicted.
@@ -34,6 +34,8 @@ pub enum SpeedFinding {
     Difference(SpeedDifference),
     /// The ramps of the telemetry are not those of the record.
     Clock {
+        /// What shows the speeds: "telemetry" or "pulses".
+        shown_by: String,
         /// Mountings, counted from 1.
         mountings: Vec<usize>,
         /// Ramps of their records in the time of the telemetry.
@@ -46,6 +48,8 @@ pub enum SpeedFinding {
     },
     /// The telemetry does not cover plateaus.
     Missing {
+        /// What shows the speeds: "telemetry" or "pulses".
+        shown_by: String,
         /// Mounting, counted from 1.
         mounting: usize,
         /// Number of its plateaus that spin and have no speed in the telemetry.
@@ -58,6 +62,8 @@ pub enum SpeedFinding {
 /// Speeds that differ from those that were set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpeedDifference {
+    /// What shows the speeds: "telemetry" or "pulses".
+    pub shown_by: String,
     /// What the plateaus have in common: "all", "mountings", "speeds" or "plateaus".
     pub extent: String,
     /// Mountings, counted from 1, where they have these in common.
@@ -118,6 +124,7 @@ impl SpeedsSummary {
         for contradiction in speed_contradictions(&shown, &stated(session)) {
             findings.push(SpeedFinding::Difference(SpeedDifference {
                 record_follows: record_follows(calibration, &shown, &contradiction, session.speeds.is_in_files())?,
+                shown_by: shown_by(session),
                 ..SpeedDifference::new(&session.experiment, &contradiction, shown.len())
             }));
         }
@@ -154,6 +161,7 @@ impl SpeedDifference {
             Extent::Plateaus => ("plateaus", Vec::new(), Vec::new()),
         };
         Self {
+            shown_by: String::new(),
             extent: extent.to_owned(),
             mountings,
             speeds,
@@ -180,6 +188,13 @@ impl SpeedFinding {
             Self::Missing { .. } => 1.0,
         }
     }
+}
+
+/// What shows the speeds that are compared.
+fn shown_by(session: &Session) -> String {
+    let source = session.speeds.measured.map(|measured| measured.source);
+    let shows = source.filter(|source| *source == SpeedSource::Pulses).unwrap_or(SpeedSource::Telemetry);
+    shows.name().to_owned()
 }
 
 /// What is stated of the speeds of the telemetry against those that were set. The scale of a tachometer of which nothing is
@@ -212,27 +227,34 @@ fn clocks(session: &Session, reduced: &Reduced) -> Vec<SpeedFinding> {
         let rate = (agreement.rate != 1.0).then_some(agreement.rate);
         if !agreement.is_of_the_record() {
             if agreement.ramps >= RAMPS {
-                add_clock(&mut findings, m + 1, &agreement, rate);
+                add_clock(&mut findings, shown_by(session), m + 1, &agreement, rate);
             }
             continue;
         }
         let plateaus = session.experiment.set_points.iter().zip(&reduced.speeds);
         let missing = plateaus.filter(|(s, speed)| s.mounting == m && !s.is_rest() && speed.is_none()).count();
         if missing > 0 {
-            findings.push(SpeedFinding::Missing { mounting: m + 1, plateaus: missing, span: agreement.span });
+            let shown_by = shown_by(session);
+            findings.push(SpeedFinding::Missing { shown_by, mounting: m + 1, plateaus: missing, span: agreement.span });
         }
     }
     findings
 }
 
 /// Adds the clock of a mounting to those that are off alike, the rates within a percent.
-fn add_clock(findings: &mut Vec<SpeedFinding>, mounting: usize, agreement: &ClockAgreement, own: Option<f64>) {
+fn add_clock(
+    findings: &mut Vec<SpeedFinding>,
+    shown_by: String,
+    mounting: usize,
+    agreement: &ClockAgreement,
+    own: Option<f64>,
+) {
     let is_alike = |rate: Option<f64>| match (rate, own) {
         (Some(rate), Some(own)) => (rate / own - 1.0).abs() < 0.01,
         (rate, own) => rate == own,
     };
     for finding in &mut *findings {
-        if let SpeedFinding::Clock { mountings, ramps, agreeing, rate } = finding
+        if let SpeedFinding::Clock { mountings, ramps, agreeing, rate, .. } = finding
             && is_alike(*rate)
         {
             mountings.push(mounting);
@@ -242,7 +264,7 @@ fn add_clock(findings: &mut Vec<SpeedFinding>, mounting: usize, agreement: &Cloc
         }
     }
     let (ramps, agreeing) = (agreement.ramps, agreement.agreeing);
-    findings.push(SpeedFinding::Clock { mountings: vec![mounting], ramps, agreeing, rate: own });
+    findings.push(SpeedFinding::Clock { shown_by, mountings: vec![mounting], ramps, agreeing, rate: own });
 }
 
 /// The pair of units whose mistake makes speeds `ratio` times as large, within a percent: the telemetry's own, and that which

@@ -26,6 +26,9 @@ pub struct ClockOffset {
     pub ramps: usize,
 }
 
+/// More passages than these are noise: a telemetry has a few for each ramp.
+const MOST_PASSAGES: usize = 1000;
+
 /// How the ramps of the telemetry agree with those of the record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClockAgreement {
@@ -99,6 +102,9 @@ fn rate_of(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Op
         ramps.iter().zip(&passages).filter(|pair| is_there(*pair)).count()
     };
     let (first, last) = (0, ramps.len().checked_sub(1)?);
+    if passages.iter().map(Vec::len).sum::<usize>() > MOST_PASSAGES {
+        return None;
+    }
     let pairs = passages[first].iter().flat_map(|a| passages[last].iter().map(move |b| (*a, *b)));
     let rates = pairs.filter(|(a, b)| b > a).map(|(a, b)| {
         let rate = (ramps[last].t - ramps[first].t) / (b - a);
