@@ -43,7 +43,7 @@ fn speeds_that_contradict_the_schedule_are_refused() {
     for (scale, parts) in [
         (
             1.001,
-            ["telemetry says 133.93", "in all 84 plateaus: a wrong unit, a wrong set-point, or a tachometer's scale"],
+            ["telemetry says 133.9", "in all 84 plateaus: a wrong unit, a wrong set-point, or a tachometer's scale"],
         ),
         (1.02, ["(+2.00 %", "in all 84 plateaus: a wrong unit, a wrong set-point, or a tachometer's scale"]),
         (60.0 / TAU, ["telemetry says 1277.", "in all 84 plateaus: speeds in rpm are read in rad/s"]),

@@ -136,7 +136,7 @@ fn difference_in_russian(found: &SpeedDifference) -> String {
         _ => format!("на площадках {} ({count} из {})", list(found.plateaus.iter(), "и др."), found.of),
     };
     let cause = match &found.units {
-        Some([own, read]) => format!("скорости в {own} прочитаны в {read}"),
+        Some([own, read]) => format!("скорости в {} прочитаны в {}", russian_unit(own), russian_unit(read)),
         None if found.extent == "plateaus" || found.extent == "speeds" => "неверная уставка или тахометр".to_owned(),
         None => "неверная единица, неверная уставка или масштаб тахометра".to_owned(),
     };
@@ -155,6 +155,16 @@ fn difference_in_russian(found: &SpeedDifference) -> String {
 fn mountings_in_english(mountings: &[usize]) -> String {
     let plural = if mountings.len() == 1 { "" } else { "s" };
     format!("mounting{plural} {}", list(mountings.iter(), "and others"))
+}
+
+fn russian_unit(unit: &str) -> &str {
+    match unit {
+        "rad/s" => "рад/с",
+        "rpm" => "об/мин",
+        "deg/s" => "град/с",
+        "rev/s" => "об/с",
+        other => other,
+    }
 }
 
 fn times(found: &SpeedDifference) -> String {
