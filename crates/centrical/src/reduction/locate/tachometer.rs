@@ -41,6 +41,9 @@ pub struct SpeedReading {
 /// Groups into which the samples of a plateau are collected: as long as possible for slow noise, and enough for its variance.
 const GROUPS: usize = 16;
 
+/// Rounds of finding spikes.
+const ROUNDS: usize = 4;
+
 /// Samples farther than this many robust standard deviations from the fit are spikes.
 const SPIKE: f64 = 8.0;
 
@@ -133,8 +136,9 @@ impl Fitted {
     /// Fits `values`; a residual below `step` is no spike.
     fn of(columns: &[Vec<f64>], values: &[f64], step: f64) -> Option<Self> {
         let mut kept: Vec<usize> = (0..values.len()).collect();
-        // Spikes hide one another in a fit: a few rounds find them all.
-        for _ in 0..4 {
+        // Spikes hide one another in a fit: a few rounds find them all. What a last round leaves is no spike but a misfit, which
+        // the scatter of groups shows.
+        for round in 1..=ROUNDS {
             let (coefficients, gain) = solve(columns, values, &kept)?;
             let residual =
                 |k: &usize| values[*k] - columns.iter().zip(&coefficients).map(|(c, x)| c[*k] * x).sum::<f64>();
@@ -143,7 +147,7 @@ impl Fitted {
             let deviation = MAD * median(&mut sizes);
             let limit = SPIKE * deviation.max(step).max(1e-14 * coefficients[0].abs());
             let good: Vec<usize> = kept.iter().copied().filter(|k| residual(k).abs() <= limit).collect();
-            if good.len() == kept.len() {
+            if good.len() == kept.len() || round == ROUNDS {
                 let (variance, degrees_of_freedom) = scatter(&residuals, columns.len());
                 return Some(Self { value: coefficients[0], gain, deviation, variance, degrees_of_freedom });
             }
