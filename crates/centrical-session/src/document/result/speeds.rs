@@ -6,7 +6,7 @@ use centrical::{Calibration, Data, Experiment, FitError, SetPoint, Termination};
 use serde::{Deserialize, Serialize};
 
 use crate::experiment::{Session, SpeedSource};
-use crate::reduced::Reduced;
+use crate::reduced::{Reduced, ReducedPlateau};
 
 /// How the speeds are known; in a result only where they are measured or contradicted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -52,7 +52,7 @@ pub enum SpeedFinding {
         shown_by: String,
         /// Mounting, counted from 1.
         mounting: usize,
-        /// Number of its plateaus that spin and have no speed in the telemetry.
+        /// Number of its plateaus that spin and are not in the telemetry.
         plateaus: usize,
         /// First and last time of the telemetry, the record's clock [s].
         span: [f64; 2],
@@ -231,14 +231,24 @@ fn clocks(session: &Session, reduced: &Reduced) -> Vec<SpeedFinding> {
             }
             continue;
         }
-        let plateaus = session.experiment.set_points.iter().zip(&reduced.speeds);
-        let missing = plateaus.filter(|(s, speed)| s.mounting == m && !s.is_rest() && speed.is_none()).count();
+        let plateaus = session.experiment.set_points.iter().zip(&reduced.plateaus).zip(&reduced.speeds);
+        let is_missing = |plateau: &ReducedPlateau| {
+            plateau.measured_speed.is_none() || plateau.window.is_some_and(|window| share(window, agreement.span) < 0.5)
+        };
+        let missing = plateaus
+            .filter(|((s, plateau), speed)| s.mounting == m && !s.is_rest() && speed.is_none() && is_missing(plateau))
+            .count();
         if missing > 0 {
             let shown_by = shown_by(session);
             findings.push(SpeedFinding::Missing { shown_by, mounting: m + 1, plateaus: missing, span: agreement.span });
         }
     }
     findings
+}
+
+/// Part of a window that the telemetry covers.
+fn share(window: [f64; 2], span: [f64; 2]) -> f64 {
+    (window[1].min(span[1]) - window[0].max(span[0])) / (window[1] - window[0])
 }
 
 /// Adds the clock of a mounting to those that are off alike, the rates within a percent.
