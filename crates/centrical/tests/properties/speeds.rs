@@ -61,15 +61,11 @@ fn reduced(model: &MeasurementModel, simulation: &Simulation, m: usize, counted:
     let of_mounting = experiment.set_points.iter().filter(|s| s.mounting == m);
     let schedule: Vec<ScheduledPlateau> =
         of_mounting.map(|s| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) }).collect();
-    match counted {
-        Some(per_revolution) => {
-            reduce_counted(&record, &PulseTrain { t: mounting.pulses(), per_revolution }, &schedule).unwrap()
-        }
-        None => {
-            let telemetry = mounting.telemetry();
-            reduce(&record, Some(&SpeedTrace { t: telemetry.t, omega: telemetry.omega }), &schedule).unwrap()
-        }
+    if let Some(per_revolution) = counted {
+        return reduce_counted(&record, &PulseTrain { t: mounting.pulses(), per_revolution }, &schedule).unwrap();
     }
+    let telemetry = mounting.telemetry();
+    reduce(&record, Some(&SpeedTrace { t: telemetry.t, omega: telemetry.omega }), &schedule).unwrap()
 }
 
 /// Mean square of errors over their stated uncertainty, `beyond` what the scatter shows, and the median uncertainty.
