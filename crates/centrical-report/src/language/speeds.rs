@@ -38,7 +38,7 @@ pub(super) fn in_russian(finding: &SpeedFinding) -> String {
         SpeedFinding::Clock { shown_by, mountings, rate: Some(rate), .. } => format!(
             "часы {} идут в {} раз быстрее часов записи (установки {}): неверная частота отсчётов или единица времени",
             russian_witness(shown_by)[1],
-            comma(three(1.0 / rate)),
+            comma(&three(1.0 / rate)),
             list(mountings.iter(), "и др.")
         ),
         SpeedFinding::Clock { shown_by, mountings, ramps, agreeing, rate: None } => {
@@ -51,7 +51,7 @@ pub(super) fn in_russian(finding: &SpeedFinding) -> String {
         }
         SpeedFinding::Missing { shown_by, mounting, plateaus, span: [from, to] } => {
             let witness = russian_witness(shown_by)[0];
-            let [from, to] = [from, to].map(|t| comma(format!("{t:.1}")));
+            let [from, to] = [from, to].map(|t| comma(&format!("{t:.1}")));
             format!(
                 "{witness} установки {mounting} охватывает запись от {from} с до {to} с; площадок без скорости: {plateaus}"
             )
@@ -78,7 +78,7 @@ pub(super) fn measured_in_russian(speeds: &SpeedsSummary) -> String {
         _ => "по телеметрии",
     };
     let SpeedsSummary { measured, spinning, scale_uncertainty, .. } = speeds;
-    let scale = comma(ppm(*scale_uncertainty)).replace("ppm", "млн⁻¹");
+    let scale = comma(&ppm(*scale_uncertainty)).replace("ppm", "млн⁻¹");
     format!("измерены {by} на площадках с вращением: {measured} из {spinning}; общий масштаб {scale}")
 }
 
@@ -148,7 +148,7 @@ fn difference_in_russian(found: &SpeedDifference) -> String {
     let witness = russian_witness(&found.shown_by)[0];
     let numbers = format!("{witness} показывает {:.2} об/мин, программа {:.2}", rpm(found.shown), rpm(found.set));
     let off = format!("{}, в {} раз больше заявленной неопределённости", percent(found.difference), times(found));
-    format!("{} ({}) {place}: {cause}{record}", comma(numbers), comma(off))
+    format!("{} ({}) {place}: {cause}{record}", comma(&numbers), comma(&off))
 }
 
 /// `mounting 4`, or `mountings 1, 2`.
@@ -172,7 +172,7 @@ fn times(found: &SpeedDifference) -> String {
 }
 
 /// Some names, and a word for those beyond them.
-fn list(names: impl Iterator<Item = impl ToString> + ExactSizeIterator, others: &str) -> String {
+fn list(names: impl ExactSizeIterator<Item = impl ToString>, others: &str) -> String {
     let more = if names.len() > NAMED { format!(" {others}") } else { String::new() };
     let named: Vec<String> = names.take(NAMED).map(|name| name.to_string()).collect();
     format!("{}{more}", named.join(", "))
@@ -199,6 +199,6 @@ fn three(number: f64) -> String {
     if number >= 10.0 { format!("{number:.0}") } else { format!("{number:.2}") }
 }
 
-fn comma(text: String) -> String {
+fn comma(text: &str) -> String {
     text.replace('.', ",")
 }
