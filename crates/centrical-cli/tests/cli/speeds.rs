@@ -86,7 +86,7 @@ fn what_is_stated_of_a_tachometer_is_no_contradiction() {
     assert!(!text.contains("SPEED"), "{text}");
 }
 
-/// A count of samples in the records is none in the telemetry, which has a time of its own.
+/// Records that count samples do not make the telemetry count them: it has a time of its own.
 #[test]
 fn a_sampling_rate_of_records_is_not_that_of_the_telemetry() {
     let copy = Copy::new();
