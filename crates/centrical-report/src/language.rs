@@ -3,6 +3,7 @@
 mod english;
 mod messages;
 mod russian;
+mod speeds;
 
 use centrical_session::{Date, Symbol};
 

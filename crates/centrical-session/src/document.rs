@@ -25,7 +25,7 @@ pub use self::result::{
     BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, Method, ModelSummary,
     MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, ParameterEstimate, PatternSummary,
     PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA,
-    SessionSummary, StabilityCurve, TermSummary, ValiditySummary,
+    SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary, ValiditySummary,
 };
 pub use self::steadiness::{
     DriftSummary, LeftOutSummary, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary, TiltVerdict,

@@ -42,13 +42,14 @@ pub use document::{
     ObservedParameter, OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting,
     PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program,
     ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary,
-    SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport, StabilityCurve, StepReport, Subject,
-    TermSummary, TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history,
+    SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport, SpeedDifference, SpeedFinding,
+    SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, TiltVerdict, ValiditySummary,
+    WatchState, WatchedPlateau, read_history,
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, MountingFiles, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session, earlier_result,
-    read_plateaus, write_plateaus,
+    ExpectedValues, Measured, MountingFiles, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
+    SpeedSource, Speeds, earlier_result, read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following,
@@ -63,8 +64,8 @@ pub use laboratory::{
 };
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
 pub use record::{
-    Column, Columns, Input, RecordOverview, RecordReader, Scale, read_growing_record, read_record, read_telemetry,
-    stretch,
+    Column, Columns, Input, RecordOverview, RecordReader, Scale, read_growing_record, read_pulses, read_record,
+    read_telemetry, stretch,
 };
 pub use record_writer::RecordWriter;
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};

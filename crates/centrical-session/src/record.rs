@@ -12,5 +12,6 @@ pub use self::columns::{Column, Columns, Scale};
 pub use self::input::Input;
 pub use self::overview::RecordOverview;
 pub(crate) use self::passes::RecordFile;
-pub use self::reader::{RecordReader, read_growing_record, read_record, read_telemetry, stretch};
+pub use self::reader::{RecordReader, read_growing_record, read_pulses, read_record, read_telemetry, stretch};
+pub(crate) use self::reader::{read_growing_pulses, read_growing_telemetry};
 pub(crate) use self::sample_cache::{MemoryBudget, SampleCache};

@@ -1,9 +1,10 @@
 //! The plateau means of a session, wherever they come from.
 
-use centrical::reduction::{ClockOffset, LeftOut, PlateauMean};
-use centrical::{Observation, SetPoint};
+use centrical::reduction::{ClockAgreement, ClockOffset, LeftOut, MeasuredSpeed, PlateauMean};
+use centrical::{MeasurementModel, Observation, SetPoint};
 use nalgebra::{Matrix3, Vector3};
 
+use crate::error::Error;
 use crate::experiment::{PlateauMean as TabledPlateau, Session};
 use crate::record::{Input, RecordOverview};
 
@@ -20,6 +21,9 @@ pub struct Reduced {
     pub records: Vec<RecordOverview>,
     /// The session's files.
     pub inputs: Vec<Input>,
+    /// Speeds by the telemetry or a counter of revolutions, one for each of the set points; empty for a session that came
+    /// already averaged.
+    pub speeds: Vec<Option<MeasuredSpeed>>,
 }
 
 /// What a mounting's record tells beside its means.
@@ -29,6 +33,8 @@ pub struct MountingFindings {
     pub settling_time: Option<f64>,
     /// The centrifuge's clock against the unit's; none without telemetry, or if no ramp is in both.
     pub clock_offset: Option<ClockOffset>,
+    /// How the ramps of the telemetry agree with those of the record; none without telemetry.
+    pub agreement: Option<ClockAgreement>,
 }
 
 /// The mean reading of a plateau and what it was made of.
@@ -83,15 +89,44 @@ impl From<&PlateauMean> for Steadiness {
 impl Reduced {
     /// The plateaus as a table, from which the session is calibrated to the same numbers.
     pub fn table(&self, session: &Session) -> Vec<TabledPlateau> {
+        let sign = session.experiment.centrifuge.rotation.sign();
         let row = |(plateau, set_point): (&ReducedPlateau, &SetPoint)| TabledPlateau {
             mounting: set_point.mounting,
-            speed: set_point.omega.abs(),
+            speed: sign * set_point.omega + 0.0,
+            speed_uncertainty: set_point.speed_uncertainty,
             angle: set_point.angle,
             mean: plateau.mean,
             covariance: plateau.covariance,
             samples: plateau.samples,
         };
-        self.plateaus.iter().zip(&session.experiment.set_points).map(row).collect()
+        self.plateaus.iter().zip(&self.set_points(session)).map(row).collect()
+    }
+
+    /// The set points of the session, with measured speeds where it measures them. A plateau that spins without a measured
+    /// speed keeps the one that was set, as uncertain as speeds are set.
+    pub fn set_points(&self, session: &Session) -> Vec<SetPoint> {
+        let scheduled = session.experiment.set_points.iter();
+        let Some(measured) = session.speeds.measured.filter(|_| session.speeds.is_in_files()) else {
+            return scheduled.copied().collect();
+        };
+        let taken = |(n, set_point): (usize, &SetPoint)| match self.speeds.get(n).copied().flatten() {
+            _ if set_point.is_rest() => *set_point,
+            Some(speed) => SetPoint {
+                omega: speed.speed.copysign(set_point.omega),
+                speed_uncertainty: Some(speed.uncertainty.hypot(measured.uncertainty)),
+                ..*set_point
+            },
+            None => SetPoint { speed_uncertainty: Some(session.speeds.set_uncertainty), ..*set_point },
+        };
+        scheduled.enumerate().map(taken).collect()
+    }
+
+    /// The measurement model of the session at [`Reduced::set_points`].
+    ///
+    /// # Errors
+    /// As [`Session::model`].
+    pub fn model(&self, session: &Session) -> Result<MeasurementModel, Error> {
+        session.model_at(self.set_points(session))
     }
 
     /// Plateaus that came already averaged.
@@ -102,6 +137,7 @@ impl Reduced {
             records: Vec::new(),
             held_out: Vec::new(),
             inputs: Vec::new(),
+            speeds: Vec::new(),
         }
     }
 

@@ -34,16 +34,18 @@ mod locate;
 mod mistake;
 mod plateau;
 mod record;
+mod speed;
 mod survey;
 mod triangle;
 
 pub use average::{Averaging, PlateauFit, ReducedMounting, average};
 pub use colour::{NoiseModel, plateau_means};
 pub use error::{ReductionError, Stretch};
-pub use locate::{ClockOffset, Located, SpeedTrace, locate};
+pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate};
 pub use mistake::Mistake;
 pub use plateau::{LeftOut, PlateauMean, ScheduledPlateau};
 pub use record::{Record, RecordSlice};
+pub use speed::{MeasuredSpeed, measured_speeds};
 pub use survey::{Condensed, Extremes, Survey};
 
 /// Finds and averages the scheduled plateaus of one mounting.
@@ -59,8 +61,27 @@ pub fn reduce(
     schedule: &[ScheduledPlateau],
 ) -> Result<ReducedMounting, ReductionError> {
     let located = locate(&Survey::of(record)?, telemetry, schedule)?;
+    averaged(record, located, schedule.len())
+}
+
+/// The same with speeds by a counter of revolutions in place of telemetry.
+///
+/// # Errors
+/// As [`reduce`].
+pub fn reduce_counted(
+    record: &Record,
+    pulses: &PulseTrain,
+    schedule: &[ScheduledPlateau],
+) -> Result<ReducedMounting, ReductionError> {
+    let mut located = locate(&Survey::of(record)?, None, schedule)?;
+    located.time_pulses(pulses);
+    averaged(record, located, schedule.len())
+}
+
+/// The plateaus of a record that are located.
+fn averaged(record: &Record, located: Located, count: usize) -> Result<ReducedMounting, ReductionError> {
     let average = |plateau| average(&located, plateau, record.as_slice(), 0);
-    let plateaus = (0..schedule.len()).map(average).collect::<Result<_, _>>()?;
+    let plateaus = (0..count).map(average).collect::<Result<_, _>>()?;
     Ok(ReducedMounting::new(located, plateaus))
 }
 

@@ -13,12 +13,15 @@
 mod draw;
 mod equipment;
 mod motion;
+mod pulses;
 mod record;
 mod response;
 mod sensor_noise;
 mod telemetry;
 
-pub use equipment::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, SimulationError, Spikes, Tachometer};
+pub use equipment::{
+    Coloured, Counter, Equipment, Losses, Machine, Recorder, Sensor, SimulationError, Spikes, Tachometer,
+};
 pub use motion::TruePlateau;
 pub use record::Records;
 pub use telemetry::Telemetry;
@@ -119,6 +122,14 @@ impl SimulatedMounting<'_> {
     /// The centrifuge's telemetry.
     pub fn telemetry(&self) -> Telemetry {
         Telemetry::new(&self.motion, &self.simulation.equipment.tachometer, self.simulation.seed, self.mounting)
+    }
+
+    /// Times of the counter's pulses [s], by the telemetry's clock as the record begins.
+    pub fn pulses(&self) -> Vec<f64> {
+        let Equipment { tachometer, counter, .. } = self.simulation.equipment;
+        let mut clock = Draw::Clock.stream(self.simulation.seed, self.mounting);
+        let offset = tachometer.clock_offset * (2.0 * clock.uniform() - 1.0);
+        pulses::times(&self.motion, counter, offset, self.simulation.seed, self.mounting)
     }
 }
 

@@ -3,6 +3,7 @@
 //! - [`Budget`]: what each source of uncertainty leaves in each parameter (GUM, JCGM 100:2008);
 //! - [`monte_carlo`]: the whole calibration repeated on drawn readings and drawn type B errors, to check the budget;
 //! - [`Validity`], [`Cleaned`], [`Pattern`]: whether the residuals are those of a true model;
+//! - [`speed_contradictions`]: the speeds of the telemetry against those that were set;
 //! - [`TiltComparison`]: the tilt of the axis by the once-per-revolution terms, which the fit does not use;
 //! - [`select`]: which of several models the data speak for;
 //! - [`Compensated`]: the uncertainty of a compensated reading;
@@ -23,6 +24,7 @@ mod pattern;
 mod repeats;
 mod rivals;
 mod selection;
+mod speeds;
 mod tilt;
 mod validity;
 mod verdict;
@@ -39,7 +41,7 @@ pub use rivals::{RivalTest, Rivals, Suspects, Unseen};
 pub use selection::{
     Candidate, FittedCandidate, NestedTest, Selection, TermVerdict, candidates_of, select, select_beside,
 };
-
+pub use speeds::{Extent, ShownSpeed, SpeedContradiction, StatedSpeeds, speed_contradictions};
 pub use tilt::{OncePerRevolution, TiltComparison};
 pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity};
 pub use verdict::{Findings, Level, Objection, objections};

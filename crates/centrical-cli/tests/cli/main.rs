@@ -14,6 +14,7 @@ mod refusal;
 mod report;
 mod session;
 mod simulate;
+mod speeds;
 mod steadiness;
 mod trust;
 mod watch;

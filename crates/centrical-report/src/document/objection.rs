@@ -32,6 +32,10 @@ pub(crate) fn objection(objection: &ResultObjection, language: Language) -> Stri
             let found: Vec<String> = patterns.iter().map(|found| pattern(found, language)).collect();
             format!("{}: {}", messages.patterns_found, found.join("; "))
         }
+        Objection::Speeds(findings) => {
+            let said: Vec<String> = findings.iter().map(messages.words.speed_finding).collect();
+            said.join("; ")
+        }
         Objection::NotDetermined(names) => format!("{}: {}", messages.lost_parameters, names.join(", ")),
     }
 }

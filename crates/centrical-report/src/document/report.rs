@@ -134,12 +134,22 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
         (messages.pair_relation, (words.pair_relation)(model.pair_relation).to_owned()),
         (messages.reference, (words.reference)(model.reference).to_owned()),
         (messages.speed_uncertainty, language.scientific(model.speed_uncertainty)),
+        (messages.speeds, speeds(result, language)),
         (messages.data, data),
         (messages.method, method),
         (messages.software, format!("{} {}", result.program.name, result.program.version)),
     ]);
     let text = (!result.session.text.is_empty()).then(|| Block::paragraph(&result.session.text));
     [Block::heading(messages.session, 4), facts].into_iter().chain(text).collect()
+}
+
+/// How the speeds are known and what contradicts them; empty where they are set and nothing does.
+fn speeds(result: &CalibrationResult, language: Language) -> String {
+    let words = &language.messages().words;
+    let Some(speeds) = &result.speeds else { return String::new() };
+    let measured = speeds.measured_by.as_ref().map(|_| (words.speeds_measured)(speeds));
+    let found = speeds.findings.iter().map(words.speed_finding);
+    measured.into_iter().chain(found).collect::<Vec<_>>().join("; ")
 }
 
 /// Drift and tilt, where the records show them.

@@ -6,6 +6,7 @@ use centrical::{
 use centrical_session::{Follows, Method};
 
 use super::messages::{Messages, Words};
+use super::speeds;
 
 /// English.
 pub(crate) const ENGLISH: Messages = Messages {
@@ -226,7 +227,18 @@ pub(crate) const ENGLISH: Messages = Messages {
     uncertainty: "Expanded uncertainty",
     covariance: "Covariance matrix of the parameters",
     specific_force: "Specific force",
-    words: Words { group, source, method, termination, pair_relation, reference, rival, follows },
+    words: Words {
+        group,
+        source,
+        method,
+        termination,
+        pair_relation,
+        reference,
+        rival,
+        follows,
+        speed_finding: speeds::in_english,
+        speeds_measured: speeds::measured_in_english,
+    },
     not_converged: "the fit did not converge",
     residuals_too_large: "residuals are larger than the stated uncertainties explain",
     degrees_of_freedom: "degrees of freedom",
@@ -254,6 +266,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     presupposed_exact: " Gravity, radii, attitudes and the places of the proof masses count as exact.",
     chi_squared_small: "Residuals are smaller than the stated uncertainties allow: these are too large.",
     lost_parameters: "parameters of the instrument are not determined",
+    speeds: "Speeds of the plateaus",
 };
 
 fn group(group: Group) -> &'static str {

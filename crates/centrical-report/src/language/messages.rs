@@ -3,7 +3,7 @@
 //! One field a message and one function a set of words, so that a language that lacks one does not compile.
 
 use centrical::{Group, PairRelation, ReferencePoint, Rival, Source, Termination};
-use centrical_session::{Follows, Method};
+use centrical_session::{Follows, Method, SpeedFinding, SpeedsSummary};
 
 /// What the documents say, in one language.
 #[allow(missing_docs)]
@@ -214,6 +214,7 @@ pub(crate) struct Messages {
     pub presupposed_exact: &'static str,
     pub chi_squared_small: &'static str,
     pub lost_parameters: &'static str,
+    pub speeds: &'static str,
 }
 
 /// Words for what is one of several, in one language; each function names all of them.
@@ -228,4 +229,8 @@ pub(crate) struct Words {
     pub rival: fn(Rival) -> &'static str,
     /// What a pattern follows, without its place.
     pub follows: fn(&Follows) -> &'static str,
+    /// What the telemetry shows against the schedule, as a sentence.
+    pub speed_finding: fn(&SpeedFinding) -> String,
+    /// How the speeds of plateaus are known, as a sentence.
+    pub speeds_measured: fn(&SpeedsSummary) -> String,
 }

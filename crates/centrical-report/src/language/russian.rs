@@ -6,6 +6,7 @@ use centrical::{
 use centrical_session::{Follows, Method};
 
 use super::messages::{Messages, Words};
+use super::speeds;
 
 /// Russian.
 pub(crate) const RUSSIAN: Messages = Messages {
@@ -224,7 +225,18 @@ pub(crate) const RUSSIAN: Messages = Messages {
     uncertainty: "Расширенная неопределённость",
     covariance: "Ковариационная матрица параметров",
     specific_force: "Удельная сила",
-    words: Words { group, source, method, termination, pair_relation, reference, rival, follows },
+    words: Words {
+        group,
+        source,
+        method,
+        termination,
+        pair_relation,
+        reference,
+        rival,
+        follows,
+        speed_finding: speeds::in_russian,
+        speeds_measured: speeds::measured_in_russian,
+    },
     not_converged: "оценивание не сошлось",
     residuals_too_large: "остатки больше, чем допускают заявленные неопределённости",
     degrees_of_freedom: "степеней свободы",
@@ -252,6 +264,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     presupposed_exact: " Ускорение силы тяжести, радиусы, ориентация и положения чувствительных масс считаются точными.",
     chi_squared_small: "Невязки меньше, чем допускают заявленные неопределённости: последние завышены.",
     lost_parameters: "не определены параметры прибора",
+    speeds: "Скорости на площадках",
 };
 
 fn group(group: Group) -> &'static str {

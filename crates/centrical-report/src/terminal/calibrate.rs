@@ -34,6 +34,7 @@ pub fn terminal_table(result: &CalibrationResult) -> String {
     priors(&mut text, result);
     plateaus(&mut text, result);
     drift(&mut text, result);
+    speeds(&mut text, result);
     fit(&mut text, result);
     uncertainties(&mut text, result);
     validity(&mut text, result);
@@ -190,6 +191,17 @@ fn plateaus(text: &mut String, result: &CalibrationResult) {
         "\nDATA  {} plateaus in {mountings} mountings, {samples} samples used, {rejected} rejected",
         result.plateaus.len()
     );
+}
+
+/// How the speeds are known, where they are measured or contradicted.
+fn speeds(text: &mut String, result: &CalibrationResult) {
+    let Some(speeds) = &result.speeds else { return };
+    let words = &Language::English.messages().words;
+    let measured = speeds.measured_by.as_ref().map(|_| (words.speeds_measured)(speeds));
+    let found = speeds.findings.iter().map(words.speed_finding);
+    for (n, line) in measured.into_iter().chain(found).enumerate() {
+        let _ = writeln!(text, "{} {line}", if n == 0 { "SPEED" } else { "     " });
+    }
 }
 
 fn fit(text: &mut String, result: &CalibrationResult) {

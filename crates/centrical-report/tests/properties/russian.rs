@@ -19,7 +19,11 @@ fn extended() -> CalibrationResult {
     let further = "error_model = [\"kozlov-2017\", \"cross-products\", { axis = 2, term = \"|f2|\" }, \
                    { axis = 1, term = \"f1^4\" }]\nextensions = [\"radius-scale\", \"speed-scale\"]";
     assert!(form.contains(model));
-    fs::write(folder.path().join("experiment.toml"), form.replace(model, further)).unwrap();
+    // Telemetry in another unit, which the documents say.
+    let unit = "speed_unit = \"rad/s\"";
+    assert!(form.contains(unit));
+    let form = form.replace(model, further).replace(unit, "speed_unit = \"rpm\"");
+    fs::write(folder.path().join("experiment.toml"), form).unwrap();
     for part in ["records", "telemetry"] {
         fs::create_dir(folder.path().join(part)).unwrap();
         for file in fs::read_dir(Path::new(EXAMPLE).join(part)).unwrap().flatten() {
@@ -81,8 +85,13 @@ fn russian_documents_have_no_english_words() {
         }
     }
     let report = text(&report(&result, &[], Language::Russian));
-    for words in ["рекуррентный фильтр", "Масштаб радиусов", "Масштаб скорости", "Член высшего порядка"]
-    {
+    for words in [
+        "рекуррентный фильтр",
+        "скорости в рад/с прочитаны в об/мин",
+        "Масштаб радиусов",
+        "Масштаб скорости",
+        "Член высшего порядка",
+    ] {
         assert!(report.contains(words), "{words}");
     }
 }

@@ -5,6 +5,7 @@ mod error_terms;
 mod from_calibration;
 mod rivals;
 mod schema;
+mod speeds;
 mod verdict;
 
 pub use self::budget_and_checks::{
@@ -16,4 +17,5 @@ pub use self::schema::{
     ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
     TermSummary,
 };
+pub use self::speeds::{SpeedDifference, SpeedFinding, SpeedsSummary};
 pub use self::verdict::ResultObjection;

@@ -1,7 +1,7 @@
 //! `truth.json`: what was simulated, schema `centrical-truth/1`.
 
 use centrical::SetPoint;
-use centrical::simulate::{Equipment, TruePlateau};
+use centrical::simulate::{Counter, Equipment, Tachometer, TruePlateau};
 use serde_json::{Value, json};
 
 use crate::experiment::Session;
@@ -54,8 +54,8 @@ fn plateaus_of(plan: &Session, m: usize, plateaus: &[TruePlateau]) -> Vec<Value>
 
 /// The equipment under the names that a truth file gives them, SI.
 fn equipment(equipment: &Equipment) -> Value {
-    let Equipment { machine, sensor, recorder, tachometer } = equipment;
-    json!({
+    let Equipment { machine, sensor, recorder, tachometer, counter } = equipment;
+    let mut settings = json!({
         "machine": {
             "plateau": machine.plateau, "plateau_spread": machine.plateau_spread, "ramp": machine.ramp,
             "speed_error": machine.speed_error, "settling": machine.settling, "settling_time": machine.settling_time,
@@ -76,5 +76,21 @@ fn equipment(equipment: &Equipment) -> Value {
             "rate": tachometer.rate, "clock_offset": tachometer.clock_offset, "clock_drift": tachometer.clock_drift,
             "noise": tachometer.noise, "quantum": tachometer.quantum,
         },
-    })
+    });
+    // Only what differs from equipment that measures no speed: a session without measured speeds keeps its bytes.
+    let usual = Tachometer::default();
+    if (tachometer.measures, tachometer.scale_error, tachometer.plateau_error)
+        != (usual.measures, usual.scale_error, usual.plateau_error)
+    {
+        settings["tachometer"]["measures"] = tachometer.measures.into();
+        settings["tachometer"]["scale_error"] = tachometer.scale_error.into();
+        settings["tachometer"]["plateau_error"] = tachometer.plateau_error.into();
+    }
+    if *counter != Counter::default() {
+        settings["counter"] = json!({
+            "per_revolution": counter.per_revolution, "jitter": counter.jitter, "scale_error": counter.scale_error,
+            "plateau_error": counter.plateau_error,
+        });
+    }
+    settings
 }

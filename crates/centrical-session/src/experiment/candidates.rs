@@ -87,6 +87,7 @@ fn mountings(at: &TomlPath, table: &CandidatesTable, form: &Form) -> Result<Vec<
     }
     let is_meant = |id: &&str| table.positions.is_empty() || table.positions.iter().any(|meant| meant == id);
     let mounting = |id: &str, radius: &Quantity| MountingTable {
+        pulses: None,
         position: id.to_owned(),
         arm: [radius.clone(), Quantity::Number(0.0), Quantity::Number(0.0)],
         record: None,

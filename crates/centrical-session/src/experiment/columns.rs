@@ -23,7 +23,13 @@ pub(crate) fn columns(file: &Path, table: &ColumnsTable, unit: &UnitTable) -> Re
         set_unit(&at, "speed_unit", &mut columns.speed, unit, Dimension::Speed)?;
     }
     if let Some(ColumnEntry(entry)) = &table.time {
-        set_time(&at, &mut columns.time, entry)?;
+        set_time(&at, "time", &mut columns.time, entry)?;
+    }
+    columns.telemetry_time = telemetry_time(&at, &columns.time, table)?;
+    columns.pulse.clone_from(&columns.telemetry_time);
+    if let Some(ColumnEntry(entry)) = &table.pulse {
+        columns.pulse = Columns::default().time;
+        set(&at, "pulse", &mut columns.pulse, entry, Dimension::Time)?;
     }
     if let Some(ColumnEntry(entry)) = &table.speed {
         if let (Some(_), Some(_)) = (&table.speed_unit, &entry.unit) {
@@ -37,6 +43,22 @@ pub(crate) fn columns(file: &Path, table: &ColumnsTable, unit: &UnitTable) -> Re
         }
     }
     Ok(columns)
+}
+
+/// The time of the telemetry: as it is given; else that of the records, but for a sampling rate, which is the records' own.
+fn telemetry_time(at: &TomlPath, of_records: &Column, table: &ColumnsTable) -> Result<Column, Error> {
+    let usual = Columns::default().time;
+    if let Some(ColumnEntry(entry)) = &table.telemetry_time {
+        let mut column = usual;
+        set_time(at, "telemetry_time", &mut column, entry)?;
+        return Ok(column);
+    }
+    let has_rate = table.time.as_ref().is_some_and(|ColumnEntry(entry)| entry.rate.is_some());
+    Ok(match (&of_records.name, has_rate) {
+        (_, false) => of_records.clone(),
+        (ColumnName::Row, true) => usual,
+        (name, true) => Column { name: name.clone(), ..usual },
+    })
 }
 
 /// A column of readings or speeds.
@@ -54,11 +76,11 @@ fn set(at: &TomlPath, key: &str, column: &mut Column, entry: &ColumnTable, dimen
 }
 
 /// The column of time: in a unit of time, a count of samples at a rate, or no column at all but a rate.
-fn set_time(at: &TomlPath, column: &mut Column, entry: &ColumnTable) -> Result<(), Error> {
+fn set_time(at: &TomlPath, key: &str, column: &mut Column, entry: &ColumnTable) -> Result<(), Error> {
     match (&entry.rate, &entry.unit) {
-        (None, _) => return set(at, "time", column, entry, Dimension::Time),
-        (Some(_), Some(_)) => return Err(at.unexpected("time", "a rate and a unit", "one of them")),
-        (Some(rate), None) => column.scale = Scale::factor(1.0 / sampling_rate(at, rate)?),
+        (None, _) => return set(at, key, column, entry, Dimension::Time),
+        (Some(_), Some(_)) => return Err(at.unexpected(key, "a rate and a unit", "one of them")),
+        (Some(rate), None) => column.scale = Scale::factor(1.0 / sampling_rate(at, key, rate)?),
     }
     "samples".clone_into(&mut column.unit);
     column.name = entry.column.as_ref().map_or(ColumnName::Row, |label| label.0.clone());
@@ -66,9 +88,9 @@ fn set_time(at: &TomlPath, column: &mut Column, entry: &ColumnTable) -> Result<(
 }
 
 /// Samples per second.
-fn sampling_rate(at: &TomlPath, rate: &Quantity) -> Result<f64, Error> {
+fn sampling_rate(at: &TomlPath, key: &str, rate: &Quantity) -> Result<f64, Error> {
     let meaning = "a sampling rate such as \"1 kHz\", from 1e-3 Hz to 1 GHz";
-    at.bounded("time", rate, Dimension::Frequency, (1e-3, 1e9), meaning)
+    at.bounded(key, rate, Dimension::Frequency, (1e-3, 1e9), meaning)
 }
 
 fn set_unit(at: &TomlPath, key: &str, column: &mut Column, unit: &str, dimension: Dimension) -> Result<(), Error> {

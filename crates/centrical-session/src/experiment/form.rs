@@ -9,8 +9,9 @@ use serde::de::DeserializeOwned;
 
 pub(crate) use self::entries::{ColumnEntry, ColumnTable, PriorValue, TermEntry, TermList, TermTable};
 pub(crate) use self::tables::{
-    CandidatesTable, ColumnsTable, CountsTable, Form, ModelTable, MountingTable, PlanTable, PlateauEntry,
-    PositionTable, PresetForm, PresetTable, SiteTable, Steps, UnitTable,
+    CandidatesTable, CentrifugeTable, ColumnsTable, CountsTable, Form, MeasuredTable, ModelTable, MountingTable,
+    PlanTable, PlateauEntry, PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, SiteTable, Steps,
+    UnitTable,
 };
 use crate::error::{Error, Place};
 

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use centrical::plan::{Noise, Normalised};
 use centrical::position::ThirdPosition;
-use centrical::{MeasurementModel, Parameter, Weight};
+use centrical::{MeasurementModel, Parameter, TypeB, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;
 
 use super::form::{self, Form, PlanTable, PresetForm, PresetTable};
-use super::session::{Session, extensions, pair_relation, read_text, speed_uncertainty};
+use super::session::{Session, extensions, pair_relation, read_text};
+use super::speeds::preset_speeds;
 use super::toml_path::TomlPath;
 use super::{prior, schedule, terms};
 use crate::error::{Error, quoted};
@@ -120,11 +121,12 @@ impl Plan {
         )?;
         let mut experiment = plan.experiment();
         let (noise, duration) = noise(file, table.noise.as_ref(), table.floor.as_ref(), table.duration.as_ref())?;
-        let stated = form.centrifuge.speed_uncertainty.as_ref().map(|q| speed_uncertainty(file, q)).transpose()?;
-        experiment.centrifuge.speed_uncertainty = stated.unwrap_or(0.0);
+        let speeds = preset_speeds(file, &form.centrifuge)?;
+        experiment.centrifuge.speed_uncertainty = speeds.expected_uncertainty();
         let weights = weights(&noise, vec![duration; experiment.set_points.len()]);
         let error_model = terms::error_model(file, &form.model.error_model)?;
-        let model = MeasurementModel::new(experiment, error_model, &extensions(file, &form.model)?);
+        let stated = TypeB { speed_scale: speeds.scale(), ..TypeB::default() };
+        let model = MeasurementModel::new(experiment, error_model, &extensions(file, &form.model)?).with_stated(stated);
         Ok(Self {
             file: file.to_owned(),
             title: form.session.title.clone(),

@@ -3,11 +3,12 @@
 //! | column | what |
 //! |---|---|
 //! | `mounting` | number of the mounting in the experiment file, from 1 |
-//! | `speed` | set speed without sign [rad/s], 0 at rest |
+//! | `speed` | speed [rad/s], positive in the default sense of rotation, 0 at rest |
 //! | `angle` | carousel angle [rad] at rest; empty while spinning |
 //! | `mean_1` .. `mean_3` | mean readings [m/s^2] |
 //! | `cov_11`, `cov_12`, `cov_13`, `cov_22`, `cov_23`, `cov_33` | covariance of the means [m^2/s^4] |
 //! | `samples` | how many samples were averaged |
+//! | `speed_uncertainty` | relative standard uncertainty of `speed`, in a session whose plateaus state measured speeds |
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -24,8 +25,10 @@ use crate::error::{Error, Place};
 pub struct PlateauMean {
     /// Index of its mounting, from 0.
     pub mounting: usize,
-    /// Set speed without sign [rad/s]; 0 at rest.
+    /// Speed [rad/s], positive in the default sense of rotation; 0 at rest.
     pub speed: f64,
+    /// Relative standard uncertainty of a speed that was measured.
+    pub speed_uncertainty: Option<f64>,
     /// Carousel angle at rest [rad]; 0 while spinning, where it has no meaning.
     pub angle: f64,
     /// Mean readings of newtonometers 1, 2, 3 [m/s^2].
@@ -47,8 +50,9 @@ pub struct PlateauTable {
 
 impl PlateauTable {
     /// Reads the table and sorts it by mounting, keeping the order within each.
-    pub(crate) fn read(file: PathBuf, mountings: usize) -> Result<Self, Error> {
-        let mut rows = read_plateaus(&file, mountings)?;
+    pub(crate) fn read(file: PathBuf, mountings: usize, has_speeds: bool) -> Result<Self, Error> {
+        let mut rows =
+            if has_speeds { read_measured_plateaus(&file, mountings) } else { read_plateaus(&file, mountings) }?;
         rows.sort_by_key(|row| row.mounting);
         Ok(Self { file, rows })
     }
@@ -58,6 +62,7 @@ impl PlateauTable {
             mounting: p.mounting,
             omega: rotation.sign() * p.speed + 0.0,
             angle: p.angle,
+            speed_uncertainty: p.speed_uncertainty,
             ..SetPoint::default()
         };
         self.rows.iter().map(set_point).collect()
@@ -67,7 +72,7 @@ impl PlateauTable {
 /// The columns and what each holds.
 const COLUMNS: [(&str, &str); 13] = [
     ("mounting", "the number of a mounting"),
-    ("speed", "a speed in rad/s without sign"),
+    ("speed", "a speed in rad/s"),
     ("angle", "an angle in rad"),
     ("mean_1", "a mean in m/s^2"),
     ("mean_2", "a mean in m/s^2"),
@@ -81,6 +86,9 @@ const COLUMNS: [(&str, &str); 13] = [
     ("samples", "how many samples were averaged"),
 ];
 
+/// The further column of a table whose speeds are measured.
+const SPEED_UNCERTAINTY: (&str, &str) = ("speed_uncertainty", "a relative standard uncertainty");
+
 /// Place of `angle` among the columns.
 const ANGLE: usize = 2;
 
@@ -90,20 +98,48 @@ const ANGLE: usize = 2;
 /// If the file can not be read or lacks a column; if a row names no mounting, rests without an angle, or has a
 /// covariance that is not positive definite.
 pub fn read_plateaus(file: &Path, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
+    read_columns(file, mountings, &COLUMNS)
+}
+
+/// The same with the uncertainty of each speed.
+///
+/// # Errors
+/// As [`read_plateaus`].
+pub(crate) fn read_measured_plateaus(file: &Path, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
+    let columns: Vec<_> = COLUMNS.into_iter().chain([SPEED_UNCERTAINTY]).collect();
+    read_columns(file, mountings, &columns)
+}
+
+fn read_columns(file: &Path, mountings: usize, columns: &[(&str, &str)]) -> Result<Vec<PlateauMean>, Error> {
     let field = |(k, (name, expected)): (usize, &(&str, &str))| Field {
         name: ColumnName::Name((*name).to_owned()),
         expected: (*expected).to_owned(),
-        rule: if k == ANGLE { Rule::OrMissing } else { Rule::Any },
+        rule: if k == ANGLE || k == COLUMNS.len() { Rule::OrMissing } else { Rule::Any },
     };
-    let fields: Vec<Field> = COLUMNS.iter().enumerate().map(field).collect();
-    let mut rows: Vec<[f64; COLUMNS.len()]> = Vec::new();
+    let fields: Vec<Field> = columns.iter().enumerate().map(field).collect();
+    let mut rows: Vec<([f64; COLUMNS.len()], f64)> = Vec::new();
     let mut table = TableReader::open(file, Extent::Whole, &fields, "a table of plateaus")?;
     while let Some(batch) = table.next_batch()? {
         for columns in batch {
-            rows.extend((0..columns[0].len()).map(|row| std::array::from_fn(|k| columns[k][row])));
+            let uncertainty = |row: usize| columns.get(COLUMNS.len()).map_or(f64::NAN, |column| column[row]);
+            rows.extend((0..columns[0].len()).map(|row| (std::array::from_fn(|k| columns[k][row]), uncertainty(row))));
         }
     }
-    (1..).zip(&rows).map(|(number, row)| plateau(file, number, row, mountings)).collect()
+    let checked = |(number, (row, uncertainty)): (u64, &([f64; COLUMNS.len()], f64))| {
+        let speed_uncertainty = speed_uncertainty(file, number, *uncertainty)?;
+        Ok(PlateauMean { speed_uncertainty, ..plateau(file, number, row, mountings)? })
+    };
+    (1..).zip(&rows).map(checked).collect()
+}
+
+/// The uncertainty of a speed; none where the field is empty.
+fn speed_uncertainty(file: &Path, number: u64, uncertainty: f64) -> Result<Option<f64>, Error> {
+    if uncertainty.is_nan() || (0.0..1.0).contains(&uncertainty) {
+        return Ok(Some(uncertainty).filter(|u| !u.is_nan()));
+    }
+    let place = Place::Row { row: number, column: SPEED_UNCERTAINTY.0.to_owned() };
+    let expected = "a relative standard uncertainty, zero or more and below 1";
+    Err(Error::content(file, place, uncertainty.to_string(), expected))
 }
 
 /// One row, checked.
@@ -116,8 +152,8 @@ fn plateau(file: &Path, number: u64, row: &[f64; COLUMNS.len()], mountings: usiz
     if mounting.fract() != 0.0 || !(1.0..=mountings as f64).contains(&mounting) {
         return Err(wrong(0, format!("the number of a mounting, 1 to {mountings}")));
     }
-    if !(0.0..=FASTEST).contains(&speed) {
-        return Err(wrong(1, "a speed in rad/s from 0 to 1e6 rpm, without sign".to_owned()));
+    if !(-FASTEST..=FASTEST).contains(&speed) {
+        return Err(wrong(1, "a speed in rad/s from -1e6 to 1e6 rpm".to_owned()));
     }
     if (speed == 0.0) == angle.is_nan() {
         let expected = if speed == 0.0 { "the carousel angle of a plateau at rest" } else { "no angle while spinning" };
@@ -138,7 +174,15 @@ fn plateau(file: &Path, number: u64, row: &[f64; COLUMNS.len()], mountings: usiz
     )]
     let (mounting, samples) = (mounting as usize - 1, samples as u64);
     let angle = if speed == 0.0 { angle } else { 0.0 };
-    Ok(PlateauMean { mounting, speed, angle, mean: Vector3::new(m1, m2, m3), covariance, samples })
+    Ok(PlateauMean {
+        mounting,
+        speed,
+        speed_uncertainty: None,
+        angle,
+        mean: Vector3::new(m1, m2, m3),
+        covariance,
+        samples,
+    })
 }
 
 /// Writes a table of plateaus, every number to its last digit; the file appears whole or not at all.
@@ -146,17 +190,27 @@ fn plateau(file: &Path, number: u64, row: &[f64; COLUMNS.len()], mountings: usiz
 /// # Errors
 /// If the file can not be written.
 pub fn write_plateaus(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error> {
+    let is_measured = is_measured(plateaus);
     let mut text = COLUMNS.map(|(name, _)| name).join(",");
-    text.push('\n');
+    text.push_str(if is_measured { ",speed_uncertainty\n" } else { "\n" });
     for p in plateaus {
         let angle = if p.speed == 0.0 { p.angle.to_string() } else { String::new() };
         let c = &p.covariance;
         let [m1, m2, m3] = p.mean.into();
         let upper = [c.m11, c.m12, c.m13, c.m22, c.m23, c.m33].map(|v| format!("{v:e}")).join(",");
         // Writing to a String does not fail.
-        let _ = writeln!(text, "{},{},{angle},{m1},{m2},{m3},{upper},{}", p.mounting + 1, p.speed, p.samples);
+        let _ = write!(text, "{},{},{angle},{m1},{m2},{m3},{upper},{}", p.mounting + 1, p.speed, p.samples);
+        if is_measured {
+            let _ = write!(text, ",{}", p.speed_uncertainty.map_or_else(String::new, |u| format!("{u:e}")));
+        }
+        text.push('\n');
     }
     Ok(write_whole(file, text.as_bytes())?)
+}
+
+/// Whether a speed was measured, so that the table has a column for its uncertainty.
+fn is_measured(plateaus: &[PlateauMean]) -> bool {
+    plateaus.iter().any(|p| p.speed_uncertainty.is_some())
 }
 
 /// As [`write_plateaus`], in Parquet.
@@ -168,8 +222,13 @@ pub(crate) fn write_plateaus_parquet(file: &Path, plateaus: &[PlateauMean]) -> R
         [number, p.speed, angle, m1, m2, m3, c.m11, c.m12, c.m13, c.m22, c.m23, c.m33, p.samples as f64]
     };
     let rows: Vec<[f64; COLUMNS.len()]> = plateaus.iter().map(row).collect();
-    let columns: Vec<Vec<f64>> = (0..COLUMNS.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
-    let bytes = parquet_bytes(&COLUMNS.map(|(name, _)| name), &columns).map_err(|error| Error::writing(file, error))?;
+    let mut columns: Vec<Vec<f64>> = (0..COLUMNS.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
+    let mut names = COLUMNS.map(|(name, _)| name).to_vec();
+    if is_measured(plateaus) {
+        names.push(SPEED_UNCERTAINTY.0);
+        columns.push(plateaus.iter().map(|p| p.speed_uncertainty.unwrap_or(f64::NAN)).collect());
+    }
+    let bytes = parquet_bytes(&names, &columns).map_err(|error| Error::writing(file, error))?;
     Ok(write_whole(file, &bytes)?)
 }
 
@@ -183,11 +242,21 @@ mod tests {
         let file = folder.path().join("plateaus.csv");
         let covariance = Matrix3::new(2e-9, 1e-10, -3e-10, 1e-10, 3e-9, 0.1e-10, -3e-10, 0.1e-10, 1.0 / 3.0 * 1e-8);
         let mean = Vector3::new(0.1 + 0.2, -1.0 / 3.0, 9.806_65);
-        let rest =
-            PlateauMean { mounting: 1, speed: 0.0, angle: std::f64::consts::PI, mean, covariance, samples: 1020 };
+        let rest = PlateauMean {
+            mounting: 1,
+            speed: 0.0,
+            speed_uncertainty: None,
+            angle: std::f64::consts::PI,
+            mean,
+            covariance,
+            samples: 1020,
+        };
         let spin = PlateauMean { mounting: 0, speed: 14.0 / 3.0, angle: 0.0, ..rest };
         write_plateaus(&file, &[rest, spin]).unwrap();
         assert_eq!(read_plateaus(&file, 2).unwrap(), [rest, spin]);
+        let measured = PlateauMean { speed: -14.0 / 3.0, speed_uncertainty: Some(1e-6 / 3.0), ..spin };
+        write_plateaus(&file, &[rest, measured]).unwrap();
+        assert_eq!(read_measured_plateaus(&file, 2).unwrap(), [rest, measured]);
         let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
         assert_eq!(left.len(), 1, "nothing is left beside the table");
     }

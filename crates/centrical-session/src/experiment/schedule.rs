@@ -6,6 +6,7 @@ use centrical::{Mounting, Position, Rotation, SetPoint};
 use nalgebra::Vector3;
 
 use super::form::{MountingTable, PlateauEntry};
+use super::speeds;
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
@@ -56,8 +57,16 @@ pub(crate) fn set_points(file: &Path, tables: &[MountingTable], rotation: Rotati
         }
         for (index, entry) in table.plateaus.iter().enumerate() {
             let (speed, angle) = plateau(&at, index, entry)?;
+            let key = format!("plateaus {} speed_uncertainty", index + 1);
+            let own = entry.speed_uncertainty.as_ref().map(|q| speeds::of_plateau(&at, &key, q)).transpose()?;
             // The sum makes -0 a 0.
-            set_points.push(SetPoint { mounting, omega: rotation.sign() * speed + 0.0, angle, ..SetPoint::default() });
+            set_points.push(SetPoint {
+                mounting,
+                omega: rotation.sign() * speed + 0.0,
+                angle,
+                speed_uncertainty: own.filter(|_| speed != 0.0),
+                ..SetPoint::default()
+            });
         }
     }
     Ok(set_points)
@@ -66,8 +75,8 @@ pub(crate) fn set_points(file: &Path, tables: &[MountingTable], rotation: Rotati
 /// Speed [rad/s] and angle [rad] of plateau number `index`, from 0.
 fn plateau(at: &TomlPath, index: usize, entry: &PlateauEntry) -> Result<(f64, f64), Error> {
     let key = |name: &str| format!("plateaus {} {name}", index + 1);
-    let meaning = "a speed from 0 to 1e6 rpm (the direction is given by `rotation` in [centrifuge])";
-    let speed = at.bounded(&key("speed"), &entry.speed, Dimension::Speed, (0.0, FASTEST), meaning)?;
+    let meaning = "a speed from -1e6 to 1e6 rpm, positive in the direction of `rotation` in [centrifuge]";
+    let speed = at.bounded(&key("speed"), &entry.speed, Dimension::Speed, (-FASTEST, FASTEST), meaning)?;
     match (&entry.angle, speed == 0.0) {
         (Some(angle), true) => Ok((0.0, at.finite(&key("angle"), angle, Dimension::Angle)?)),
         (None, true) => Err(at.unexpected(&key("angle"), "no angle", "the carousel angle of a plateau at rest")),

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical::TypeB;
-use centrical::reduction::{Record, SpeedTrace};
+use centrical::reduction::{PulseTrain, Record, SpeedTrace};
 use centrical::{
     Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
 };
@@ -12,11 +12,12 @@ use centrical::{
 use super::form::{self, Form, ModelTable, SiteTable};
 use super::plateaus::PlateauTable;
 use super::prior::{self, PriorEntry};
+use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
-use super::{attitude, columns, schedule, terms, uncertainty, unit};
+use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
 use crate::error::{Error, Place, quoted};
-use crate::quantity::{Dimension, Quantity};
-use crate::record::{Columns, read_record, read_telemetry};
+use crate::quantity::Dimension;
+use crate::record::{Columns, read_pulses, read_record, read_telemetry};
 
 /// Name of the experiment file in a session folder.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
@@ -49,6 +50,8 @@ pub struct Session {
     pub extensions: Vec<Extension>,
     /// Standard uncertainties of what the model takes as exact, as stated in `[uncertainty]`.
     pub type_b: TypeB,
+    /// How the speeds of plateaus are known.
+    pub speeds: Speeds,
     /// Columns of the records and the telemetry.
     pub columns: Columns,
     /// Files of every mounting, in the order of [`Experiment::mountings`].
@@ -67,6 +70,8 @@ pub struct MountingFiles {
     pub record: Option<PathBuf>,
     /// The telemetry.
     pub telemetry: Option<PathBuf>,
+    /// Times of the pulses of an index mark or an encoder.
+    pub pulses: Option<PathBuf>,
 }
 
 impl Session {
@@ -82,7 +87,8 @@ impl Session {
         let mut session = Self::without_plateaus(&file, &form)?;
         let rotation = session.experiment.centrifuge.rotation;
         if let Some(table) = &form.plateaus {
-            let table = PlateauTable::read(folder.join(table), form.mounting.len())?;
+            let has_speeds = has_measured_speeds(&file, &session.speeds)?;
+            let table = PlateauTable::read(folder.join(table), form.mounting.len(), has_speeds)?;
             session.experiment.set_points = table.set_points(rotation);
             session.plateaus = Some(table);
         } else {
@@ -103,8 +109,17 @@ impl Session {
     /// # Errors
     /// If a prior names no parameter, or is none: only for a session changed since it was read.
     pub fn model(&self) -> Result<MeasurementModel, Error> {
-        let model = MeasurementModel::new(self.experiment.clone(), self.error_model.clone(), &self.extensions)
-            .with_stated(self.type_b);
+        self.model_at(self.experiment.set_points.clone())
+    }
+
+    /// The measurement model with other set points, such as the measured ones.
+    ///
+    /// # Errors
+    /// As [`Session::model`].
+    pub(crate) fn model_at(&self, set_points: Vec<SetPoint>) -> Result<MeasurementModel, Error> {
+        let experiment = Experiment { set_points, ..self.experiment.clone() };
+        let model =
+            MeasurementModel::new(experiment, self.error_model.clone(), &self.extensions).with_stated(self.type_b);
         prior::with_priors(&self.file, model, &self.priors)
     }
 
@@ -114,12 +129,13 @@ impl Session {
         let pair_relation = pair_relation(file, &form.model.pair_relation)?;
         let positions = attitude::positions(file, &form.position, pair_relation)?;
         let mountings = schedule::mountings(file, &form.mounting, &positions)?;
+        let speeds = speeds::speeds(file, &form.centrifuge)?;
         let experiment = Experiment {
             site: site(file, &form.site)?,
             unit: unit::geometry(file, &form.unit)?,
             centrifuge: Centrifuge {
                 rotation: rotation(file, &form.centrifuge.rotation)?,
-                speed_uncertainty: speed_uncertainty(file, &form.centrifuge.speed_uncertainty)?,
+                speed_uncertainty: speeds.expected_uncertainty(),
             },
             positions,
             pair_relation,
@@ -136,13 +152,18 @@ impl Session {
             unit_model: form.unit.model.clone(),
             unit_serial: form.unit.serial.clone(),
             output_unit: form.unit.output_unit.clone(),
-            type_b: uncertainty::type_b(file, &form.uncertainty, &experiment, &error_model)?,
+            type_b: uncertainty::type_b(file, &form.uncertainty, &experiment, &error_model, &speeds)?,
+            speeds,
             experiment,
             error_model,
             extensions: extensions(file, &form.model)?,
             columns: columns::columns(file, &form.columns, &form.unit)?,
             mountings: (form.mounting.iter())
-                .map(|m| MountingFiles { record: path(&m.record), telemetry: path(&m.telemetry) })
+                .map(|m| MountingFiles {
+                    record: path(&m.record),
+                    telemetry: path(&m.telemetry),
+                    pulses: path(&m.pulses),
+                })
                 .collect(),
             plateaus: None,
             durations: Vec::new(),
@@ -167,6 +188,17 @@ impl Session {
         file.map(|file| read_telemetry(file, &self.columns)).transpose()
     }
 
+    /// Reads the pulses of a mounting, if it has any.
+    ///
+    /// # Errors
+    /// As [`read_record`].
+    pub fn pulses(&self, mounting: usize) -> Result<Option<PulseTrain>, Error> {
+        let file = self.mountings.get(mounting).and_then(|m| m.pulses.as_ref());
+        let per_revolution = self.speeds.measured.map_or(1.0, |measured| measured.pulses_per_revolution);
+        let read = |file: &PathBuf| Ok(PulseTrain { t: read_pulses(file, &self.columns)?, per_revolution });
+        file.map(read).transpose()
+    }
+
     /// Size of the records [bytes]; zero for a session that comes already averaged, and of records that are not there.
     pub fn record_bytes(&self) -> u64 {
         let files = self.mountings.iter().filter(|_| self.plateaus.is_none()).filter_map(|m| m.record.as_ref());
@@ -175,7 +207,7 @@ impl Session {
 
     /// All files of the session in the order they are named: the experiment file first.
     pub fn files(&self) -> Vec<&Path> {
-        let of_mountings = self.mountings.iter().flat_map(|m| m.record.iter().chain(&m.telemetry));
+        let of_mountings = self.mountings.iter().flat_map(|m| m.record.iter().chain(&m.telemetry).chain(&m.pulses));
         let table = self.plateaus.iter().map(|table| &table.file);
         std::iter::once(&self.file).chain(table).chain(of_mountings).map(PathBuf::as_path).collect()
     }
@@ -223,6 +255,22 @@ fn site(file: &Path, table: &SiteTable) -> Result<Site, Error> {
     Ok(Site { gravity, latitude: table.latitude.as_ref().map(latitude).transpose()? })
 }
 
+/// Whether the table of plateaus states measured speeds: telemetry and pulses are not read beside a table.
+fn has_measured_speeds(file: &Path, speeds: &Speeds) -> Result<bool, Error> {
+    match speeds.measured.map(|measured| measured.source) {
+        None => Ok(false),
+        Some(SpeedSource::Plateaus) => Ok(true),
+        Some(other) => {
+            let expected = "\"plateaus\" in a session that brings a table of plateaus";
+            Err(TomlPath::table(file, "centrifuge").unexpected(
+                "measured.from",
+                format!("{:?}", other.name()),
+                expected,
+            ))
+        }
+    }
+}
+
 /// Sense of rotation about the third arm axis.
 fn rotation(file: &Path, text: &str) -> Result<Rotation, Error> {
     match text {
@@ -232,11 +280,6 @@ fn rotation(file: &Path, text: &str) -> Result<Rotation, Error> {
             Err(TomlPath::table(file, "centrifuge").unexpected("rotation", quoted(text.as_bytes()), "\"+3\" or \"-3\""))
         }
     }
-}
-
-pub(crate) fn speed_uncertainty(file: &Path, quantity: &Quantity) -> Result<f64, Error> {
-    let meaning = "a relative standard uncertainty, zero or more and below 1";
-    TomlPath::table(file, "centrifuge").bounded("speed_uncertainty", quantity, Dimension::Ratio, (0.0, 1.0), meaning)
 }
 
 pub(crate) fn extensions(file: &Path, table: &ModelTable) -> Result<Vec<Extension>, Error> {

@@ -6,6 +6,7 @@ use std::path::Path;
 use centrical::{Course, Effect, ErrorModel, Experiment, Kind, Law, Parameter, Rival, TypeB};
 
 use super::prior;
+use super::speeds::Speeds;
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
@@ -25,13 +26,16 @@ const QUANTITIES: [&str; 11] = [
     "doubt",
 ];
 
-/// Standard uncertainties, SI; `plateau_speed` is the same as `speed_uncertainty` of `[centrifuge]` or absent.
+/// Standard uncertainties, SI; `plateau_speed` is the same as `speed_uncertainty` of `[centrifuge]` or absent, and
+/// `speed_scale` the same as the scale of measured speeds, where both are stated.
 pub(crate) fn type_b(
     file: &Path,
     table: &BTreeMap<String, Quantity>,
     experiment: &Experiment,
     error_model: &ErrorModel,
+    speeds: &Speeds,
 ) -> Result<TypeB, Error> {
+    let plateau_speed = speeds.set_uncertainty;
     let at = TomlPath::table(file, "uncertainty");
     let read = |key: &str, dimension, largest| {
         let meaning = "a standard uncertainty, zero or more and not beyond reason";
@@ -48,17 +52,24 @@ pub(crate) fn type_b(
         let expected = "at most sqrt(2) times radius, the difference of seats measured independently";
         return Err(at.unexpected("radius_difference", format!("{difference} m"), expected));
     }
-    let plateau_speed = experiment.centrifuge.speed_uncertainty;
     if let Some(speed) = ratio("plateau_speed")?.filter(|speed| *speed != plateau_speed) {
         let expected = format!("{plateau_speed}, the speed_uncertainty of [centrifuge], or nothing");
         return Err(at.unexpected("plateau_speed", speed.to_string(), expected));
+    }
+    let speed_scale = ratio("speed_scale")?;
+    let of_measured = speeds.measured.and_then(|measured| measured.scale);
+    if let (Some(stated), Some(scale)) = (speed_scale, of_measured)
+        && stated != scale
+    {
+        let expected = format!("{scale}, the scale of measured speeds in [centrifuge], or nothing");
+        return Err(at.unexpected("speed_scale", stated.to_string(), expected));
     }
     Ok(TypeB {
         gravity: acceleration("gravity")?.unwrap_or(0.0),
         latitude: angle("latitude")?.unwrap_or(0.0),
         radius,
         radius_difference,
-        speed_scale: ratio("speed_scale")?.unwrap_or(0.0),
+        speed_scale: speed_scale.unwrap_or(speeds.scale()),
         rest_angle: angle("rest_angle")?.unwrap_or(0.0),
         proof_masses: length("proof_masses")?.unwrap_or(0.0),
         attitude: angle("attitude")?.unwrap_or(0.0),

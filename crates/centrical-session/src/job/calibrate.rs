@@ -25,7 +25,7 @@ impl Problem {
     /// [`Error`] naming the file, the place, what was found and what was expected.
     pub fn of(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
         let reduced = reduce(session, progress)?;
-        let model = session.model()?;
+        let model = reduced.model(session)?;
         Ok(Self { model, reduced })
     }
 }

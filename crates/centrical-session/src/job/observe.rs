@@ -24,7 +24,7 @@ pub fn subject(path: &Path, progress: &(dyn Fn(u64) + Sync)) -> Result<Subject, 
 
 fn of_session(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Subject, Error> {
     let reduced = reduce(session, progress)?;
-    let model = session.model()?;
+    let model = reduced.model(session)?;
     Ok(Subject {
         file: session.file.clone(),
         title: session.title.clone(),

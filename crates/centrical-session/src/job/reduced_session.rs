@@ -3,14 +3,16 @@
 use std::path::Path;
 
 use centrical_table::{TableFormat, create_folder, write_whole};
-use toml_edit::{DocumentMut, Item, TableLike, Value, value};
+use toml_edit::{DocumentMut, InlineTable, Item, TableLike, Value, value};
 
 use crate::error::{Error, Place};
-use crate::experiment::{EXPERIMENT_FILE, PlateauMean, Session, read_text, write_plateaus, write_plateaus_parquet};
+use crate::experiment::{
+    EXPERIMENT_FILE, PlateauMean, Session, SpeedSource, read_text, write_plateaus, write_plateaus_parquet,
+};
 use crate::reduced::Reduced;
 
 /// Keys of a mounting that say what the table of plateaus says now.
-const REPLACED: [&str; 3] = ["record", "telemetry", "plateaus"];
+const REPLACED: [&str; 4] = ["record", "telemetry", "pulses", "plateaus"];
 
 /// Writes the reduced session into `folder`: the table of plateaus first, and `experiment.toml`, which names it, last.
 /// Calibrating it gives the numbers that calibrating the records gives.
@@ -28,13 +30,17 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
         TableFormat::Csv => ("plateaus.csv", write_plateaus),
         TableFormat::Parquet => ("plateaus.parquet", write_plateaus_parquet),
     };
-    let text = experiment(&session.file, name)?;
-    write(&folder.join(name), &reduced.table(session))?;
+    let rows = reduced.table(session);
+    // Speeds that single plateaus of the schedule state as measured: the table has a column for them.
+    let of_plateaus = session.speeds.measured.is_none() && rows.iter().any(|row| row.speed_uncertainty.is_some());
+    let text = experiment(&session.file, name, of_plateaus.then_some(session.speeds.set_uncertainty))?;
+    write(&folder.join(name), &rows)?;
     Ok(write_whole(&experiment_file, text.as_bytes())?)
 }
 
-/// The experiment file with the table instead of records, and all else, comments too, as it was.
-fn experiment(file: &Path, table: &str) -> Result<String, Error> {
+/// The experiment file with the table instead of records, and all else, comments too, as it was. With `uncertainty` it says
+/// that plateaus state measured speeds, the others as uncertain as this.
+fn experiment(file: &Path, table: &str, uncertainty: Option<f64>) -> Result<String, Error> {
     let text = read_text(file)?;
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| Error::Form {
         file: file.to_owned(),
@@ -47,6 +53,19 @@ fn experiment(file: &Path, table: &str) -> Result<String, Error> {
             mountings.iter_mut().filter_map(Value::as_inline_table_mut).for_each(|mounting| strip(mounting));
         }
         _ => {}
+    }
+    if let (Some(uncertainty), Some(centrifuge)) = (uncertainty, document.get_mut("centrifuge"))
+        && let Some(centrifuge) = centrifuge.as_table_like_mut()
+    {
+        let mut measured = InlineTable::new();
+        measured.insert("from", SpeedSource::Plateaus.name().into());
+        measured.insert("uncertainty", uncertainty.into());
+        centrifuge.insert("measured", value(measured));
+    }
+    if let Some(measured) = document.get_mut("centrifuge").and_then(|table| table.get_mut("measured"))
+        && let Some(measured) = measured.as_table_like_mut()
+    {
+        measured.insert("from", value(SpeedSource::Plateaus.name()));
     }
     document.insert("plateaus", value(table));
     Ok(document.to_string())

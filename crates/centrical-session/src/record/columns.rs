@@ -5,8 +5,12 @@ use centrical_table::{ColumnName, Field, Rule};
 /// The columns of records and telemetry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Columns {
-    /// Time, in both.
+    /// Time, in records.
     pub time: Column,
+    /// Time, in the telemetry.
+    pub telemetry_time: Column,
+    /// Times of pulses.
+    pub pulse: Column,
     /// Readings of newtonometers 1, 2, 3.
     pub f: [Column; 3],
     /// Speed, in the telemetry.
@@ -58,6 +62,8 @@ impl Default for Columns {
     fn default() -> Self {
         Self {
             time: Column::si("t", "s"),
+            telemetry_time: Column::si("t", "s"),
+            pulse: Column::si("t", "s"),
             f: ["f1", "f2", "f3"].map(|name| Column::si(name, "m/s^2")),
             speed: Column::si("omega", "rad/s"),
         }

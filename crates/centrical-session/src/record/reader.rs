@@ -30,7 +30,19 @@ pub fn read_growing_record(file: &Path, columns: &Columns) -> Result<Record, Err
 /// # Errors
 /// As [`RecordReader::next_batch`].
 pub fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Error> {
-    let mut reader = RecordReader::with(file, Extent::Whole, &[&columns.time, &columns.speed], "telemetry")?;
+    telemetry_of(file, columns, Extent::Whole)
+}
+
+/// Reads the part written so far of telemetry that is still growing.
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub(crate) fn read_growing_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Error> {
+    telemetry_of(file, columns, Extent::Growing)
+}
+
+fn telemetry_of(file: &Path, columns: &Columns, extent: Extent) -> Result<SpeedTrace, Error> {
+    let mut reader = RecordReader::with(file, extent, &[&columns.telemetry_time, &columns.speed], "telemetry")?;
     let mut telemetry = SpeedTrace::default();
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
@@ -39,6 +51,33 @@ pub fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Erro
         }
     }
     Ok(telemetry)
+}
+
+/// Reads the times of the pulses in `file` [s].
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub fn read_pulses(file: &Path, columns: &Columns) -> Result<Vec<f64>, Error> {
+    pulses_of(file, columns, Extent::Whole)
+}
+
+/// Reads the part written so far of times that are still being written.
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub(crate) fn read_growing_pulses(file: &Path, columns: &Columns) -> Result<Vec<f64>, Error> {
+    pulses_of(file, columns, Extent::Growing)
+}
+
+fn pulses_of(file: &Path, columns: &Columns, extent: Extent) -> Result<Vec<f64>, Error> {
+    let mut reader = RecordReader::with(file, extent, &[&columns.pulse], "times of pulses")?;
+    let mut times = Vec::new();
+    while let Some(batch) = reader.next_batch()? {
+        for rows in batch {
+            times.extend_from_slice(&rows[0]);
+        }
+    }
+    Ok(times)
 }
 
 /// A record that is read in memory that does not grow with it.

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use centrical::simulate::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, Spikes, Tachometer};
+use centrical::simulate::{Coloured, Counter, Equipment, Losses, Machine, Recorder, Sensor, Spikes, Tachometer};
 use serde::Deserialize;
 
 use crate::error::Error;
-use crate::experiment::TomlPath;
+use crate::experiment::{SpeedSource, Speeds, TomlPath};
 use crate::quantity::Dimension::{Acceleration, Frequency, Ratio, Speed, Time};
 use crate::quantity::{Dimension, Quantity};
 
@@ -78,6 +78,17 @@ pub(crate) struct TachometerTable {
     clock_drift: Given,
     noise: Given,
     quantum: Given,
+    measures: Option<bool>,
+    scale_error: Given,
+    plateau_error: Given,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct CounterTable {
+    jitter: Given,
+    scale_error: Given,
+    plateau_error: Given,
 }
 
 impl Given {
@@ -87,17 +98,37 @@ impl Given {
     }
 }
 
-/// The equipment as the tables of `file` give it; plateaus' speeds err by `speed_error` unless it is given.
+/// The tables of a truth file.
+pub(crate) type Tables<'a> =
+    (&'a MachineTable, &'a SensorTable, &'a RecorderTable, &'a TachometerTable, &'a CounterTable);
+
+/// The equipment as the tables of `file` give it. Plateaus' speeds err as `speeds` states that they are set, and measured
+/// speeds as it states that they are measured, unless the tables say otherwise.
 pub(crate) fn equipment(
     file: &Path,
-    (machine, sensor, recorder, tachometer): (&MachineTable, &SensorTable, &RecorderTable, &TachometerTable),
-    speed_error: f64,
+    (machine, sensor, recorder, tachometer, counter): Tables,
+    speeds: &Speeds,
 ) -> Result<Equipment, Error> {
+    // Where the plateaus state measured speeds, the plan's are those.
+    let speed_error = if speeds.is_in_files() { speeds.set_uncertainty } else { speeds.expected_uncertainty() };
+    let of = |source| speeds.measured.filter(|measured| measured.source == source);
+    let reported = of(SpeedSource::Telemetry);
+    let usual = Tachometer {
+        measures: reported.is_some(),
+        plateau_error: reported.map_or(0.0, |measured| measured.uncertainty),
+        ..Tachometer::default()
+    };
+    let counted = of(SpeedSource::Pulses).map_or_else(Counter::default, |measured| Counter {
+        per_revolution: measured.pulses_per_revolution,
+        plateau_error: measured.uncertainty,
+        ..Counter::default()
+    });
     let equipment = Equipment {
+        counter: counter.read(&TomlPath::table(file, "counter"), &counted)?,
         machine: machine.read(&TomlPath::table(file, "machine"), &Machine { speed_error, ..Machine::default() })?,
         sensor: sensor.read(&TomlPath::table(file, "sensor"), &Sensor::default())?,
         recorder: recorder.read(&TomlPath::table(file, "recorder"), &Recorder::default())?,
-        tachometer: tachometer.read(&TomlPath::table(file, "tachometer"), &Tachometer::default())?,
+        tachometer: tachometer.read(&TomlPath::table(file, "tachometer"), &usual)?,
     };
     equipment.check().map_err(|source| Error::Simulation { file: file.to_owned(), source })?;
     Ok(equipment)
@@ -160,6 +191,20 @@ impl TachometerTable {
             clock_drift: self.clock_drift.or(usual.clock_drift, at, "clock_drift", Ratio)?,
             noise: self.noise.or(usual.noise, at, "noise", Speed)?,
             quantum: self.quantum.or(usual.quantum, at, "quantum", Speed)?,
+            measures: self.measures.unwrap_or(usual.measures),
+            scale_error: self.scale_error.or(usual.scale_error, at, "scale_error", Ratio)?,
+            plateau_error: self.plateau_error.or(usual.plateau_error, at, "plateau_error", Ratio)?,
+        })
+    }
+}
+
+impl CounterTable {
+    fn read(&self, at: &TomlPath, usual: &Counter) -> Result<Counter, Error> {
+        Ok(Counter {
+            per_revolution: usual.per_revolution,
+            jitter: self.jitter.or(usual.jitter, at, "jitter", Time)?,
+            scale_error: self.scale_error.or(usual.scale_error, at, "scale_error", Ratio)?,
+            plateau_error: self.plateau_error.or(usual.plateau_error, at, "plateau_error", Ratio)?,
         })
     }
 }

@@ -8,7 +8,7 @@ use centrical::simulate::{Equipment, draw_truth};
 use centrical::{Extension, MeasurementModel, Parameter};
 use serde::Deserialize;
 
-use super::equipment::{MachineTable, RecorderTable, SensorTable, TachometerTable, equipment};
+use super::equipment::{CounterTable, MachineTable, RecorderTable, SensorTable, TachometerTable, equipment};
 use crate::error::Error;
 use crate::experiment::{Session, TomlPath, parse_form};
 use crate::quantity::{Dimension, Quantity};
@@ -41,6 +41,8 @@ struct Form {
     recorder: RecorderTable,
     #[serde(default)]
     tachometer: TachometerTable,
+    #[serde(default)]
+    counter: CounterTable,
 }
 
 /// Parameters that are not named are drawn from a normal law about zero.
@@ -64,8 +66,8 @@ impl Truth {
         let form: Form = parse_form(file, &text)?;
         let (model, sources) = model(plan, &form);
         let values = values(file, &form, &model, sources, seed)?;
-        let tables = (&form.machine, &form.sensor, &form.recorder, &form.tachometer);
-        let equipment = equipment(file, tables, plan.experiment.centrifuge.speed_uncertainty)?;
+        let tables = (&form.machine, &form.sensor, &form.recorder, &form.tachometer, &form.counter);
+        let equipment = equipment(file, tables, &plan.speeds)?;
         Ok(Self { file: file.to_owned(), model, values, equipment })
     }
 }

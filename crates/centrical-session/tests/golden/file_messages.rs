@@ -42,8 +42,8 @@ fn tables_of_plateaus() {
             ", row 1, mounting: found 1.5, expected the number of a mounting, 1 to 2",
         ),
         (
-            "1,-1,,0,0,9.8,1e-8,0,0,1e-8,0,1e-8,100\n",
-            ", row 1, speed: found -1, expected a speed in rad/s from 0 to 1e6 rpm, without sign",
+            "1,-2e5,,0,0,9.8,1e-8,0,0,1e-8,0,1e-8,100\n",
+            ", row 1, speed: found -200000, expected a speed in rad/s from -1e6 to 1e6 rpm",
         ),
         (
             "1,0,,0,0,9.8,1e-8,0,0,1e-8,0,1e-8,100\n",

@@ -35,7 +35,11 @@ fn the_form_is_kept() {
             "outputunit =",
             r"line 10, column 1: unknown field `outputunit`, expected one of `model`, `serial`, `output_unit`, `counts`, `proof_masses`, `reference`",
         ),
-        ("rotation =", "rot =", r"line 15, column 1: unknown field `rot`, expected `speed_uncertainty` or `rotation`"),
+        (
+            "rotation =",
+            "rot =",
+            r"line 15, column 1: unknown field `rot`, expected one of `speed_uncertainty`, `rotation`, `tachometer_uncertainty`, `measured`",
+        ),
         (
             "pair_relation =",
             "relation =",
@@ -44,7 +48,7 @@ fn the_form_is_kept() {
         (
             "speed_unit =",
             "speed_units =",
-            r"line 22, column 1: unknown field `speed_units`, expected one of `time`, `f`, `speed`, `speed_unit`",
+            r"line 22, column 1: unknown field `speed_units`, expected one of `time`, `f`, `telemetry_time`, `pulse`, `speed`, `speed_unit`",
         ),
         (
             "pair =",
@@ -54,12 +58,12 @@ fn the_form_is_kept() {
         (
             "record =",
             "recrod =",
-            r"line 37, column 1: unknown field `recrod`, expected one of `position`, `arm`, `record`, `telemetry`, `plateaus`",
+            r"line 37, column 1: unknown field `recrod`, expected one of `position`, `arm`, `record`, `telemetry`, `pulses`, `plateaus`",
         ),
         (
             "angle =",
             "angel =",
-            r"line 38, column 26: unknown field `angel`, expected one of `speed`, `angle`, `duration`",
+            r"line 38, column 26: unknown field `angel`, expected one of `speed`, `speed_uncertainty`, `angle`, `duration`",
         ),
         (
             "[site]",
@@ -300,8 +304,8 @@ fn mountings() {
         ),
         (
             r#"{ speed = "133.8 rpm" }]"#,
-            r#"{ speed = "-133.8 rpm" }]"#,
-            r#"[[mounting]] 1, plateaus 2 speed: found "-133.8 rpm", expected a speed from 0 to 1e6 rpm (the direction is given by `rotation` in [centrifuge])"#,
+            r#"{ speed = "-2e6 rpm" }]"#,
+            r#"[[mounting]] 1, plateaus 2 speed: found "-2e6 rpm", expected a speed from -1e6 to 1e6 rpm, positive in the direction of `rotation` in [centrifuge]"#,
         ),
         (
             r#"{ speed = "133.8 rpm" }]"#,
@@ -316,9 +320,40 @@ fn mountings() {
         (
             r#"{ speed = "133.8 rpm" }]"#,
             "{ speed = 1e9 }]",
-            r"[[mounting]] 1, plateaus 2 speed: found 1000000000.0, expected a speed from 0 to 1e6 rpm (the direction is given by `rotation` in [centrifuge])",
+            r"[[mounting]] 1, plateaus 2 speed: found 1000000000.0, expected a speed from -1e6 to 1e6 rpm, positive in the direction of `rotation` in [centrifuge]",
         ),
     ]);
+}
+
+#[test]
+fn measured_speeds() {
+    const CENTRIFUGE: &str = "rotation = \"+3\"";
+    let measured = |table: &str| format!("{CENTRIFUGE}\nmeasured = {{ {table} }}");
+    let cases = [
+        (
+            r#"from = "tachometer", uncertainty = "1 ppm""#,
+            r#"measured.from: found "tachometer", expected one of "telemetry", "pulses", "plateaus""#,
+        ),
+        (
+            r#"from = "telemetry", uncertainty = -1e-6"#,
+            "measured.uncertainty: found -1e-6, expected a relative standard uncertainty, zero or more and below 1",
+        ),
+        (
+            r#"from = "pulses", uncertainty = 1e-6, pulses_per_revolution = 0.5"#,
+            "measured.pulses_per_revolution: found 0.5, expected a whole number of pulses, 1 to 1e7",
+        ),
+    ];
+    for (table, expected) in cases {
+        let message = message(spoiled(CENTRIFUGE, &measured(table)));
+        assert_eq!(message, format!("experiment.toml, [centrifuge], {expected}"));
+    }
+    let scales =
+        "measured = { from = \"telemetry\", uncertainty = 1e-6, scale = 2e-6 }\n\n[uncertainty]\nspeed_scale = 3e-6";
+    assert_eq!(
+        message(spoiled(CENTRIFUGE, &format!("{CENTRIFUGE}\n{scales}"))),
+        "experiment.toml, [uncertainty], speed_scale: found 0.000003, expected 0.000002, the scale of measured speeds in \
+         [centrifuge], or nothing"
+    );
 }
 
 #[test]

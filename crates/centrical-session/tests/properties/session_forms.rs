@@ -5,7 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use centrical::{ErrorModel, Experiment, Group, Monomial, PairRelation, ReferencePoint};
-use centrical_session::{Column, ColumnName, PlateauMean, Scale, Session, write_plateaus};
+use centrical_session::{
+    Column, ColumnName, Measured, PlateauMean, Scale, Session, SpeedSource, Speeds, write_plateaus,
+};
 use nalgebra::{Matrix3, Vector3};
 
 const EXPERIMENT: &str = include_str!("../fuzz/seeds/experiment.toml");
@@ -44,6 +46,47 @@ fn what_is_written_is_read() {
     let spin = 133.8 * (TAU / 60.0);
     assert_eq!(set, [(0, 0.0, 0.0), (0, spin, 0.0), (1, spin, 0.0), (1, 0.0, 180.0 * (PI / 180.0))]);
     assert_eq!(session.columns.speed.scale, Scale::factor(TAU / 60.0));
+}
+
+#[test]
+fn measured_speeds_are_read() {
+    let stated = "rotation = \"+3\"\ntachometer_uncertainty = \"20 ppm\"\n\
+         measured = { from = \"pulses\", uncertainty = \"1 ppm\", scale = 2e-6, pulses_per_revolution = 360 }";
+    let session = with("rotation = \"+3\"", stated);
+    let expected = Speeds {
+        set_uncertainty: 1e-5,
+        tachometer_uncertainty: Some(20.0 * 1e-6),
+        measured: Some(Measured {
+            source: SpeedSource::Pulses,
+            uncertainty: 1e-6,
+            scale: Some(2e-6),
+            pulses_per_revolution: 360.0,
+        }),
+    };
+    assert_eq!(session.speeds, expected);
+    // What is predicted before any record is read.
+    assert_eq!((session.experiment.centrifuge.speed_uncertainty, session.type_b.speed_scale), (1e-6, 2e-6));
+    let plateau = "{ speed = \"-133.8 rpm\", speed_uncertainty = \"3 ppm\" }]";
+    let experiment = experiment("{ speed = \"133.8 rpm\" }]", plateau);
+    let set_point = experiment.set_points[1];
+    assert_eq!(set_point.omega, -133.8 * (TAU / 60.0));
+    assert_eq!(experiment.speed_uncertainty_of(&set_point), 3.0 * 1e-6);
+    assert_eq!(experiment.speed_uncertainty_of(&experiment.set_points[2]), 1e-5);
+}
+
+/// The rate of the records is not that of the telemetry, which has a time of its own unless it is given another.
+#[test]
+fn the_time_of_the_telemetry_is_its_own() {
+    let columns = |time: &str| with("speed_unit = \"rpm\"", &format!("speed_unit = \"rpm\"\n{time}")).columns;
+    let own = columns("");
+    assert_eq!(own.telemetry_time, own.time);
+    assert_eq!(columns("time = { column = \"time\", unit = \"ms\" }").telemetry_time.scale, Scale::factor(1e-3));
+    let counted = columns("time = { rate = \"1 kHz\" }");
+    assert_eq!(counted.telemetry_time, Column::si("t", "s"));
+    assert_eq!(counted.time.scale, Scale::factor(1e-3));
+    assert_eq!(columns("time = { column = \"n\", rate = \"1 kHz\" }").telemetry_time, Column::si("n", "s"));
+    let both = columns("time = { rate = \"1 kHz\" }\ntelemetry_time = { rate = \"20 Hz\" }");
+    assert_eq!(both.telemetry_time.scale, Scale::factor(1.0 / 20.0));
 }
 
 #[test]
@@ -136,6 +179,7 @@ fn plateaus_instead_of_records() {
     let plateau = |mounting, speed, angle| PlateauMean {
         mounting,
         speed,
+        speed_uncertainty: None,
         angle,
         mean,
         covariance: Matrix3::identity() * 1e-9,

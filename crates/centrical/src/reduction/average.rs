@@ -10,7 +10,7 @@ mod stuck;
 use nalgebra::Vector3;
 
 use super::error::ReductionError;
-use super::locate::{ClockOffset, Located, Window};
+use super::locate::{ClockAgreement, ClockOffset, Located, SpeedReading, Window};
 use super::plateau::LeftOut;
 use super::record::RecordSlice;
 use super::survey::Blocks;
@@ -45,6 +45,8 @@ pub struct ReducedMounting {
     pub(super) speeds: Vec<Option<f64>>,
     settling_time: Option<f64>,
     clock_offset: Option<ClockOffset>,
+    agreement: Option<ClockAgreement>,
+    readings: Vec<Option<SpeedReading>>,
 }
 
 /// Averages a plateau from the samples of its window, without the `repeated` ones that had the stamp of the one before; samples
@@ -143,8 +145,8 @@ impl<'a> Averaging<'a> {
 impl ReducedMounting {
     /// The mounting of located plateaus, averaged, in the order of the schedule.
     pub fn new(located: Located, plateaus: Vec<PlateauFit>) -> Self {
-        let Located { speeds, settling_time, clock_offset, .. } = located;
-        Self { plateaus, speeds, settling_time, clock_offset }
+        let Located { speeds, settling_time, clock_offset, agreement, readings, .. } = located;
+        Self { plateaus, speeds, settling_time, clock_offset, agreement, readings }
     }
 
     /// Time constant of the settling after a ramp [s]; `None` if the record shows no settling.
@@ -155,6 +157,16 @@ impl ReducedMounting {
     /// The centrifuge's clock against the unit's; `None` without telemetry, or if no ramp is in both.
     pub fn clock_offset(&self) -> Option<ClockOffset> {
         self.clock_offset
+    }
+
+    /// How the ramps of the telemetry, or of the counter of revolutions, agree with those of the record.
+    pub fn clock_agreement(&self) -> Option<ClockAgreement> {
+        self.agreement
+    }
+
+    /// The speed of each plateau as the telemetry or the counter shows it, in the order of the schedule.
+    pub fn speed_readings(&self) -> &[Option<SpeedReading>] {
+        &self.readings
     }
 }
 

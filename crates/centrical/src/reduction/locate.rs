@@ -8,14 +8,16 @@ mod hypothesis;
 mod path;
 mod rotation;
 mod shape;
+mod tachometer;
 mod window;
 
 use super::error::ReductionError;
 use super::plateau::ScheduledPlateau;
 use super::survey::{Blocks, Survey};
 use crate::statistics::whole;
-pub use clock::{ClockOffset, SpeedTrace};
+pub use clock::{ClockAgreement, ClockOffset, SpeedTrace};
 pub(super) use shape::Shape;
+pub use tachometer::{PulseTrain, SpeedReading};
 pub(super) use window::Window;
 
 /// Most samples of a part of a window.
@@ -32,6 +34,13 @@ pub struct Located {
     /// Speed on each plateau by the telemetry [rad/s].
     pub(super) speeds: Vec<Option<f64>>,
     pub(super) clock_offset: Option<ClockOffset>,
+    /// How the telemetry agrees with the record; `None` without telemetry.
+    pub(super) agreement: Option<ClockAgreement>,
+    /// Speed on each plateau with its scatter, by the telemetry or the counter of revolutions.
+    pub(super) readings: Vec<Option<SpeedReading>>,
+    /// Schedule and ramps of the record.
+    schedule: Vec<ScheduledPlateau>,
+    ramps: Vec<clock::Ramp>,
 }
 
 /// Finds the scheduled plateaus of a surveyed record; telemetry adds the offset of its clock and the measured speeds.
@@ -45,14 +54,61 @@ pub fn locate(
 ) -> Result<Located, ReductionError> {
     let blocks = survey.blocks()?;
     let cores = align::align(&blocks, schedule)?;
-    let clock_offset = telemetry.and_then(|telemetry| clock::offset(&blocks, schedule, &cores, telemetry));
+    let ramps = clock::Ramp::all(&blocks, schedule, &cores);
+    let (clock_offset, agreement) = match telemetry {
+        Some(telemetry) => {
+            let (offset, agreement) = clock::compare(&ramps, blocks.width, schedule, telemetry);
+            (offset, Some(agreement))
+        }
+        None => (None, None),
+    };
     let window::Windows { plateaus: windows, settling_time } = window::refine(&blocks, schedule, &cores)?;
     let speed = |window: &Window| clock::median_speed(telemetry?, clock_offset.as_ref()?, window.span);
     let speeds = windows.iter().map(speed).collect();
-    Ok(Located { blocks, windows, settling_time, speeds, clock_offset })
+    let readings = vec![None; schedule.len()];
+    let schedule = schedule.to_vec();
+    let mut located =
+        Located { blocks, windows, settling_time, speeds, clock_offset, agreement, readings, schedule, ramps };
+    if let (Some(telemetry), Some(offset), true) = (telemetry, clock_offset, located.is_of_the_record()) {
+        let (margin, step) = (located.margin(&telemetry.t), telemetry.step());
+        located.read(|window| telemetry.speed(&offset, window, margin, step));
+    }
+    Ok(located)
 }
 
 impl Located {
+    /// Takes the speeds of the plateaus from a counter of revolutions, in place of those of the telemetry; its clock is found
+    /// by the ramps.
+    pub fn time_pulses(&mut self, pulses: &PulseTrain) {
+        let (offset, agreement) = clock::compare(&self.ramps, self.blocks.width, &self.schedule, &pulses.trace());
+        self.agreement = Some(agreement);
+        self.readings.fill(None);
+        if let Some(offset) = offset.filter(|_| agreement.is_of_the_record()) {
+            self.clock_offset = Some(offset);
+            let margin = self.margin(&[]);
+            self.read(|window| pulses.speed(&offset, window, margin));
+        }
+    }
+
+    fn is_of_the_record(&self) -> bool {
+        self.agreement.is_some_and(|agreement| agreement.is_of_the_record())
+    }
+
+    /// The speeds of all plateaus that spin.
+    fn read(&mut self, speed: impl Fn(&Window) -> Option<SpeedReading>) {
+        let spinning = self.windows.iter().zip(&self.schedule);
+        self.readings = spinning.map(|(window, plateau)| speed(window).filter(|_| plateau.omega != 0.0)).collect();
+    }
+
+    /// What the offset of the clocks leaves uncertain at the ends of a window: a block, and the time between two reports [s].
+    fn margin(&self, times: &[f64]) -> f64 {
+        let interval = match times {
+            [first, .., last] => (last - first) / (times.len() - 1) as f64,
+            _ => 0.0,
+        };
+        self.blocks.width + interval
+    }
+
     /// The window of each plateau, from and to, the record's clock [s], in the order of the schedule.
     pub fn windows(&self) -> Vec<[f64; 2]> {
         self.windows.iter().map(|window| window.span).collect()

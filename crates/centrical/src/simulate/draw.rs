@@ -29,6 +29,10 @@ pub(super) enum Draw {
     Clock = 10,
     /// SensorNoise of the speed in the telemetry.
     Tachometer = 11,
+    /// Errors of the tachometer's or the counter's speed, one a plateau.
+    MeasuredSpeed = 12,
+    /// Times of the counter's pulses.
+    Counter = 13,
 }
 
 impl Draw {

@@ -13,6 +13,8 @@ pub struct Equipment {
     pub recorder: Recorder,
     /// The report of the speed.
     pub tachometer: Tachometer,
+    /// The counter of revolutions.
+    pub counter: Counter,
 }
 
 /// The centrifuge's operation and its errors.
@@ -92,7 +94,7 @@ pub struct Losses {
     pub length: f64,
 }
 
-/// The centrifuge's own report of its speed. It does not see the plateaus' speed errors.
+/// The centrifuge's own report of its speed. It does not see the plateaus' speed errors unless it measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tachometer {
     /// Reports per second [Hz].
@@ -105,6 +107,25 @@ pub struct Tachometer {
     pub noise: f64,
     /// Step of the report [rad/s]; 0 for all digits.
     pub quantum: f64,
+    /// Whether it measures the speed; otherwise it reports the speed that is set.
+    pub measures: bool,
+    /// Relative error of its scale.
+    pub scale_error: f64,
+    /// Standard deviation of its relative error on a plateau, one a plateau.
+    pub plateau_error: f64,
+}
+
+/// A counter of the pulses of an index mark or an encoder, on the telemetry's clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Counter {
+    /// Pulses in a revolution.
+    pub per_revolution: f64,
+    /// Standard deviation of the time of a pulse [s].
+    pub jitter: f64,
+    /// Relative error of its speeds: that of its time base.
+    pub scale_error: f64,
+    /// Standard deviation of its relative error on a plateau, one a plateau.
+    pub plateau_error: f64,
 }
 
 impl Default for Machine {
@@ -133,7 +154,22 @@ impl Default for Losses {
 
 impl Default for Tachometer {
     fn default() -> Self {
-        Self { rate: 20.0, clock_offset: 0.0, clock_drift: 0.0, noise: 0.0, quantum: 0.0 }
+        Self {
+            rate: 20.0,
+            clock_offset: 0.0,
+            clock_drift: 0.0,
+            noise: 0.0,
+            quantum: 0.0,
+            measures: false,
+            scale_error: 0.0,
+            plateau_error: 0.0,
+        }
+    }
+}
+
+impl Default for Counter {
+    fn default() -> Self {
+        Self { per_revolution: 1.0, jitter: 0.0, scale_error: 0.0, plateau_error: 0.0 }
     }
 }
 
@@ -182,7 +218,7 @@ impl Equipment {
     /// # Errors
     /// [`SimulationError::Setting`], the first that is not.
     pub fn check(&self) -> Result<(), SimulationError> {
-        let Self { machine, sensor, recorder, tachometer } = self;
+        let Self { machine, sensor, recorder, tachometer, counter } = self;
         above_zero("machine.plateau", machine.plateau)?;
         not_negative("machine.plateau_spread", machine.plateau_spread)?;
         above_zero("machine.ramp", machine.ramp)?;
@@ -208,7 +244,13 @@ impl Equipment {
         not_negative("tachometer.clock_offset", tachometer.clock_offset)?;
         ratio("tachometer.clock_drift", tachometer.clock_drift)?;
         not_negative("tachometer.noise", tachometer.noise)?;
-        not_negative("tachometer.quantum", tachometer.quantum)
+        not_negative("tachometer.quantum", tachometer.quantum)?;
+        error("tachometer.scale_error", tachometer.scale_error)?;
+        ratio("tachometer.plateau_error", tachometer.plateau_error)?;
+        above_zero("counter.per_revolution", counter.per_revolution)?;
+        not_negative("counter.jitter", counter.jitter)?;
+        error("counter.scale_error", counter.scale_error)?;
+        ratio("counter.plateau_error", counter.plateau_error)
     }
 }
 
@@ -222,6 +264,10 @@ fn not_negative(setting: &'static str, found: f64) -> Result<(), SimulationError
 
 fn ratio(setting: &'static str, found: f64) -> Result<(), SimulationError> {
     bounded(setting, found, |f| (0.0..1.0).contains(&f), "0 or more and below 1")
+}
+
+fn error(setting: &'static str, found: f64) -> Result<(), SimulationError> {
+    bounded(setting, found, |f| f.abs() < 0.5, "a relative error, of less than 0.5 either way")
 }
 
 fn bounded(

@@ -4,9 +4,11 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::draw::Draw;
 use super::equipment::Machine;
 use crate::model::{ArmMotion, SetPoint};
 use crate::random::Random;
+use crate::statistics::whole;
 
 /// The motion of the arm from the beginning of a record to its end.
 #[derive(Debug, Clone)]
@@ -81,6 +83,44 @@ impl Motion {
     /// The speed as the centrifuge believes it to be at time `t` [rad/s].
     pub fn believed_speed(&self, t: f64) -> f64 {
         self.segment(t).map_or(0.0, |segment| segment.at(t).speed / (1.0 + segment.speed_error))
+    }
+
+    /// The speed at time `t` [rad/s], and the number of its segment.
+    pub fn true_speed(&self, t: f64) -> (f64, usize) {
+        let segment = self.segments.partition_point(|segment| segment.start <= t).saturating_sub(1);
+        (self.segments.get(segment).map_or(0.0, |segment| segment.at(t).speed), segment)
+    }
+
+    /// The relative error of a measured speed in each segment: of the standard deviation `deviation` on plateaus, one a
+    /// plateau, and none between them.
+    pub fn measured_errors(&self, deviation: f64, seed: u64, mounting: usize) -> Vec<f64> {
+        let mut random = Draw::MeasuredSpeed.stream(seed, mounting);
+        let error = |segment: &Segment| match segment.law {
+            Law::Plateau { .. } => deviation * random.normal(),
+            Law::Ramp { .. } | Law::Turn { .. } => 0.0,
+        };
+        self.segments.iter().map(error).collect()
+    }
+
+    /// Times since the start of a segment at which the arm passes a multiple of `step` [rad], and its duration [s].
+    pub fn passages(&self, segment: usize, step: f64) -> (Vec<f64>, f64) {
+        let Some(segment) = self.segments.get(segment) else { return (Vec::new(), 0.0) };
+        let angle = |since: f64| segment.at(segment.start + since).angle;
+        let [from, to] = [angle(0.0), angle(segment.duration)];
+        let (low, high) = ((from.min(to) / step).ceil(), (from.max(to) / step).ceil());
+        let count = whole((high - low).max(0.0));
+        let rises = to > from;
+        // The angle of a segment goes one way: bisection, to the last place of the time.
+        let time = |k: usize| {
+            let sought = (low + k as f64) * step;
+            let (mut before, mut after) = (0.0, segment.duration);
+            for _ in 0..60 {
+                let middle = 0.5 * (before + after);
+                if (angle(middle) < sought) == rises { before = middle } else { after = middle }
+            }
+            0.5 * (before + after)
+        };
+        ((0..count).map(time).collect(), segment.duration)
     }
 
     /// Length of the record [s].

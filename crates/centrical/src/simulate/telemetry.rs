@@ -25,9 +25,16 @@ impl Telemetry {
         let clock_drift = tachometer.clock_drift * clock.normal();
         let mut telemetry = Self { clock_offset, clock_drift, ..Self::default() };
         let times = (0_u64..).map(|n| n as f64 / tachometer.rate).take_while(|t| *t <= motion.duration());
+        let errors = motion.measured_errors(tachometer.plateau_error, seed, mounting);
         for t in times {
             let noise = if tachometer.noise > 0.0 { tachometer.noise * random.normal() } else { 0.0 };
-            let omega = motion.believed_speed(t) + noise;
+            let speed = if tachometer.measures {
+                let (speed, segment) = motion.true_speed(t);
+                speed * (1.0 + errors.get(segment).copied().unwrap_or(0.0))
+            } else {
+                motion.believed_speed(t)
+            };
+            let omega = speed * (1.0 + tachometer.scale_error) + noise;
             let quantum = tachometer.quantum;
             telemetry.t.push(clock_offset + (1.0 + clock_drift) * t);
             telemetry.omega.push(if quantum > 0.0 { (omega / quantum).round() * quantum } else { omega });

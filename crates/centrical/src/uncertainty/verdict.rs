@@ -37,9 +37,9 @@ impl Level {
     }
 }
 
-/// What the checks of a calibration found; `P` names a plateau, `Q` a pattern, `R` a rival.
+/// What the checks of a calibration found; `P` names a plateau, `Q` a pattern, `R` a rival, `S` a contradiction of speeds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Findings<P, Q, R> {
+pub struct Findings<P, Q, R, S> {
     /// How the fit ended.
     pub termination: Termination,
     /// Linearisations made.
@@ -54,13 +54,15 @@ pub struct Findings<P, Q, R> {
     pub rivals: Vec<(R, f64)>,
     /// Patterns in the residuals, each with its family-wise probability.
     pub patterns: Vec<(Q, f64)>,
+    /// Speeds that contradict the schedule, each with its family-wise probability.
+    pub speeds: Vec<(S, f64)>,
     /// Names of the instrument's parameters that are not determined.
     pub not_determined: Vec<String>,
 }
 
 /// An objection to a result.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Objection<P, Q, R> {
+pub enum Objection<P, Q, R, S> {
     /// The fit did not converge.
     NotConverged {
         /// How it ended.
@@ -83,12 +85,14 @@ pub enum Objection<P, Q, R> {
     Outlying(Vec<P>, f64),
     /// Residuals follow something that the model does not have.
     Patterns(Vec<Q>),
+    /// The telemetry contradicts the schedule or the record.
+    Speeds(Vec<S>),
     /// Parameters of the instrument are not determined. Lost geometry alone is no objection.
     NotDetermined(Vec<String>),
 }
 
 /// The objections to a calibration; empty if it is acceptable.
-pub fn objections<P, Q, R>(findings: Findings<P, Q, R>) -> Vec<Objection<P, Q, R>> {
+pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P, Q, R, S>> {
     let Findings {
         termination,
         iterations,
@@ -97,6 +101,7 @@ pub fn objections<P, Q, R>(findings: Findings<P, Q, R>) -> Vec<Objection<P, Q, R
         outlying,
         rivals,
         patterns,
+        speeds,
         not_determined,
     } = findings;
     let is_beyond = |probability: f64| Level::Objection.is_passed_by(probability);
@@ -119,6 +124,10 @@ pub fn objections<P, Q, R>(findings: Findings<P, Q, R>) -> Vec<Objection<P, Q, R
     let patterns: Vec<Q> = patterns.into_iter().filter(|(_, p)| is_beyond(*p)).map(|(pattern, _)| pattern).collect();
     if !patterns.is_empty() {
         objections.push(Objection::Patterns(patterns));
+    }
+    let speeds: Vec<S> = speeds.into_iter().filter(|(_, p)| is_beyond(*p)).map(|(speed, _)| speed).collect();
+    if !speeds.is_empty() {
+        objections.push(Objection::Speeds(speeds));
     }
     if !not_determined.is_empty() {
         objections.push(Objection::NotDetermined(not_determined));

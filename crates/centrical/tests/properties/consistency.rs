@@ -4,7 +4,7 @@ use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
 use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
 use centrical::simulate::{
-    Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes, Tachometer, draw_truth,
+    Coloured, Counter, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes, Tachometer, draw_truth,
 };
 use centrical::{Fit, MeasurementModel, Observation, PairRelation, linear};
 use nalgebra::{DVector, Matrix3};
@@ -61,6 +61,7 @@ fn rough() -> Equipment {
             repeats: 1e-4,
         },
         tachometer: Tachometer::default(),
+        counter: Counter::default(),
     }
 }
 

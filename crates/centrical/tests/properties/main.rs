@@ -26,6 +26,7 @@ mod rivals;
 mod selection;
 mod simulate;
 mod simulated_noise;
+mod speeds;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod stated;
 mod stream;

@@ -198,7 +198,14 @@ fn plateaus_are_where_the_truth_says() {
 fn the_clocks_are_not_synchronised() {
     let model = tour(1.0);
     let x = vec![0.0; 49];
-    let tachometer = Tachometer { clock_offset: 2.0, clock_drift: 1e-4, quantum: 1e-2, noise: 0.1, rate: 20.0 };
+    let tachometer = Tachometer {
+        clock_offset: 2.0,
+        clock_drift: 1e-4,
+        quantum: 1e-2,
+        noise: 0.1,
+        rate: 20.0,
+        ..Tachometer::default()
+    };
     let equipment = Equipment { machine: rough_machine(), tachometer, ..Equipment::default() };
     let simulation = Simulation::new(&model, &x, &equipment, 10).unwrap();
     let telemetry = simulation.mounting(0).telemetry();

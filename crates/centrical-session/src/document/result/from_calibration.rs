@@ -10,6 +10,7 @@ use super::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
     ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, TermSummary,
 };
+use super::speeds::SpeedsSummary;
 use crate::document::steadiness::{DriftSummary, TiltSummary};
 use crate::experiment::Session;
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
@@ -46,7 +47,7 @@ impl CalibrationResult {
             observability: ObservabilitySummary::new(model, fit),
             fit: FitSummary::new(calibration),
             mountings: mountings(model, reduced),
-            plateaus: plateaus(calibration, reduced),
+            plateaus: plateaus(calibration, session, reduced),
             convergence: Some(ConvergenceSummary::new(calibration)),
             budget: Some(BudgetSummary::new(&budget, count)),
             validity,
@@ -54,6 +55,7 @@ impl CalibrationResult {
             stability: None,
             drift: DriftSummary::of(calibration, reduced)?,
             tilt: TiltSummary::of(calibration, reduced),
+            speeds: SpeedsSummary::of(calibration, session, reduced)?,
             records: reduced.records.clone(),
         })
     }
@@ -181,7 +183,7 @@ fn mountings(model: &MeasurementModel, reduced: &Reduced) -> Vec<MountingSummary
     experiment.mountings.iter().enumerate().map(summary).collect()
 }
 
-fn plateaus(calibration: &Calibration, reduced: &Reduced) -> Vec<PlateauSummary> {
+fn plateaus(calibration: &Calibration, session: &Session, reduced: &Reduced) -> Vec<PlateauSummary> {
     let (model, fit) = (calibration.data().model(), calibration.fit());
     let mut index = 0;
     let mut previous = None;
@@ -198,6 +200,9 @@ fn plateaus(calibration: &Calibration, reduced: &Reduced) -> Vec<PlateauSummary>
             mounting: set_point.mounting + 1,
             index,
             speed: set_point.omega,
+            speed_uncertainty: set_point.speed_uncertainty,
+            set_speed: (session.speeds.is_in_files() && !set_point.is_rest())
+                .then(|| session.experiment.set_points[n].omega),
             angle: set_point.is_rest().then_some(set_point.angle),
             window: plateau.window,
             samples: plateau.samples,

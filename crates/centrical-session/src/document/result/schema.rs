@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
 use super::rivals::RestsOn;
+use super::speeds::SpeedsSummary;
 use crate::document::json;
 use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
 use crate::error::{Error, Place};
@@ -70,6 +71,9 @@ pub struct CalibrationResult {
     /// The tilt of the axis seen while spinning, against the fitted one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tilt: Option<TiltSummary>,
+    /// How the speeds are known, where they are measured or contradicted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speeds: Option<SpeedsSummary>,
     /// What the records look like; empty for a session that came already averaged.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<RecordOverview>,
@@ -251,8 +255,14 @@ pub struct PlateauSummary {
     pub mounting: usize,
     /// Plateau of the mounting's schedule, counted from 0.
     pub index: usize,
-    /// Set point of the speed [rad/s], signed by the sense of rotation.
+    /// Speed [rad/s], signed by the sense of rotation: as it was set, or as it was measured where speeds are measured.
     pub speed: f64,
+    /// Relative standard uncertainty of a speed that was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_uncertainty: Option<f64>,
+    /// Speed that was set, where the telemetry or a counter measures the speed [rad/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub set_speed: Option<f64>,
     /// Carousel angle at rest [rad]; null while spinning.
     pub angle: Option<f64>,
     /// First and last instant used, the record's clock [s]; null for a plateau that came already averaged.

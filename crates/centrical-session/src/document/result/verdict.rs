@@ -5,9 +5,10 @@ use centrical::uncertainty::{Findings, Objection, objections};
 use super::budget_and_checks::PatternSummary;
 use super::rivals::RivalSummary;
 use super::schema::CalibrationResult;
+use super::speeds::SpeedFinding;
 
 /// An objection to a result: plateaus as `mounting:plateau`, counted from 1.
-pub type ResultObjection = Objection<String, PatternSummary, RivalSummary>;
+pub type ResultObjection = Objection<String, PatternSummary, RivalSummary, SpeedFinding>;
 
 impl CalibrationResult {
     /// The objections to the result; empty if it is acceptable.
@@ -16,6 +17,7 @@ impl CalibrationResult {
         let outlying = validity.clone().flat_map(|validity| &validity.outlying);
         let rivals = validity.clone().flat_map(|validity| &validity.rivals).filter(|rival| rival.explains_most);
         let patterns = validity.flat_map(|validity| &validity.patterns);
+        let speeds = self.speeds.iter().flat_map(|speeds| &speeds.findings);
         let terms = self.model.error_model.iter().map(|term| &term.name);
         let is_lost = |name: &&String| self.parameter(name).is_none_or(|p| !p.estimable);
         objections(Findings {
@@ -26,6 +28,7 @@ impl CalibrationResult {
             outlying: outlying.map(|p| (format!("{}:{}", p.mounting, p.index + 1), p.probability)).collect(),
             rivals: rivals.map(|rival| (rival.clone(), rival.probability)).collect(),
             patterns: patterns.map(|pattern| (pattern.clone(), pattern.probability)).collect(),
+            speeds: speeds.map(|finding| (finding.clone(), finding.probability())).collect(),
             not_determined: terms.filter(is_lost).cloned().collect(),
         })
     }

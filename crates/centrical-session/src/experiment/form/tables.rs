@@ -155,6 +155,7 @@ pub(crate) struct PresetTable {
 #[serde(deny_unknown_fields)]
 pub(crate) struct PresetCentrifugeTable {
     pub speed_uncertainty: Option<Quantity>,
+    pub measured: Option<MeasuredTable>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -200,6 +201,18 @@ pub(crate) struct CountsTable {
 pub(crate) struct CentrifugeTable {
     pub speed_uncertainty: Quantity,
     pub rotation: String,
+    pub tachometer_uncertainty: Option<Quantity>,
+    pub measured: Option<MeasuredTable>,
+}
+
+/// How the speeds of plateaus are measured.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MeasuredTable {
+    pub from: String,
+    pub uncertainty: Quantity,
+    pub scale: Option<Quantity>,
+    pub pulses_per_revolution: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -216,6 +229,8 @@ pub(crate) struct ModelTable {
 pub(crate) struct ColumnsTable {
     pub time: Option<ColumnEntry>,
     pub f: Option<[ColumnEntry; 3]>,
+    pub telemetry_time: Option<ColumnEntry>,
+    pub pulse: Option<ColumnEntry>,
     pub speed: Option<ColumnEntry>,
     pub speed_unit: Option<String>,
 }
@@ -238,6 +253,7 @@ pub(crate) struct MountingTable {
     pub arm: [Quantity; 3],
     pub record: Option<String>,
     pub telemetry: Option<String>,
+    pub pulses: Option<String>,
     #[serde(default)]
     pub plateaus: Vec<PlateauEntry>,
 }
@@ -246,6 +262,7 @@ pub(crate) struct MountingTable {
 #[serde(deny_unknown_fields)]
 pub(crate) struct PlateauEntry {
     pub speed: Quantity,
+    pub speed_uncertainty: Option<Quantity>,
     pub angle: Option<Quantity>,
     pub duration: Option<Quantity>,
 }

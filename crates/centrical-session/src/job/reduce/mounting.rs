@@ -1,10 +1,10 @@
 //! A mounting's record in two passes: where its plateaus are, then what they read.
 
 use centrical::linear;
-use centrical::reduction::{ReducedMounting, ReductionError, ScheduledPlateau, locate};
+use centrical::reduction::{PulseTrain, ReducedMounting, ReductionError, ScheduledPlateau, locate};
 
 use crate::error::Error;
-use crate::experiment::Session;
+use crate::experiment::{Session, SpeedSource};
 use crate::record::{RecordFile, RecordOverview, SampleCache};
 
 /// Reduces the record of a mounting, its samples kept in `cache` between the passes.
@@ -22,10 +22,19 @@ pub(super) fn reduce_mounting(
     };
     let survey = record.survey(cache)?;
     let telemetry = session.telemetry(number)?;
-    let located = locate(&survey, telemetry.as_ref(), &schedule(session, number)).map_err(refused)?;
+    let mut located = locate(&survey, telemetry.as_ref(), &schedule(session, number)).map_err(refused)?;
+    if let Some(pulses) = counted_pulses(session, number)? {
+        located.time_pulses(&pulses);
+    }
     let means = record.means(cache, &located)?.into_iter().collect::<Result<_, _>>().map_err(refused)?;
     let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
     Ok((ReducedMounting::new(located, means), overview))
+}
+
+/// The pulses of a mounting, where they measure the speed.
+fn counted_pulses(session: &Session, number: usize) -> Result<Option<PulseTrain>, Error> {
+    let is_counted = session.speeds.measured.is_some_and(|measured| measured.source == SpeedSource::Pulses);
+    if is_counted { session.pulses(number) } else { Ok(None) }
 }
 
 /// The plateaus of a mounting in their order.

@@ -7,6 +7,11 @@ pub(crate) fn record_path(mounting: usize, format: TableFormat) -> String {
     format!("records/m{:02}.{}", mounting + 1, format.extension())
 }
 
+/// Path of the pulses of a mounting within the session's folder.
+pub(crate) fn pulses_path(mounting: usize, format: TableFormat) -> String {
+    format!("pulses/m{:02}.{}", mounting + 1, format.extension())
+}
+
 /// Path of the telemetry of a mounting within the session's folder.
 pub(crate) fn telemetry_path(mounting: usize, format: TableFormat) -> String {
     format!("telemetry/m{:02}.{}", mounting + 1, format.extension())

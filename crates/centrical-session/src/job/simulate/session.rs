@@ -7,8 +7,8 @@ use centrical::simulate::{SimulatedMounting, Simulation};
 use centrical_table::{ColumnName, TableFormat, create_folder, write_table, write_whole};
 use rayon::prelude::*;
 
-use super::files::{record_path, telemetry_path};
-use super::session_text::with_files;
+use super::files::{pulses_path, record_path, telemetry_path};
+use super::session_text::{counts_pulses, with_files};
 use crate::document::{Written, truth_json};
 use crate::error::{Error, Place};
 use crate::experiment::{EXPERIMENT_FILE, Session};
@@ -52,6 +52,9 @@ pub fn simulate_session(
         .map_err(|source| Error::Simulation { file: truth.file.clone(), source })?;
     create_folder(&folder.join("records"))?;
     create_folder(&folder.join("telemetry"))?;
+    if counts_pulses(plan) {
+        create_folder(&folder.join("pulses"))?;
+    }
     let mountings = (0..plan.experiment.mountings.len()).into_par_iter().map(|m| {
         let written = write_mounting(plan, &columns, &simulation.mounting(m), format, folder, m);
         done(m);
@@ -86,10 +89,14 @@ fn write_mounting(
     write_table(&folder.join(record_path(m, format)), format, &headers.record, record)?;
 
     let telemetry = mounting.telemetry();
-    let sense = if plan.experiment.set_points.iter().any(|s| s.omega < 0.0) { -1.0 } else { 1.0 };
+    let sense = plan.experiment.centrifuge.rotation.sign();
     let speed = telemetry.omega.iter().map(|omega| sense * omega + 0.0).collect();
-    let rows = raw([telemetry.t, speed], [&plan.columns.time, &plan.columns.speed]);
+    let rows = raw([telemetry.t, speed], [&plan.columns.telemetry_time, &plan.columns.speed]);
     write_table(&folder.join(telemetry_path(m, format)), format, &headers.telemetry, std::iter::once(rows))?;
+    if counts_pulses(plan) {
+        let rows = raw([mounting.pulses()], [&plan.columns.pulse]);
+        write_table(&folder.join(pulses_path(m, format)), format, &headers.pulses, std::iter::once(rows))?;
+    }
     Ok(Written {
         plateaus: mounting.plateaus(),
         clock_offset: telemetry.clock_offset,
@@ -112,6 +119,7 @@ fn raw<const N: usize>(mut values: [Vec<f64>; N], columns: [&Column; N]) -> [Vec
 struct Headers<'a> {
     record: [&'a str; 4],
     telemetry: [&'a str; 2],
+    pulses: [&'a str; 1],
 }
 
 impl<'a> Headers<'a> {
@@ -126,6 +134,10 @@ impl<'a> Headers<'a> {
         };
         let time = name(&plan.columns.time)?;
         let [f1, f2, f3] = &plan.columns.f;
-        Ok(Self { record: [time, name(f1)?, name(f2)?, name(f3)?], telemetry: [time, name(&plan.columns.speed)?] })
+        Ok(Self {
+            record: [time, name(f1)?, name(f2)?, name(f3)?],
+            telemetry: [name(&plan.columns.telemetry_time)?, name(&plan.columns.speed)?],
+            pulses: [name(&plan.columns.pulse)?],
+        })
     }
 }

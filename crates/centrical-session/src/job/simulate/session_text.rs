@@ -3,11 +3,11 @@
 use std::fs;
 
 use centrical_table::TableFormat;
-use toml_edit::{DocumentMut, InlineTable, Item, Table, Value, value};
+use toml_edit::{DocumentMut, Item, TableLike, Value, value};
 
-use super::files::{record_path, telemetry_path};
+use super::files::{pulses_path, record_path, telemetry_path};
 use crate::error::{Error, Place};
-use crate::experiment::Session;
+use crate::experiment::{Session, SpeedSource};
 
 /// The text of the plan with `record` and `telemetry` of every mounting.
 pub(crate) fn with_files(plan: &Session, format: TableFormat) -> Result<String, Error> {
@@ -23,23 +23,29 @@ pub(crate) fn with_files(plan: &Session, format: TableFormat) -> Result<String, 
         message: error.message().to_owned(),
     };
     let mut document: DocumentMut = text.parse().map_err(form)?;
+    let has_pulses = counts_pulses(plan);
     match document.get_mut("mounting") {
-        Some(Item::ArrayOfTables(tables)) => (tables.iter_mut().enumerate()).for_each(|(m, t)| name(t, m, format)),
+        Some(Item::ArrayOfTables(tables)) => {
+            (tables.iter_mut().enumerate()).for_each(|(m, t)| name(t, m, format, has_pulses));
+        }
         Some(Item::Value(Value::Array(list))) => {
             let tables = list.iter_mut().filter_map(Value::as_inline_table_mut);
-            tables.enumerate().for_each(|(m, table)| name_inline(table, m, format));
+            tables.enumerate().for_each(|(m, table)| name(table, m, format, has_pulses));
         }
         _ => {}
     }
     Ok(document.to_string())
 }
 
-fn name(table: &mut Table, mounting: usize, format: TableFormat) {
-    table["record"] = value(record_path(mounting, format));
-    table["telemetry"] = value(telemetry_path(mounting, format));
+/// Whether the speeds are measured by a counter of pulses.
+pub(crate) fn counts_pulses(plan: &Session) -> bool {
+    plan.speeds.measured.is_some_and(|measured| measured.source == SpeedSource::Pulses)
 }
 
-fn name_inline(table: &mut InlineTable, mounting: usize, format: TableFormat) {
-    table.insert("record", record_path(mounting, format).into());
-    table.insert("telemetry", telemetry_path(mounting, format).into());
+fn name(table: &mut dyn TableLike, mounting: usize, format: TableFormat, has_pulses: bool) {
+    table.insert("record", value(record_path(mounting, format)));
+    table.insert("telemetry", value(telemetry_path(mounting, format)));
+    if has_pulses {
+        table.insert("pulses", value(pulses_path(mounting, format)));
+    }
 }

@@ -1,15 +1,19 @@
 //! Which plateaus of a session folder have arrived while it is being filled.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-use centrical::reduction::{NoiseModel, ReducedMounting, ReductionError, ScheduledPlateau, plateau_means, reduce};
+use centrical::reduction::{
+    MeasuredSpeed, NoiseModel, PulseTrain, Record, ReducedMounting, ReductionError, ScheduledPlateau, measured_speeds,
+    plateau_means, reduce, reduce_counted,
+};
 use centrical::{Observation, SetPoint, linear};
 
 use crate::error::Error;
-use crate::experiment::{PlateauMean, Session};
-use crate::record::read_growing_record;
+use crate::experiment::{PlateauMean, Session, SpeedSource};
+use crate::record::{read_growing_pulses, read_growing_record, read_growing_telemetry};
 
 /// A session folder that is looked into again and again.
 ///
@@ -21,6 +25,8 @@ pub struct Watch<'s> {
     quiet: Duration,
     /// Mountings of which every plateau has come.
     finished: Vec<ReducedMounting>,
+    /// Measured speeds of the plateaus that have come, by set point.
+    speeds: BTreeMap<usize, MeasuredSpeed>,
     /// Plateaus of the mounting after them that have come.
     come: usize,
     /// What the record of that mounting looked like the last time.
@@ -42,7 +48,7 @@ struct Look {
 impl<'s> Watch<'s> {
     /// Before the first look at the records of `session`.
     pub fn new(session: &'s Session, quiet: Duration) -> Self {
-        Self { session, quiet, finished: Vec::new(), come: 0, seen: None, note: None }
+        Self { session, quiet, finished: Vec::new(), speeds: BTreeMap::new(), come: 0, seen: None, note: None }
     }
 
     /// Whether all plateaus of the schedule have come.
@@ -53,6 +59,11 @@ impl<'s> Watch<'s> {
     /// What is waited for, if something is.
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()
+    }
+
+    /// The measured speed of a plateau that has come, where speeds are measured and the telemetry or the pulses had come too.
+    pub fn speed(&self, set_point: usize) -> Option<MeasuredSpeed> {
+        self.speeds.get(&set_point).copied()
     }
 
     /// Plateaus that have come since the last look, in the order of the schedule, each with the noise of its own and the
@@ -131,7 +142,7 @@ impl<'s> Watch<'s> {
         } else {
             read_growing_record(file, &self.session.columns)?
         };
-        let reduced = reduce(&record, None, &schedule).map_err(|source| self.refused(mounting, source))?;
+        let reduced = self.reduced(mounting, &record, &schedule).map_err(|source| self.refused(mounting, source))?;
         Ok((reduced, schedule.len()))
     }
 
@@ -141,7 +152,7 @@ impl<'s> Watch<'s> {
         let record = read_growing_record(file, &self.session.columns)?;
         let mut count = schedule.len();
         while count > 0 {
-            match reduce(&record, None, &schedule[..count]) {
+            match self.reduced(mounting, &record, &schedule[..count]) {
                 Ok(reduced) => return Ok(Some((reduced, count - 1))),
                 Err(
                     ReductionError::PlateauNotFound { index, .. }
@@ -155,11 +166,52 @@ impl<'s> Watch<'s> {
         Ok(None)
     }
 
+    /// Reduces a record with the speeds that are measured, as far as their file has come.
+    fn reduced(
+        &self,
+        mounting: usize,
+        record: &Record,
+        schedule: &[ScheduledPlateau],
+    ) -> Result<ReducedMounting, ReductionError> {
+        let (files, columns) = (&self.session.mountings[mounting], &self.session.columns);
+        let Some(measured) = self.session.speeds.measured else { return reduce(record, None, schedule) };
+        // What is not there yet, or not whole, is read when the session is calibrated at its end.
+        match measured.source {
+            SpeedSource::Telemetry => {
+                let telemetry = files.telemetry.as_ref().and_then(|file| read_growing_telemetry(file, columns).ok());
+                reduce(record, telemetry.as_ref(), schedule)
+            }
+            SpeedSource::Pulses => match files.pulses.as_ref().and_then(|file| read_growing_pulses(file, columns).ok())
+            {
+                Some(t) => {
+                    let per_revolution = measured.pulses_per_revolution;
+                    reduce_counted(record, &PulseTrain { t, per_revolution }, schedule)
+                }
+                None => reduce(record, None, schedule),
+            },
+            SpeedSource::Plateaus => reduce(record, None, schedule),
+        }
+    }
+
+    /// Notes the measured speeds of a mounting.
+    fn note_speeds(&mut self, mounting: usize, reduced: &ReducedMounting) {
+        if !self.session.speeds.is_in_files() {
+            return;
+        }
+        let set_points = self.session.experiment.set_points.iter().enumerate();
+        let (there, set): (Vec<usize>, Vec<f64>) =
+            set_points.filter(|(_, s)| s.mounting == mounting).map(|(n, s)| (n, s.omega)).unzip();
+        let readings = reduced.speed_readings();
+        let speeds = measured_speeds(&set[..readings.len().min(set.len())], readings);
+        self.speeds.extend(there.into_iter().zip(speeds).filter_map(|(n, speed)| Some((n, speed?))));
+    }
+
     /// Notes the plateaus among the first `complete` that have not come before.
     fn arrive(&mut self, mounting: usize, reduced: &ReducedMounting, complete: usize, arrivals: &mut Vec<Observation>) {
         if complete <= self.come {
             return;
         }
+        self.note_speeds(mounting, reduced);
         let so_far: Vec<ReducedMounting> = self.finished.iter().chain([reduced]).cloned().collect();
         let means = plateau_means(reduced, &NoiseModel::pool(&so_far));
         let set_points = self.session.experiment.set_points.iter().enumerate();

@@ -7,7 +7,10 @@ use std::time::Duration;
 
 use centrical::fit::{Follower, Progress};
 use centrical::plan::{Benefit, Criterion, ReadingRange, next_best};
+use centrical::reduction::MeasuredSpeed;
 use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linear};
+
+use nalgebra::Vector3;
 
 use super::arrivals::Watch;
 use crate::document::{
@@ -119,6 +122,8 @@ impl<'a> Following<'a> {
                 if stop.load(Ordering::Relaxed) {
                     return Ok(self.stopped());
                 }
+                let speed = watch.speed(observation.set_point);
+                let observation = self.at_set_speed(observation, speed);
                 if let Some(progress) = self.arrived(&observation)? {
                     report(WatchEvent::Plateau(progress));
                 }
@@ -134,6 +139,28 @@ impl<'a> Following<'a> {
                 return Ok(self.stopped());
             }
             thread::sleep(self.request.interval);
+        }
+    }
+
+    /// What a plateau would have read at the speed that was set, where speeds are measured: the set points of the model are
+    /// the scheduled ones, each as uncertain as a measured speed. What its speed is more uncertain goes into its covariance.
+    fn at_set_speed(&self, observation: Observation, speed: Option<MeasuredSpeed>) -> Observation {
+        let speeds = &self.session.speeds;
+        let experiment = self.model.experiment();
+        let set = experiment.set_points[observation.set_point];
+        let Some(measured) = speeds.measured.filter(|_| speeds.is_in_files() && !set.is_rest()) else {
+            return observation;
+        };
+        let point = self.follower.point();
+        let by_log_speed = self.model.linearise(&SetPoint { speed_uncertainty: Some(1.0), ..set }, point).setting_error;
+        let uncertainty = speed.map_or(speeds.set_uncertainty, |s| s.uncertainty.hypot(measured.uncertainty));
+        let at = |omega: f64| self.model.reading(&SetPoint { omega, ..set }, point);
+        let change = speed.map_or_else(Vector3::zeros, |s| at(s.speed.copysign(set.omega)) - at(set.omega));
+        let further = uncertainty.powi(2) - experiment.speed_uncertainty_of(&set).powi(2);
+        Observation {
+            mean: observation.mean - change,
+            covariance: observation.covariance + by_log_speed * by_log_speed.transpose() * further.max(0.0),
+            ..observation
         }
     }
 

@@ -26,21 +26,102 @@ pub struct ClockOffset {
     pub ramps: usize,
 }
 
+/// More passages than these are noise: a telemetry has a few for each ramp.
+const MOST_PASSAGES: usize = 1000;
+
+/// How the ramps of the telemetry agree with those of the record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClockAgreement {
+    /// Ramps of the record in the time that the telemetry covers.
+    pub ramps: usize,
+    /// Ramps of the record that the telemetry has at the same time, up to the offset of the clocks.
+    pub agreeing: usize,
+    /// Speed of the telemetry over that of the schedule at which they agree: 1 unless the unit is wrong.
+    pub scale: f64,
+    /// Seconds of the record in a second of the telemetry at which they agree: 1 unless a clock is wrong.
+    pub rate: f64,
+    /// First and last time of the telemetry, the record's clock [s].
+    pub span: [f64; 2],
+}
+
+impl ClockAgreement {
+    /// Whether the telemetry is of this record: two of three ramps at least are in both, by clocks of the same rate.
+    pub fn is_of_the_record(&self) -> bool {
+        self.agreeing > 0 && 3 * self.agreeing >= 2 * self.ramps && self.rate == 1.0
+    }
+}
+
+/// The offset of the clocks, and how far the ramps bear it out. Where fewer than half of the ramps agree, other units of
+/// the speed and other rates of the clock are tried, and taken if most ramps agree then. The offset is `None` if no ramp of
+/// the record is in the telemetry.
+pub(super) fn compare(
+    ramps: &[Ramp],
+    width: f64,
+    schedule: &[ScheduledPlateau],
+    telemetry: &SpeedTrace,
+) -> (Option<ClockOffset>, ClockAgreement) {
+    let as_it_stands = offset(ramps, width, telemetry, 1.0);
+    let agreeing = |offset: &Option<ClockOffset>| offset.map_or(0, |offset| offset.ramps);
+    let mut best = (as_it_stands, 1.0, 1.0, agreeing(&as_it_stands));
+    if 2 * best.3 < ramps.len() {
+        let scale = scale_of(schedule, telemetry);
+        let scaled = scale.and_then(|scale| offset(ramps, width, telemetry, scale));
+        if agreeing(&scaled) > best.3 {
+            best = (scaled, scale.unwrap_or(1.0), 1.0, agreeing(&scaled));
+        }
+    }
+    if 2 * best.3 < ramps.len() {
+        let stretched = rate_of(ramps, width, telemetry, best.1);
+        if let Some((rate, agreeing)) = stretched.filter(|(_, n)| *n > best.3 && 4 * n >= 3 * ramps.len() && *n >= 3) {
+            best = (None, best.1, rate, agreeing);
+        }
+    }
+    let (offset, scale, rate, agreeing) = best;
+    let shift = offset.map_or(0.0, |offset| offset.seconds);
+    let span = [telemetry.t.first(), telemetry.t.last()].map(|t| rate * t.copied().unwrap_or(f64::NAN) + shift);
+    let is_covered = |ramp: &&Ramp| rate != 1.0 || offset.is_none() || (span[0]..=span[1]).contains(&ramp.t);
+    let covered = ramps.iter().filter(is_covered).count();
+    (offset, ClockAgreement { ramps: covered, agreeing, scale, rate, span })
+}
+
+/// Fastest speed of the telemetry, a lone report left out, over that of the schedule.
+fn scale_of(schedule: &[ScheduledPlateau], telemetry: &SpeedTrace) -> Option<f64> {
+    let fastest = schedule.iter().map(|p| p.omega.abs()).fold(0.0, f64::max);
+    let neighbours =
+        telemetry.omega.windows(3).map(|three| median(&mut [three[0].abs(), three[1].abs(), three[2].abs()]));
+    let scale = neighbours.filter(|omega| omega.is_finite()).fold(0.0, f64::max) / fastest;
+    (scale.is_finite() && scale > 0.0).then_some(scale)
+}
+
+/// The rate by which most ramps agree, and their number: from the first ramp and every later one.
+fn rate_of(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Option<(f64, usize)> {
+    let passages: Vec<Vec<f64>> = ramps.iter().map(|ramp| ramp.passages(telemetry, scale)).collect();
+    let agree = |rate: f64, shift: f64| {
+        let is_there =
+            |(ramp, times): (&Ramp, &Vec<f64>)| times.iter().any(|t| (rate * t + shift - ramp.t).abs() < width);
+        ramps.iter().zip(&passages).filter(|pair| is_there(*pair)).count()
+    };
+    let (first, last) = (0, ramps.len().checked_sub(1)?);
+    if passages.iter().map(Vec::len).sum::<usize>() > MOST_PASSAGES {
+        return None;
+    }
+    let pairs = passages[first].iter().flat_map(|a| passages[last].iter().map(move |b| (*a, *b)));
+    let rates = pairs.filter(|(a, b)| b > a).map(|(a, b)| {
+        let rate = (ramps[last].t - ramps[first].t) / (b - a);
+        (rate, agree(rate, ramps[first].t - rate * a))
+    });
+    rates.max_by_key(|(_, agreeing)| *agreeing)
+}
+
 /// Estimates the offset: on every ramp the square of the speed, and with it the force, passes the middle between
 /// two plateaus at one instant. `None` if no ramp of the record is in the telemetry.
-pub(super) fn offset(
-    blocks: &Blocks,
-    schedule: &[ScheduledPlateau],
-    cores: &[Range<usize>],
-    telemetry: &SpeedTrace,
-) -> Option<ClockOffset> {
-    let ramps = (1..cores.len()).filter_map(|k| Ramp::find(blocks, schedule, cores, k));
-    let offsets: Vec<Vec<f64>> = ramps.map(|ramp| ramp.offsets(telemetry)).collect();
+fn offset(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Option<ClockOffset> {
+    let offsets: Vec<Vec<f64>> = ramps.iter().map(|ramp| ramp.offsets(telemetry, scale)).collect();
     // One passage may have several partners (the same speeds run twice): the right offset is the one most ramps have.
     let near = |guess: f64| -> Vec<f64> {
         let closest =
             |of_ramp: &Vec<f64>| of_ramp.iter().copied().min_by(|a, b| (a - guess).abs().total_cmp(&(b - guess).abs()));
-        offsets.iter().filter_map(closest).filter(|offset| (offset - guess).abs() < blocks.width).collect()
+        offsets.iter().filter_map(closest).filter(|offset| (offset - guess).abs() < width).collect()
     };
     let guesses = offsets.iter().flatten().copied();
     let best = guesses.max_by(|a, b| near(*a).len().cmp(&near(*b).len()).then(b.abs().total_cmp(&a.abs())))?;
@@ -63,7 +144,8 @@ pub(super) fn median_speed(telemetry: &SpeedTrace, offset: &ClockOffset, window:
 }
 
 /// A passage through the middle between two plateaus.
-struct Ramp {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ramp {
     /// Square of the speed in the middle [rad^2/s^2].
     square: f64,
     rising: bool,
@@ -72,6 +154,11 @@ struct Ramp {
 }
 
 impl Ramp {
+    /// The ramps of a record.
+    pub fn all(blocks: &Blocks, schedule: &[ScheduledPlateau], cores: &[Range<usize>]) -> Vec<Self> {
+        (1..cores.len()).filter_map(|k| Self::find(blocks, schedule, cores, k)).collect()
+    }
+
     /// The ramp before plateau `k`.
     fn find(blocks: &Blocks, schedule: &[ScheduledPlateau], cores: &[Range<usize>], k: usize) -> Option<Self> {
         let (before, after) = (schedule[k - 1].omega.powi(2), schedule[k].omega.powi(2));
@@ -85,10 +172,15 @@ impl Ramp {
         t.filter(|_| before != after).map(|t| Self { square: 0.5 * (before + after), rising: after > before, t })
     }
 
-    fn offsets(&self, telemetry: &SpeedTrace) -> Vec<f64> {
-        let over = |omega: &f64| omega * omega - self.square;
+    fn offsets(&self, telemetry: &SpeedTrace, scale: f64) -> Vec<f64> {
+        self.passages(telemetry, scale).into_iter().map(|t| self.t - t).collect()
+    }
+
+    /// Times at which the telemetry passes the middle, by its own clock [s].
+    fn passages(&self, telemetry: &SpeedTrace, scale: f64) -> Vec<f64> {
+        let over = |omega: &f64| omega * omega - scale * scale * self.square;
         let trace = telemetry.t.iter().zip(&telemetry.omega).map(|(t, omega)| (*t, over(omega)));
-        passages(trace, self.rising).map(|t| self.t - t).collect()
+        passages(trace, self.rising).collect()
     }
 }
 
