@@ -20,7 +20,7 @@ pub(super) fn reduce_mounting(
         mounting: number + 1,
         source: Box::new(source),
     };
-    let survey = record.survey(cache)?;
+    let survey = record.survey(cache)?.with_resolution(session.type_b.resolution);
     let telemetry = session.telemetry(number)?;
     let located = locate(&survey, telemetry.as_ref(), &schedule(session, number)).map_err(refused)?;
     let means = record.means(cache, &located)?.into_iter().collect::<Result<_, _>>().map_err(refused)?;
