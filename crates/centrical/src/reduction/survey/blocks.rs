@@ -44,9 +44,13 @@ impl Blocks {
                 .fold(0.0, f64::max)
         };
         let step = gathered.iter().fold(Vector3::repeat(f64::INFINITY), |step, block| step.inf(&block.step));
-        // Constant readings show no digit.
+        // Constant readings show no digit: it is the stated one, if one is stated.
         let digit = |axis: usize| {
-            if step[axis].is_finite() { step[axis] } else { (largest(axis) * 1e-12).max(f64::MIN_POSITIVE) }
+            if step[axis].is_finite() {
+                step[axis]
+            } else {
+                (largest(axis) * 1e-12).max(f64::MIN_POSITIVE).max(resolution)
+            }
         };
         let filled = || gathered.iter().filter_map(|block| Some((block.number, block.level?)));
         // By the samples of a block: a clock that stands still at first, or stutters, misleads the first estimate.
@@ -68,7 +72,7 @@ impl Blocks {
         }
         for axis in 0..3 {
             let noise = filled().map(|(_, (_, noise))| noise[axis]).filter(|noise| noise.is_finite());
-            let quietest = noise.clone().filter(|noise| *noise > 0.0).fold(f64::INFINITY, f64::min);
+            let quietest = noise.clone().filter(|noise| *noise > 0.0).reduce(f64::min).unwrap_or(0.0);
             let noise = median(&mut noise.collect::<Vec<f64>>());
             // A step that two blocks have may be that of one spike, at their edge.
             let has_step = |block: &&Block| block.step[axis] < step[axis] * (1.0 + 1e-6);
