@@ -24,3 +24,4 @@ pub use self::plateaus::{PlateauMean, PlateauTable, read_plateaus, write_plateau
 pub(crate) use self::session::{EXPERIMENT_FILE, read_text};
 pub use self::session::{MountingFiles, Session};
 pub(crate) use self::toml_path::TomlPath;
+pub use self::unit::OutputUnit;
