@@ -17,7 +17,7 @@ mod unit;
 
 pub use self::candidates::Planning;
 pub(crate) use self::form::parse as parse_form;
-pub use self::plan::{ExpectedValues, Plan, earlier_result};
+pub use self::plan::{ExpectedValues, Plan};
 pub use self::plateau_name::PlateauName;
 pub(crate) use self::plateaus::write_plateaus_parquet;
 pub use self::plateaus::{PlateauMean, PlateauTable, read_plateaus, write_plateaus};

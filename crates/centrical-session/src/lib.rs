@@ -48,7 +48,7 @@ pub use document::{
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{
     ExpectedValues, MountingFiles, OutputUnit, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
-    earlier_result, read_plateaus, write_plateaus,
+    read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following,
