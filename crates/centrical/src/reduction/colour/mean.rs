@@ -12,7 +12,9 @@ use crate::reduction::plateau::PlateauMean;
 
 /// The mean of a plateau.
 pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) -> PlateauMean {
-    let rounding = plateau.digit.zip_map(&noise.quietest(), bias_variance);
+    let [cosine, sine] = plateau.once_per_revolution;
+    let amplitude = cosine.zip_map(&sine, f64::hypot);
+    let rounding = plateau.digit.zip_zip_map(&noise.quietest(), &amplitude, bias_variance);
     // What the time constant of the settling is off by is common to the mounting: it is no drift of each of its plateaus.
     let (weights, drift) = plateau.cells.slope(plateau.settling_rate().as_deref());
     let (correction, of_correction) = step.effect(plateau);
