@@ -14,7 +14,7 @@ pub(crate) use self::combination::combination;
 pub(crate) use self::conformity::conformity;
 pub(crate) use self::criterion::criterion_unit;
 pub(crate) use self::equation::{equation, equations, monomial};
-pub(crate) use self::expanded::{COVERAGE_FACTOR, Expanded, expanded};
+pub(crate) use self::expanded::{Expanded, expanded, expanded_of_normal};
 pub(crate) use self::group::by_group;
 pub(crate) use self::noise::Shown;
 pub(crate) use self::not_used::not_used;

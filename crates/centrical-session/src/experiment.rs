@@ -18,7 +18,7 @@ mod unit;
 
 pub use self::candidates::Planning;
 pub(crate) use self::form::parse as parse_form;
-pub use self::plan::{ExpectedValues, Plan, earlier_result};
+pub use self::plan::{ExpectedValues, Plan};
 pub use self::plateau_name::PlateauName;
 pub(crate) use self::plateaus::write_plateaus_parquet;
 pub use self::plateaus::{PlateauMean, PlateauTable, read_plateaus, write_plateaus};
@@ -26,3 +26,4 @@ pub(crate) use self::session::{EXPERIMENT_FILE, read_text};
 pub use self::session::{MountingFiles, Session};
 pub use self::speeds::{Measured, SpeedSource, Speeds};
 pub(crate) use self::toml_path::TomlPath;
+pub use self::unit::OutputUnit;

@@ -48,8 +48,8 @@ pub use document::{
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, Measured, MountingFiles, Plan, Planning, PlateauMean, PlateauName, PlateauTable, Session,
-    SpeedSource, Speeds, earlier_result, read_plateaus, write_plateaus,
+    ExpectedValues, Measured, MountingFiles, OutputUnit, Plan, Planning, PlateauMean, PlateauName, PlateauTable,
+    Session, SpeedSource, Speeds, read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following,

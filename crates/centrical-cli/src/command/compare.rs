@@ -19,11 +19,11 @@ pub struct Arguments {
     years: Option<f64>,
 }
 
-/// Runs the command. Exit code 1 when the two do not agree.
+/// Runs the command. Exit code 1 when the two do not agree, or are not of one unit.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let (first, second) = (CalibrationResult::read(&arguments.first)?, CalibrationResult::read(&arguments.second)?);
     let compared = compare_results(&first, &second);
-    let text = comparison_table(&first, &compared.comparison, arguments.years);
+    let text = comparison_table(&first, &compared, arguments.years);
     print(&text);
     Ok(Outcome::acceptable(compared.agree))
 }

@@ -220,3 +220,29 @@ fn compare_tells_whether_two_calibrations_agree() {
     let line = told.lines().find(|line| line.contains("df_1")).unwrap();
     assert!(line.ends_with("DISAGREE") && line.contains("7.07"), "{line}");
 }
+
+/// Two units do not agree, whatever their numbers; error models that differ are named, and only common terms are compared.
+#[test]
+fn compare_names_other_units_and_models() {
+    let copy = Copy::new();
+    text(&copy.calibrate(&[]));
+    let compared = |change: &dyn Fn(&mut Value)| {
+        let mut other = result(&copy);
+        change(&mut other);
+        fs::write(copy.out().join("other.json"), other.to_string()).unwrap();
+        let run = copy.run(&["compare", "result.json", "other.json"]);
+        (run.status.code(), String::from_utf8(run.stdout).unwrap())
+    };
+    let (code, said) = compared(&|other| other["session"]["unit_serial"] = "0002".into());
+    assert_eq!(code, Some(1), "{said}");
+    assert!(
+        said.contains("DIFFERENT UNITS  the first result is of TA-200, serial 0001, the second of TA-200, serial 0002")
+    );
+    let (code, said) = compared(&|other| other["model"]["error_model"][0]["powers"] = serde_json::json!([0, 2, 0]));
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("only the first has df_1") && said.contains("only the second has df_1"), "{said}");
+    assert!(said.contains("all 20 together") && !said.contains("\n  df_1"), "{said}");
+    let (code, said) = compared(&|other| other["model"]["error_model"] = serde_json::json!([]));
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("NOTHING TO COMPARE"), "{said}");
+}

@@ -7,7 +7,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::administrative::{identification, software};
 use super::xml::Xml;
-use crate::evaluation::{COVERAGE_FACTOR, Expanded, ReadingError, equation, expanded, reading_errors};
+use crate::evaluation::{Expanded, ReadingError, equation, expanded, expanded_of_normal, reading_errors};
 use crate::language::Language;
 
 /// Probability that the expanded uncertainties cover.
@@ -128,10 +128,7 @@ fn real(xml: &mut Xml, value: f64, unit: &str, expanded: Option<Expanded>) {
                     xml.leaf("si:valueExpandedMU", &number(expanded.uncertainty));
                     xml.leaf("si:coverageFactor", &expanded.factor.to_string());
                     xml.leaf("si:coverageProbability", &COVERAGE_PROBABILITY.to_string());
-                    xml.leaf(
-                        "si:distribution",
-                        if expanded.factor == COVERAGE_FACTOR { "normal" } else { "t-distribution" },
-                    );
+                    xml.leaf("si:distribution", if expanded.is_normal() { "normal" } else { "t-distribution" });
                 });
             });
         }
@@ -240,7 +237,7 @@ fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                     column(messages.specific_force, |e| e.force);
                     column(messages.before, |e| e.before);
                     column(messages.after, |e| e.after);
-                    column(messages.compensation_uncertainty, |e| COVERAGE_FACTOR * e.prediction);
+                    column(messages.compensation_uncertainty, |e| e.prediction.map(expanded_of_normal));
                 });
             }
         });

@@ -4,7 +4,7 @@ use centrical_session::{CalibrationResult, MICRO_G};
 use nalgebra::Vector3;
 
 use super::content::{Align, Table};
-use crate::evaluation::{COVERAGE_FACTOR, ReadingError, reading_errors};
+use crate::evaluation::{ReadingError, expanded_of_normal, reading_errors};
 use crate::language::Language;
 
 /// Before, after, after less the speed's error, and the expanded uncertainty of compensation: for each axis root mean
@@ -21,7 +21,7 @@ pub(super) fn error_table(result: &CalibrationResult, language: Language) -> Opt
         (messages.before, size(errors, |e| e.before).map(shown)),
         (messages.after, size(errors, |e| e.after).map(shown)),
         (messages.after_speed_free, size(errors, |e| e.speed_free).map(shown)),
-        (messages.compensation_uncertainty, size(errors, |e| COVERAGE_FACTOR * e.prediction).map(shown)),
+        (messages.compensation_uncertainty, size(errors, |e| e.prediction.map(expanded_of_normal)).map(shown)),
     ];
     let rows = rows.map(|(name, cells)| std::iter::once(name.to_owned()).chain(cells).collect());
     let [axis_1, axis_2, axis_3] = [1, 2, 3].map(|axis| format!("{} {axis}", messages.axis));

@@ -4,7 +4,7 @@ use centrical::uncertainty::{Degrees, coverage_factor};
 use centrical_session::{CalibrationResult, ParameterEstimate};
 
 /// Coverage factor where the degrees of freedom are infinite.
-pub(crate) const COVERAGE_FACTOR: f64 = 2.0;
+const COVERAGE_FACTOR: f64 = 2.0;
 
 /// Probability that it covers in a normal distribution.
 const COVERAGE_PROBABILITY: f64 = 0.954_499_736_103_642;
@@ -17,6 +17,18 @@ pub(crate) struct Expanded {
     pub factor: f64,
     /// `U = k u` [unit of the parameter].
     pub uncertainty: f64,
+}
+
+impl Expanded {
+    /// Whether the coverage factor is that of the normal distribution.
+    pub fn is_normal(&self) -> bool {
+        self.factor == COVERAGE_FACTOR
+    }
+}
+
+/// `U = 2 u` of a quantity of infinite degrees of freedom.
+pub(crate) fn expanded_of_normal(standard_uncertainty: f64) -> f64 {
+    COVERAGE_FACTOR * standard_uncertainty
 }
 
 /// Expanded uncertainty of a parameter of the result; `None` if it is not determined.

@@ -5,7 +5,7 @@ use centrical_session::{CalibrationResult, MICRO_G, PlateauSummary};
 use nalgebra::{Matrix3, Vector3};
 
 use super::drawing::{Figure, drawn, of_plot};
-use crate::evaluation::{COVERAGE_FACTOR, ReadingError, combination, reading_errors};
+use crate::evaluation::{ReadingError, combination, expanded_of_normal, reading_errors};
 use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
 
@@ -34,7 +34,7 @@ fn after(errors: &[ReadingError], language: Language) -> Figure {
     let messages = language.messages();
     let drawings = panels(errors, messages.error_after_axis, language, |error, axis, load| {
         let value = error.speed_free[axis] / MICRO_G;
-        let bar = COVERAGE_FACTOR * error.uncertainty[axis] / MICRO_G;
+        let bar = expanded_of_normal(error.uncertainty[axis]) / MICRO_G;
         Point::new(load / STANDARD_GRAVITY, value).with_interval(value - bar, value + bar)
     });
     Figure::new("after", messages.after, messages.after_caption, drawings)
@@ -67,7 +67,7 @@ fn residuals(plateaus: &[PlateauSummary], language: Language) -> Figure {
     let numbered: Vec<(usize, &PlateauSummary)> = (1..).zip(plateaus).collect();
     let point = |(n, plateau): &(usize, &PlateauSummary), axis: usize| {
         let value = plateau.residual[axis] / MICRO_G;
-        let bar = COVERAGE_FACTOR * plateau.fit_covariance[axis][axis].sqrt() / MICRO_G;
+        let bar = expanded_of_normal(plateau.fit_covariance[axis][axis].sqrt()) / MICRO_G;
         Point::new(*n as f64, value).with_interval(value - bar, value + bar)
     };
     let axes = (Axis::linear(messages.plateau_axis), Axis::linear(messages.residual_axis));

@@ -6,7 +6,7 @@ use centrical::plan::{Candidates, Costs, Criterion, Goal, Noise, PlanError, Read
 use centrical::{Experiment, MeasurementModel, STANDARD_GRAVITY, SetPoint};
 
 use super::form::{self, CandidatesTable, Form, MountingTable, Steps};
-use super::plan::{ExpectedValues, expected_of, noise};
+use super::plan::{EarlierResult, ExpectedValues, expected_of, expected_values, noise};
 use super::prior;
 use super::schedule::{FASTEST, duration};
 use super::session::{Session, named_extensions, read_text};
@@ -36,11 +36,11 @@ pub struct Planning {
 }
 
 impl Planning {
-    /// Reads what is to be planned, for a unit of the `expected` values.
+    /// Reads what is to be planned, for a unit of the values that `earlier` reads in the result that the file names.
     ///
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, or has no `[candidates]`.
-    pub fn read(path: &Path, expected: &ExpectedValues) -> Result<Self, Error> {
+    pub fn read(path: &Path, earlier: EarlierResult) -> Result<Self, Error> {
         let mut form: Form = form::parse(path, &read_text(path)?)?;
         let at = TomlPath::table(path, "candidates");
         let Some(table) = form.candidates.take() else {
@@ -53,7 +53,8 @@ impl Planning {
         form.mounting = mountings(&at, &table, &form)?;
         let mut session = Session::without_plateaus(path, &form)?;
         session.experiment.set_points = set_points(&at, &table, &session.experiment)?;
-        let scenarios = scenarios(path, &form, &session, expected)?;
+        let expected = expected_values(path, form.plan.as_ref(), earlier)?;
+        let scenarios = scenarios(path, &form, &session, &expected)?;
         let candidates = Candidates {
             scenarios,
             robustness: robustness(path, &form)?,

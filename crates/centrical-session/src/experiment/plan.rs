@@ -58,7 +58,6 @@ struct Probe {
 #[derive(Deserialize)]
 struct ProbeTable {
     preset: Option<toml::Value>,
-    nominal: Option<toml::Value>,
 }
 
 #[derive(Deserialize)]
@@ -67,12 +66,13 @@ struct ProbeMounting {
 }
 
 impl Plan {
-    /// Reads a plan; `None` if the file is a session with records or plateaus of its own, or a folder.
+    /// Reads a plan, with what `earlier` reads in the result that it names; `None` if the file is a session with records or
+    /// plateaus of its own, or a folder.
     ///
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, as for [`Session::read`]. Unlike a session
     /// a plan may rest all the time.
-    pub fn read(path: &Path, expected: &ExpectedValues) -> Result<Option<Self>, Error> {
+    pub fn read(path: &Path, earlier: EarlierResult) -> Result<Option<Self>, Error> {
         if path.is_dir() {
             return Ok(None);
         }
@@ -85,7 +85,9 @@ impl Plan {
         if is_measured && probe.plan.is_none() {
             return Ok(None);
         }
-        Self::of_form(path, &form::parse(path, &text)?, expected).map(Some)
+        let form: Form = form::parse(path, &text)?;
+        let expected = expected_values(path, form.plan.as_ref(), earlier)?;
+        Self::of_form(path, &form, &expected).map(Some)
     }
 
     fn of_form(file: &Path, form: &Form, expected: &ExpectedValues) -> Result<Self, Error> {
@@ -141,15 +143,17 @@ impl Plan {
 /// Values expected of unknowns, SI, by the names of the parameters: those of an earlier result.
 pub type ExpectedValues = BTreeMap<String, f64>;
 
-/// The earlier result that `[plan] nominal` of a file names, by its path from the folder of the file.
-///
-/// # Errors
-/// If the file cannot be read or is not TOML.
-pub fn earlier_result(path: &Path) -> Result<Option<PathBuf>, Error> {
-    let probe: Probe = form::parse(path, &read_text(path)?)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let named = probe.plan.and_then(|plan| plan.nominal);
-    Ok(named.and_then(|name| name.as_str().map(|name| folder.join(name))))
+/// Reads the values of an earlier result.
+pub(crate) type EarlierResult<'a> = &'a dyn Fn(&Path) -> Result<ExpectedValues, Error>;
+
+/// The values of the earlier result that `[plan] nominal` names by its path from the folder of the file; none if it names none.
+pub(crate) fn expected_values(
+    file: &Path,
+    table: Option<&PlanTable>,
+    earlier: EarlierResult,
+) -> Result<ExpectedValues, Error> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    table.and_then(|table| table.nominal.as_ref()).map_or(Ok(ExpectedValues::new()), |name| earlier(&folder.join(name)))
 }
 
 /// The unknowns of `model` as expected, zero where nothing is expected.

@@ -14,6 +14,7 @@ use super::plateaus::PlateauTable;
 use super::prior::{self, PriorEntry};
 use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
+use super::unit::OutputUnit;
 use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
 use crate::error::{Error, Place, quoted};
 use crate::quantity::Dimension;
@@ -40,8 +41,8 @@ pub struct Session {
     pub unit_model: String,
     /// Serial number of the unit.
     pub unit_serial: String,
-    /// Unit of the raw output, as written: "m/s^2", "g", "counts".
-    pub output_unit: String,
+    /// What the unit puts out.
+    pub output_unit: OutputUnit,
     /// The experiment. Its set points are those of the plateau table where the session brings one.
     pub experiment: Experiment,
     /// The error model of the unit.
@@ -151,7 +152,7 @@ impl Session {
             text: form.session.text.clone(),
             unit_model: form.unit.model.clone(),
             unit_serial: form.unit.serial.clone(),
-            output_unit: form.unit.output_unit.clone(),
+            output_unit: OutputUnit::named(&form.unit.output_unit),
             type_b: uncertainty::type_b(file, &form.uncertainty, &experiment, &error_model, &speeds)?,
             speeds,
             experiment,

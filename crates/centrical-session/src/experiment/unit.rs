@@ -43,16 +43,33 @@ pub(crate) fn geometry(file: &Path, table: &UnitTable) -> Result<Unit, Error> {
     }
 }
 
+/// What the unit puts out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OutputUnit {
+    /// Whole counts.
+    Counts,
+    /// A unit of acceleration.
+    Acceleration,
+}
+
+impl OutputUnit {
+    /// The kind of the unit that a session names.
+    pub(crate) fn named(name: &str) -> Self {
+        if name == "counts" { Self::Counts } else { Self::Acceleration }
+    }
+}
+
 /// What takes the raw output of each newtonometer to m/s^2.
 pub(crate) fn output(file: &Path, table: &UnitTable) -> Result<[Scale; 3], Error> {
     let at = TomlPath::table(file, "unit");
-    match (table.output_unit.as_str(), &table.counts) {
-        ("counts", Some(counts)) => from_counts(file, counts),
-        ("counts", None) => {
+    match (OutputUnit::named(&table.output_unit), &table.counts) {
+        (OutputUnit::Counts, Some(counts)) => from_counts(file, counts),
+        (OutputUnit::Counts, None) => {
             let expected = "counts = { scale = [...], bias = [...] }: counts per m/s^2 and counts at none";
             Err(at.unexpected("counts", "no such key", expected))
         }
-        (unit, counts) => {
+        (OutputUnit::Acceleration, counts) => {
+            let unit = table.output_unit.as_str();
             let factor = Dimension::Acceleration.factor(unit).ok_or_else(|| {
                 let expected = format!("\"counts\" or one of {}", Dimension::Acceleration.unit_list());
                 at.unexpected("output_unit", quoted(unit.as_bytes()), expected)

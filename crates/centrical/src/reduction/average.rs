@@ -121,6 +121,8 @@ impl<'a> Averaging<'a> {
         let (good, terms, zero) = (fitted.good(), coefficients.len(), Vector3::zeros());
         let squares: Vector3<f64> = fitted.sums(&coefficients).map(|(_, sums)| sums.squares).sum();
         let width = (window[1] - window[0]) / CELLS as f64;
+        // Of two neighbouring readings the variance is that of rounding alone, whatever the noise is.
+        let spread = fitted.ranges().zip_map(&blocks.digit, |range, digit| if range < 1.5 * digit { 0.0 } else { 1.0 });
         Ok(PlateauFit {
             window: *window,
             samples: good,
@@ -131,7 +133,7 @@ impl<'a> Averaging<'a> {
             settling: shape.settling.map_or(zero, |_| coefficients[terms - 2]),
             shape: *shape,
             digit: blocks.digit,
-            variance: squares / good as f64,
+            variance: spread.component_mul(&squares) / good as f64,
             cells: Cells::gather(fitted.sums(&coefficients), &triangle, terms, width, blocks.interval),
         })
     }
@@ -172,7 +174,7 @@ impl ReducedMounting {
 
 /// Refuses good readings that pile up at the end of their range: the part cut off is missing in the mean.
 fn check_range(samples: &Samples, strips: &Strips, index: usize) -> Result<(), ReductionError> {
-    let is_noisy = |axis: &usize| samples.white[*axis] > samples.digit[*axis];
+    let is_noisy = |axis: &usize| samples.white[*axis] > samples.digit[*axis] && samples.repeat_rate[*axis] < 1.0;
     let looked_at = (0..3).filter(is_noisy).filter(|axis| may_be_piled_up(strips.most_at_an_end(*axis)));
     for axis in looked_at {
         if let Some((value, piled_up)) = piled_up(strips.good_readings(axis)) {

@@ -20,6 +20,8 @@ pub struct Survey {
     /// Samples of the block that the next stretch may continue, and its number.
     open: Record,
     number: usize,
+    /// Stated resolution of the readings [m/s^2]; 0 if it is not stated.
+    resolution: f64,
 }
 
 /// A condensed stretch: its first and last block may be incomplete, and keep their samples.
@@ -48,7 +50,7 @@ impl Survey {
     /// Begins with the first times of a record; those after the first [`Survey::BEGINNING`] are ignored.
     pub fn new(times: &[f64]) -> Self {
         let grid = Grid::new(&times[..times.len().min(Self::BEGINNING)]);
-        Self { grid, blocks: Vec::new(), open: Record::default(), number: 0 }
+        Self { grid, blocks: Vec::new(), open: Record::default(), number: 0, resolution: 0.0 }
     }
 
     /// The survey of a record in memory.
@@ -61,6 +63,13 @@ impl Survey {
         survey.append(survey.condense(record.as_slice()));
         survey.finish();
         Ok(survey)
+    }
+
+    /// The same with the smallest step of the readings stated [m/s^2]. Readings that stand still by no more than their
+    /// rounding are not taken for stuck.
+    #[must_use]
+    pub fn with_resolution(self, resolution: f64) -> Self {
+        Self { resolution, ..self }
     }
 
     /// Condenses a stretch: nearly all the work, independent of other stretches.
@@ -124,7 +133,7 @@ impl Survey {
 
     /// The blocks of all stretches together.
     pub(super) fn blocks(&self) -> Result<Blocks, ReductionError> {
-        Blocks::new(&self.grid, &self.blocks)
+        Blocks::new(&self.grid, &self.blocks, self.resolution)
     }
 }
 

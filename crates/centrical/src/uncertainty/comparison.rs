@@ -6,6 +6,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::coverage::chi_squared_tail;
+use super::verdict::Level;
 
 /// The estimates of one calibration that are determined.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,8 +40,28 @@ pub struct Difference {
     /// Standard uncertainty of the difference [its unit].
     pub standard_uncertainty: f64,
     /// `E_n = d / sqrt(U_A^2 + U_B^2)` with expanded uncertainties, `k = 2` (ISO/IEC 17043): beyond 1 in size the two
-    /// disagree.
+    /// disagree. Of parameters that have not changed one in twenty is beyond 1.
     pub e_n: f64,
+    /// Probability that any of the compared parameters differs by so many of its uncertainties if nothing has changed
+    /// (Bonferroni).
+    pub probability: f64,
+}
+
+impl Difference {
+    /// Whether this parameter alone shows that the two calibrations disagree.
+    pub fn is_real(&self) -> bool {
+        self.probability < 0.5 * Level::Disagreement.probability()
+    }
+}
+
+impl Comparison {
+    /// Whether the two agree: neither the joint test nor any parameter alone speaks against it. Each of the two has half of the
+    /// level, so that 1 % of unchanged pairs at most are said to disagree. Without a parameter in common they do not agree.
+    pub fn agrees(&self) -> bool {
+        let agree_jointly =
+            self.probability.is_some_and(|probability| probability > 0.5 * Level::Disagreement.probability());
+        !self.differences.is_empty() && agree_jointly && !self.differences.iter().any(Difference::is_real)
+    }
 }
 
 /// Coverage factor of the expanded uncertainties in `E_n` (ISO 13528, 9.7).
@@ -61,7 +82,10 @@ pub fn compare(a: &Estimates, b: &Estimates) -> Comparison {
         .map(|(n, &(i, k))| {
             let (difference, standard_uncertainty) = (b.values[k] - a.values[i], covariance[(n, n)].sqrt());
             let e_n = difference / (COVERAGE_FACTOR * standard_uncertainty);
-            Difference { name: a.names[i].clone(), difference, standard_uncertainty, e_n }
+            let square = (difference / standard_uncertainty).powi(2);
+            let alone = if difference == 0.0 { 1.0 } else { chi_squared_tail(square, 1) };
+            let probability = (shared.len() as f64 * alone).min(1.0);
+            Difference { name: a.names[i].clone(), difference, standard_uncertainty, e_n, probability }
         })
         .collect();
     let chi_squared = weighted_square(differences.iter().map(|d| d.difference), &covariance);

@@ -184,6 +184,33 @@ fn drift_of_a_steady_plateau_is_within_its_uncertainty() {
     assert!((mean - 1.0).abs() < 0.35, "{mean}");
 }
 
+/// What the time constant of the settling is off by tilts all plateaus of a mounting: it is no drift. Of 10 sessions of 216
+/// slopes the mean square is 1 +- 0.03, and the pooled density of the noise is known to about 0.03; four times both. Slopes
+/// that share the error of the time constant have 1.5 in short plateaus and 10 with little noise.
+#[test]
+fn the_tail_of_the_settling_is_no_drift() {
+    let settling = |amplitude, time, length: f64, white| Stream {
+        settling: (amplitude, time),
+        lengths: vec![length; 6],
+        white,
+        ..Stream::default()
+    };
+    for (name, stream) in [
+        ("short plateaus", settling(1e-3, 0.4, 5.0, 2e-3)),
+        ("slow settling", settling(1e-3, 1.0, 5.0, 2e-3)),
+        ("little noise", settling(1e-3, 0.4, 10.0, 2e-4)),
+        ("strong settling", settling(1e-2, 0.4, 8.0, 2e-3)),
+    ] {
+        let square = |mean: &PlateauMean| mean.drift.component_div(&mean.drift_uncertainty).norm_squared() / 3.0;
+        let of_session =
+            |seed| -> Vec<f64> { means(&session(&stream, seed)).iter().map(|(_, _, m)| square(m)).collect() };
+        let squares: Vec<f64> = (110..120).flat_map(of_session).collect();
+        let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+        println!("{name}: {mean:.3}");
+        assert!((mean - 1.0).abs() < 0.17, "{name}: {mean}");
+    }
+}
+
 /// The once-per-revolution term has the amplitude it was given, on each axis.
 #[test]
 fn tilt_is_seen_while_spinning() {
@@ -440,6 +467,37 @@ fn a_plateau_read_by_a_stuck_sensor_is_refused() {
     }
     let error = reduce(&record, None, &run.schedule()).expect_err("one axis says nothing");
     assert!(matches!(error, ReductionError::Stuck { index: 2, axis: 1, value: -0.7, .. }), "{error}");
+}
+
+/// Steps of five times the noise hold a reading still for as long as its level stays: that is no stuck newtonometer. The
+/// squared error over the stated covariance is 1 on average over levels anywhere between two steps, 1/6 to 3 of one session.
+#[test]
+fn coarse_steps_are_not_stuck() {
+    for (white, lsb) in [(2e-3, 1e-2), (1e-4, 1e-3), (2e-4, 1e-2)] {
+        let stream = Stream { white, lsb, ..Stream::default() };
+        let session = session(&stream, 130);
+        let means = means(&session);
+        assert!(means.iter().all(|(_, _, mean)| mean.left_out.stuck == 0), "{white}, {lsb}");
+        let sum: f64 = means.iter().map(|(stream, k, mean)| chi_squared(stream, *k, mean)).sum();
+        let ratio = sum / (3 * means.len()) as f64;
+        println!("{white}, {lsb}: {ratio:.3}");
+        assert!(ratio < 1.5, "{white}, {lsb}: {ratio}");
+    }
+}
+
+/// A reading that never changes is stuck, unless the stated resolution explains it.
+#[test]
+fn a_constant_reading_needs_a_stated_resolution() {
+    let run = Stream { white: 2e-4, ..Stream::default() };
+    let mut record = run.record();
+    record.f_z[2].fill(9.84);
+    let reduced = |resolution: f64| -> Result<(), ReductionError> {
+        let survey = Survey::of(&record)?.with_resolution(resolution);
+        let located = locate(&survey, None, &run.schedule())?;
+        average(&located, 0, record.as_slice(), 0).map(|_| ())
+    };
+    assert!(matches!(reduced(0.0), Err(ReductionError::Stuck { index: 0, axis: 2, .. })), "{:?}", reduced(0.0));
+    assert_eq!(reduced(1e-2), Ok(()));
 }
 
 /// Sampled once a revolution, the once-per-revolution term is a constant.

@@ -4,14 +4,14 @@ use std::path::Path;
 
 use crate::document::CalibrationResult;
 use crate::error::Error;
-use crate::experiment::{ExpectedValues, Plan, Planning, earlier_result};
+use crate::experiment::{ExpectedValues, Plan, Planning};
 
 /// Reads a plan and the earlier result that it names; `None` for a session, as [`Plan::read`].
 ///
 /// # Errors
 /// As [`Plan::read`] and [`CalibrationResult::read`].
 pub fn read_plan(path: &Path) -> Result<Option<Plan>, Error> {
-    if path.is_dir() { Ok(None) } else { Plan::read(path, &expected(path)?) }
+    Plan::read(path, &values)
 }
 
 /// Reads what is to be planned and the earlier result that it names.
@@ -19,11 +19,11 @@ pub fn read_plan(path: &Path) -> Result<Option<Plan>, Error> {
 /// # Errors
 /// As [`Planning::read`] and [`CalibrationResult::read`].
 pub fn read_planning(path: &Path) -> Result<Planning, Error> {
-    Planning::read(path, &expected(path)?)
+    Planning::read(path, &values)
 }
 
-fn expected(path: &Path) -> Result<ExpectedValues, Error> {
-    let Some(file) = earlier_result(path)? else { return Ok(ExpectedValues::new()) };
-    let parameters = CalibrationResult::read(&file)?.parameters.into_iter();
+/// The values of an earlier result that are determined.
+fn values(result: &Path) -> Result<ExpectedValues, Error> {
+    let parameters = CalibrationResult::read(result)?.parameters.into_iter();
     Ok(parameters.filter_map(|p| p.value.map(|value| (p.name, value))).collect())
 }

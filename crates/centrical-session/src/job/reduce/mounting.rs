@@ -20,7 +20,7 @@ pub(super) fn reduce_mounting(
         mounting: number + 1,
         source: Box::new(source),
     };
-    let survey = record.survey(cache)?;
+    let survey = record.survey(cache)?.with_resolution(session.type_b.resolution);
     let telemetry = session.telemetry(number)?;
     let mut located = locate(&survey, telemetry.as_ref(), &schedule(session, number)).map_err(refused)?;
     if let Some(pulses) = counted_pulses(session, number)? {

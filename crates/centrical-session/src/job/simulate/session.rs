@@ -11,7 +11,7 @@ use super::files::{pulses_path, record_path, telemetry_path};
 use super::session_text::{counts_pulses, with_files};
 use crate::document::{Written, truth_json};
 use crate::error::{Error, Place};
-use crate::experiment::{EXPERIMENT_FILE, Session};
+use crate::experiment::{EXPERIMENT_FILE, OutputUnit, Session};
 use crate::record::Column;
 use crate::truth::Truth;
 
@@ -77,11 +77,10 @@ fn write_mounting(
 ) -> Result<Written, Error> {
     let [f1, f2, f3] = &plan.columns.f;
     let columns = [&plan.columns.time, f1, f2, f3];
-    let counts = plan.output_unit == "counts";
     let record = mounting.records().map(|stretch| {
         let [f1, f2, f3] = stretch.f_z;
         let mut rows = raw([stretch.t, f1, f2, f3], columns);
-        if counts {
+        if plan.output_unit == OutputUnit::Counts {
             rows[1..].iter_mut().flatten().for_each(|value| *value = value.round());
         }
         rows

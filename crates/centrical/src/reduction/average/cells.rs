@@ -80,10 +80,12 @@ impl Cells {
         function.iter().zip(other).map(|(f, o)| f - share * o).collect()
     }
 
-    /// The slope of the readings [m/s^3], with the weights that give it.
-    pub fn slope(&self) -> (Weights, Vector3<f64>) {
+    /// The slope of the readings [m/s^3], with the weights that give it. It does not depend on what follows `other`, a slow
+    /// function of time, one value a cell.
+    pub fn slope(&self, other: Option<&[f64]>) -> (Weights, Vector3<f64>) {
         let middle = 0.5 * CELLS as f64;
         let time: Vec<f64> = (0..CELLS).map(|cell| (cell as f64 + 0.5 - middle) * self.width).collect();
+        let time = other.map_or_else(|| time.clone(), |other| self.free_of(&time, other));
         let (weights, product) = self.contrast(&time);
         let by_cell = weights.by_cell.iter().map(|w| w / weights.squares).collect();
         (Weights { by_cell, squares: 1.0 / weights.squares }, product / weights.squares)

@@ -19,7 +19,7 @@ pub struct PlateauFit {
     pub(in crate::reduction) shape: Shape,
     /// Last digit of the readings [m/s^2].
     pub(in crate::reduction) digit: Vector3<f64>,
-    /// Variance of a sample about the fit [m^2/s^4].
+    /// Variance of a sample about the fit [m^2/s^4]; zero where the readings show rounding alone.
     pub(in crate::reduction) variance: Vector3<f64>,
     /// Settling at the start of the window [m/s^2].
     pub(in crate::reduction) settling: Vector3<f64>,

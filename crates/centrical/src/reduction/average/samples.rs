@@ -123,8 +123,9 @@ impl<'a> Samples<'a> {
     /// the spread.
     pub fn limits(&self, coefficients: &[Vector3<f64>]) -> Vector3<f64> {
         let cut = cut(self.len());
-        // Rounding moves a reading by a digit at most, and may leave no spread.
-        Vector3::from_fn(|axis, _| cut * MAD * self.shown.median_residual(coefficients, axis) + self.digit[axis])
+        // Rounding moves a reading by a digit at most. It leaves no spread if half of the noise is within half a digit.
+        let median = |axis: usize| self.shown.median_residual(coefficients, axis).max(0.5 * self.digit[axis]);
+        Vector3::from_fn(|axis, _| cut * MAD * median(axis) + self.digit[axis])
     }
 
     /// The rejected samples by kind: `rejected` of the recorded ones, among them the stuck and the unreadable. Samples

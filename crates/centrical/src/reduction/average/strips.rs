@@ -188,6 +188,13 @@ impl Fitted {
         self.each.iter().map(|strip| strip.bad.len()).sum()
     }
 
+    /// Range of the good readings on each axis [m/s^2].
+    pub fn ranges(&self) -> Vector3<f64> {
+        let low = |axis: usize| self.each.iter().map(|strip| strip.low[axis]).fold(f64::INFINITY, f64::min);
+        let high = |axis: usize| self.each.iter().map(|strip| strip.high[axis]).fold(f64::NEG_INFINITY, f64::max);
+        Vector3::from_fn(|axis, _| high(axis) - low(axis))
+    }
+
     /// The triangle of all strips, and the coefficients.
     pub fn solve(&self) -> Option<(Triangle, Vec<Vector3<f64>>)> {
         let triangles: Vec<&Triangle> = self.each.iter().map(|strip| &strip.triangle).collect();

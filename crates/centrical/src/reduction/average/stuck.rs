@@ -21,15 +21,18 @@ pub(super) fn stuck_on_any_axis(f_z: [&[f64]; 3], longest: &[f64; 3]) -> Option<
 }
 
 /// The longest run of equal readings that chance makes: `n` readings of that repeat rate have a longer one in fewer than
-/// one case in a million.
+/// one case in a million. Readings that rounding may hold still have runs of any length.
 pub(super) fn longest_run(n: usize, repeat_rate: f64) -> f64 {
     const CHANCE: f64 = 1e-6;
-    1.0 + (CHANCE / n as f64).ln() / repeat_rate.ln()
+    if repeat_rate < 1.0 { 1.0 + (CHANCE / n as f64).ln() / repeat_rate.ln() } else { f64::INFINITY }
 }
 
 /// Whether a run longer than that has a reading in a range. A run of `m` equal pairs of neighbours covers an `m`-th
 /// place: few pairs have to be compared.
 pub(super) fn may_be_longer(f: &[f64], range: &Range<usize>, longest: f64) -> bool {
+    if longest >= f.len() as f64 {
+        return false;
+    }
     let m = whole(longest).max(1);
     let is_equal = |i: usize| f[i] == f[i + 1];
     let run_about = |i: usize| {
@@ -60,6 +63,11 @@ mod tests {
         f[700] = f[699];
         let found = stuck(&f, 1.0 / 1000.0).unwrap();
         assert!((0..1000).all(|i| found[i] == (500..520).contains(&i)));
+    }
+
+    #[test]
+    fn what_rounding_may_hold_still_is_not_stuck() {
+        assert!(stuck(&[3.0; 1000], 1.0).is_none());
     }
 
     #[test]

@@ -2,19 +2,23 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 use super::noise_model::NoiseModel;
 use super::rounding::bias_variance;
 use super::settling::TimeStep;
-use crate::reduction::average::PlateauFit;
+use crate::reduction::average::{PlateauFit, Weights};
 use crate::reduction::plateau::PlateauMean;
 
-/// The mean of a plateau; `quietest` is the least variance of a sample on any plateau of the mounting.
-pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep, quietest: &Vector3<f64>) -> PlateauMean {
-    let rounding = plateau.digit.zip_map(quietest, bias_variance);
-    let (weights, drift) = plateau.cells.slope();
+/// The mean of a plateau.
+pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) -> PlateauMean {
+    let [cosine, sine] = plateau.once_per_revolution;
+    let amplitude = cosine.zip_map(&sine, f64::hypot);
+    let rounding = plateau.digit.zip_zip_map(&noise.quietest(), &amplitude, bias_variance);
+    // What the time constant of the settling is off by is common to the mounting: it is no drift of each of its plateaus.
+    let (weights, drift) = plateau.cells.slope(plateau.settling_rate().as_deref());
     let (correction, of_correction) = step.effect(plateau);
+    let of_slope = noise.covariance(&weights, &plateau.cells).diagonal();
     let of_noise = noise.covariance(&plateau.cells.mean_weights(), &plateau.cells);
     PlateauMean {
         window: plateau.window,
@@ -27,9 +31,14 @@ pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep, qu
         once_per_revolution_covariance: covariance_of_harmonic(plateau, noise),
         drift,
         measured_speed: None,
-        drift_uncertainty: noise.covariance(&weights, &plateau.cells).diagonal().map(f64::sqrt),
+        drift_uncertainty: (of_slope + rounding * largest_gain(&weights).powi(2)).map(f64::sqrt),
         settling: plateau.settling,
     }
+}
+
+/// What a functional makes of a unit error at most, whose sign may change with time as that of rounding does.
+fn largest_gain(weights: &Weights) -> f64 {
+    weights.by_cell.iter().map(|weight| weight.abs()).sum()
 }
 
 /// Covariance of either quadrature of the once-per-revolution term: `2 S(Omega / 2 pi) / T`, with the two-sided

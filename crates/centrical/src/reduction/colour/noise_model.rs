@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, SQRT_2, TAU};
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
@@ -26,6 +26,8 @@ const STEPS: (usize, usize) = (100, 400);
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseModel {
     components: Vec<Component>,
+    /// Least variance of a sample on any plateau [m^2/s^4].
+    quietest: Vector3<f64>,
 }
 
 /// One component of the noise.
@@ -43,11 +45,12 @@ impl NoiseModel {
     /// Components are added one by one, the likeliest first, as long as Schwarz's criterion accepts them.
     pub fn pool<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> Self {
         let plateaus: Vec<&PlateauFit> = mountings.into_iter().flat_map(|mounting| &mounting.plateaus).collect();
+        let quietest = plateaus.iter().map(|plateau| plateau.variance).reduce(|a, b| a.inf(&b)).unwrap_or_default();
         let times = correlation_times(&plateaus);
         let groups = grouped_contrasts(&plateaus, &times);
         let contrasts: f64 = groups.iter().map(|group| group.count).sum();
         if contrasts == 0.0 {
-            return Self { components: Vec::new() };
+            return Self { components: Vec::new(), quietest };
         }
         // A density has six entries.
         let penalty = 0.5 * 6.0 * contrasts.ln();
@@ -65,7 +68,13 @@ impl NoiseModel {
             correlation_time: time.checked_sub(1).map(|time| times[time]),
             density: *density,
         };
-        Self { components: fit.parts.iter().map(part).collect() }
+        Self { components: fit.parts.iter().map(part).collect(), quietest }
+    }
+
+    /// Variance of a sample on the quietest plateau [m^2/s^4]. Where the noise is below a digit, rounding shows its own spread
+    /// and not that of the noise: the quietest plateau is nearest to the latter.
+    pub(super) fn quietest(&self) -> Vector3<f64> {
+        self.quietest
     }
 
     /// Two-sided spectral density at the frequency `f` [Hz]: `L_0 + sum_k L_k / (1 + (2 pi f tau_k)^2)` [m^2/s^4/Hz].

@@ -80,7 +80,7 @@ impl WithSimd for OneAxis<'_> {
         let rounding = (low.abs().max(high.abs()) * 1e-12).max(f64::MIN_POSITIVE);
         let Walk { sum, step, fresh, repeated, squares } = Walk::along(f, low, rounding);
         // Half-filled blocks lie beside a gap: too few samples for a median that a spike cannot move.
-        let level = if f.len() > SAMPLES / 2 { level(f, sum, [low, high], cut) } else { None };
+        let level = if f.len() > SAMPLES / 2 { level(f, sum, [low, high], step, cut) } else { None };
         // White noise by its second differences, whose variance is six-fold.
         let noise = (squares / (6 * f.len().saturating_sub(2)) as f64).sqrt();
         Axis {
@@ -153,9 +153,9 @@ impl Walk {
 }
 
 /// Mean of the values without spikes. A mean, since the median of part of a revolution is not a linear function of
-/// its phase. The sum of the values above the lowest is given. `None` if the values are too few.
+/// its phase. The sum of the values above the lowest and their smallest step are given. `None` if the values are too few.
 #[inline(always)]
-fn level(f: &[f64], above_low: f64, [low, high]: [f64; 2], cut: f64) -> Option<f64> {
+fn level(f: &[f64], above_low: f64, [low, high]: [f64; 2], step: f64, cut: f64) -> Option<f64> {
     let count = f.len() as f64;
     let mean = low + above_low / count;
     if mean.is_finite() && (high - low).is_finite() {
@@ -167,13 +167,14 @@ fn level(f: &[f64], above_low: f64, [low, high]: [f64; 2], cut: f64) -> Option<f
         }
     }
     let mut values: Vec<f64> = f.iter().copied().filter(|value| value.is_finite()).collect();
-    (values.len() > SAMPLES / 2).then(|| level_without_spikes(&mut values))
+    (values.len() > SAMPLES / 2).then(|| level_without_spikes(&mut values, step))
 }
 
-fn level_without_spikes(values: &mut [f64]) -> f64 {
+fn level_without_spikes(values: &mut [f64], step: f64) -> f64 {
     let middle = median(values);
     let mut sizes: Vec<f64> = values.iter().map(|value| (value - middle).abs()).collect();
-    let limit = cut(values.len()) * MAD * median(&mut sizes);
+    // Rounding leaves no spread if half of the noise is within half a step.
+    let limit = cut(values.len()) * MAD * median(&mut sizes).max(0.5 * step);
     let good = values.iter().filter(|value| (*value - middle).abs() <= limit);
     let (count, sum) = good.fold((0.0, 0.0), |(count, sum), value| (count + 1.0, sum + (value - middle)));
     middle + sum / count
@@ -190,11 +191,21 @@ mod tests {
     #[test]
     fn the_short_way_to_a_level_is_the_long_way() {
         let mut f = noisy(100);
-        let level = |f: &[f64]| level(f, sum(f, |value| value - range(f)[0]), range(f), cut(f.len())).unwrap();
-        assert!((level(&f) - level_without_spikes(&mut f.clone())).abs() < 1e-14);
+        let step = 1e-6;
+        let level = |f: &[f64]| level(f, sum(f, |value| value - range(f)[0]), range(f), step, cut(f.len())).unwrap();
+        assert!((level(&f) - level_without_spikes(&mut f.clone(), step)).abs() < 1e-14);
         f[3] += 1.0;
-        assert_eq!(level(&f), level_without_spikes(&mut f.clone()));
+        assert_eq!(level(&f), level_without_spikes(&mut f.clone(), step));
         assert!((level(&f) - 9.81).abs() < 2e-4);
+    }
+
+    /// One reading in ten is rounded up: the level is a tenth of a step higher, and none of them is a spike.
+    #[test]
+    fn a_rounded_reading_is_no_spike() {
+        let mut f: Vec<f64> = (0..100).map(|i| f64::from(u8::from(i % 10 == 0))).collect();
+        assert!((level_without_spikes(&mut f.clone(), 1.0) - 0.1).abs() < 1e-14);
+        f[7] = 1000.0;
+        assert!((level_without_spikes(&mut f, 1.0) - 10.0 / 99.0).abs() < 1e-14);
     }
 
     #[test]

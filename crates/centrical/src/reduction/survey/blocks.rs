@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use nalgebra::Vector3;
+use statrs::function::erf::erf;
 
 use super::block::Block;
 use super::grid::{Grid, SAMPLES};
@@ -22,15 +23,15 @@ pub(in crate::reduction) struct Blocks {
     pub f_z: Vec<Vector3<f64>>,
     /// Last digit of the readings [m/s^2].
     pub digit: Vector3<f64>,
-    /// Share of readings that repeat the one before by chance.
+    /// Share of readings that repeat the one before by chance; 1 where rounding may hide the noise.
     pub repeat_rate: [f64; 3],
     /// Standard deviation of a single sample from one to the next, independent of ramps and colour [m/s^2].
     pub sample_noise: Vector3<f64>,
 }
 
 impl Blocks {
-    /// The blocks of a record, gathered.
-    pub(super) fn new(grid: &Grid, gathered: &[Block]) -> Result<Self, ReductionError> {
+    /// The blocks of a record, gathered. Readings have steps of `resolution` at least [m/s^2].
+    pub(super) fn new(grid: &Grid, gathered: &[Block], resolution: f64) -> Result<Self, ReductionError> {
         let total = |of: fn(&Block) -> [u64; 3]| {
             gathered.iter().map(of).fold([0; 3], |sum, next| [0, 1, 2].map(|axis| sum[axis] + next[axis]))
         };
@@ -43,9 +44,13 @@ impl Blocks {
                 .fold(0.0, f64::max)
         };
         let step = gathered.iter().fold(Vector3::repeat(f64::INFINITY), |step, block| step.inf(&block.step));
-        // Constant readings show no digit.
+        // Constant readings show no digit: it is the stated one, if one is stated.
         let digit = |axis: usize| {
-            if step[axis].is_finite() { step[axis] } else { (largest(axis) * 1e-12).max(f64::MIN_POSITIVE) }
+            if step[axis].is_finite() {
+                step[axis]
+            } else {
+                (largest(axis) * 1e-12).max(f64::MIN_POSITIVE).max(resolution)
+            }
         };
         let filled = || gathered.iter().filter_map(|block| Some((block.number, block.level?)));
         // By the samples of a block: a clock that stands still at first, or stutters, misleads the first estimate.
@@ -67,7 +72,14 @@ impl Blocks {
         }
         for axis in 0..3 {
             let noise = filled().map(|(_, (_, noise))| noise[axis]).filter(|noise| noise.is_finite());
+            let quietest = noise.clone().filter(|noise| *noise > 0.0).reduce(f64::min).unwrap_or(0.0);
             let noise = median(&mut noise.collect::<Vec<f64>>());
+            // A step that two blocks have may be that of one spike, at their edge.
+            let has_step = |block: &&Block| block.step[axis] < step[axis] * (1.0 + 1e-6);
+            let is_digit = step[axis].is_finite() && gathered.iter().filter(has_step).count() > 2;
+            let rounded_to = if is_digit { step[axis].max(resolution) } else { resolution };
+            let by_rounding = repeats_by_rounding(quietest, rounded_to);
+            blocks.repeat_rate[axis] = blocks.repeat_rate[axis].max(by_rounding);
             blocks.sample_noise[axis] = noise.max(blocks.digit[axis] / 12_f64.sqrt());
         }
         Ok(blocks)
@@ -82,5 +94,52 @@ impl Blocks {
     pub fn level(&self, range: &Range<usize>) -> Vector3<f64> {
         let of = |axis: usize| median(&mut self.f_z[range.clone()].iter().map(|f| f[axis]).collect::<Vec<f64>>());
         Vector3::from_fn(|axis, _| of(axis))
+    }
+}
+
+/// Share of readings that are equal, at most, if noise is rounded to a `step`: `erf(step / (2 sqrt(2) sigma))` with the
+/// level in the middle between two roundings. Rounding adds a spread of half a step at most, at a level where half of
+/// the readings are rounded up: `sigma^2` is `spread^2 - step^2 / 4` at least. The spread is that of the quietest block that
+/// is not constant: in others the level moves, as the arm turns. A spread below half a step may come from rounding alone:
+/// then a reading may stand for any time. Without a step no two readings are equal.
+fn repeats_by_rounding(spread: f64, step: f64) -> f64 {
+    let variance = spread * spread - 0.25 * step * step;
+    if step == 0.0 {
+        0.0
+    } else if variance > 0.0 {
+        erf(step / (8.0 * variance).sqrt())
+    } else {
+        1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::repeats_by_rounding;
+    use crate::random::Random;
+
+    /// Noise with the level anywhere between two steps repeats the most frequent reading no more often than stated.
+    #[test]
+    fn rounded_noise_repeats_no_more_than_stated() {
+        const READINGS: usize = 20_000;
+        let mut random = Random::stream(3, 0);
+        for noise in [0.05, 0.2, 0.4, 0.6, 1.0, 3.0] {
+            for level in [0.0, 0.1, 0.25, 0.4, 0.5] {
+                let readings: Vec<f64> = (0..READINGS).map(|_| (level + noise * random.normal()).round()).collect();
+                let mean = readings.iter().sum::<f64>() / READINGS as f64;
+                let variance = readings.iter().map(|f| (f - mean) * (f - mean)).sum::<f64>() / READINGS as f64;
+                let share = |value: f64| readings.iter().filter(|f| **f == value).count() as f64 / READINGS as f64;
+                let most = [-1.0, 0.0, 1.0].map(share).into_iter().fold(0.0, f64::max);
+                // Four standard deviations of a share.
+                let stated = repeats_by_rounding(variance.sqrt(), 1.0) + 2.0 / (READINGS as f64).sqrt();
+                assert!(most <= stated, "noise {noise}, level {level}: {most} above {stated}");
+            }
+        }
+    }
+
+    #[test]
+    fn fine_digits_seldom_repeat() {
+        assert!(repeats_by_rounding(10.0, 1.0) < 0.05);
+        assert_eq!((repeats_by_rounding(1.0, 0.0), repeats_by_rounding(0.0, 0.0)), (0.0, 0.0));
     }
 }
