@@ -106,7 +106,7 @@ impl Error {
     }
 
     /// Writing `file` failed with `source`.
-    pub(crate) fn writing(file: &Path, source: io::Error) -> Self {
+    pub fn writing(file: &Path, source: io::Error) -> Self {
         TableError::writing(file, source).into()
     }
 }

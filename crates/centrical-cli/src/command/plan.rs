@@ -3,10 +3,13 @@
 use std::path::PathBuf;
 
 use centrical_report::{frontier_plot, plan_text};
-use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, write_whole};
+use centrical_session::{
+    Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, earlier_result, plan, refuse_inputs, write_whole,
+};
 
 use super::assess::probability;
-use crate::outcome::{Outcome, print};
+use crate::outcome::Outcome;
+use crate::output::print;
 
 /// Find the schedule with the smallest uncertainty in the time available, or the shortest one that meets target
 /// uncertainties.
@@ -45,6 +48,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         levels: arguments.levels.clone(),
         coverage: arguments.coverage,
     };
+    let outputs: Vec<PathBuf> = arguments.out.iter().chain(&arguments.svg).cloned().collect();
+    let nominal = earlier_result(&arguments.plan)?;
+    refuse_inputs(&outputs, &[Some(arguments.plan.clone()), nominal].into_iter().flatten().collect::<Vec<_>>())?;
     let report = plan(&arguments.plan, &request)?;
     if let Some(file) = &arguments.out {
         write_whole(file, report.session_text(&arguments.plan)?.as_bytes())?;
@@ -53,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         write_whole(file, frontier_plot(&report).as_bytes())?;
     }
     let text = if arguments.json { report.to_json()? } else { plan_text(&report) };
-    print(&text);
+    print(&text)?;
     Ok(Outcome::acceptable(report.is_acceptable()))
 }
 

@@ -13,6 +13,7 @@ use super::session::{Session, named_extensions, read_text};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
+use crate::settings::from_toml;
 
 /// Beyond these no centrifuge has time, and no search either.
 const MOST_PLATEAUS: usize = 20_000;
@@ -41,7 +42,7 @@ impl Planning {
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, or has no `[candidates]`.
     pub fn read(path: &Path, expected: &ExpectedValues) -> Result<Self, Error> {
-        let mut form: Form = form::parse(path, &read_text(path)?)?;
+        let mut form: Form = from_toml(path, &read_text(path)?)?;
         let at = TomlPath::table(path, "candidates");
         let Some(table) = form.candidates.take() else {
             return Err(at.unexpected("radii", "no [candidates]", "what the plan is chosen from"));

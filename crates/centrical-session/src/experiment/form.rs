@@ -3,22 +3,8 @@
 mod entries;
 mod tables;
 
-use std::path::Path;
-
-use serde::de::DeserializeOwned;
-
 pub(crate) use self::entries::{ColumnEntry, ColumnTable, TermEntry, TermList, TermTable};
 pub(crate) use self::tables::{
     CandidatesTable, ColumnsTable, CountsTable, Form, ModelTable, MountingTable, PlanTable, PlateauEntry,
     PositionTable, PresetForm, PresetTable, SiteTable, Steps, UncertaintyTable, UnitTable,
 };
-use crate::error::{Error, Place};
-
-/// Reads a form from the text of `file`.
-pub(crate) fn parse<T: DeserializeOwned>(file: &Path, text: &str) -> Result<T, Error> {
-    toml::from_str(text).map_err(|error| Error::Form {
-        file: file.to_owned(),
-        place: error.span().map_or(Place::Whole, |span| Place::of_byte(text, span.start)),
-        message: error.message().trim().replace('\n', ", "),
-    })
-}

@@ -10,12 +10,13 @@ use centrical::{MeasurementModel, Parameter, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;
 
-use super::form::{self, Form, PlanTable, PresetForm, PresetTable};
+use super::form::{Form, PlanTable, PresetForm, PresetTable};
 use super::session::{Session, extensions, pair_relation, read_text, speed_uncertainty};
 use super::toml_path::TomlPath;
 use super::{prior, schedule, terms};
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
+use crate::settings::from_toml;
 
 /// Name of the source's normalised experiment [K5.5].
 const NORMALISED: &str = "kozlov-2017-normalised";
@@ -79,15 +80,15 @@ impl Plan {
             return Ok(None);
         }
         let text = read_text(path)?;
-        let probe: Probe = form::parse(path, &text)?;
+        let probe: Probe = from_toml(path, &text)?;
         if probe.plan.as_ref().is_some_and(|plan| plan.preset.is_some()) {
-            return Self::of_preset(path, &form::parse(path, &text)?).map(Some);
+            return Self::of_preset(path, &from_toml(path, &text)?).map(Some);
         }
         let is_measured = probe.plateaus.is_some() || probe.mounting.iter().any(|m| m.record.is_some());
         if is_measured && probe.plan.is_none() {
             return Ok(None);
         }
-        Self::of_form(path, &form::parse(path, &text)?, expected).map(Some)
+        Self::of_form(path, &from_toml(path, &text)?, expected).map(Some)
     }
 
     fn of_form(file: &Path, form: &Form, expected: &ExpectedValues) -> Result<Self, Error> {
@@ -149,7 +150,7 @@ pub type ExpectedValues = BTreeMap<String, f64>;
 /// # Errors
 /// If the file cannot be read or is not TOML.
 pub fn earlier_result(path: &Path) -> Result<Option<PathBuf>, Error> {
-    let probe: Probe = form::parse(path, &read_text(path)?)?;
+    let probe: Probe = from_toml(path, &read_text(path)?)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let named = probe.plan.and_then(|plan| plan.nominal);
     Ok(named.and_then(|name| name.as_str().map(|name| folder.join(name))))

@@ -10,6 +10,9 @@ use crate::error::Error;
 use crate::quantity::{Dimension, Quantity};
 use crate::units::writable;
 
+/// How far a standard uncertainty may be from the typical magnitude of its parameter, either way.
+const FIRMEST: f64 = 1e12;
+
 /// A prior as written.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PriorEntry {
@@ -35,6 +38,14 @@ pub(crate) fn with_priors(
     let at = TomlPath::table(file, "prior");
     for entry in entries {
         let sigma = in_si(&at, &model, entry)?;
+        let selected = model.parameters().select(&entry.name);
+        let typical = selected.iter().map(|j| model.parameters()[*j].typical).fold(0.0, f64::max);
+        // What is positive is left to the model; beyond these bounds squares and quotients of it are no numbers any more.
+        if sigma > 0.0 && !(typical / FIRMEST..=typical * FIRMEST).contains(&sigma) {
+            let expected =
+                format!("a standard uncertainty from {:e} to {:e} (SI)", typical / FIRMEST, typical * FIRMEST);
+            return Err(at.unexpected(&entry.name, entry.standard_uncertainty.to_string(), expected));
+        }
         model = model.with_prior(&entry.name, sigma).map_err(|error| refusal(&at, entry, error))?;
     }
     Ok(model)

@@ -11,9 +11,13 @@ use super::columnar::Column;
 use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
+use crate::unpacking::Unpacked;
 
 /// Longest row of an array [bytes]: thousands of columns.
 const LONGEST_ROW: u64 = 1 << 16;
+
+/// Bytes of rows that are read at a time.
+const BUFFER: usize = 1 << 20;
 
 /// An array of a file: rows of numbers in columns.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +51,8 @@ pub(super) struct Bytes {
     pub length: u64,
     /// Bytes before the array, after unpacking.
     pub skip: u64,
+    /// The CRC-32 of what is unpacked, where the file has it.
+    pub crc_32: Option<u32>,
 }
 
 /// How bytes are packed.
@@ -142,15 +148,24 @@ pub(super) fn column(file: &Path, (array, place): (&Array, &ArrayColumn), field:
         return Err(failed(io::Error::other(format!("{} bytes a row", array.stride))));
     }
     let mut input = array.bytes.open(file, place.start).map_err(&failed)?;
+    let has_checksum = array.bytes.packing != Packing::Plain || array.bytes.crc_32.is_some();
+    let at_a_time = (BUFFER / stride.max(1)).max(1) as u64;
     let mut buffer = Vec::new();
     Ok(Box::new(move |values| {
-        let rows = usize::try_from(left.min(ROWS as u64)).unwrap_or(ROWS);
-        left -= rows as u64;
-        // The last row ends with its number, not with its stride.
-        let length = (rows * stride).saturating_sub(if left == 0 { stride - scalar.size } else { 0 });
-        buffer.resize(length, 0);
-        input.read_exact(&mut buffer).map_err(&failed)?;
-        values.extend(buffer.chunks(stride).map(|row| scalar.read(&row[..scalar.size])));
+        let mut wanted = left.min(ROWS as u64);
+        while wanted > 0 {
+            let rows = wanted.min(at_a_time);
+            (wanted, left) = (wanted - rows, left - rows);
+            // The last row ends with its number, not with its stride.
+            let unused = if left == 0 { stride - scalar.size } else { 0 };
+            buffer.resize(usize::try_from(rows).unwrap_or(ROWS) * stride - unused, 0);
+            input.read_exact(&mut buffer).map_err(&failed)?;
+            values.extend(buffer.chunks(stride).map(|row| scalar.read(&row[..scalar.size])));
+        }
+        if left == 0 && has_checksum {
+            // A checksum is that of all bytes, and stands at their end.
+            io::copy(&mut input, &mut io::sink()).map_err(&failed)?;
+        }
         Ok(())
     }))
 }
@@ -168,6 +183,9 @@ impl Bytes {
             Packing::Lz4 => Box::new(FrameDecoder::new(input)),
             Packing::Zstd => Box::new(zstd::Decoder::with_buffer(input)?),
         };
+        if self.packing != Packing::Plain || self.crc_32.is_some() {
+            unpacked = Box::new(Unpacked::new(unpacked, self.length, self.crc_32));
+        }
         let skip = self.skip.saturating_add(start);
         if io::copy(&mut unpacked.by_ref().take(skip), &mut io::sink())? < skip {
             return Err(io::ErrorKind::UnexpectedEof.into());

@@ -33,7 +33,13 @@ pub(super) fn columns(file: &Path, input: &File, fields: &[Field]) -> Result<Vec
 
 /// The matrices of numbers in the file.
 fn arrays(file: &Path, length: u64) -> io::Result<Vec<Array>> {
-    let plain = |offset: u64| Bytes { packing: Packing::Plain, offset, length: length.saturating_sub(offset), skip: 0 };
+    let plain = |offset: u64| Bytes {
+        packing: Packing::Plain,
+        offset,
+        length: length.saturating_sub(offset),
+        skip: 0,
+        crc_32: None,
+    };
     let mut order = [0; 2];
     plain(HEADER - 2).open(file, 0)?.read_exact(&mut order)?;
     let big_endian = order == *b"MI";
@@ -41,7 +47,7 @@ fn arrays(file: &Path, length: u64) -> io::Result<Vec<Array>> {
     let mut offset = HEADER;
     while offset + 8 <= length {
         let tag = Stream { input: plain(offset).open(file, 0)?, read: 0, big_endian }.tag()?;
-        let bytes = Bytes { packing: Packing::Plain, offset: offset + 8, length: tag.size, skip: 0 };
+        let bytes = Bytes { packing: Packing::Plain, offset: offset + 8, length: tag.size, skip: 0, crc_32: None };
         match tag.kind {
             MATRIX => arrays.extend(array(file, bytes, big_endian)?),
             PACKED => {

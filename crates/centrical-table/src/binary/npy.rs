@@ -20,7 +20,7 @@ const LONGEST_HEADER: usize = 1 << 16;
 /// The columns of a `.npy` file.
 pub(super) fn columns(file: &Path, input: &File, fields: &[Field]) -> Result<Vec<Column>, Error> {
     let length = input.metadata().map_err(|e| Error::reading(file, e, "a .npy file"))?.len();
-    let bytes = Bytes { packing: Packing::Plain, offset: 0, length, skip: 0 };
+    let bytes = Bytes { packing: Packing::Plain, offset: 0, length, skip: 0, crc_32: None };
     match array(file, "", bytes)? {
         Some(array) => arrays::columns(file, &[array], fields),
         None => Err(Error::content(file, Place::Whole, "an array of another shape", "a vector, a matrix or records")),
@@ -45,7 +45,8 @@ pub(super) fn archive_columns(file: &Path, input: File, fields: &[Field]) -> Res
             }
         };
         let offset = member.data_start().unwrap_or(0);
-        arrays.extend(array(file, name, Bytes { packing, offset, length: member.compressed_size(), skip: 0 })?);
+        let (length, crc_32) = (member.compressed_size(), Some(member.crc32()));
+        arrays.extend(array(file, name, Bytes { packing, offset, length, skip: 0, crc_32 })?);
     }
     arrays::columns(file, &arrays, fields)
 }

@@ -64,6 +64,15 @@ impl Piece {
         let read = loop {
             // A number is taken with what is before it: the first ones of all are left to be read one by one.
             let most = if from < batch::REACH { 1 } else { ROWS };
+            let blank = blank_lines(&text[from..]);
+            if blank > 1 {
+                // Many of them at once: a packed file may have billions.
+                from += blank;
+                self.lines += blank as u64;
+                self.first_row += if rows[0].is_empty() { blank as u64 } else { 0 };
+                let passed = |places: &[u32]| places.partition_point(|place| (*place as usize) < from);
+                (separators, ends) = (&separators[passed(separators)..], &ends[passed(ends)..]);
+            }
             let count = most.min(separators.len() / layout.fields()).min(ends.len());
             let (of_batch, ends_of_batch) = (&separators[..count * layout.fields()], &ends[..count]);
             // Of a text that is read up to a fault, some are beyond it.
@@ -188,12 +197,33 @@ fn split_line(text: &[u8]) -> (&[u8], &[u8]) {
     (line.strip_suffix(b"\r").unwrap_or(line), rest)
 }
 
+/// How many empty lines a text begins with.
+#[inline]
+fn blank_lines(text: &[u8]) -> usize {
+    text.iter().take_while(|byte| **byte == b'\n').count()
+}
+
 /// Whether a line is neither blank nor a comment.
 #[inline]
 fn is_data(line: &[u8]) -> bool {
     match line.first() {
-        None | Some(b'#') => false,
-        Some(b' ' | b'\t') => !matches!(line.trim_ascii_start().first(), None | Some(b'#')),
+        None => false,
+        Some(b'#') => is_failed_cell(line),
+        Some(b' ' | b'\t') => {
+            let text = line.trim_ascii_start();
+            !text.is_empty() && (text[0] != b'#' || is_failed_cell(text))
+        }
         Some(_) => true,
     }
+}
+
+/// Whether a text that starts with `#` is not a comment but a row whose first cell a spreadsheet could not compute.
+#[cold]
+fn is_failed_cell(text: &[u8]) -> bool {
+    const FAILED: [&[u8]; 8] = [b"#N/A", b"#NUM!", b"#VALUE!", b"#DIV/0!", b"#REF!", b"#NAME?", b"#NULL!", b"#CALC!"];
+    let begins = |cell: &[u8]| {
+        let rest = text.get(..cell.len()).filter(|start| start.eq_ignore_ascii_case(cell)).map(|_| &text[cell.len()..]);
+        rest.is_some_and(|rest| rest.first().is_none_or(|next| matches!(next, b',' | b';' | b'\t' | b' ' | b'"')))
+    };
+    FAILED.into_iter().any(begins)
 }

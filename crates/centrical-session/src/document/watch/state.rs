@@ -1,6 +1,5 @@
 //! `watch.json`: where a watched session stands, to go on from after a stop.
 
-use std::fs;
 use std::path::Path;
 
 use centrical::Observation;
@@ -13,6 +12,7 @@ use crate::document::json;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::Input;
+use crate::settings::{from_json, read_result};
 
 /// Name of the form's present version.
 const SCHEMA: &str = "centrical-watch/1";
@@ -68,12 +68,8 @@ impl WatchState {
             return Ok(fresh);
         }
         let expected = "the state of a watched session";
-        let text = fs::read_to_string(file).map_err(|source| Error::reading(file, source, expected))?;
-        let state: Self = serde_json::from_str(&text).map_err(|error| Error::Form {
-            file: file.to_owned(),
-            place: Place::Character { line: error.line(), column: error.column() },
-            message: format!("found {error}, expected {expected}"),
-        })?;
+        let text = read_result(file, expected)?;
+        let state: Self = from_json(file, 1, &text, expected)?;
         let other = state.schema != fresh.schema || state.experiment != fresh.experiment;
         let count = session.experiment.set_points.len();
         if other || state.plateaus.iter().any(|plateau| plateau.set_point >= count) {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use centrical::fit::{Follower, Progress};
 use centrical::plan::{Benefit, Criterion, ReadingRange, next_best};
@@ -133,7 +133,7 @@ impl<'a> Following<'a> {
             if stop.load(Ordering::Relaxed) || self.request.once {
                 return Ok(self.stopped());
             }
-            thread::sleep(self.request.interval);
+            wait(self.request.interval, stop);
         }
     }
 
@@ -242,3 +242,15 @@ fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) 
 const STATE_FILE: &str = "watch.json";
 
 const HISTORY_FILE: &str = "watch-history.jsonl";
+
+/// Sleeps, but not on when `stop` is raised.
+fn wait(time: Duration, stop: &AtomicBool) {
+    /// How soon a stop is noticed.
+    const SLICE: Duration = Duration::from_millis(50);
+    let begun = Instant::now();
+    while !stop.load(Ordering::Relaxed)
+        && let Some(left) = time.checked_sub(begun.elapsed()).filter(|left| !left.is_zero())
+    {
+        thread::sleep(left.min(SLICE));
+    }
+}
