@@ -99,10 +99,11 @@ fn show(event: &WatchEvent, targets: &[(String, f64)]) -> Result<(), Error> {
         }
         WatchEvent::Plateau(progress) => {
             // On a terminal the table stays in its place.
-            if io::stdout().is_terminal() {
+            let is_cleared = io::stdout().is_terminal();
+            if is_cleared {
                 print_as_it_is("\x1b[2J\x1b[H")?;
             }
-            print(&format!("{}\n", watch_table(progress, targets)))
+            print(&format!("{}\n", watch_table(progress, targets, is_cleared)))
         }
     }
 }

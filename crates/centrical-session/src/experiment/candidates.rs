@@ -242,7 +242,8 @@ fn robustness(file: &Path, form: &Form) -> Result<Robustness, Error> {
 fn target(file: &Path, form: &Form, model: &MeasurementModel) -> Result<(Criterion, Option<f64>, ReadingRange), Error> {
     let at = TomlPath::table(file, "target");
     let table = &form.target;
-    let time = table.time.as_ref().map(|q| at.bounded("time", q, Dimension::Time, (1.0, 1e9), "a time above 1 s"));
+    let time =
+        table.time.as_ref().map(|q| at.bounded("time", q, Dimension::Time, (1.0, 1e9), "a time from 1 s to 1e9 s"));
     let time = time.transpose()?;
     let force = table.range.as_ref().map_or(Ok(USUAL_RANGE), |q| {
         at.bounded("range", q, Dimension::Acceleration, (1e-3, 1e7), "a specific force from 1e-3 to 1e7 m/s^2")

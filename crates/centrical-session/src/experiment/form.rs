@@ -3,8 +3,8 @@
 mod entries;
 mod tables;
 
-pub(crate) use self::entries::{ColumnEntry, ColumnTable, TermEntry, TermList, TermTable};
+pub(crate) use self::entries::{ColumnEntry, ColumnTable, Steps, TermEntry, TermList, TermTable};
 pub(crate) use self::tables::{
     CandidatesTable, ColumnsTable, CountsTable, Form, ModelTable, MountingTable, PlanTable, PlateauEntry,
-    PositionTable, PresetForm, PresetTable, SiteTable, Steps, UncertaintyTable, UnitTable,
+    PositionTable, PresetForm, PresetTable, SiteTable, UncertaintyTable, UnitTable,
 };

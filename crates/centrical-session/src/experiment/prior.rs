@@ -38,14 +38,7 @@ pub(crate) fn with_priors(
     let at = TomlPath::table(file, "prior");
     for entry in entries {
         let sigma = in_si(&at, &model, entry)?;
-        let selected = model.parameters().select(&entry.name);
-        let typical = selected.iter().map(|j| model.parameters()[*j].typical).fold(0.0, f64::max);
-        // What is positive is left to the model; beyond these bounds squares and quotients of it are no numbers any more.
-        if sigma > 0.0 && !(typical / FIRMEST..=typical * FIRMEST).contains(&sigma) {
-            let expected =
-                format!("a standard uncertainty from {:e} to {:e} (SI)", typical / FIRMEST, typical * FIRMEST);
-            return Err(at.unexpected(&entry.name, entry.standard_uncertainty.to_string(), expected));
-        }
+        within_reason(&at, &model, entry, sigma)?;
         model = model.with_prior(&entry.name, sigma).map_err(|error| refusal(&at, entry, error))?;
     }
     Ok(model)
@@ -60,11 +53,24 @@ pub(crate) fn uncertainty_of(
 ) -> Result<f64, Error> {
     let entry = PriorEntry { name: name.to_owned(), standard_uncertainty: quantity.clone() };
     let value = in_si(at, model, &entry)?;
+    within_reason(at, model, &entry, value)?;
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
         Err(at.unexpected(name, quantity.to_string(), "a standard uncertainty above 0"))
     }
+}
+
+/// Refuses an uncertainty whose squares and quotients are no numbers any more. One that is not positive is left to others.
+fn within_reason(at: &TomlPath, model: &MeasurementModel, entry: &PriorEntry, sigma: f64) -> Result<(), Error> {
+    let selected = model.parameters().select(&entry.name);
+    let typical = selected.iter().map(|j| model.parameters()[*j].typical).fold(0.0, f64::max);
+    let (least, most) = (typical / FIRMEST, typical * FIRMEST);
+    if sigma <= 0.0 || (least..=most).contains(&sigma) {
+        return Ok(());
+    }
+    let expected = format!("a standard uncertainty from {least:.0e} to {most:.0e} (SI)");
+    Err(at.unexpected(&entry.name, entry.standard_uncertainty.to_string(), expected))
 }
 
 /// The uncertainty in the unit of the parameters that are meant.

@@ -43,6 +43,9 @@ struct Form {
     tachometer: TachometerTable,
 }
 
+/// Largest standard deviation of drawn parameters, in typical magnitudes.
+const LARGEST_SIZE: f64 = 1e6;
+
 /// Parameters that are not named are drawn from a normal law about zero.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -87,6 +90,10 @@ fn values(file: &Path, form: &Form, model: &MeasurementModel, sources: usize, se
     let parameters = model.parameters();
     let (size, seed) =
         form.typical.as_ref().map_or((0.0, seed), |typical| (typical.size, typical.seed.unwrap_or(seed)));
+    if !(0.0..=LARGEST_SIZE).contains(&size) {
+        let expected = "typical magnitudes, from 0 to a million of them";
+        return Err(TomlPath::table(file, "typical").unexpected("size", format!("{size:?}"), expected));
+    }
     let mut values = draw_truth(parameters, size, seed);
     values[sources..].fill(0.0);
     for (name, quantity) in &form.parameters {

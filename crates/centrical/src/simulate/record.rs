@@ -100,7 +100,7 @@ impl<'a> Physics<'a> {
     }
 
     #[inline]
-    fn reading(&self, motion: &ArmMotion) -> Vector3<f64> {
+    pub fn reading(&self, motion: &ArmMotion) -> Vector3<f64> {
         let f = match &self.rigid {
             Some(carried) => carried.specific_force(motion),
             None => self.model.mounted_unit(self.mounting, self.truth, motion.speed).specific_force(motion),

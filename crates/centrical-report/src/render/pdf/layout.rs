@@ -1,5 +1,6 @@
 //! Running text and tables, broken into lines and pages.
 
+use centrical_session::harmless_line;
 use pdf_writer::{Content, Name, Str};
 
 use super::font::{Font, Weight};
@@ -214,7 +215,7 @@ fn cut(word: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
 
 /// Glyphs of a text, two bytes each.
 pub(super) fn encoded(font: &Font, text: &str) -> Vec<u8> {
-    text.chars().flat_map(|c| font.glyph(c).to_be_bytes()).collect()
+    harmless_line(text).chars().flat_map(|c| font.glyph(c).to_be_bytes()).collect()
 }
 
 pub(super) fn show(page: &mut Content, glyphs: &[u8], weight: Weight, size: f32, x: f32, y: f32) {

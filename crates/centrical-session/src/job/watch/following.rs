@@ -98,12 +98,13 @@ impl<'a> Following<'a> {
         check_groups(&request.groups, session, model)?;
         let held_out: Vec<usize> =
             request.hold_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
-        let mut state = WatchState::resume(session, &request.out.join(STATE_FILE))?;
+        let state_file = request.out.join(STATE_FILE);
+        let mut state = WatchState::resume(session, model.parameters().len(), &state_file)?;
         keep_history(&request.out.join(HISTORY_FILE), state.plateaus.len())?;
         // One that has been taken up before is held out from now on.
         state.plateaus.iter_mut().for_each(|plateau| plateau.held_out |= held_out.contains(&plateau.set_point));
         let follower = Follower::resume(model, state.taken(), &state.point)
-            .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
+            .map_err(|source| Error::Fit { file: state_file, source })?;
         Ok(Self { request, session, model, follower, state, held_out })
     }
 
@@ -130,7 +131,11 @@ impl<'a> Following<'a> {
                 note = watch.note().map(str::to_owned);
                 note.as_deref().into_iter().for_each(|note| report(WatchEvent::Waiting(note)));
             }
-            if stop.load(Ordering::Relaxed) || self.request.once {
+            if self.request.once {
+                watch.without_quiet().iter().for_each(|note| report(WatchEvent::Waiting(note)));
+                return Ok(self.stopped());
+            }
+            if stop.load(Ordering::Relaxed) {
                 return Ok(self.stopped());
             }
             wait(self.request.interval, stop);
