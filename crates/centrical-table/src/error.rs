@@ -13,11 +13,30 @@ const LONGEST_EXPECTED: usize = 2000;
 /// Characters that a message shows of a name.
 const LONGEST_NAME: usize = 100;
 
+/// Characters that a message shows of a path: its end, where the name is.
+const LONGEST_PATH: usize = 500;
+
+/// A path as messages show it.
+pub fn shown_path(path: &Path) -> String {
+    let whole = path.display().to_string();
+    let count = whole.chars().count();
+    if count <= LONGEST_PATH {
+        whole
+    } else {
+        format!("...{}", whole.chars().skip(count - LONGEST_PATH).collect::<String>())
+    }
+}
+
 /// Why a table or another file could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The content of a file is not what its place calls for.
-    #[error("{}{place}: found {}, expected {}", file.display(), cut(found, LONGEST_FOUND), cut(expected, LONGEST_EXPECTED))]
+    #[error(
+        "{}{place}: found {}, expected {}",
+        shown_path(file),
+        cut(found, LONGEST_FOUND),
+        cut(expected, LONGEST_EXPECTED)
+    )]
     Content {
         /// The file.
         file: PathBuf,
@@ -29,7 +48,7 @@ pub enum Error {
         expected: String,
     },
     /// The operating system refused to read or write a file.
-    #[error("{}: cannot be {action}: {source}", file.display())]
+    #[error("{}: cannot be {action}: {source}", shown_path(file))]
     Io {
         /// The file.
         file: PathBuf,

@@ -51,7 +51,7 @@ mod write;
 
 pub use column::{ColumnName, Field, Rule};
 pub use document::{open_regular, read_document};
-pub use error::{Error, Place, quoted};
+pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, harmless, harmless_line};
 pub use reader::{Extent, TableReader, estimate_rows};
 pub use rows::Rows;

@@ -30,6 +30,8 @@ pub(super) struct Array {
     /// Bytes from one row to the next.
     pub stride: u64,
     pub columns: Vec<ArrayColumn>,
+    /// Names of columns of 16-bit floating point, which are not read.
+    pub halves: Vec<String>,
 }
 
 /// A column of an array.
@@ -102,8 +104,13 @@ fn find<'a>(file: &Path, arrays: &'a [Array], field: &Field) -> Result<(&'a Arra
                 column.name == *name || (array.name == *name && array.columns.len() == 1)
             };
             let mut places = all().filter(is);
+            let is_half =
+                |array: &Array| array.halves.iter().any(|half| half == name || half.is_empty() && array.name == *name);
             match (places.next(), places.next()) {
                 (Some(place), None) => Ok(place),
+                (None, _) if arrays.iter().any(is_half) => {
+                    wrong("numbers of 16 bits (float16)".to_owned(), "numbers of 32 or 64 bits")
+                }
                 (None, _) => wrong(contents(arrays), "a column of this name (for a matrix give [columns] by number)"),
                 _ => wrong(format!("two such columns in {}", contents(arrays)), "one"),
             }

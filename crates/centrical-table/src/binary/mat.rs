@@ -86,7 +86,7 @@ fn array(file: &Path, bytes: Bytes, big_endian: bool) -> io::Result<Option<Array
     let stride = scalar.size as u64;
     let place = |j| ArrayColumn { name: String::new(), start: rows.saturating_mul(stride * j), scalar };
     let bytes = Bytes { skip: bytes.skip + stream.read, ..bytes };
-    Ok(Some(Array { name, bytes, rows, stride, columns: (0..columns).map(place).collect() }))
+    Ok(Some(Array { name, bytes, rows, stride, columns: (0..columns).map(place).collect(), halves: Vec::new() }))
 }
 
 /// The numbers of an element of this type.

@@ -99,6 +99,8 @@ struct Shape {
     by_columns: bool,
     /// Names, places and types of the numbers of one element, and its size.
     numbers: Vec<(String, u64, Scalar)>,
+    /// Names of numbers of 16 bits, which are not read: they have three digits.
+    halves: Vec<String>,
     size: u64,
 }
 
@@ -111,11 +113,12 @@ impl Shape {
             _ => return None,
         };
         let by_columns = header.get("fortran_order")?.truth()?;
-        let mut numbers = Vec::new();
+        let (mut numbers, mut halves) = (Vec::new(), Vec::new());
         let mut size = 0_u64;
         match header.get("descr")? {
             Literal::Text(kind) => {
                 let (width, scalar) = scalar(kind)?;
+                halves.extend(is_half(kind).then(String::new));
                 numbers.extend(scalar.map(|scalar| (String::new(), 0, scalar)));
                 size = width;
             }
@@ -123,12 +126,13 @@ impl Shape {
                 for field in record.list()? {
                     let [Literal::Text(name), Literal::Text(kind)] = field.list()? else { return None };
                     let (width, scalar) = scalar(kind)?;
+                    halves.extend(is_half(kind).then(|| name.clone()));
                     numbers.extend(scalar.map(|scalar| (name.clone(), size, scalar)));
                     size = size.checked_add(width)?;
                 }
             }
         }
-        (columns <= LONGEST_HEADER as u64).then_some(Self { rows, columns, by_columns, numbers, size })
+        (columns <= LONGEST_HEADER as u64).then_some(Self { rows, columns, by_columns, numbers, halves, size })
     }
 
     fn array(self, name: &str, bytes: Bytes) -> Array {
@@ -146,8 +150,13 @@ impl Shape {
             })
         };
         let columns = (0..self.columns).flat_map(place).collect();
-        Array { name: name.to_owned(), bytes, rows: self.rows, stride: row, columns }
+        Array { name: name.to_owned(), bytes, rows: self.rows, stride: row, columns, halves: self.halves }
     }
+}
+
+/// Whether a type is of floating point in 16 bits.
+fn is_half(kind: &str) -> bool {
+    kind.get(1..) == Some("f2")
 }
 
 /// Size of a type such as `<f8`, and how to read it where it is a number.

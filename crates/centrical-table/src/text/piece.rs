@@ -1,6 +1,6 @@
 //! A piece of text: from its lines to rows of numbers, up to the first fault.
 
-use memchr::memchr;
+use memchr::{memchr, memchr_iter, memrchr};
 
 use super::batch::{self, Batch, ROWS};
 use super::layout::{Fault, Layout, Prologue};
@@ -64,12 +64,9 @@ impl Piece {
         let read = loop {
             // A number is taken with what is before it: the first ones of all are left to be read one by one.
             let most = if from < batch::REACH { 1 } else { ROWS };
-            let blank = blank_lines(&text[from..]);
-            if blank > 1 {
-                // Many of them at once: a packed file may have billions.
+            let blank = self.skip_blank(&text[from..], rows);
+            if blank > 0 {
                 from += blank;
-                self.lines += blank as u64;
-                self.first_row += if rows[0].is_empty() { blank as u64 } else { 0 };
                 let passed = |places: &[u32]| places.partition_point(|place| (*place as usize) < from);
                 (separators, ends) = (&separators[passed(separators)..], &ends[passed(ends)..]);
             }
@@ -98,6 +95,17 @@ impl Piece {
         read
     }
 
+    /// Passes the blank lines that a text begins with, and returns their bytes. Many at once: a packed file may have billions.
+    fn skip_blank(&mut self, text: &[u8], rows: &Rows) -> usize {
+        let is_blank = |byte: &u8| matches!(byte, b'\n' | b'\r' | b' ' | b'\t');
+        let blank = text.iter().position(|byte| !is_blank(byte)).unwrap_or(text.len());
+        let bytes = memrchr(b'\n', &text[..blank]).map_or(0, |end| end + 1);
+        let lines = memchr_iter(b'\n', &text[..bytes]).count() as u64;
+        self.lines += lines;
+        self.first_row += if rows[0].is_empty() { lines } else { 0 };
+        bytes
+    }
+
     /// Reads the rows of a text one by one, up to the first fault.
     fn read_rows(
         &mut self,
@@ -108,6 +116,10 @@ impl Piece {
     ) -> Result<(), (u64, Fault)> {
         let mut row = vec![0.0; fields.len()];
         while !text.is_empty() {
+            text = &text[self.skip_blank(text, rows)..];
+            if text.is_empty() {
+                break;
+            }
             let (line, rest) = split_line(text);
             if let Some(length) = layout.plain_row(text, &mut row) {
                 text = &text[length..];
@@ -195,12 +207,6 @@ fn split_line(text: &[u8]) -> (&[u8], &[u8]) {
         None => (text, &text[text.len()..]),
     };
     (line.strip_suffix(b"\r").unwrap_or(line), rest)
-}
-
-/// How many empty lines a text begins with.
-#[inline]
-fn blank_lines(text: &[u8]) -> usize {
-    text.iter().take_while(|byte| **byte == b'\n').count()
 }
 
 /// Whether a line is neither blank nor a comment.

@@ -236,7 +236,7 @@ impl Equipment {
 
 /// No plateau, ramp or correlation of a laboratory is shorter than a millisecond or longer than a fortnight.
 fn time(setting: &'static str, found: f64) -> Result<(), SimulationError> {
-    bounded(setting, found, |f| (1e-3..=1e7).contains(&f), "a time from 1 ms to 1e7 s")
+    bounded(setting, found, |f| (1e-3..=1e7).contains(&f), "a time above 0, from 1 ms to 1e7 s")
 }
 
 /// Beyond a million m/s^2, s or rad/s a unit was mistaken.
@@ -245,7 +245,7 @@ fn magnitude(setting: &'static str, found: f64) -> Result<(), SimulationError> {
 }
 
 fn rate(setting: &'static str, found: f64) -> Result<(), SimulationError> {
-    bounded(setting, found, |f| (1e-3..=1e7).contains(&f), "a rate from 1 mHz to 10 MHz")
+    bounded(setting, found, |f| (1e-3..=1e7).contains(&f), "a rate above 0, from 1 mHz to 10 MHz")
 }
 
 fn ratio(setting: &'static str, found: f64) -> Result<(), SimulationError> {

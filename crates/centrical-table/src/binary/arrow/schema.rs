@@ -79,7 +79,14 @@ impl ArrowColumn {
     /// Its array in a batch.
     pub fn array(&self, rows: u64, bytes: Bytes) -> Array {
         let column = ArrayColumn { name: String::new(), start: 0, scalar: self.scalar };
-        Array { name: self.name.clone(), bytes, rows, stride: self.scalar.size as u64, columns: vec![column] }
+        Array {
+            name: self.name.clone(),
+            bytes,
+            rows,
+            stride: self.scalar.size as u64,
+            columns: vec![column],
+            halves: Vec::new(),
+        }
     }
 }
 
