@@ -70,7 +70,6 @@ EXTRA = """
 [uncertainty]
 gravity = "1e-5 m/s^2"
 radius = "0.1 mm"
-plateau_speed = 1e-6
 [prior]
 drho_22 = "1 mm"
 """

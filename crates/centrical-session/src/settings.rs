@@ -13,8 +13,8 @@ const LARGEST_SETTINGS: u64 = 16 << 20;
 /// Largest result, state or history [bytes]: those of ten thousand plateaus fit.
 const LARGEST_DOCUMENT: u64 = 128 << 20;
 
-/// Characters that a message shows of a sentence about a value.
-const LONGEST_SENTENCE: usize = 600;
+/// Characters that a message shows of what was found.
+const LONGEST_SENTENCE: usize = 200;
 
 /// The text of a file of settings, which should be what `expected` says.
 pub(crate) fn read_settings(file: &Path, expected: &str) -> Result<String, Error> {
@@ -55,7 +55,12 @@ pub(crate) fn from_json<T: DeserializeOwned>(file: &Path, line: usize, text: &st
 /// What a parser says, as what was found and what was expected.
 fn form_error(file: &Path, place: Place, sentence: &str, expected: &str) -> Error {
     let sentence = sentence.trim().replace('\n', ", ");
-    let message = cut(&found_and_expected(&sentence, expected), LONGEST_SENTENCE).into_owned();
+    let message = found_and_expected(&sentence, expected);
+    // What is expected stays whole, however long the value is that was found.
+    let message = match message.rsplit_once(", expected ") {
+        Some((found, expected)) => format!("{}, expected {expected}", cut(found, LONGEST_SENTENCE)),
+        None => cut(&message, LONGEST_SENTENCE).into_owned(),
+    };
     Error::Form { file: file.to_owned(), place, message }
 }
 
@@ -80,11 +85,9 @@ fn found_and_expected(sentence: &str, expected: &str) -> String {
     if let Some(rest) = sentence.strip_prefix("invalid length ") {
         return format!("found a length of {rest}");
     }
-    match sentence.split_once(", expected ") {
-        Some((found, of_parser)) if !found.starts_with("found ") => {
-            format!("found text with {found}, expected {of_parser}")
-        }
-        Some(_) => sentence.to_owned(),
-        None => format!("found text that is not this ({sentence}), expected {expected}"),
+    if sentence.contains(", expected ") {
+        let start = if sentence.starts_with("found ") { "" } else { "found " };
+        return format!("{start}{sentence}");
     }
+    format!("found text with a fault ({sentence}), expected {expected}")
 }

@@ -7,8 +7,8 @@ use crc32fast::Hasher;
 /// Bytes that may be packed into nothing.
 const ALLOWANCE: u64 = 64 << 20;
 
-/// Compression above that: rows of a record take a bit each and more, however they are packed, and thirty bytes as text.
-const LARGEST_RATIO: u64 = 256;
+/// Compression above that: the noise of a sensor packs by less than ten.
+const LARGEST_RATIO: u64 = 100;
 
 /// What comes out of a packed file or a member of an archive, read to its end only if that is where it should be.
 pub(crate) struct Unpacked<R> {
