@@ -156,7 +156,7 @@ def check(place):
     experiment = (place.reduced / "experiment.toml").read_text() + EXTRA
     laboratory = (EXAMPLE / "laboratory.toml").read_text()
     yield group("experiment.toml", place, experiment, 3, session)
-    yield group("laboratory.toml", place, laboratory, 2, certificate)
+    yield group("laboratory.toml", place, laboratory, 3, certificate)
     yield group("a truth file", place, TRUTH, 2, simulated)
     yield group("a plan", place, PLAN, 4, planned)
     yield from meanings(place, laboratory)

@@ -89,6 +89,8 @@ def bombs(place):
                 "zeros": bytes(1 << 20), "rows": b"1,1,1,1\n" * (1 << 17), "one line": b"1" * (1 << 20)}
     for header in (b"t,f1,f2,f3\n1,1,1,1\n", b""):
         for name, piece in contents.items():
+            if not header and name not in ("empty lines", "comments", "one line"):
+                continue
             # One member of 16 MB again and again: a gzip of many members is one file.
             (folder / "r.csv.gz").write_bytes(gzip.compress(header) + 64 * gzip.compress(16 * piece, 9))
             found.judge(f"{name} after {len(header)} bytes", compensated(place, folder, "r.csv.gz"), codes=(2,))
