@@ -282,7 +282,9 @@ impl Laboratory {
         if !self.person.iter().any(|person| person.authorises) {
             return refuse("[[person]]", "authorises", "nobody".to_owned(), "one person with authorises = true");
         }
-        self.environment.check(&refuse)?;
+        if let Some((key, found, expected)) = self.environment.impossible() {
+            return refuse("[environment]", key, found, &expected);
+        }
         let limits = self.decision.iter().flat_map(|decision| &decision.limit);
         match limits
             .into_iter()
@@ -305,8 +307,8 @@ impl Laboratory {
 }
 
 impl Environment {
-    /// Whether every condition can be: its value, and as far as it went from it.
-    fn check(&self, refuse: &dyn Fn(&str, &str, String, &str) -> Result<(), Error>) -> Result<(), Error> {
+    /// A condition that cannot be, by its value or as far as it went from it: its key, what was found and what was expected.
+    fn impossible(&self) -> Option<(&'static str, String, String)> {
         let conditions = [
             ("temperature", Some(&self.temperature), (-273.15, 1e3), "degrees Celsius from -273.15 to 1000"),
             ("humidity", self.humidity.as_ref(), (0.0, 100.0), "% of relative humidity from 0 to 100"),
@@ -317,10 +319,10 @@ impl Environment {
             let can_be = value.is_finite() && *range >= 0.0 && value - range >= low && value + range <= high;
             if !can_be {
                 let expected = format!("a value with a range of zero or more around it, {meaning}");
-                return refuse("[environment]", key, format!("value {value}, range {range}"), &expected);
+                return Some((key, format!("value {value}, range {range}"), expected));
             }
         }
-        Ok(())
+        None
     }
 }
 

@@ -102,7 +102,7 @@ impl<'a> Simulation<'a> {
         for set_point in &self.model.experiment().set_points {
             let motion = ArmMotion { angle: set_point.angle, speed: set_point.omega, acceleration: 0.0 };
             let reading = Physics::new(self.model, self.truth, set_point.mounting).reading(&motion);
-            if let Some(&found) = reading.iter().find(|f| !(f.abs() < LARGEST_READING)) {
+            if let Some(&found) = reading.iter().find(|f| !f.is_finite() || f.abs() >= LARGEST_READING) {
                 return Err(SimulationError::Reading { mounting: set_point.mounting + 1, found });
             }
         }

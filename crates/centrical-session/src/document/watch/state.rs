@@ -91,7 +91,7 @@ impl WatchState {
                 return refuse(format!("set point {} a second time", plateau.set_point), "every set point once");
             }
             let numbers = plateau.mean.iter().chain(plateau.covariance.iter().flatten());
-            if numbers.into_iter().any(|number| !(number.abs() < LARGEST)) || !plateau.covers() {
+            if numbers.into_iter().any(|number| !number.is_finite() || number.abs() >= LARGEST) || !plateau.covers() {
                 let found = format!("a mean and covariance of set point {} that cannot be", plateau.set_point);
                 return refuse(found, "numbers, and a symmetric positive definite covariance");
             }
