@@ -10,7 +10,8 @@ use centrical_session::{PlanRequest, plan};
 /// # Errors
 /// If the plan file is wrong, or no plan fits its time.
 pub fn main() -> Result<(), Box<dyn Error>> {
-    let request = PlanRequest { certify: false, frontier: Vec::new(), levels: Vec::new(), coverage: 0.95 };
+    let request =
+        PlanRequest { certify: false, frontier: Vec::new(), levels: Vec::new(), coverage: 0.95, outputs: Vec::new() };
     let report = plan(Path::new("examples/03_plan/plan.toml"), &request)?;
 
     for mounting in &report.mountings {

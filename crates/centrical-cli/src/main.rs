@@ -4,14 +4,19 @@
 
 mod command;
 mod format;
+mod interruption;
 mod outcome;
+mod output;
 mod progress;
 
+use std::io::{self, Write};
 use std::process::ExitCode;
 
+use centrical_session::Error;
 use clap::{Parser, Subcommand};
 
 use outcome::Outcome;
+use output::{say, written};
 
 /// Calibrate newtonometer (accelerometer) triads on a precision centrifuge.
 #[derive(Debug, Parser)]
@@ -42,7 +47,28 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let outcome = match Arguments::parse().command {
+    interruption::prepare();
+    let outcome = match Arguments::try_parse() {
+        Ok(arguments) => run(arguments.command),
+        Err(text) if text.use_stderr() => {
+            // If standard error does not take it there is nobody to tell.
+            let _ = text.print();
+            return ExitCode::from(2);
+        }
+        Err(help) => written(help.print().and_then(|()| io::stdout().flush())).map(|()| Outcome::Done),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::NotAcceptable) => ExitCode::from(1),
+        Err(error) => {
+            say(&format!("centrical: {error}\n"));
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(command: Command) -> Result<Outcome, Error> {
+    match command {
         Command::Calibrate(arguments) => command::calibrate::run(&arguments),
         Command::Reduce(arguments) => command::reduce::run(&arguments),
         Command::Compensate(arguments) => command::compensate::run(&arguments),
@@ -56,13 +82,5 @@ fn main() -> ExitCode {
         Command::Observe(arguments) => command::observe::run(&arguments),
         Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Watch(arguments) => command::watch::run(&arguments),
-    };
-    match outcome {
-        Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::NotAcceptable) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("centrical: {error}");
-            ExitCode::from(2)
-        }
     }
 }

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical::MeasurementModel;
 use centrical_session::{
-    CalibrationResult, Error, Laboratory, NoiseAnalysis, Place, UnknownUnit, create_folder, read_history, write_whole,
+    CalibrationResult, Error, Laboratory, NoiseAnalysis, Place, UnknownUnit, claim_folder, create_folder, read_history,
+    refuse_inputs, write_whole,
 };
 
 use crate::codegen::{NamedTerm, compensation_source, heading};
@@ -44,6 +45,12 @@ pub struct DocumentRequest {
 pub fn write_documents(request: &DocumentRequest) -> Result<CalibrationResult, Error> {
     let result = CalibrationResult::read(&request.result)?;
     let laboratory = read_laboratory(request.laboratory.as_deref(), &result)?;
+    let inputs =
+        [Some(&request.result), request.history.as_ref(), request.before.as_ref(), request.laboratory.as_ref()];
+    let outputs = [request.html.as_ref(), request.pdf.as_ref(), request.dcc.as_ref()];
+    let listed = |files: &[Option<&PathBuf>]| files.iter().flatten().map(|file| (*file).clone()).collect::<Vec<_>>();
+    let inputs = listed(&inputs);
+    refuse_inputs(&listed(&outputs), &inputs)?;
     let language = request.language;
     if let Some(file) = &request.html {
         let history = request.history.as_deref().map(read_history).transpose()?.unwrap_or_default();
@@ -61,7 +68,7 @@ pub fn write_documents(request: &DocumentRequest) -> Result<CalibrationResult, E
         }
     }
     if let Some(folder) = &request.code {
-        write_source(&result, &request.result, folder)?;
+        write_source(&result, &request.result, &inputs, folder)?;
     }
     Ok(result)
 }
@@ -100,7 +107,7 @@ pub fn write_all_documents(
 /// # Errors
 /// [`Error::Io`] when the folder does not take them.
 pub fn write_noise(analysis: &NoiseAnalysis, folder: &Path) -> Result<(), Error> {
-    create_folder(folder)?;
+    let _claim = claim_folder(folder)?;
     analysis.write(&folder.join("noise.json"))?;
     for (name, plot) in noise_plots(analysis) {
         write_whole(&folder.join(name), plot.to_svg().as_bytes())?;
@@ -157,7 +164,7 @@ fn dcc(result: &CalibrationResult, laboratory: &Laboratory, language: Language, 
 }
 
 /// Writes the compensation as source code.
-fn write_source(result: &CalibrationResult, file: &Path, folder: &Path) -> Result<(), Error> {
+fn write_source(result: &CalibrationResult, file: &Path, inputs: &[PathBuf], folder: &Path) -> Result<(), Error> {
     let file = || file.to_owned();
     let no_model = |source| Error::ErrorModel { file: file(), source };
     let terms = NamedTerm::of(result).map_err(no_model)?;
@@ -165,7 +172,8 @@ fn write_source(result: &CalibrationResult, file: &Path, folder: &Path) -> Resul
     let sources = (result.compensation_range(&plain))
         .and_then(|range| compensation_source(&heading(result), &terms, range))
         .map_err(|source| Error::NotInvertible { file: file(), source })?;
-    create_folder(folder)?;
+    let _claim = claim_folder(folder)?;
+    refuse_inputs(&sources.iter().map(|source| folder.join(source.name)).collect::<Vec<_>>(), inputs)?;
     for source in sources {
         write_whole(&folder.join(source.name), source.text.as_bytes())?;
     }

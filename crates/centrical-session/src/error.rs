@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 pub use centrical_table::Place;
-pub(crate) use centrical_table::quoted;
+pub(crate) use centrical_table::{quoted, shown_path};
 
 use centrical_table::Error as TableError;
 
@@ -15,7 +15,7 @@ pub enum Error {
     #[error(transparent)]
     Table(#[from] TableError),
     /// The experiment file does not follow the form: syntax, type of a value, unknown or missing key.
-    #[error("{}{place}: {message}", file.display())]
+    #[error("{}{place}: {message}", shown_path(file))]
     Form {
         /// The file.
         file: PathBuf,
@@ -25,7 +25,7 @@ pub enum Error {
         message: String,
     },
     /// A record does not hold what the schedule says.
-    #[error("{}, mounting {mounting}: {source}", file.display())]
+    #[error("{}, mounting {mounting}: {source}", shown_path(file))]
     Reduction {
         /// The record.
         file: PathBuf,
@@ -35,7 +35,7 @@ pub enum Error {
         source: Box<centrical::reduction::ReductionError>,
     },
     /// The plateau means of a session cannot be fitted.
-    #[error("{}: {source}", file.display())]
+    #[error("{}: {source}", shown_path(file))]
     Fit {
         /// The experiment file.
         file: PathBuf,
@@ -43,7 +43,7 @@ pub enum Error {
         source: centrical::FitError,
     },
     /// A result does not say how to compensate.
-    #[error("{}: {source}", file.display())]
+    #[error("{}: {source}", shown_path(file))]
     ErrorModel {
         /// The result.
         file: PathBuf,
@@ -51,7 +51,7 @@ pub enum Error {
         source: NoErrorModel,
     },
     /// The error model of a result has no certain inverse over the range asked for.
-    #[error("{}: {source}", file.display())]
+    #[error("{}: {source}", shown_path(file))]
     NotInvertible {
         /// The result.
         file: PathBuf,
@@ -59,7 +59,7 @@ pub enum Error {
         source: centrical_compensate::NotInvertible,
     },
     /// There is no plan.
-    #[error("{}: {source}", file.display())]
+    #[error("{}: {source}", shown_path(file))]
     Planning {
         /// The plan file.
         file: PathBuf,
@@ -67,7 +67,7 @@ pub enum Error {
         source: centrical::plan::PlanError,
     },
     /// A column of readings cannot be analysed for noise.
-    #[error("{}, {reading}: {source}", file.display())]
+    #[error("{}, {reading}: {source}", shown_path(file))]
     Noise {
         /// The file.
         file: PathBuf,
@@ -77,7 +77,7 @@ pub enum Error {
         source: centrical::stability::NoiseError,
     },
     /// Nothing can be simulated of a truth.
-    #[error("{}: {source}", file.display())]
+    #[error("{}: {source}", shown_path(file))]
     Simulation {
         /// The truth file.
         file: PathBuf,
@@ -106,7 +106,7 @@ impl Error {
     }
 
     /// Writing `file` failed with `source`.
-    pub(crate) fn writing(file: &Path, source: io::Error) -> Self {
+    pub fn writing(file: &Path, source: io::Error) -> Self {
         TableError::writing(file, source).into()
     }
 }

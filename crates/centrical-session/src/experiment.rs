@@ -17,7 +17,6 @@ mod uncertainty;
 mod unit;
 
 pub use self::candidates::Planning;
-pub(crate) use self::form::parse as parse_form;
 pub use self::plan::{ExpectedValues, Plan};
 pub use self::plateau_name::PlateauName;
 pub(crate) use self::plateaus::write_plateaus_parquet;

@@ -1,14 +1,14 @@
 //! `laboratory.toml`: what a certificate says beyond the calibration itself (ISO/IEC 17025, 7.8.2 and 7.8.4).
 
 use std::fmt;
-use std::fs;
 use std::path::Path;
 
 use serde::de::{self, Deserializer};
 use serde::{Deserialize, Serialize};
 
 use crate::document::CalibrationResult;
-use crate::error::{Error, Place};
+use crate::error::{Error, Place, quoted};
+use crate::settings::{from_toml, read_settings};
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -234,12 +234,8 @@ impl Laboratory {
     /// # Errors
     /// [`Error`] when it is not there, has an unknown or lacks a needed key, or when a value makes no sense.
     pub fn read(file: &Path) -> Result<Self, Error> {
-        let text = fs::read_to_string(file).map_err(|source| Error::reading(file, source, "a laboratory.toml"))?;
-        let laboratory: Self = toml::from_str(&text).map_err(|error| Error::Form {
-            file: file.to_owned(),
-            place: error.span().map_or(Place::Whole, |span| Place::of_byte(&text, span.start)),
-            message: error.message().trim().replace('\n', ", "),
-        })?;
+        let text = read_settings(file, "a laboratory.toml")?;
+        let laboratory: Self = from_toml(file, &text)?;
         laboratory.check(file)?;
         Ok(laboratory)
     }
@@ -253,7 +249,7 @@ impl Laboratory {
         let Some(unknown) = limits.find(|limit| result.parameter(&limit.parameter).is_none()) else { return Ok(()) };
         let place = Place::Key { table: "[[decision.limit]]".to_owned(), key: "parameter".to_owned() };
         let known = result.parameters.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
-        Err(Error::content(file, place, format!("{:?}", unknown.parameter), format!("one of {known}")))
+        Err(Error::content(file, place, quoted(unknown.parameter.as_bytes()), format!("one of {known}")))
     }
 
     fn check(&self, file: &Path) -> Result<(), Error> {
@@ -273,7 +269,7 @@ impl Laboratory {
             let country = &address.country;
             if country.len() != 2 || !country.bytes().all(|b| b.is_ascii_uppercase()) {
                 let expected = "two capital letters of ISO 3166-1, such as \"DE\"";
-                return refuse(table, "address.country", format!("{country:?}"), expected);
+                return refuse(table, "address.country", quoted(country.as_bytes()), expected);
             }
         }
         let Certificate { begun, ended, issued, .. } = self.certificate;
@@ -286,11 +282,20 @@ impl Laboratory {
         if !self.person.iter().any(|person| person.authorises) {
             return refuse("[[person]]", "authorises", "nobody".to_owned(), "one person with authorises = true");
         }
+        if let Some((key, found, expected)) = self.environment.impossible() {
+            return refuse("[environment]", key, found, &expected);
+        }
         let limits = self.decision.iter().flat_map(|decision| &decision.limit);
-        match limits.into_iter().find(|limit| limit.low.partial_cmp(&limit.high) != Some(std::cmp::Ordering::Less)) {
-            Some(Limit { parameter, low, high }) => {
-                refuse("[[decision.limit]]", parameter, format!("low {low}, high {high}"), "low below high")
-            }
+        match limits
+            .into_iter()
+            .find(|limit| !(limit.low.is_finite() && limit.high.is_finite() && limit.low < limit.high))
+        {
+            Some(Limit { parameter, low, high }) => refuse(
+                "[[decision.limit]]",
+                parameter,
+                format!("low {low}, high {high}"),
+                "finite numbers, low below high",
+            ),
             None => Ok(()),
         }
     }
@@ -298,6 +303,26 @@ impl Laboratory {
     /// The person who authorises the certificate.
     pub fn authorised_by(&self) -> Option<&Person> {
         self.person.iter().find(|person| person.authorises)
+    }
+}
+
+impl Environment {
+    /// A condition that cannot be, by its value or as far as it went from it: its key, what was found and what was expected.
+    fn impossible(&self) -> Option<(&'static str, String, String)> {
+        let conditions = [
+            ("temperature", Some(&self.temperature), (-273.15, 1e3), "degrees Celsius from -273.15 to 1000"),
+            ("humidity", self.humidity.as_ref(), (0.0, 100.0), "% of relative humidity from 0 to 100"),
+            ("pressure", self.pressure.as_ref(), (0.0, 1e3), "kPa from 0 to 1000"),
+        ];
+        for (key, condition, (low, high), meaning) in conditions {
+            let Some(Condition { value, range }) = condition else { continue };
+            let can_be = value.is_finite() && *range >= 0.0 && value - range >= low && value + range <= high;
+            if !can_be {
+                let expected = format!("a value with a range of zero or more around it, {meaning}");
+                return Some((key, format!("value {value}, range {range}"), expected));
+            }
+        }
+        None
     }
 }
 
@@ -342,7 +367,7 @@ mod tests {
     /// Each change of the example is refused with the place, what was found and what was expected.
     #[test]
     fn mistakes_are_named() {
-        let cases: [(&str, &str, &[&str]); 8] = [
+        let cases: [(&str, &str, &[&str]); 10] = [
             ("[customer]", "[costumer]", &["line", "costumer"]),
             ("post_code", "postcode", &["line", "postcode"]),
             ("country = \"RU\"", "country = \"Russia\"", &["address.country", "Russia", "ISO 3166-1"]),
@@ -351,6 +376,8 @@ mod tests {
             ("issued = 2026-10-09", "issued = 2026-10-06", &["[certificate], issued", "2026-10-06", "2026-10-07"]),
             ("authorises = true", "authorises = false", &["[[person]]", "nobody"]),
             ("low = -0.15", "low = 0.2", &["df_1", "low 0.2", "low below high"]),
+            ("low = -0.15", "low = nan", &["df_1", "low NaN", "finite"]),
+            ("high = 0.15", "high = inf", &["df_1", "high inf", "finite"]),
         ];
         for (from, to, parts) in cases {
             assert!(EXAMPLE.contains(from), "{from}");

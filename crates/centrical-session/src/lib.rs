@@ -27,13 +27,17 @@ mod quantity;
 mod record;
 mod record_writer;
 mod reduced;
+mod settings;
 mod truth;
 mod units;
 
 pub use centrical::STANDARD_GRAVITY;
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use centrical::stability::Estimator;
-pub use centrical_table::{ColumnName, TableFormat, create_folder, write_whole};
+pub use centrical_table::{
+    ClaimedFolder, ColumnName, TableFormat, abandon_files, claim_folder, create_folder, harmless, harmless_line,
+    refuse_inputs, write_whole,
+};
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
     CriterionName, DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry,

@@ -4,11 +4,39 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::foreign::cut;
+
+/// Characters that a message shows of what was found, and of what was expected, where that is a list of names.
+const LONGEST_FOUND: usize = 400;
+const LONGEST_EXPECTED: usize = 2000;
+
+/// Characters that a message shows of a name.
+const LONGEST_NAME: usize = 100;
+
+/// Characters that a message shows of a path: its end, where the name is.
+const LONGEST_PATH: usize = 500;
+
+/// A path as messages show it.
+pub fn shown_path(path: &Path) -> String {
+    let whole = path.display().to_string();
+    let count = whole.chars().count();
+    if count <= LONGEST_PATH {
+        whole
+    } else {
+        format!("...{}", whole.chars().skip(count - LONGEST_PATH).collect::<String>())
+    }
+}
+
 /// Why a table or another file could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The content of a file is not what its place calls for.
-    #[error("{}{place}: found {found}, expected {expected}", file.display())]
+    #[error(
+        "{}{place}: found {}, expected {}",
+        shown_path(file),
+        cut(found, LONGEST_FOUND),
+        cut(expected, LONGEST_EXPECTED)
+    )]
     Content {
         /// The file.
         file: PathBuf,
@@ -20,7 +48,7 @@ pub enum Error {
         expected: String,
     },
     /// The operating system refused to read or write a file.
-    #[error("{}: cannot be {action}: {source}", file.display())]
+    #[error("{}: cannot be {action}: {source}", shown_path(file))]
     Io {
         /// The file.
         file: PathBuf,
@@ -73,11 +101,11 @@ impl fmt::Display for Place {
         match self {
             Self::Whole => Ok(()),
             Self::Character { line, column } => write!(f, ", line {line}, column {column}"),
-            Self::Line { line, column: Some(column) } => write!(f, ", line {line}, {column}"),
+            Self::Line { line, column: Some(column) } => write!(f, ", line {line}, {}", cut(column, LONGEST_NAME)),
             Self::Line { line, column: None } => write!(f, ", line {line}"),
-            Self::Row { row, column } => write!(f, ", row {row}, {column}"),
-            Self::Column(column) => write!(f, ", {column}"),
-            Self::Key { table, key } => write!(f, ", {table}, {key}"),
+            Self::Row { row, column } => write!(f, ", row {row}, {}", cut(column, LONGEST_NAME)),
+            Self::Column(column) => write!(f, ", {}", cut(column, LONGEST_NAME)),
+            Self::Key { table, key } => write!(f, ", {table}, {}", cut(key, LONGEST_NAME)),
         }
     }
 }

@@ -39,18 +39,24 @@
 
 mod binary;
 mod column;
+mod document;
 mod error;
+mod foreign;
 mod reader;
 mod rows;
 mod stamp;
 mod text;
+mod unpacking;
 mod write;
 
 pub use column::{ColumnName, Field, Rule};
-pub use error::{Error, Place, quoted};
+pub use document::{open_regular, read_document};
+pub use error::{Error, Place, quoted, shown_path};
+pub use foreign::{cut, harmless, harmless_line};
 pub use reader::{Extent, TableReader, estimate_rows};
 pub use rows::Rows;
 pub use text::{Index, Reread};
 pub use write::{
-    Decimals, TableFormat, TableWriter, create_folder, parquet_bytes, write_stream, write_table, write_whole,
+    ClaimedFolder, Decimals, TableFormat, TableWriter, abandon_files, claim_folder, create_folder, parquet_bytes,
+    refuse_inputs, write_stream, write_table, write_whole,
 };

@@ -11,6 +11,7 @@ use memchr::memchr_iter;
 
 use crate::binary::{BinaryFormat, ColumnReader};
 use crate::column::Field;
+use crate::document::open_regular;
 use crate::error::{Error, Place};
 use crate::rows::{RowNumber, Rows};
 use crate::text::{Index, Lines, Packed, Plain, TextReader};
@@ -58,7 +59,7 @@ impl TableReader {
     /// If it cannot be read, or a binary table lacks a column.
     pub fn open(file: &Path, extent: Extent, fields: &[Field], expected: &str) -> Result<Self, Error> {
         let failed = |e| Error::reading(file, e, expected);
-        let mut input = open(file, expected)?;
+        let mut input = open_regular(file, expected)?;
         let length = input.metadata().map_err(failed)?.len();
         let magic = first_bytes(&mut input).map_err(failed)?;
         if magic.is_empty() {
@@ -70,8 +71,10 @@ impl TableReader {
             Format::Binary(format) => Source::Binary(format.open(file, input, fields, most_rows(length))?),
             format => {
                 let lines = match (format, extent) {
-                    (Format::Gzip, _) => Lines::Packed(Packed::new(file, MultiGzDecoder::new(input))),
-                    (Format::Zstd, _) => Lines::Packed(Packed::new(file, zstd::Decoder::new(input).map_err(failed)?)),
+                    (Format::Gzip, _) => Lines::Packed(Packed::new(file, MultiGzDecoder::new(input), length)),
+                    (Format::Zstd, _) => {
+                        Lines::Packed(Packed::new(file, zstd::Decoder::new(input).map_err(failed)?, length))
+                    }
                     (_, Extent::Whole) => Lines::Plain(Plain::new(file, input).map_err(failed)?),
                     (_, Extent::Growing) => {
                         Lines::Plain(Plain::new(file, input).and_then(Plain::complete).map_err(failed)?)
@@ -150,7 +153,7 @@ fn most_rows(length: u64) -> u64 {
 /// Estimates the rows of a table: of a text by how long the lines in its middle are; none of other formats.
 pub fn estimate_rows(file: &Path) -> Option<u64> {
     const SAMPLE: u64 = 1 << 16;
-    let mut input = open(file, "a table of numbers").ok()?;
+    let mut input = open_regular(file, "a table of numbers").ok()?;
     let bytes = input.metadata().ok()?.len();
     let format = Format::of(&first_bytes(&mut input).ok()?);
     let mut sample = Vec::new();
@@ -179,16 +182,6 @@ impl Format {
             _ => BinaryFormat::of(magic).map_or(Self::Text, Self::Binary),
         }
     }
-}
-
-/// Opens a regular file: a pipe or a device could keep the reader for ever.
-fn open(file: &Path, expected: &str) -> Result<File, Error> {
-    let kind = std::fs::metadata(file).map_err(|e| Error::reading(file, e, expected))?.file_type();
-    if !kind.is_file() {
-        let found = if kind.is_dir() { "a folder" } else { "something that is no regular file" };
-        return Err(Error::content(file, Place::Whole, found, expected));
-    }
-    File::open(file).map_err(|e| Error::reading(file, e, expected))
 }
 
 /// The first bytes, up to 8, leaving the file at its start.

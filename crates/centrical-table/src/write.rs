@@ -1,22 +1,27 @@
 //! Tables out, as CSV or Parquet.
 
+mod beside;
 mod csv;
 mod file;
+mod folder;
 mod lines;
 mod output;
+mod outputs;
 mod parquet;
 mod row_groups;
 mod text_lines;
 
-use std::ffi::OsString;
-use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use self::beside::Beside;
+pub use self::beside::abandon_files;
 use self::csv::CsvTable;
-pub use self::file::{create_folder, write_stream, write_whole};
+pub use self::file::{write_stream, write_whole};
+pub use self::folder::{ClaimedFolder, claim_folder, create_folder};
 use self::lines::TextTable;
 use self::output::SteadyFile;
+pub use self::outputs::refuse_inputs;
 use self::parquet::{Layout, ParquetTable};
 use self::row_groups::RowGroups;
 pub use self::text_lines::Decimals;
@@ -52,9 +57,9 @@ impl TableFormat {
 /// It is on the disk then. Numbers read back as they were unless they are rounded; NaN is written as such.
 pub struct TableWriter<const N: usize> {
     file: PathBuf,
-    beside: OsString,
-    /// The table in the making; none once it is finished.
-    table: Option<Table<N>>,
+    /// The table in the making. It ends before the file that it is written to.
+    table: Table<N>,
+    beside: Beside,
 }
 
 enum Table<const N: usize> {
@@ -68,15 +73,14 @@ impl<const N: usize> TableWriter<N> {
     /// # Errors
     /// [`Error::Io`] if the folder does not take the file.
     pub fn create(file: &Path, names: &[&str; N], decimals: [Decimals; N]) -> Result<Self, Error> {
-        let mut beside = file.as_os_str().to_owned();
-        beside.push(".tmp");
         let failed = |error| Error::writing(file, error);
-        let output = File::create(&beside).and_then(SteadyFile::new).map_err(failed)?;
+        let (beside, output) = Beside::create(file).map_err(failed)?;
+        let output = SteadyFile::new(output).map_err(failed)?;
         let table = match TableFormat::of(file) {
             TableFormat::Csv => TextTable::new(output, names, decimals).map(Table::Text),
             TableFormat::Parquet => RowGroups::new(output, names).map(Table::Parquet),
         };
-        Ok(Self { file: file.to_owned(), beside, table: Some(table.map_err(failed)?) })
+        Ok(Self { file: file.to_owned(), table: table.map_err(failed)?, beside })
     }
 
     /// Adds rows, given as pieces of all columns, on all threads.
@@ -85,9 +89,8 @@ impl<const N: usize> TableWriter<N> {
     /// [`Error::Io`] if they cannot be written.
     pub fn write(&mut self, pieces: &[[&[f64]; N]]) -> Result<(), Error> {
         let written = match &mut self.table {
-            Some(Table::Text(table)) => table.write(pieces),
-            Some(Table::Parquet(table)) => table.write(pieces),
-            None => Ok(()),
+            Table::Text(table) => table.write(pieces),
+            Table::Parquet(table) => table.write(pieces),
         };
         written.map_err(|error| Error::writing(&self.file, error))
     }
@@ -96,26 +99,12 @@ impl<const N: usize> TableWriter<N> {
     ///
     /// # Errors
     /// [`Error::Io`] if it cannot be written.
-    pub fn finish(mut self) -> Result<(), Error> {
-        let finished = match self.table.take() {
-            Some(Table::Text(table)) => table.finish(),
-            Some(Table::Parquet(table)) => table.finish(),
-            None => Ok(()),
+    pub fn finish(self) -> Result<(), Error> {
+        let finished = match self.table {
+            Table::Text(table) => table.finish(),
+            Table::Parquet(table) => table.finish(),
         };
-        finished.and_then(|()| fs::rename(&self.beside, &self.file)).map_err(|error| {
-            // Best effort: the first error is the one to tell.
-            let _ = fs::remove_file(&self.beside);
-            Error::writing(&self.file, error)
-        })
-    }
-}
-
-impl<const N: usize> Drop for TableWriter<N> {
-    /// Leaves nothing of a table that was not finished.
-    fn drop(&mut self) {
-        if self.table.take().is_some() {
-            let _ = fs::remove_file(&self.beside);
-        }
+        finished.and_then(|()| self.beside.take_place()).map_err(|error| Error::writing(&self.file, error))
     }
 }
 

@@ -26,11 +26,18 @@ pub use motion::TruePlateau;
 pub use record::Records;
 pub use telemetry::Telemetry;
 
-use crate::model::{MeasurementModel, Parameters, SetPoint};
+use crate::model::{ArmMotion, MeasurementModel, Parameters, SetPoint};
 use draw::Draw;
 use motion::Motion;
 use record::Physics;
 use sensor_noise::Sampling;
+
+/// Readings beyond this [m/s^2] are of a truth in a mistaken unit.
+const LARGEST_READING: f64 = 1e9;
+
+/// Samples of a session at most: twelve mountings of an hour at 20 kHz. Telemetry is held in memory.
+const MOST_SAMPLES: f64 = 1e9;
+const MOST_REPORTS: f64 = 1e7;
 
 /// A session as it would be recorded: a pure function of model, truth, equipment and seed.
 #[derive(Debug, Clone, Copy)]
@@ -70,7 +77,10 @@ impl<'a> Simulation<'a> {
         if let Some(j) = truth.iter().position(|value| !value.is_finite()) {
             return Err(SimulationError::Truth { name: parameters[j].name.clone(), found: truth[j] });
         }
-        Ok(Self { model, truth, equipment, seed, durations: &[] })
+        let simulation = Self { model, truth, equipment, seed, durations: &[] };
+        simulation.check_readings()?;
+        simulation.check_samples()?;
+        Ok(simulation)
     }
 
     /// The session with a duration for every set point [s] in place of [`Machine::plateau`].
@@ -85,7 +95,45 @@ impl<'a> Simulation<'a> {
         for &plateau in durations {
             Equipment { machine: Machine { plateau, ..self.equipment.machine }, ..*self.equipment }.check()?;
         }
-        Ok(Self { durations, ..self })
+        let simulation = Self { durations, ..self };
+        simulation.check_samples()?;
+        Ok(simulation)
+    }
+
+    /// Whether every plateau reads what can be recorded.
+    fn check_readings(&self) -> Result<(), SimulationError> {
+        for set_point in &self.model.experiment().set_points {
+            let motion = ArmMotion { angle: set_point.angle, speed: set_point.omega, acceleration: 0.0 };
+            let reading = Physics::new(self.model, self.truth, set_point.mounting).reading(&motion);
+            if let Some(&found) = reading.iter().find(|f| !f.is_finite() || f.abs() >= LARGEST_READING) {
+                return Err(SimulationError::Reading { mounting: set_point.mounting + 1, found });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether every plateau has samples, and the session not more than can be written.
+    fn check_samples(&self) -> Result<(), SimulationError> {
+        let Equipment { machine, recorder, tachometer, .. } = self.equipment;
+        let set_points = self.model.experiment().set_points.len();
+        let duration = |n: usize| self.durations.get(n).copied().unwrap_or(machine.plateau);
+        let shortest = (0..set_points).map(duration).fold(f64::INFINITY, f64::min) * recorder.rate;
+        if shortest < 2.0 {
+            let (of, expected) = ("in a plateau", "two or more");
+            return Err(SimulationError::Samples { setting: "recorder.rate", found: shortest, of, expected });
+        }
+        let of_plateau = |n: usize| duration(n) + machine.plateau_spread + machine.ramp;
+        let all: f64 = (0..set_points).map(of_plateau).sum();
+        let (samples, reports) = (all * recorder.rate, all * tachometer.rate);
+        if samples > MOST_SAMPLES {
+            let (of, expected) = ("in all records", "1e9 at most");
+            return Err(SimulationError::Samples { setting: "recorder.rate", found: samples, of, expected });
+        }
+        if reports > MOST_REPORTS {
+            let (of, expected) = ("of telemetry", "1e7 at most");
+            return Err(SimulationError::Samples { setting: "tachometer.rate", found: reports, of, expected });
+        }
+        Ok(())
     }
 
     /// One mounting, by its index in the experiment.

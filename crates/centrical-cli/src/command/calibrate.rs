@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::{states_text, terminal_table, verdict_text, write_all_documents};
 use centrical_session::{
-    CalibrationResult, Error, Method, PlateauName, ResultObjection, Session, calibrate_without, create_folder,
+    CalibrationResult, Error, Method, Place, PlateauName, ResultObjection, Session, calibrate_without, claim_folder,
+    refuse_inputs,
 };
 
 use crate::command::report::Documents;
-use crate::outcome::{Outcome, print};
+use crate::outcome::Outcome;
+use crate::output::{print, say};
 use crate::progress;
 
 /// Calibrate a unit from a session folder: plateau means, fit, result.json.
@@ -53,30 +55,57 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     if method == Method::Recursive {
         let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
-        eprint!("{}", states_text(&session.model()?, &order));
+        say(&states_text(&session.model()?, &order));
+    }
+    let out = arguments.out.as_deref();
+    let claim = out.map(claim_folder).transpose()?;
+    let file = match (out, arguments.json) {
+        (Some(folder), _) => Some(folder.join("result.json")),
+        (None, false) => Some(PathBuf::from("result.json")),
+        (None, true) => None,
+    };
+    let laboratory = arguments.documents.laboratory.as_deref();
+    refuse_inputs(&outputs(out, file.as_deref()), &[session.files(), laboratory.into_iter().collect()].concat())?;
+    if out.is_none() {
+        file.as_deref().map_or(Ok(()), |file| refuse_another_unit(file, &session))?;
     }
     let bar = progress::reading(&session);
     let result = calibrate_without(&session, &arguments.hold_out, method, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
-    let file = match (&arguments.out, arguments.json) {
-        (Some(folder), _) => {
-            create_folder(folder)?;
-            Some(folder.join("result.json"))
-        }
-        (None, false) => Some(PathBuf::from("result.json")),
-        (None, true) => None,
-    };
     if let Some(file) = &file {
         result.write(file)?;
     }
-    if let Some(folder) = &arguments.out {
-        let Documents { laboratory, language } = &arguments.documents;
-        write_all_documents(&result, laboratory.as_deref(), (*language).into(), folder)?;
+    if let Some(folder) = out {
+        write_all_documents(&result, laboratory, arguments.documents.language.into(), folder)?;
     }
+    drop(claim);
     let objections = result.objections();
     let text = if arguments.json { result.to_json()? } else { report(&result, &objections, file.as_deref()) };
-    print(&text);
+    print(&text)?;
     Ok(Outcome::acceptable(objections.is_empty()))
+}
+
+/// The files that are written, but for plots.
+fn outputs(out: Option<&Path>, result: Option<&Path>) -> Vec<PathBuf> {
+    let documents = ["report.html", "certificate.pdf", "certificate.xml"];
+    let documents = out.into_iter().flat_map(|folder| documents.map(|name| folder.join(name)));
+    result.map(Path::to_owned).into_iter().chain(documents).collect()
+}
+
+/// The current folder may be anybody's: a result there is replaced by one of the same unit alone.
+fn refuse_another_unit(file: &Path, session: &Session) -> Result<(), Error> {
+    if !file.exists() {
+        return Ok(());
+    }
+    let there = CalibrationResult::read(file).map_or("a file that is no result of this program".to_owned(), |result| {
+        format!("the result of unit {:?} {:?}", result.session.unit_model, result.session.unit_serial)
+    });
+    let own = format!("the result of unit {:?} {:?}", session.unit_model, session.unit_serial);
+    if there == own {
+        return Ok(());
+    }
+    let expected = format!("{own}, or no such file: give a folder with --out, or remove it");
+    Err(Error::content(file, Place::Whole, there, expected))
 }
 
 fn report(result: &CalibrationResult, objections: &[ResultObjection], file: Option<&Path>) -> String {

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use centrical_report::comparison_table;
 use centrical_session::{CalibrationResult, Error, compare_results};
 
-use crate::outcome::{Outcome, print};
+use crate::outcome::Outcome;
+use crate::output::print;
 
 /// Compare two calibrations of one unit: differences over their uncertainties, drift, and a joint test.
 #[derive(Debug, clap::Args)]
@@ -24,6 +25,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let (first, second) = (CalibrationResult::read(&arguments.first)?, CalibrationResult::read(&arguments.second)?);
     let compared = compare_results(&first, &second);
     let text = comparison_table(&first, &compared, arguments.years);
-    print(&text);
+    print(&text)?;
     Ok(Outcome::acceptable(compared.agree))
 }

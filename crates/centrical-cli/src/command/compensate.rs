@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use centrical_report::compensation_text;
 use centrical_session::{CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate};
 
-use crate::outcome::{Outcome, print};
+use crate::outcome::Outcome;
+use crate::output::print;
 
 /// Convert a record of readings to specific force with a calibration result.
 #[derive(Debug, clap::Args)]
@@ -24,6 +25,9 @@ pub struct Arguments {
     /// [default: twice the largest plateau reading of the calibration, within the range of the certified inverse]
     #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
     range: Option<f64>,
+    /// Refuse a record with readings beyond those of the calibration, by more than a hundredth; nothing is written then
+    #[arg(long)]
+    within_calibration: bool,
 }
 
 /// Runs the command.
@@ -34,8 +38,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         out: arguments.out.clone(),
         session: arguments.session.clone(),
         range: arguments.range,
+        within_calibration: arguments.within_calibration,
     })?;
-    print(&compensation_text(&compensated, &certificate, &arguments.out));
+    print(&compensation_text(&compensated, &certificate, &arguments.out))?;
     Ok(Outcome::acceptable(compensated.outside == 0))
 }
 

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use centrical_report::selection_table;
 use centrical_session::{Error, Session, select_model};
 
-use crate::outcome::{Outcome, print};
+use crate::outcome::Outcome;
+use crate::output::print;
 use crate::progress;
 
 /// Fit rival models to a session and compare them by F test, BIC and hold-out.
@@ -21,6 +22,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let bar = progress::reading(&session);
     let selection = select_model(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
-    print(&selection_table(&selection));
+    print(&selection_table(&selection))?;
     Ok(Outcome::Done)
 }

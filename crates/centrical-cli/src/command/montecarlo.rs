@@ -6,7 +6,8 @@ use centrical_report::monte_carlo_text;
 use centrical_session::{Error, MonteCarloCase, MonteCarloRequest, Session, read_plan};
 
 use super::assess::probability;
-use crate::outcome::{Outcome, print};
+use crate::outcome::Outcome;
+use crate::output::print;
 use crate::progress;
 
 /// Repeat the calibration on simulated noise and type B errors, and check the stated uncertainties.
@@ -56,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let monte_carlo = case.run(&request, &|count| bar.inc(count as u64))?;
     bar.finish_and_clear();
     let text = monte_carlo_text(&case, &monte_carlo, arguments.coverage);
-    print(&text);
+    print(&text)?;
     Ok(Outcome::Done)
 }
 

@@ -7,7 +7,8 @@ use centrical_session::{
     ColumnName, Dimension, Error, Estimator, NoiseRequest, NotThatQuantity, PlateauName, Quantity, noise_of,
 };
 
-use crate::outcome::{Outcome, print};
+use crate::outcome::Outcome;
+use crate::output::print;
 
 /// Analyse the noise of a record: deviations of the Allan family with intervals, spectrum, noise terms.
 #[derive(Debug, clap::Args)]
@@ -79,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         lines.extend(arguments.out.iter().map(|folder| format!("Written to {}\n", folder.display())));
         lines.concat()
     };
-    print(&text);
+    print(&text)?;
     Ok(Outcome::acceptable(warnings.is_empty()))
 }
 

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use centrical_report::observation_text;
 use centrical_session::{Error, ObservabilityReport, subject};
 
-use crate::outcome::{Outcome, print};
+use crate::outcome::Outcome;
+use crate::output::print;
 
 /// Analyse observability: rank, undetermined combinations, causes, remedies; before or after the experiment.
 #[derive(Debug, clap::Args)]
@@ -26,6 +27,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let subject = subject(&arguments.subject, &|_| ())?;
     let report = ObservabilityReport::of(&subject, &arguments.combination)?;
     let text = if arguments.json { report.to_json()? } else { observation_text(&report) };
-    print(&text);
+    print(&text)?;
     Ok(Outcome::acceptable(report.is_acceptable()))
 }

@@ -6,7 +6,8 @@ use centrical_report::{frontier_plot, plan_text};
 use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, write_whole};
 
 use super::assess::probability;
-use crate::outcome::{Outcome, print};
+use crate::outcome::Outcome;
+use crate::output::print;
 
 /// Find the schedule with the smallest uncertainty in the time available, or the shortest one that meets target
 /// uncertainties.
@@ -44,6 +45,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         frontier: if arguments.frontier { USUAL_TIMES.to_vec() } else { Vec::new() },
         levels: arguments.levels.clone(),
         coverage: arguments.coverage,
+        outputs: arguments.out.iter().chain(&arguments.svg).cloned().collect(),
     };
     let report = plan(&arguments.plan, &request)?;
     if let Some(file) = &arguments.out {
@@ -53,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         write_whole(file, frontier_plot(&report).as_bytes())?;
     }
     let text = if arguments.json { report.to_json()? } else { plan_text(&report) };
-    print(&text);
+    print(&text)?;
     Ok(Outcome::acceptable(report.is_acceptable()))
 }
 

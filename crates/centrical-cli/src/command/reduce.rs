@@ -6,6 +6,7 @@ use centrical_session::{Error, Session, reduce_without_inputs, write_reduced};
 
 use crate::format::Format;
 use crate::outcome::Outcome;
+use crate::output::print;
 use crate::progress;
 
 /// Reduce a session's records to plateau means: a session of a few kilobytes, calibrated to the same numbers.
@@ -29,6 +30,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     bar.finish_and_clear();
     write_reduced(&session, &reduced, arguments.format.into(), &arguments.out)?;
     let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();
-    println!("{} plateaus of {samples} samples written to {}", reduced.plateaus.len(), arguments.out.display());
+    print(&format!(
+        "{} plateaus of {samples} samples written to {}\n",
+        reduced.plateaus.len(),
+        arguments.out.display()
+    ))?;
     Ok(Outcome::Done)
 }

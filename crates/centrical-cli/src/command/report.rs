@@ -6,7 +6,8 @@ use centrical_report::{DocumentRequest, Language, verdict_text, write_documents}
 use centrical_session::Error;
 use clap::ValueEnum;
 
-use crate::outcome::{Outcome, print};
+use crate::outcome::Outcome;
+use crate::output::print;
 
 /// Write the documents of a calibration from its result.json.
 #[derive(Debug, clap::Args)]
@@ -80,7 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     })?;
     let objections = result.objections();
     if !objections.is_empty() {
-        print(&verdict_text(&objections));
+        print(&verdict_text(&objections))?;
     }
     Ok(Outcome::acceptable(objections.is_empty()))
 }

@@ -2,14 +2,16 @@
 
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use centrical_report::{states_text, terminal_table, verdict_text, watch_table, write_history_plot};
-use centrical_session::{Error, Following, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, create_folder};
+use centrical_session::{
+    Error, Following, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder, refuse_inputs,
+};
 
-use crate::outcome::{Outcome, print};
+use crate::interruption::asked_to_end;
+use crate::outcome::Outcome;
+use crate::output::{print, print_as_it_is, say};
 
 /// Monitor a session folder while the laboratory is still adding records: after each plateau the uncertainties and the
 /// benefit of the next; the calibration when the schedule is complete. After Ctrl-C it resumes when started again.
@@ -46,7 +48,9 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
-    create_folder(&arguments.out)?;
+    let _claim = claim_folder(&arguments.out)?;
+    let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "result.json"];
+    refuse_inputs(&outputs.map(|name| arguments.out.join(name)), &session.files())?;
     let model = session.model()?;
     let request = WatchRequest {
         out: arguments.out.clone(),
@@ -60,13 +64,20 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let mut following = Following::resume(&request, &session, &model)?;
     let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
-    eprint!("{}", states_text(&model, &order));
-    let end = following.run(&stopped_by_ctrl_c(), &mut |event| show(&event, &arguments.target))?;
+    say(&states_text(&model, &order));
+    let mut shown = Ok(());
+    let end = following.run(asked_to_end(), &mut |event| {
+        let outcome = show(&event, &arguments.target);
+        if shown.is_ok() {
+            shown = outcome;
+        }
+    })?;
     write_history_plot(&model, &arguments.out)?;
+    shown?;
     match end {
         WatchEnd::Stopped { plateaus } => {
             let file = arguments.out.join("watch.json");
-            eprintln!("Stopped after {plateaus} plateaus; the same command goes on from {}", file.display());
+            say(&format!("Stopped after {plateaus} plateaus; the same command goes on from {}\n", file.display()));
             Ok(Outcome::Done)
         }
         WatchEnd::Complete(result) => {
@@ -74,30 +85,27 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             let file = arguments.out.join("result.json");
             let written = format!("\nThe schedule is complete. Written to {}\n", file.display());
             let text = terminal_table(&result) + &verdict_text(&objections) + &written;
-            print(&text);
+            print(&text)?;
             Ok(Outcome::acceptable(objections.is_empty()))
         }
     }
 }
 
-fn show(event: &WatchEvent, targets: &[(String, f64)]) {
+fn show(event: &WatchEvent, targets: &[(String, f64)]) -> Result<(), Error> {
     match event {
-        WatchEvent::Waiting(note) => eprintln!("{note}"),
+        WatchEvent::Waiting(note) => {
+            say(&format!("{note}\n"));
+            Ok(())
+        }
         WatchEvent::Plateau(progress) => {
             // On a terminal the table stays in its place.
-            let clear = if io::stdout().is_terminal() { "\x1b[2J\x1b[H" } else { "" };
-            print(&format!("{clear}{}\n", watch_table(progress, targets)));
+            let is_cleared = io::stdout().is_terminal();
+            if is_cleared {
+                print_as_it_is("\x1b[2J\x1b[H")?;
+            }
+            print(&format!("{}\n", watch_table(progress, targets, is_cleared)))
         }
     }
-}
-
-/// A flag that Ctrl-C raises.
-fn stopped_by_ctrl_c() -> Arc<AtomicBool> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let raised = Arc::clone(&stop);
-    // Without a handler Ctrl-C ends the program at once; the state on disk is whole then as well.
-    let _ = ctrlc::set_handler(move || raised.store(true, Ordering::Relaxed));
-    stop
 }
 
 fn target(text: &str) -> Result<(String, f64), String> {

@@ -1,7 +1,7 @@
 //! A term with its name, and text that may stand in a comment.
 
 use centrical_compensate::Term;
-use centrical_session::{CalibrationResult, NoErrorModel};
+use centrical_session::{CalibrationResult, NoErrorModel, harmless_line};
 
 /// A term and the name of its coefficient, for the comments.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +25,7 @@ impl NamedTerm {
 
 /// Text that stays within a comment of any of the languages, whatever a session calls itself.
 pub(super) fn harmless(text: &str) -> String {
-    let line: String = text.chars().map(|c| if c.is_control() || c == '\\' { ' ' } else { c }).collect();
+    let line = harmless_line(text).replace('\\', " ");
     // The ends of a C comment, what begins a trigraph, and the marks of the templates.
     line.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?").replace('@', "(at)")
 }

@@ -2,19 +2,19 @@
 
 use std::fmt::{self, Display};
 
-/// Text with the characters that mean something to XML replaced; those that XML forbids are dropped.
+use centrical_session::harmless_line;
+
+/// Text with the characters that mean something to XML replaced; those that are not shown, among them what XML forbids, by U+FFFD.
 pub(crate) struct Escaped<'a>(pub(crate) &'a str);
 
 impl Display for Escaped<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for c in self.0.chars() {
+        for c in harmless_line(self.0).chars() {
             match c {
                 '&' => f.write_str("&amp;")?,
                 '<' => f.write_str("&lt;")?,
                 '>' => f.write_str("&gt;")?,
                 '"' => f.write_str("&quot;")?,
-                '\t' | '\n' => f.write_str(" ")?,
-                c if c.is_control() => {}
                 c => write!(f, "{c}")?,
             }
         }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use centrical::uncertainty::Level;
 use centrical_session::{
     CalibrationResult, ParameterEstimate, ResultObjection, RivalSummary, TermSummary, ValiditySummary, customary,
+    harmless_line,
 };
 
 use super::drift::drift;
@@ -45,8 +46,8 @@ pub fn terminal_table(result: &CalibrationResult) -> String {
 fn heading(text: &mut String, result: &CalibrationResult) {
     let session = &result.session;
     let serial = if session.unit_serial.is_empty() { "not given" } else { &session.unit_serial };
-    let _ = writeln!(text, "{}, serial {serial}", session.unit_model);
-    let _ = writeln!(text, "{}, {}", session.title, session.date);
+    let _ = writeln!(text, "{}, serial {}", harmless_line(&session.unit_model), harmless_line(serial));
+    let _ = writeln!(text, "{}, {}", harmless_line(&session.title), harmless_line(&session.date));
     let combined = if result.stated_sources().is_empty() { "" } else { "combined " };
     let _ = writeln!(text, "value ± {combined}standard uncertainty; 1 g = 9.80665 m/s^2");
 }

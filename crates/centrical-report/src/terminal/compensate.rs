@@ -28,6 +28,15 @@ pub fn compensation_text(compensated: &Compensated, certificate: &Certificate, o
             first.reading.map(g).join(", ")
         ));
     }
+    if let Some(first) = &compensated.first_beyond {
+        lines.push(format!(
+            "WARNING  {} readings lie beyond those of the calibration, where its error model is extrapolated, the first at \
+             t = {} s: {}\n",
+            compensated.beyond,
+            first.t,
+            first.reading.map(g).join(", ")
+        ));
+    }
     let out = out.display();
     lines.push(match compensated.decimals {
         Some(count) => format!("Written to {out}, specific forces to {count} decimals of a m/s^2\n"),

@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use centrical_session::{ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport, customary};
+use centrical_session::{
+    ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport, customary, harmless_line,
+};
 
 use super::prediction::prediction_text;
 use crate::number::trimmed;
@@ -29,7 +31,7 @@ pub fn observation_text(report: &ObservabilityReport) -> String {
 
 fn heading(text: &mut String, report: &ObservabilityReport) {
     if !report.title.is_empty() {
-        let _ = writeln!(text, "{}", report.title);
+        let _ = writeln!(text, "{}", harmless_line(&report.title));
     }
     let _ = writeln!(
         text,

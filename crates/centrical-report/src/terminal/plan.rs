@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
+use centrical_session::harmless_line;
 use centrical_session::{
     CriterionName, GoalReport, MICRO_G, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport, customary,
 };
@@ -35,7 +36,7 @@ pub fn plan_text(report: &PlanReport) -> String {
 
 fn heading(text: &mut String, report: &PlanReport) {
     if !report.title.is_empty() {
-        let _ = writeln!(text, "{}", report.title);
+        let _ = writeln!(text, "{}", harmless_line(&report.title));
     }
     let visits: usize = report.mountings.iter().map(|m| m.plateaus.len()).sum();
     let [measuring, ramps, set_ups] = report.time_by_use;

@@ -6,19 +6,27 @@ use std::fmt::Write;
 use centrical::fit::Progress;
 use centrical::fit::filter::Lifetimes;
 use centrical::{Group, MeasurementModel, Parameter};
-use centrical_session::{InnovationSummary, PlateauName, Session, WatchProgress, WatchedPlateau, customary};
+use centrical_session::{
+    InnovationSummary, PlateauName, Session, WatchProgress, WatchedPlateau, customary, harmless_line,
+};
 
 /// Wanted standard uncertainties: group, and value in its customary unit.
 type Targets = [(String, f64)];
 
-/// The table: a line per group of unknowns with its largest standard uncertainty, beside the wanted one.
-pub fn watch_table(view: &WatchProgress, targets: &Targets) -> String {
+/// The table: a line per group of unknowns with its largest standard uncertainty, beside the wanted one. Earlier alarms stand in
+/// it with `all_alarms`, for a terminal that is cleared between two tables; elsewhere they stand in the table of their plateau.
+pub fn watch_table(view: &WatchProgress, targets: &Targets, all_alarms: bool) -> String {
     let mut text = String::new();
     let (arrived, all) = (view.plateaus.len(), view.session.experiment.set_points.len());
     let columns = view.model.parameters().len();
-    let _ = writeln!(text, "{}\nPLATEAU {arrived} of {all}   RANK {} of {columns}", view.session.title, view.now.rank);
+    let _ = writeln!(
+        text,
+        "{}\nPLATEAU {arrived} of {all}   RANK {} of {columns}",
+        harmless_line(&view.session.title),
+        view.now.rank
+    );
     for (n, plateau) in (1..).zip(view.plateaus) {
-        if plateau.alarm || n == arrived {
+        if all_alarms && plateau.alarm || n == arrived {
             outcome(&mut text, view.session, plateau);
         }
     }

@@ -3,11 +3,21 @@
 use std::path::Path;
 
 use centrical::{PairRelation, Position, is_rotation};
+use centrical_table::harmless_line;
 use nalgebra::Matrix3;
 
 use super::form::PositionTable;
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
+
+/// Characters of a name: it stands in the names of parameters.
+const LONGEST_NAME: usize = 100;
+
+/// Whether a text can be part of the name of a parameter, `delta_1[name]`.
+fn is_name(text: &str) -> bool {
+    let is_shown = harmless_line(text) == text && text.chars().count() <= LONGEST_NAME;
+    is_shown && !text.is_empty() && !text.contains(['[', ']'])
+}
 
 /// The positions in the order of the file.
 pub(crate) fn positions(file: &Path, tables: &[PositionTable], relation: PairRelation) -> Result<Vec<Position>, Error> {
@@ -18,7 +28,7 @@ pub(crate) fn positions(file: &Path, tables: &[PositionTable], relation: PairRel
     let mut positions: Vec<Position> = Vec::with_capacity(tables.len());
     for (k, table) in tables.iter().enumerate() {
         let at = TomlPath::entry(file, "position", k);
-        if table.id.is_empty() || table.id.contains(['[', ']']) {
+        if !is_name(&table.id) {
             return Err(at.unexpected("id", quoted(table.id.as_bytes()), "a name without brackets"));
         }
         if positions.iter().any(|p| p.id == table.id) {

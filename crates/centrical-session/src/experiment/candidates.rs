@@ -13,6 +13,7 @@ use super::session::{Session, named_extensions, read_text};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
+use crate::settings::from_toml;
 
 /// Beyond these no centrifuge has time, and no search either.
 const MOST_PLATEAUS: usize = 20_000;
@@ -41,7 +42,7 @@ impl Planning {
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, or has no `[candidates]`.
     pub fn read(path: &Path, earlier: EarlierResult) -> Result<Self, Error> {
-        let mut form: Form = form::parse(path, &read_text(path)?)?;
+        let mut form: Form = from_toml(path, &read_text(path)?)?;
         let at = TomlPath::table(path, "candidates");
         let Some(table) = form.candidates.take() else {
             return Err(at.unexpected("radii", "no [candidates]", "what the plan is chosen from"));
@@ -240,7 +241,8 @@ fn robustness(file: &Path, form: &Form) -> Result<Robustness, Error> {
 fn target(file: &Path, form: &Form, model: &MeasurementModel) -> Result<(Criterion, Option<f64>, ReadingRange), Error> {
     let at = TomlPath::table(file, "target");
     let table = &form.target;
-    let time = table.time.as_ref().map(|q| at.bounded("time", q, Dimension::Time, (1.0, 1e9), "a time above 1 s"));
+    let time =
+        table.time.as_ref().map(|q| at.bounded("time", q, Dimension::Time, (1.0, 1e9), "a time from 1 s to 1e9 s"));
     let time = time.transpose()?;
     let force = table.range.as_ref().map_or(Ok(USUAL_RANGE), |q| {
         at.bounded("range", q, Dimension::Acceleration, (1e-3, 1e7), "a specific force from 1e-3 to 1e7 m/s^2")

@@ -9,13 +9,14 @@ use centrical::{MeasurementModel, Parameter, TypeB, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;
 
-use super::form::{self, Form, PlanTable, PresetForm, PresetTable};
+use super::form::{Form, PlanTable, PresetForm, PresetTable};
 use super::session::{Session, extensions, pair_relation, read_text};
 use super::speeds::preset_speeds;
 use super::toml_path::TomlPath;
 use super::{prior, schedule, terms};
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
+use crate::settings::from_toml;
 
 /// Name of the source's normalised experiment [K5.5].
 const NORMALISED: &str = "kozlov-2017-normalised";
@@ -77,15 +78,15 @@ impl Plan {
             return Ok(None);
         }
         let text = read_text(path)?;
-        let probe: Probe = form::parse(path, &text)?;
+        let probe: Probe = from_toml(path, &text)?;
         if probe.plan.as_ref().is_some_and(|plan| plan.preset.is_some()) {
-            return Self::of_preset(path, &form::parse(path, &text)?).map(Some);
+            return Self::of_preset(path, &from_toml(path, &text)?).map(Some);
         }
         let is_measured = probe.plateaus.is_some() || probe.mounting.iter().any(|m| m.record.is_some());
         if is_measured && probe.plan.is_none() {
             return Ok(None);
         }
-        let form: Form = form::parse(path, &text)?;
+        let form: Form = from_toml(path, &text)?;
         let expected = expected_values(path, form.plan.as_ref(), earlier)?;
         Self::of_form(path, &form, &expected).map(Some)
     }

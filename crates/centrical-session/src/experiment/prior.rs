@@ -11,6 +11,9 @@ use crate::error::Error;
 use crate::quantity::{Dimension, Quantity};
 use crate::units::writable;
 
+/// How far a standard uncertainty may be from the typical magnitude of its parameter, either way.
+const FIRMEST: f64 = 1e12;
+
 /// A prior as written.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PriorEntry {
@@ -34,6 +37,7 @@ pub(crate) fn with_priors(
     for entry in entries {
         let PriorEntry { name, value: PriorValue { mean, standard_uncertainty } } = entry;
         let sigma = in_si(&at, &model, name, standard_uncertainty)?;
+        within_reason(&at, &model, name, standard_uncertainty, sigma)?;
         let mean = mean.as_ref().map_or(Ok(0.0), |mean| in_si(&at, &model, name, mean))?;
         model = model.with_prior_about(name, mean, sigma).map_err(|error| refusal(&at, name, error))?;
     }
@@ -48,11 +52,30 @@ pub(crate) fn uncertainty_of(
     quantity: &Quantity,
 ) -> Result<f64, Error> {
     let value = in_si(at, model, name, quantity)?;
+    within_reason(at, model, name, quantity, value)?;
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
         Err(at.unexpected(name, quantity.to_string(), "a standard uncertainty above 0"))
     }
+}
+
+/// Refuses an uncertainty whose squares and quotients are no numbers any more. One that is not positive is left to others.
+fn within_reason(
+    at: &TomlPath,
+    model: &MeasurementModel,
+    name: &str,
+    quantity: &Quantity,
+    sigma: f64,
+) -> Result<(), Error> {
+    let selected = model.parameters().select(name);
+    let typical = selected.iter().map(|j| model.parameters()[*j].typical).fold(0.0, f64::max);
+    let (least, most) = (typical / FIRMEST, typical * FIRMEST);
+    if sigma <= 0.0 || (least..=most).contains(&sigma) {
+        return Ok(());
+    }
+    let expected = format!("a standard uncertainty from {least:.0e} to {most:.0e} (SI)");
+    Err(at.unexpected(name, quantity.to_string(), expected))
 }
 
 /// The uncertainty in the unit of the parameters that are meant.

@@ -9,22 +9,20 @@ use centrical::{
     Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
 };
 
-use super::form::{self, Form, ModelTable, SiteTable};
+use super::form::{Form, ModelTable, SiteTable};
 use super::plateaus::PlateauTable;
 use super::prior::{self, PriorEntry};
 use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
 use super::unit::OutputUnit;
 use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
-use crate::error::{Error, Place, quoted};
+use crate::error::{Error, quoted};
 use crate::quantity::Dimension;
 use crate::record::{Columns, read_pulses, read_record, read_telemetry};
+use crate::settings::{from_toml, read_settings};
 
 /// Name of the experiment file in a session folder.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
-
-/// Longest experiment file [bytes]: thousands of mountings fit; more is another kind of file.
-const LONGEST_FORM: u64 = 16 << 20;
 
 /// A session: everything that is known before the records are read, and where they are.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,7 +81,7 @@ impl Session {
     /// known, every quantity finite and of its dimension, every position a rotation and mounted.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let file = if path.is_dir() { path.join(EXPERIMENT_FILE) } else { path.to_owned() };
-        let form: Form = form::parse(&file, &read_text(&file)?)?;
+        let form: Form = from_toml(&file, &read_text(&file)?)?;
         let folder = file.parent().unwrap_or(Path::new(""));
         let mut session = Self::without_plateaus(&file, &form)?;
         let rotation = session.experiment.centrifuge.rotation;
@@ -224,20 +222,7 @@ impl Session {
 
 /// The text of the experiment file.
 pub(crate) fn read_text(file: &Path) -> Result<String, Error> {
-    let expected = "an experiment file, or the folder with its experiment.toml";
-    let failed = |e| Error::reading(file, e, expected);
-    let metadata = fs::metadata(file).map_err(failed)?;
-    if !metadata.is_file() || metadata.len() > LONGEST_FORM {
-        let found = format!("{} bytes that are no such text", metadata.len());
-        return Err(Error::content(file, Place::Whole, found, expected));
-    }
-    let bytes = fs::read(file).map_err(failed)?;
-    String::from_utf8(bytes).map_err(|error| {
-        let bad = error.utf8_error().valid_up_to();
-        let line = 1 + memchr::memchr_iter(b'\n', &error.as_bytes()[..bad]).count() as u64;
-        let found = format!("byte 0x{:02x}", error.as_bytes()[bad]);
-        Error::content(file, Place::Line { line, column: None }, found, "text in UTF-8")
-    })
+    read_settings(file, "an experiment file, or the folder with its experiment.toml")
 }
 
 fn site(file: &Path, table: &SiteTable) -> Result<Site, Error> {

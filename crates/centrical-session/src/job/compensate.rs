@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::RecordSlice;
 use centrical_compensate::{Certificate, Compensation};
-use centrical_table::Rows;
+use centrical_table::{Rows, refuse_inputs};
 use rayon::prelude::*;
 
 use crate::document::CalibrationResult;
@@ -22,11 +22,15 @@ pub struct Compensated {
     pub outside: u64,
     /// The first of those.
     pub first_outside: Option<FirstOutside>,
+    /// Readings beyond the calibrated range: the error model is extrapolated there.
+    pub beyond: u64,
+    /// The first of those.
+    pub first_beyond: Option<FirstOutside>,
     /// Decimals of the specific forces as they are written [m/s^2], if they are rounded.
     pub decimals: Option<u32>,
 }
 
-/// A reading from out of range.
+/// A reading from out of a range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstOutside {
     /// Its time [s].
@@ -48,6 +52,22 @@ pub struct CompensationRequest {
     pub session: Option<PathBuf>,
     /// Largest specific force on each axis [m/s^2]; `None` for what the calibration allows.
     pub range: Option<f64>,
+    /// Whether a reading beyond the calibrated range is an error.
+    pub within_calibration: bool,
+}
+
+/// Where readings are those of the calibration.
+#[derive(Debug, Clone, Copy)]
+struct Calibrated {
+    /// Largest reading on each axis [m/s^2].
+    limit: [f64; 3],
+    /// Whether one beyond it is refused.
+    is_demanded: bool,
+}
+
+impl Calibrated {
+    /// No limit.
+    const ANYWHERE: Self = Self { limit: [f64::INFINITY; 3], is_demanded: false };
 }
 
 /// Compensates a record by the result of a calibration, and says where the inverse is unique.
@@ -61,11 +81,20 @@ pub fn compensate(request: &CompensationRequest) -> Result<(Compensated, Certifi
     let compensation = (request.range.map_or_else(|| result.compensation_range(&terms), Ok))
         .and_then(|range| Compensation::new(&terms, range))
         .map_err(|source| Error::NotInvertible { file: file(), source })?;
+    let mut inputs = vec![request.result.clone(), request.record.clone()];
     let columns = match &request.session {
-        Some(session) => Session::read(session)?.columns,
+        Some(session) => {
+            let session = Session::read(session)?;
+            inputs.extend(session.files().into_iter().map(Path::to_owned));
+            session.columns
+        }
         None => Columns::default(),
     };
-    let compensated = compensate_record(&compensation, &request.record, &columns, &request.out)?;
+    refuse_inputs(std::slice::from_ref(&request.out), &inputs)?;
+    let calibrated = Calibrated { limit: result.calibrated_readings(), is_demanded: request.within_calibration };
+    // On a thread of those that share the work: another one would be waited for, batch by batch.
+    let compensated =
+        rayon::scope(|_| on_this_thread(&compensation, &calibrated, &request.record, &columns, &request.out))?;
     Ok((compensated, *compensation.certificate()))
 }
 
@@ -82,23 +111,28 @@ pub fn compensate_record(
     columns: &Columns,
     output: &Path,
 ) -> Result<Compensated, Error> {
-    // On a thread of those that share the work: another one would be waited for, batch by batch.
-    rayon::scope(|_| on_this_thread(compensation, input, columns, output))
+    rayon::scope(|_| on_this_thread(compensation, &Calibrated::ANYWHERE, input, columns, output))
 }
 
 fn on_this_thread(
     compensation: &Compensation,
+    calibrated: &Calibrated,
     input: &Path,
     columns: &Columns,
     output: &Path,
 ) -> Result<Compensated, Error> {
+    let mut record = RecordReader::open(input, columns)?;
     let mut writer = RecordWriter::create_rounded(output, compensation.certificate().range)?;
     let mut sum = Compensated { decimals: writer.decimals(), ..Compensated::default() };
-    let mut record = RecordReader::open(input, columns)?;
     while let Some(batch) = record.next_batch()? {
-        let compensated = batch.par_iter_mut().map(|rows| compensate_rows(compensation, input, rows));
+        let compensated = batch.par_iter_mut().map(|rows| compensate_rows(compensation, calibrated, input, rows));
         for rows in compensated.collect::<Vec<_>>() {
             sum.add(&rows?);
+        }
+        if let Some(first) = sum.first_beyond.filter(|_| calibrated.is_demanded) {
+            let found = format!("{:?} m/s^2 at t = {} s", first.reading, first.t);
+            let expected = format!("readings within the calibration, {:.1?} m/s^2", calibrated.limit);
+            return Err(Error::content(input, Place::Whole, found, expected));
         }
         let stretches: Vec<RecordSlice> = batch.iter().map(stretch).collect();
         writer.write_all(&stretches)?;
@@ -108,7 +142,12 @@ fn on_this_thread(
 }
 
 /// Compensates readings in place.
-fn compensate_rows(compensation: &Compensation, input: &Path, rows: &mut Rows) -> Result<Compensated, Error> {
+fn compensate_rows(
+    compensation: &Compensation,
+    calibrated: &Calibrated,
+    input: &Path,
+    rows: &mut Rows,
+) -> Result<Compensated, Error> {
     let [t, f @ ..] = rows.as_mut_slice() else { return Ok(Compensated::default()) };
     let readings = f.to_vec();
     let mut columns = f.iter_mut();
@@ -117,10 +156,16 @@ fn compensate_rows(compensation: &Compensation, input: &Path, rows: &mut Rows) -
         .apply_all(f)
         .map_err(|unequal| Error::content(input, Place::Whole, unequal.to_string(), "columns of equal length"))?;
     let reading = |k: usize| [0, 1, 2].map(|axis: usize| readings[axis][k]);
+    let is_any_beyond = (0..3).any(|axis| readings[axis].iter().any(|f| f.abs() > calibrated.limit[axis]));
+    let is_beyond = |k: &usize| (0..3).any(|axis| readings[axis][*k].abs() > calibrated.limit[axis]);
+    let mut beyond = (0..if is_any_beyond { t.len() } else { 0 }).filter(is_beyond).peekable();
+    let first_beyond = beyond.peek().map(|&k| FirstOutside { t: t[k], reading: reading(k) });
     Ok(Compensated {
         readings: t.len() as u64,
         outside: outside.count as u64,
         first_outside: outside.first.map(|k| FirstOutside { t: t[k], reading: reading(k) }),
+        beyond: beyond.count() as u64,
+        first_beyond,
         decimals: None,
     })
 }
@@ -131,5 +176,7 @@ impl Compensated {
         self.readings += later.readings;
         self.outside += later.outside;
         self.first_outside = self.first_outside.or(later.first_outside);
+        self.beyond += later.beyond;
+        self.first_beyond = self.first_beyond.or(later.first_beyond);
     }
 }

@@ -8,6 +8,9 @@ mod schedule_file;
 
 use std::path::Path;
 
+use centrical_table::refuse_inputs;
+
+use self::read::read_with_inputs;
 pub use self::read::{read_plan, read_planning};
 use self::report::report;
 pub use self::request::{PlanRequest, USUAL_LEVELS, USUAL_TIMES};
@@ -17,9 +20,10 @@ use crate::error::Error;
 /// Plans as a plan file asks, and reports the plan.
 ///
 /// # Errors
-/// As [`read_planning`]; [`Error::Planning`] when there is no plan, or it cannot be predicted.
+/// As [`read_planning`]; when an output is an input; [`Error::Planning`] when there is no plan, or it cannot be predicted.
 pub fn plan(file: &Path, request: &PlanRequest) -> Result<PlanReport, Error> {
-    let mut planning = read_planning(file)?;
+    let (mut planning, inputs) = read_with_inputs(file)?;
+    refuse_inputs(&request.outputs, &inputs)?;
     let plan = planning.task.plan(request.certify).map_err(|source| planning.failed(source))?;
     report(&planning, &plan, request)
 }

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use centrical_table::{TableFormat, create_folder, write_whole};
-use toml_edit::{DocumentMut, InlineTable, Item, TableLike, Value, value};
+use centrical_table::{TableFormat, claim_folder, refuse_inputs, write_whole};
+use toml_edit::{InlineTable, Item, TableLike, Value, value};
 
 use crate::error::{Error, Place};
 use crate::experiment::{
     EXPERIMENT_FILE, PlateauMean, Session, SpeedSource, read_text, write_plateaus, write_plateaus_parquet,
 };
 use crate::reduced::Reduced;
+use crate::settings::editable;
 
 /// Keys of a mounting that say what the table of plateaus says now.
 const REPLACED: [&str; 4] = ["record", "telemetry", "pulses", "plateaus"];
@@ -20,7 +21,7 @@ const REPLACED: [&str; 4] = ["record", "telemetry", "pulses", "plateaus"];
 /// # Errors
 /// [`Error`] if the folder is the session's own, or does not take the files.
 pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, folder: &Path) -> Result<(), Error> {
-    create_folder(folder)?;
+    let _claim = claim_folder(folder)?;
     let experiment_file = folder.join(EXPERIMENT_FILE);
     if is_same(&session.file, &experiment_file) {
         let expected = "another folder than the session's own";
@@ -30,6 +31,7 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
         TableFormat::Csv => ("plateaus.csv", write_plateaus),
         TableFormat::Parquet => ("plateaus.parquet", write_plateaus_parquet),
     };
+    refuse_inputs(&[experiment_file.clone(), folder.join(name)], &session.files())?;
     let rows = reduced.table(session);
     // Speeds that single plateaus of the schedule state as measured: the table has a column for them.
     let of_plateaus = session.speeds.measured.is_none() && rows.iter().any(|row| row.speed_uncertainty.is_some());
@@ -42,11 +44,7 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
 /// that plateaus state measured speeds, the others as uncertain as this.
 fn experiment(file: &Path, table: &str, uncertainty: Option<f64>) -> Result<String, Error> {
     let text = read_text(file)?;
-    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| Error::Form {
-        file: file.to_owned(),
-        place: error.span().map_or(Place::Whole, |span| Place::of_byte(&text, span.start)),
-        message: error.message().to_owned(),
-    })?;
+    let mut document = editable(file, &text)?;
     match document.get_mut("mounting") {
         Some(Item::ArrayOfTables(mountings)) => mountings.iter_mut().for_each(|mounting| strip(mounting)),
         Some(Item::Value(Value::Array(mountings))) => {

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
+use centrical_table::open_regular;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -24,7 +25,8 @@ impl Input {
     /// # Errors
     /// [`Error`] when it cannot be read.
     pub fn of(folder: &Path, file: &Path) -> Result<Self, Error> {
-        let hash = sha256(file).map_err(|source| Error::reading(file, source, "a file of the session"))?;
+        let input = open_regular(file, "a file of the session")?;
+        let hash = sha256(input).map_err(|source| Error::reading(file, source, "a file of the session"))?;
         let sha256 = hash.iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"));
         let path = file.strip_prefix(folder).unwrap_or(file);
         Ok(Self { path: path.to_string_lossy().replace('\\', "/"), sha256 })
@@ -32,9 +34,9 @@ impl Input {
 }
 
 /// SHA-256 of a file, read in pieces.
-fn sha256(file: &Path) -> io::Result<[u8; 32]> {
+fn sha256(file: File) -> io::Result<[u8; 32]> {
     const PIECE: usize = 1 << 16;
-    let mut input = BufReader::with_capacity(PIECE, File::open(file)?);
+    let mut input = BufReader::with_capacity(PIECE, file);
     let mut hash = Sha256::new();
     loop {
         let piece = input.fill_buf()?;

@@ -1,7 +1,6 @@
 //! The truth file: the unit as it is, and the laboratory's equipment as it errs.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical::simulate::{Equipment, draw_truth};
@@ -10,8 +9,9 @@ use serde::Deserialize;
 
 use super::equipment::{CounterTable, MachineTable, RecorderTable, SensorTable, TachometerTable, equipment};
 use crate::error::Error;
-use crate::experiment::{Session, TomlPath, parse_form};
+use crate::experiment::{Session, TomlPath};
 use crate::quantity::{Dimension, Quantity};
+use crate::settings::{from_toml, read_settings};
 
 /// What is simulated: the model with its unknowns, their true values, and the equipment.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +45,9 @@ struct Form {
     counter: CounterTable,
 }
 
+/// Largest standard deviation of drawn parameters, in typical magnitudes.
+const LARGEST_SIZE: f64 = 1e6;
+
 /// Parameters that are not named are drawn from a normal law about zero.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -62,8 +65,8 @@ impl Truth {
     /// If the file can not be read or does not follow the form, a quantity is not of its dimension, a setting makes no
     /// sense, or a parameter is not one of the plan's nor of an extension.
     pub fn read(file: &Path, plan: &Session, seed: u64) -> Result<Self, Error> {
-        let text = fs::read_to_string(file).map_err(|source| Error::reading(file, source, "a truth file"))?;
-        let form: Form = parse_form(file, &text)?;
+        let text = read_settings(file, "a truth file")?;
+        let form: Form = from_toml(file, &text)?;
         let (model, sources) = model(plan, &form);
         let values = values(file, &form, &model, sources, seed)?;
         let tables = (&form.machine, &form.sensor, &form.recorder, &form.tachometer, &form.counter);
@@ -89,6 +92,10 @@ fn values(file: &Path, form: &Form, model: &MeasurementModel, sources: usize, se
     let parameters = model.parameters();
     let (size, seed) =
         form.typical.as_ref().map_or((0.0, seed), |typical| (typical.size, typical.seed.unwrap_or(seed)));
+    if !(0.0..=LARGEST_SIZE).contains(&size) {
+        let expected = "typical magnitudes, from 0 to a million of them";
+        return Err(TomlPath::table(file, "typical").unexpected("size", format!("{size:?}"), expected));
+    }
     let mut values = draw_truth(parameters, size, seed);
     values[sources..].fill(0.0);
     for (name, quantity) in &form.parameters {

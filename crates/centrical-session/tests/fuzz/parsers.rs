@@ -66,5 +66,6 @@ fn plateaus(file: &Path) -> String {
 }
 
 fn watch(file: &Path) -> String {
-    outcome(WatchState::resume(&Session::read(&experiments()[1]).unwrap(), file))
+    let session = Session::read(&experiments()[1]).unwrap();
+    outcome(WatchState::resume(&session, session.model().unwrap().parameters().len(), file))
 }

@@ -27,83 +27,91 @@ fn compare(cases: &[(&str, &str, &str)]) {
 #[test]
 fn the_form_is_kept() {
     compare(&[
-        ("gravity =", "gravty =", r"line 6, column 1: unknown field `gravty`, expected `gravity` or `latitude`"),
-        ("title =", "titel =", r"line 2, column 1: unknown field `titel`, expected one of `title`, `date`, `text`"),
-        ("latitude =", "lat =", r"line 7, column 1: unknown field `lat`, expected `gravity` or `latitude`"),
+        ("gravity =", "gravty =", r"line 6, column 1: found an unknown key `gravty`, expected `gravity` or `latitude`"),
+        (
+            "title =",
+            "titel =",
+            r"line 2, column 1: found an unknown key `titel`, expected one of `title`, `date`, `text`",
+        ),
+        ("latitude =", "lat =", r"line 7, column 1: found an unknown key `lat`, expected `gravity` or `latitude`"),
         (
             "output_unit =",
             "outputunit =",
-            r"line 10, column 1: unknown field `outputunit`, expected one of `model`, `serial`, `output_unit`, `counts`, `proof_masses`, `reference`",
+            r"line 10, column 1: found an unknown key `outputunit`, expected one of `model`, `serial`, `output_unit`, `counts`, `proof_masses`, `reference`",
         ),
         (
             "rotation =",
             "rot =",
-            r"line 15, column 1: unknown field `rot`, expected one of `speed_uncertainty`, `rotation`, `tachometer_uncertainty`, `measured`",
+            r"line 15, column 1: found an unknown key `rot`, expected one of `speed_uncertainty`, `rotation`, `tachometer_uncertainty`, `measured`",
         ),
         (
             "pair_relation =",
             "relation =",
-            r"line 19, column 1: unknown field `relation`, expected one of `error_model`, `pair_relation`, `extensions`",
+            r"line 19, column 1: found an unknown key `relation`, expected one of `error_model`, `pair_relation`, `extensions`",
         ),
         (
             "speed_unit =",
             "speed_units =",
-            r"line 22, column 1: unknown field `speed_units`, expected one of `time`, `f`, `telemetry_time`, `pulse`, `speed`, `speed_unit`",
+            r"line 22, column 1: found an unknown key `speed_units`, expected one of `time`, `f`, `telemetry_time`, `pulse`, `speed`, `speed_unit`",
         ),
         (
             "pair =",
             "pairs =",
-            r"line 27, column 1: unknown field `pairs`, expected one of `id`, `axes`, `matrix`, `pair`",
+            r"line 27, column 1: found an unknown key `pairs`, expected one of `id`, `axes`, `matrix`, `pair`",
         ),
         (
             "record =",
             "recrod =",
-            r"line 37, column 1: unknown field `recrod`, expected one of `position`, `arm`, `record`, `telemetry`, `pulses`, `plateaus`",
+            r"line 37, column 1: found an unknown key `recrod`, expected one of `position`, `arm`, `record`, `telemetry`, `pulses`, `plateaus`",
         ),
         (
             "angle =",
             "angel =",
-            r"line 38, column 26: unknown field `angel`, expected one of `speed`, `speed_uncertainty`, `angle`, `duration`",
+            r"line 38, column 26: found an unknown key `angel`, expected one of `speed`, `speed_uncertainty`, `angle`, `duration`",
         ),
         (
             "[site]",
             "[sites]",
-            r"line 5, column 2: unknown field `sites`, expected one of `plateaus`, `plan`, `candidates`, `cost`, `target`, `robust`, `session`, `site`, `unit`, `centrifuge`, `model`, `uncertainty`, `columns`, `position`, `mounting`, `prior`",
+            r"line 5, column 2: found an unknown key `sites`, expected one of `plateaus`, `plan`, `candidates`, `cost`, `target`, `robust`, `session`, `site`, `unit`, `centrifuge`, `model`, `uncertainty`, `columns`, `position`, `mounting`, `prior`",
         ),
-        ("gravity = \"9.81523 m/s^2\"\n", "", r"line 5, column 1: missing field `gravity`"),
-        (r#""9.81523 m/s^2""#, r#""9.81523 m/s^2"#, r#"line 6, column 25: invalid basic string, expected `"`"#),
+        ("gravity = \"9.81523 m/s^2\"\n", "", r"line 5, column 1: found no key `gravity`, expected one"),
+        (r#""9.81523 m/s^2""#, r#""9.81523 m/s^2"#, r#"line 6, column 25: found invalid basic string, expected `"`"#),
         (
             r#""9.81523 m/s^2""#,
             "true",
-            r#"line 6, column 11: invalid type: boolean `true`, expected a number in SI or a string with a unit such as "133.7 rpm""#,
+            r#"line 6, column 11: found boolean `true`, expected a number in SI or a string with a unit such as "133.7 rpm""#,
         ),
         (
             r#""9.81523 m/s^2""#,
             "[1]",
-            r#"line 6, column 11: invalid type: sequence, expected a number in SI or a string with a unit such as "133.7 rpm""#,
+            r#"line 6, column 11: found sequence, expected a number in SI or a string with a unit such as "133.7 rpm""#,
         ),
         (
             "\"m/s^2\"\n",
             "\"counts\"\ncounts = {scale = [1,1], bias = [0,0,0]}\n",
-            r"line 11, column 19: invalid length 2, expected an array of length 3",
+            r"line 11, column 19: found a length of 2, expected an array of length 3",
         ),
         (
             r#""kozlov-2017""#,
             "3",
-            r#"line 18, column 15: invalid type: integer `3`, expected "kozlov-2017" or a list of terms such as { axis = 1, term = "f1*f2" }"#,
+            r#"line 18, column 15: found integer `3`, expected "kozlov-2017" or a list of terms such as { axis = 1, term = "f1*f2" }"#,
         ),
         (
             r#""kozlov-2017""#,
             r#"[{ axis = 1, trem = "f1" }]"#,
-            r"line 18, column 28: unknown field `trem`, expected `axis` or `term`",
+            r"line 18, column 28: found an unknown key `trem`, expected `axis` or `term`",
         ),
         (
             r#""kozlov-2017""#,
             "[3]",
-            r#"line 18, column 16: invalid type: integer `3`, expected "kozlov-2017", the name of one of its terms, or { axis = 1, term = "f1*f2" }"#,
+            r#"line 18, column 16: found integer `3`, expected "kozlov-2017", the name of one of its terms, or { axis = 1, term = "f1*f2" }"#,
         ),
-        ("[[-1, 0, 0]", "[[0]", r"line 31, column 11: invalid length 1, expected an array of length 3"),
-        ("arm = [0.5, 0, 0]", "arm = [0.5, 0]", r"line 36, column 7: invalid length 2, expected an array of length 3"),
+        ("[[-1, 0, 0]", "[[0]", r"line 31, column 11: found a length of 1, expected an array of length 3"),
+        (
+            "arm = [0.5, 0, 0]",
+            "arm = [0.5, 0]",
+            r"line 36, column 7: found a length of 2, expected an array of length 3",
+        ),
     ]);
 }
 
@@ -391,7 +399,7 @@ fn nothing_to_do() {
         message(no_position),
         "experiment.toml, [[position]] 1, id: found no [[position]], expected at least one position"
     );
-    assert_eq!(message(""), "experiment.toml, line 1, column 1: missing field `site`");
+    assert_eq!(message(""), "experiment.toml, line 1, column 1: found no key `site`, expected one");
 }
 
 #[test]
@@ -400,9 +408,16 @@ fn what_is_no_text() {
     let degree = latin.iter().position(|byte| *byte == b'C').unwrap();
     latin[degree] = 0xb0;
     assert_eq!(message(latin), "experiment.toml, line 2: found byte 0xb0, expected text in UTF-8");
-    assert_eq!(message("[site]\ngravity = 9.81\ngravity = 9.82\n"), "experiment.toml, line 3, column 1: duplicate key");
+    assert_eq!(
+        message("[site]\ngravity = 9.81\ngravity = 9.82\n"),
+        "experiment.toml, line 3, column 1: found text with a fault (duplicate key), expected TOML as the form of this file says"
+    );
     let deep = format!("plateaus = {}1{}", "[".repeat(100_000), "]".repeat(100_000));
-    assert_eq!(message(deep), "experiment.toml, line 1, column 92: cannot recurse further; max recursion depth met");
+    assert_eq!(
+        message(deep),
+        "experiment.toml, line 1, column 92: found text with a fault (cannot recurse further; max recursion depth met), expected TOML \
+         as the form of this file says"
+    );
 }
 
 #[test]

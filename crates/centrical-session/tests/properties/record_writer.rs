@@ -40,7 +40,7 @@ proptest! {
         writer.write(record.as_slice()).unwrap();
         writer.finish().unwrap();
         let compensated = compensate_record(&compensation, &input, &Columns::default(), &output).unwrap();
-        let expected = Compensated { readings: rows as u64, outside: 0, first_outside: None, decimals: None };
+        let expected = Compensated { readings: rows as u64, ..Compensated::default() };
         prop_assert_eq!(compensated, expected);
         compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
         prop_assert!(read_record(&output, &Columns::default()).unwrap() == record);

@@ -11,9 +11,13 @@ use super::columnar::Column;
 use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
+use crate::unpacking::Unpacked;
 
 /// Longest row of an array [bytes]: thousands of columns.
 const LONGEST_ROW: u64 = 1 << 16;
+
+/// Bytes of rows that are read at a time.
+const BUFFER: usize = 1 << 20;
 
 /// An array of a file: rows of numbers in columns.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +30,8 @@ pub(super) struct Array {
     /// Bytes from one row to the next.
     pub stride: u64,
     pub columns: Vec<ArrayColumn>,
+    /// Names of columns of 16-bit floating point, which are not read.
+    pub halves: Vec<String>,
 }
 
 /// A column of an array.
@@ -47,6 +53,8 @@ pub(super) struct Bytes {
     pub length: u64,
     /// Bytes before the array, after unpacking.
     pub skip: u64,
+    /// The CRC-32 of what is unpacked, where the file has it.
+    pub crc_32: Option<u32>,
 }
 
 /// How bytes are packed.
@@ -96,8 +104,13 @@ fn find<'a>(file: &Path, arrays: &'a [Array], field: &Field) -> Result<(&'a Arra
                 column.name == *name || (array.name == *name && array.columns.len() == 1)
             };
             let mut places = all().filter(is);
+            let is_half =
+                |array: &Array| array.halves.iter().any(|half| half == name || half.is_empty() && array.name == *name);
             match (places.next(), places.next()) {
                 (Some(place), None) => Ok(place),
+                (None, _) if arrays.iter().any(is_half) => {
+                    wrong("numbers of 16 bits (float16)".to_owned(), "numbers of 32 or 64 bits")
+                }
                 (None, _) => wrong(contents(arrays), "a column of this name (for a matrix give [columns] by number)"),
                 _ => wrong(format!("two such columns in {}", contents(arrays)), "one"),
             }
@@ -142,15 +155,24 @@ pub(super) fn column(file: &Path, (array, place): (&Array, &ArrayColumn), field:
         return Err(failed(io::Error::other(format!("{} bytes a row", array.stride))));
     }
     let mut input = array.bytes.open(file, place.start).map_err(&failed)?;
+    let has_checksum = array.bytes.packing != Packing::Plain || array.bytes.crc_32.is_some();
+    let at_a_time = (BUFFER / stride.max(1)).max(1) as u64;
     let mut buffer = Vec::new();
     Ok(Box::new(move |values| {
-        let rows = usize::try_from(left.min(ROWS as u64)).unwrap_or(ROWS);
-        left -= rows as u64;
-        // The last row ends with its number, not with its stride.
-        let length = (rows * stride).saturating_sub(if left == 0 { stride - scalar.size } else { 0 });
-        buffer.resize(length, 0);
-        input.read_exact(&mut buffer).map_err(&failed)?;
-        values.extend(buffer.chunks(stride).map(|row| scalar.read(&row[..scalar.size])));
+        let mut wanted = left.min(ROWS as u64);
+        while wanted > 0 {
+            let rows = wanted.min(at_a_time);
+            (wanted, left) = (wanted - rows, left - rows);
+            // The last row ends with its number, not with its stride.
+            let unused = if left == 0 { stride - scalar.size } else { 0 };
+            buffer.resize(usize::try_from(rows).unwrap_or(ROWS) * stride - unused, 0);
+            input.read_exact(&mut buffer).map_err(&failed)?;
+            values.extend(buffer.chunks(stride).map(|row| scalar.read(&row[..scalar.size])));
+        }
+        if left == 0 && has_checksum {
+            // A checksum is that of all bytes, and stands at their end.
+            io::copy(&mut input, &mut io::sink()).map_err(&failed)?;
+        }
         Ok(())
     }))
 }
@@ -168,6 +190,9 @@ impl Bytes {
             Packing::Lz4 => Box::new(FrameDecoder::new(input)),
             Packing::Zstd => Box::new(zstd::Decoder::with_buffer(input)?),
         };
+        if self.packing != Packing::Plain || self.crc_32.is_some() {
+            unpacked = Box::new(Unpacked::new(unpacked, self.length, self.crc_32));
+        }
         let skip = self.skip.saturating_add(start);
         if io::copy(&mut unpacked.by_ref().take(skip), &mut io::sink())? < skip {
             return Err(io::ErrorKind::UnexpectedEof.into());

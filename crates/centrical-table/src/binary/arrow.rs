@@ -15,6 +15,7 @@ use polars_arrow_format::ipc::{CompressionType, FooterRef, MessageHeaderRef, Rec
 
 pub(super) use self::messages::CONTINUATION;
 use self::messages::{Message, Messages, contradiction, damaged};
+pub(super) use self::schema::durations;
 use self::schema::{ArrowColumn, find, in_seconds};
 use super::arrays::{self, Array, Packing};
 use super::catch_panic::catch_panic;

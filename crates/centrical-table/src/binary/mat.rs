@@ -33,7 +33,13 @@ pub(super) fn columns(file: &Path, input: &File, fields: &[Field]) -> Result<Vec
 
 /// The matrices of numbers in the file.
 fn arrays(file: &Path, length: u64) -> io::Result<Vec<Array>> {
-    let plain = |offset: u64| Bytes { packing: Packing::Plain, offset, length: length.saturating_sub(offset), skip: 0 };
+    let plain = |offset: u64| Bytes {
+        packing: Packing::Plain,
+        offset,
+        length: length.saturating_sub(offset),
+        skip: 0,
+        crc_32: None,
+    };
     let mut order = [0; 2];
     plain(HEADER - 2).open(file, 0)?.read_exact(&mut order)?;
     let big_endian = order == *b"MI";
@@ -41,7 +47,7 @@ fn arrays(file: &Path, length: u64) -> io::Result<Vec<Array>> {
     let mut offset = HEADER;
     while offset + 8 <= length {
         let tag = Stream { input: plain(offset).open(file, 0)?, read: 0, big_endian }.tag()?;
-        let bytes = Bytes { packing: Packing::Plain, offset: offset + 8, length: tag.size, skip: 0 };
+        let bytes = Bytes { packing: Packing::Plain, offset: offset + 8, length: tag.size, skip: 0, crc_32: None };
         match tag.kind {
             MATRIX => arrays.extend(array(file, bytes, big_endian)?),
             PACKED => {
@@ -80,7 +86,7 @@ fn array(file: &Path, bytes: Bytes, big_endian: bool) -> io::Result<Option<Array
     let stride = scalar.size as u64;
     let place = |j| ArrayColumn { name: String::new(), start: rows.saturating_mul(stride * j), scalar };
     let bytes = Bytes { skip: bytes.skip + stream.read, ..bytes };
-    Ok(Some(Array { name, bytes, rows, stride, columns: (0..columns).map(place).collect() }))
+    Ok(Some(Array { name, bytes, rows, stride, columns: (0..columns).map(place).collect(), halves: Vec::new() }))
 }
 
 /// The numbers of an element of this type.

@@ -20,7 +20,7 @@ const LONGEST_HEADER: usize = 1 << 16;
 /// The columns of a `.npy` file.
 pub(super) fn columns(file: &Path, input: &File, fields: &[Field]) -> Result<Vec<Column>, Error> {
     let length = input.metadata().map_err(|e| Error::reading(file, e, "a .npy file"))?.len();
-    let bytes = Bytes { packing: Packing::Plain, offset: 0, length, skip: 0 };
+    let bytes = Bytes { packing: Packing::Plain, offset: 0, length, skip: 0, crc_32: None };
     match array(file, "", bytes)? {
         Some(array) => arrays::columns(file, &[array], fields),
         None => Err(Error::content(file, Place::Whole, "an array of another shape", "a vector, a matrix or records")),
@@ -45,7 +45,8 @@ pub(super) fn archive_columns(file: &Path, input: File, fields: &[Field]) -> Res
             }
         };
         let offset = member.data_start().unwrap_or(0);
-        arrays.extend(array(file, name, Bytes { packing, offset, length: member.compressed_size(), skip: 0 })?);
+        let (length, crc_32) = (member.compressed_size(), Some(member.crc32()));
+        arrays.extend(array(file, name, Bytes { packing, offset, length, skip: 0, crc_32 })?);
     }
     arrays::columns(file, &arrays, fields)
 }
@@ -98,6 +99,8 @@ struct Shape {
     by_columns: bool,
     /// Names, places and types of the numbers of one element, and its size.
     numbers: Vec<(String, u64, Scalar)>,
+    /// Names of numbers of 16 bits, which are not read: they have three digits.
+    halves: Vec<String>,
     size: u64,
 }
 
@@ -110,11 +113,12 @@ impl Shape {
             _ => return None,
         };
         let by_columns = header.get("fortran_order")?.truth()?;
-        let mut numbers = Vec::new();
+        let (mut numbers, mut halves) = (Vec::new(), Vec::new());
         let mut size = 0_u64;
         match header.get("descr")? {
             Literal::Text(kind) => {
                 let (width, scalar) = scalar(kind)?;
+                halves.extend(is_half(kind).then(String::new));
                 numbers.extend(scalar.map(|scalar| (String::new(), 0, scalar)));
                 size = width;
             }
@@ -122,12 +126,13 @@ impl Shape {
                 for field in record.list()? {
                     let [Literal::Text(name), Literal::Text(kind)] = field.list()? else { return None };
                     let (width, scalar) = scalar(kind)?;
+                    halves.extend(is_half(kind).then(|| name.clone()));
                     numbers.extend(scalar.map(|scalar| (name.clone(), size, scalar)));
                     size = size.checked_add(width)?;
                 }
             }
         }
-        (columns <= LONGEST_HEADER as u64).then_some(Self { rows, columns, by_columns, numbers, size })
+        (columns <= LONGEST_HEADER as u64).then_some(Self { rows, columns, by_columns, numbers, halves, size })
     }
 
     fn array(self, name: &str, bytes: Bytes) -> Array {
@@ -145,8 +150,13 @@ impl Shape {
             })
         };
         let columns = (0..self.columns).flat_map(place).collect();
-        Array { name: name.to_owned(), bytes, rows: self.rows, stride: row, columns }
+        Array { name: name.to_owned(), bytes, rows: self.rows, stride: row, columns, halves: self.halves }
     }
+}
+
+/// Whether a type is of floating point in 16 bits.
+fn is_half(kind: &str) -> bool {
+    kind.get(1..) == Some("f2")
 }
 
 /// Size of a type such as `<f8`, and how to read it where it is a number.

@@ -4,13 +4,16 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-use parquet::basic::{LogicalType, TimeUnit, Type};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::DataType;
 use parquet::errors::{ParquetError, Result as ParquetResult};
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 use parquet::schema::types::ColumnDescPtr;
 
+use super::arrow;
 use super::catch_panic::catch_panic;
 use super::columnar::{Column, MISSING, Parts};
 use super::parquet_pages::{Checked, Source};
@@ -22,7 +25,9 @@ use crate::rows::ROWS;
 pub(super) fn parts(file: &Path, input: &File, fields: &[Field]) -> Result<Parts, Error> {
     let metadata = catch_panic(|| ParquetMetaDataReader::new().parse_and_finish(input));
     let metadata = metadata.map_err(|e| damaged(file, e.as_ref()))?;
-    let columns: Vec<usize> = fields.iter().map(|field| find(file, &metadata, field)).collect::<Result<_, Error>>()?;
+    let durations = durations(&metadata);
+    let found = fields.iter().map(|field| find(file, &metadata, &durations, field));
+    let columns: Vec<usize> = found.collect::<Result<_, Error>>()?;
     // Columns are read at the same time, and a file has one place that is read next: each column opens it for itself.
     let open = |_: &usize| File::open(file).map(|input| Arc::new(Source(input)));
     let sources: Vec<Arc<Source>> =
@@ -42,7 +47,7 @@ fn damaged(file: &Path, error: Option<&ParquetError>) -> Error {
 }
 
 /// The column that a field asks for: numbers, one a row.
-fn find(file: &Path, metadata: &ParquetMetaData, field: &Field) -> Result<usize, Error> {
+fn find(file: &Path, metadata: &ParquetMetaData, durations: &[String], field: &Field) -> Result<usize, Error> {
     let wrong = |found: String, expected: &str| {
         Err(Error::content(file, Place::Column(field.name.to_string()), found, expected))
     };
@@ -57,22 +62,62 @@ fn find(file: &Path, metadata: &ParquetMetaData, field: &Field) -> Result<usize,
     let (Some(place), None) = (places.pop().filter(|i| *i < columns.len()), places.pop()) else {
         return wrong(format!("columns {}", list()), "one column of this name");
     };
-    match describe(&columns[place], field.rule) {
+    match describe(&columns[place], durations, field.rule) {
         None => Ok(place),
         Some(other) => wrong(other, &field.expected),
     }
 }
 
 /// What a column is if it is not numbers, one a row, or stamps where these are allowed.
-fn describe(column: &ColumnDescPtr, rule: Rule) -> Option<String> {
+fn describe(column: &ColumnDescPtr, durations: &[String], rule: Rule) -> Option<String> {
     let numbers = matches!(column.physical_type(), Type::DOUBLE | Type::FLOAT | Type::INT32 | Type::INT64);
+    let stamps = rule == (Rule::Ascending { stamps: true });
     match column.logical_type_ref() {
         _ if column.max_rep_level() > 0 => Some("lists".to_owned()),
-        Some(LogicalType::Timestamp(_)) if rule == (Rule::Ascending { stamps: true }) => None,
+        // To Parquet it is a number; its unit stands in the schema of Arrow alone.
+        _ if durations.contains(&column.path().string()) => Some("a duration".to_owned()),
+        Some(LogicalType::Timestamp(_)) if stamps => None,
+        None if stamp_of_old(column).is_some() && stamps => None,
+        None if !is_plain_of_old(column) => Some(format!("{:?}", column.converted_type())),
         None | Some(LogicalType::Integer(_)) if numbers => None,
+        Some(LogicalType::Float16) => Some("numbers of 16 bits (float16)".to_owned()),
         Some(logical) => Some(format!("{logical:?}")),
         None => Some(format!("{:?}", column.physical_type())),
     }
+}
+
+/// Whether a column without a logical type is of numbers also as older writers state types.
+fn is_plain_of_old(column: &ColumnDescPtr) -> bool {
+    use ConvertedType as Old;
+    let signed = matches!(column.converted_type(), Old::NONE | Old::INT_8 | Old::INT_16 | Old::INT_32 | Old::INT_64);
+    signed || is_unsigned(column)
+}
+
+/// Seconds per unit of a column of stamps without a logical type.
+fn stamp_of_old(column: &ColumnDescPtr) -> Option<f64> {
+    match column.converted_type() {
+        ConvertedType::TIMESTAMP_MILLIS => Some(1e-3),
+        ConvertedType::TIMESTAMP_MICROS => Some(1e-6),
+        _ => None,
+    }
+}
+
+/// Whether the integers of a column have no sign.
+fn is_unsigned(column: &ColumnDescPtr) -> bool {
+    use ConvertedType as Old;
+    match column.logical_type_ref() {
+        Some(LogicalType::Integer(integer)) => !integer.is_signed,
+        _ => matches!(column.converted_type(), Old::UINT_8 | Old::UINT_16 | Old::UINT_32 | Old::UINT_64),
+    }
+}
+
+/// Names of the columns that are durations, from the schema of Arrow that its writers put into a file.
+fn durations(metadata: &ParquetMetaData) -> Vec<String> {
+    let pairs = metadata.file_metadata().key_value_metadata();
+    let schema = pairs.into_iter().flatten().find(|pair| pair.key == "ARROW:schema");
+    let bytes = schema.and_then(|pair| STANDARD.decode(pair.value.as_deref()?).ok()).unwrap_or_default();
+    // One that contradicts itself says nothing.
+    catch_panic(|| Ok::<_, ParquetError>(arrow::durations(&bytes))).unwrap_or_default()
 }
 
 /// Seconds per unit of a column of stamps, 1 for numbers.
@@ -83,7 +128,7 @@ fn stamp_unit(column: &ColumnDescPtr) -> f64 {
             TimeUnit::MICROS => 1e-6,
             TimeUnit::NANOS => 1e-9,
         },
-        _ => 1.0,
+        _ => stamp_of_old(column).unwrap_or(1.0),
     }
 }
 
@@ -97,7 +142,7 @@ fn column(
 ) -> ParquetResult<Column> {
     let pages = Checked::new(source, metadata.row_group(group), column)?;
     let description = metadata.file_metadata().schema_descr().column(column);
-    let unit = stamp_unit(&description);
+    let (unit, is_unsigned) = (stamp_unit(&description), is_unsigned(&description));
     let whole = description.max_def_level();
     let mut reader = get_column_reader(description, Box::new(pages));
     let file = file.to_owned();
@@ -109,7 +154,13 @@ fn column(
             }
             ColumnReader::DoubleColumnReader(reader) => numbers(reader, values, |v| v),
             ColumnReader::FloatColumnReader(reader) => numbers(reader, values, f64::from),
+            ColumnReader::Int32ColumnReader(reader) if is_unsigned => {
+                numbers(reader, values, |v| f64::from(v.cast_unsigned()))
+            }
             ColumnReader::Int32ColumnReader(reader) => numbers(reader, values, f64::from),
+            ColumnReader::Int64ColumnReader(reader) if is_unsigned => {
+                numbers(reader, values, |v| v.cast_unsigned() as f64)
+            }
             ColumnReader::Int64ColumnReader(reader) => numbers(reader, values, |v| v as f64 * unit),
             _ => Err(ParquetError::General("a column without numbers".to_owned())),
         });

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use memchr::{memchr, memchr_iter, memrchr};
 
 use crate::error::{Error, quoted};
+use crate::unpacking::Unpacked;
 
 /// Bytes in a piece, more or less a line: several make up a plateau, and each is worth the way to it.
 pub(super) const SIZE: u64 = 1 << 17;
@@ -161,8 +162,9 @@ fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
 }
 
 impl Packed {
-    /// The text that `input` gives.
-    pub fn new(file: &Path, input: impl Read + Send + 'static) -> Self {
+    /// The text that `input` gives of a file of `length` bytes.
+    pub fn new(file: &Path, input: impl Read + Send + 'static, length: u64) -> Self {
+        let input = Unpacked::new(input, length, None);
         Self { file: file.to_owned(), input: Box::new(input), rest: Vec::new(), at_end: false }
     }
 

@@ -1,6 +1,6 @@
 //! A piece of text: from its lines to rows of numbers, up to the first fault.
 
-use memchr::memchr;
+use memchr::{memchr, memchr_iter, memrchr};
 
 use super::batch::{self, Batch, ROWS};
 use super::layout::{Fault, Layout, Prologue};
@@ -64,6 +64,12 @@ impl Piece {
         let read = loop {
             // A number is taken with what is before it: the first ones of all are left to be read one by one.
             let most = if from < batch::REACH { 1 } else { ROWS };
+            let blank = self.skip_blank(&text[from..], rows);
+            if blank > 0 {
+                from += blank;
+                let passed = |places: &[u32]| places.partition_point(|place| (*place as usize) < from);
+                (separators, ends) = (&separators[passed(separators)..], &ends[passed(ends)..]);
+            }
             let count = most.min(separators.len() / layout.fields()).min(ends.len());
             let (of_batch, ends_of_batch) = (&separators[..count * layout.fields()], &ends[..count]);
             // Of a text that is read up to a fault, some are beyond it.
@@ -89,6 +95,17 @@ impl Piece {
         read
     }
 
+    /// Passes the blank lines that a text begins with, and returns their bytes. Many at once: a packed file may have billions.
+    fn skip_blank(&mut self, text: &[u8], rows: &Rows) -> usize {
+        let is_blank = |byte: &u8| matches!(byte, b'\n' | b'\r' | b' ' | b'\t');
+        let blank = text.iter().position(|byte| !is_blank(byte)).unwrap_or(text.len());
+        let bytes = memrchr(b'\n', &text[..blank]).map_or(0, |end| end + 1);
+        let lines = memchr_iter(b'\n', &text[..bytes]).count() as u64;
+        self.lines += lines;
+        self.first_row += if rows[0].is_empty() { lines } else { 0 };
+        bytes
+    }
+
     /// Reads the rows of a text one by one, up to the first fault.
     fn read_rows(
         &mut self,
@@ -99,6 +116,10 @@ impl Piece {
     ) -> Result<(), (u64, Fault)> {
         let mut row = vec![0.0; fields.len()];
         while !text.is_empty() {
+            text = &text[self.skip_blank(text, rows)..];
+            if text.is_empty() {
+                break;
+            }
             let (line, rest) = split_line(text);
             if let Some(length) = layout.plain_row(text, &mut row) {
                 text = &text[length..];
@@ -192,8 +213,23 @@ fn split_line(text: &[u8]) -> (&[u8], &[u8]) {
 #[inline]
 fn is_data(line: &[u8]) -> bool {
     match line.first() {
-        None | Some(b'#') => false,
-        Some(b' ' | b'\t') => !matches!(line.trim_ascii_start().first(), None | Some(b'#')),
+        None => false,
+        Some(b'#') => is_failed_cell(line),
+        Some(b' ' | b'\t') => {
+            let text = line.trim_ascii_start();
+            !text.is_empty() && (text[0] != b'#' || is_failed_cell(text))
+        }
         Some(_) => true,
     }
+}
+
+/// Whether a text that starts with `#` is not a comment but a row whose first cell a spreadsheet could not compute.
+#[cold]
+fn is_failed_cell(text: &[u8]) -> bool {
+    const FAILED: [&[u8]; 8] = [b"#N/A", b"#NUM!", b"#VALUE!", b"#DIV/0!", b"#REF!", b"#NAME?", b"#NULL!", b"#CALC!"];
+    let begins = |cell: &[u8]| {
+        let rest = text.get(..cell.len()).filter(|start| start.eq_ignore_ascii_case(cell)).map(|_| &text[cell.len()..]);
+        rest.is_some_and(|rest| rest.first().is_none_or(|next| matches!(next, b',' | b';' | b'\t' | b' ' | b'"')))
+    };
+    FAILED.into_iter().any(begins)
 }

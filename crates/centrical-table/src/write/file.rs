@@ -1,9 +1,10 @@
 //! Files that appear whole or not at all.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
+use super::beside::Beside;
 use crate::error::Error;
 
 /// Writes `bytes` beside `file`, sees them to the disk, then renames: whoever looks sees the old file or the new one, never a
@@ -33,20 +34,9 @@ pub fn write_stream(file: &Path, write: impl FnOnce(&mut (dyn Write + Send)) -> 
 }
 
 fn write_beside(file: &Path, write: impl FnOnce(File) -> io::Result<()>) -> Result<(), Error> {
-    let mut beside = file.as_os_str().to_owned();
-    beside.push(".tmp");
-    let written = File::create(&beside).and_then(write);
-    written.and_then(|()| fs::rename(&beside, file)).map_err(|error| {
-        // Best effort: the first error is the one to tell.
-        let _ = fs::remove_file(&beside);
-        Error::writing(file, error)
-    })
-}
-
-/// Makes a folder, and those above it, if it is not there.
-///
-/// # Errors
-/// [`Error::Io`] if it cannot be made.
-pub fn create_folder(folder: &Path) -> Result<(), Error> {
-    fs::create_dir_all(folder).map_err(|error| Error::writing(folder, error))
+    let written = Beside::create(file).and_then(|(beside, output)| {
+        write(output)?;
+        beside.take_place()
+    });
+    written.map_err(|error| Error::writing(file, error))
 }

@@ -38,7 +38,7 @@ pub enum ReductionError {
     },
     /// A scheduled plateau is not in the record.
     #[error(
-        "plateau {} of {count} not found: looked for {} in the order of the schedule; seen: {}",
+        "plateau {} of {count} not found: looked for {} in the order of the schedule, {least:.2} s of it or more; seen: {}",
         index + 1, Sought { omega: *omega, level: level_z }, Seen(seen)
     )]
     PlateauNotFound {
@@ -50,12 +50,14 @@ pub enum ReductionError {
         omega: f64,
         /// Its nominal reading [m/s^2].
         level_z: Vector3<f64>,
+        /// Shortest plateau that can be averaged [s].
+        least: f64,
         /// The stationary stretches of the record.
         seen: Vec<Stretch>,
     },
     /// A plateau is too short to be averaged.
     #[error(
-        "plateau {} found from {:.3} s to {:.3} s, expected more than {least:.3} s of steady reading there",
+        "plateau {} is too short: found from {:.3} s to {:.3} s, expected more than {least:.3} s of steady reading there",
         index + 1, window[0], window[1]
     )]
     PlateauTooShort {

@@ -200,6 +200,26 @@ pub enum SimulationError {
         /// Set points of the experiment.
         expected: usize,
     },
+    /// A record would have next to no samples of a plateau, or more samples than a campaign.
+    #[error("{setting}: found {found:.3e} samples {of}, expected {expected}")]
+    Samples {
+        /// What the number follows from.
+        setting: &'static str,
+        /// Samples.
+        found: f64,
+        /// Of what they are.
+        of: &'static str,
+        /// Their bounds.
+        expected: &'static str,
+    },
+    /// The unit would read what no number holds.
+    #[error("truth: found a reading of {found:e} m/s^2 in mounting {mounting}, expected readings below 1e9 m/s^2")]
+    Reading {
+        /// Number of the mounting, from 1.
+        mounting: usize,
+        /// The reading.
+        found: f64,
+    },
     /// A setting is out of its bounds.
     #[error("{setting}: found {found}, expected {expected}")]
     Setting {
@@ -219,47 +239,55 @@ impl Equipment {
     /// [`SimulationError::Setting`], the first that is not.
     pub fn check(&self) -> Result<(), SimulationError> {
         let Self { machine, sensor, recorder, tachometer, counter } = self;
-        above_zero("machine.plateau", machine.plateau)?;
-        not_negative("machine.plateau_spread", machine.plateau_spread)?;
-        above_zero("machine.ramp", machine.ramp)?;
+        time("machine.plateau", machine.plateau)?;
+        magnitude("machine.plateau_spread", machine.plateau_spread)?;
+        time("machine.ramp", machine.ramp)?;
         ratio("machine.speed_error", machine.speed_error)?;
         ratio("machine.settling", machine.settling)?;
-        above_zero("machine.settling_time", machine.settling_time)?;
-        not_negative("sensor.white", sensor.white)?;
-        not_negative("sensor.coloured.deviation", sensor.coloured.deviation)?;
-        above_zero("sensor.coloured.time", sensor.coloured.time)?;
-        not_negative("sensor.bias_instability", sensor.bias_instability)?;
-        not_negative("sensor.random_walk", sensor.random_walk)?;
-        not_negative("sensor.drift", sensor.drift)?;
-        not_negative("sensor.quantum", sensor.quantum)?;
-        sensor.range.map_or(Ok(()), |range| above_zero("sensor.range", range))?;
-        above_zero("recorder.rate", recorder.rate)?;
+        time("machine.settling_time", machine.settling_time)?;
+        magnitude("sensor.white", sensor.white)?;
+        magnitude("sensor.coloured.deviation", sensor.coloured.deviation)?;
+        time("sensor.coloured.time", sensor.coloured.time)?;
+        magnitude("sensor.bias_instability", sensor.bias_instability)?;
+        magnitude("sensor.random_walk", sensor.random_walk)?;
+        magnitude("sensor.drift", sensor.drift)?;
+        magnitude("sensor.quantum", sensor.quantum)?;
+        let above_zero = |found: f64| found.is_finite() && found > 0.0;
+        let range = |range| bounded("sensor.range", range, above_zero, "a finite number above 0");
+        sensor.range.map_or(Ok(()), range)?;
+        rate("recorder.rate", recorder.rate)?;
         ratio("recorder.spikes.probability", recorder.spikes.probability)?;
-        not_negative("recorder.spikes.size", recorder.spikes.size)?;
+        magnitude("recorder.spikes.size", recorder.spikes.size)?;
         ratio("recorder.gaps.probability", recorder.gaps.probability)?;
-        let least = |found: f64| found.is_finite() && found >= 1.0;
-        bounded("recorder.gaps.length", recorder.gaps.length, least, "a number of samples, 1 or more")?;
+        let expected = "a number of samples, 1 to a million";
+        bounded("recorder.gaps.length", recorder.gaps.length, |found| (1.0..=1e6).contains(&found), expected)?;
         ratio("recorder.repeats", recorder.repeats)?;
-        above_zero("tachometer.rate", tachometer.rate)?;
-        not_negative("tachometer.clock_offset", tachometer.clock_offset)?;
+        rate("tachometer.rate", tachometer.rate)?;
+        magnitude("tachometer.clock_offset", tachometer.clock_offset)?;
         ratio("tachometer.clock_drift", tachometer.clock_drift)?;
-        not_negative("tachometer.noise", tachometer.noise)?;
-        not_negative("tachometer.quantum", tachometer.quantum)?;
+        magnitude("tachometer.noise", tachometer.noise)?;
+        magnitude("tachometer.quantum", tachometer.quantum)?;
         error("tachometer.scale_error", tachometer.scale_error)?;
         ratio("tachometer.plateau_error", tachometer.plateau_error)?;
-        above_zero("counter.per_revolution", counter.per_revolution)?;
-        not_negative("counter.jitter", counter.jitter)?;
+        bounded("counter.per_revolution", counter.per_revolution, |n| (1e-3..=1e6).contains(&n), "from 1e-3 to 1e6")?;
+        magnitude("counter.jitter", counter.jitter)?;
         error("counter.scale_error", counter.scale_error)?;
         ratio("counter.plateau_error", counter.plateau_error)
     }
 }
 
-fn above_zero(setting: &'static str, found: f64) -> Result<(), SimulationError> {
-    bounded(setting, found, |f| f.is_finite() && f > 0.0, "a finite number above 0")
+/// No plateau, ramp or correlation of a laboratory is shorter than a millisecond or longer than a fortnight.
+fn time(setting: &'static str, found: f64) -> Result<(), SimulationError> {
+    bounded(setting, found, |f| (1e-3..=1e7).contains(&f), "a time above 0, from 1 ms to 1e7 s")
 }
 
-fn not_negative(setting: &'static str, found: f64) -> Result<(), SimulationError> {
-    bounded(setting, found, |f| f.is_finite() && f >= 0.0, "a finite number, 0 or more")
+/// Beyond a million m/s^2, s or rad/s a unit was mistaken.
+fn magnitude(setting: &'static str, found: f64) -> Result<(), SimulationError> {
+    bounded(setting, found, |f| (0.0..=1e6).contains(&f), "0 to 1e6")
+}
+
+fn rate(setting: &'static str, found: f64) -> Result<(), SimulationError> {
+    bounded(setting, found, |f| (1e-3..=1e7).contains(&f), "a rate above 0, from 1 mHz to 10 MHz")
 }
 
 fn ratio(setting: &'static str, found: f64) -> Result<(), SimulationError> {

@@ -100,7 +100,7 @@ impl<'a> Physics<'a> {
     }
 
     #[inline]
-    fn reading(&self, motion: &ArmMotion) -> Vector3<f64> {
+    pub fn reading(&self, motion: &ArmMotion) -> Vector3<f64> {
         match &self.rigid {
             Some(unit) => self.response.reading(&unit.specific_force(motion)),
             None => {

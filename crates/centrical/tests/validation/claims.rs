@@ -33,7 +33,8 @@ fn whitened(noise: f64, model: &MeasurementModel, further: Option<&[Vector3<f64>
     let mut rows = DMatrix::zeros(3 * set_points.len(), p + usize::from(further.is_some()));
     for (n, set_point) in set_points.iter().enumerate() {
         let at_zero = model.linearise_at_zero(set_point);
-        let covariance = Matrix3::identity() * noise.powi(2) + at_zero.setting_error * at_zero.setting_error.transpose();
+        let covariance =
+            Matrix3::identity() * noise.powi(2) + at_zero.setting_error * at_zero.setting_error.transpose();
         let factor = covariance.cholesky().unwrap().l();
         let mut columns = at_zero.columns;
         columns.extend(further.map(|further| (p, further[n])));

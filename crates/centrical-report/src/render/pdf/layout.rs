@@ -1,5 +1,6 @@
 //! Running text and tables, broken into lines and pages.
 
+use centrical_session::harmless_line;
 use pdf_writer::{Content, Name, Str};
 
 use super::font::{Font, Weight};
@@ -16,6 +17,8 @@ pub(super) const WIDTH: f32 = PAGE.0 - 2.0 * LEFT;
 const SIZE: f32 = 9.5;
 /// Distance of baselines over the size.
 const LEADING: f32 = 1.38;
+/// Lines of a row on one page, below the head of its table.
+const MOST_LINES: usize = 48;
 /// Free space between columns.
 const GUTTER: f32 = 8.0;
 
@@ -121,24 +124,29 @@ impl Layout {
         self.rule(0.8);
     }
 
+    /// A row; one that is higher than a page goes on on the next.
     fn row(&mut self, columns: &[Column], cells: &[String], weight: Weight) {
-        self.keep(self.height_of(columns, cells, weight));
-        let height = self.height_of(columns, cells, weight);
-        let mut x = LEFT;
-        for (column, cell) in columns.iter().zip(cells) {
-            let width = column.share * WIDTH;
-            let room = width - GUTTER;
-            for (n, line) in (0_u8..).zip(self.broken(cell, weight, SIZE, room)) {
-                let shift = match column.align {
-                    Align::Left => 0.0,
-                    Align::Right => room - self.font(weight).width(&line, SIZE),
-                };
-                let y = self.y - SIZE - f32::from(n) * SIZE * LEADING;
-                self.text(&line, weight, SIZE, x + shift, y);
+        let room = |column: &Column| column.share * WIDTH - GUTTER;
+        let broken = columns.iter().zip(cells).map(|(column, cell)| self.broken(cell, weight, SIZE, room(column)));
+        let broken: Vec<Vec<String>> = broken.collect();
+        let count = broken.iter().map(Vec::len).max().unwrap_or(0).max(1);
+        for from in (0..count).step_by(MOST_LINES) {
+            let height = count.saturating_sub(from).min(MOST_LINES) as f32 * SIZE * LEADING + 2.0;
+            self.keep(height);
+            let mut x = LEFT;
+            for (column, lines) in columns.iter().zip(&broken) {
+                for (n, line) in (0_u16..).zip(lines.iter().skip(from).take(MOST_LINES)) {
+                    let shift = match column.align {
+                        Align::Left => 0.0,
+                        Align::Right => room(column) - self.font(weight).width(line, SIZE),
+                    };
+                    let y = self.y - SIZE - f32::from(n) * SIZE * LEADING;
+                    self.text(line, weight, SIZE, x + shift, y);
+                }
+                x += column.share * WIDTH;
             }
-            x += width;
+            self.y -= height;
         }
-        self.y -= height;
     }
 
     fn height_of(&self, columns: &[Column], cells: &[String], weight: Weight) -> f32 {
@@ -214,7 +222,7 @@ fn cut(word: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
 
 /// Glyphs of a text, two bytes each.
 pub(super) fn encoded(font: &Font, text: &str) -> Vec<u8> {
-    text.chars().flat_map(|c| font.glyph(c).to_be_bytes()).collect()
+    harmless_line(text).chars().flat_map(|c| font.glyph(c).to_be_bytes()).collect()
 }
 
 pub(super) fn show(page: &mut Content, glyphs: &[u8], weight: Weight, size: f32, x: f32, y: f32) {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use centrical_session::harmless_line;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
@@ -30,7 +31,7 @@ pub(super) fn write(mut layout: Layout, document: &Document) -> Vec<u8> {
     let (catalog, tree, info) = (new(), new(), new());
     let mut pdf = Pdf::new();
     pdf.catalog(catalog).pages(tree).lang(TextStr(document.language.code()));
-    pdf.document_info(info).title(TextStr(&document.title)).producer(TextStr("centrical"));
+    pdf.document_info(info).title(TextStr(&harmless_line(&document.title))).producer(TextStr("centrical"));
     let fonts: Vec<(Weight, Ref)> = Weight::ALL
         .into_iter()
         .zip(&layout.fonts)

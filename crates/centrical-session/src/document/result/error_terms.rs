@@ -19,6 +19,13 @@ impl CalibrationResult {
         self.plateaus.iter().flat_map(|plateau| plateau.mean).fold(0.0, |largest, f| f.abs().max(largest))
     }
 
+    /// Largest magnitude on each axis of readings that the calibration covers [m/s^2]: that of the plateaus' means, and a
+    /// hundredth more, since samples scatter about their mean. Beyond it the error model is extrapolated.
+    pub fn calibrated_readings(&self) -> [f64; 3] {
+        [0, 1, 2]
+            .map(|axis: usize| 1.01 * self.plateaus.iter().map(|plateau| plateau.mean[axis].abs()).fold(0.0, f64::max))
+    }
+
     /// Range over which to compensate if none is asked for [m/s^2]: twice the calibrated range, since ramps and
     /// vibration go beyond plateaus, or as far as the inverse of the model with `terms` is certain.
     ///

@@ -4,7 +4,6 @@
 //! The same inputs give the same bytes: fields in a fixed order, numbers in their shortest exact decimal form,
 //! no time of day, no absolute paths.
 
-use std::fs;
 use std::path::Path;
 
 use centrical::uncertainty::Estimates;
@@ -20,6 +19,7 @@ use crate::document::json;
 use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
 use crate::error::{Error, Place};
 use crate::record::{Input, RecordOverview};
+use crate::settings::{from_json, read_result};
 
 /// Name of the schema's present version.
 pub const SCHEMA: &str = "centrical-result/1";
@@ -370,12 +370,8 @@ impl CalibrationResult {
     /// # Errors
     /// [`Error`] when the file is not there or is not a result of this schema.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let text = fs::read_to_string(path).map_err(|source| Error::reading(path, source, "a result.json"))?;
-        let result: Self = serde_json::from_str(&text).map_err(|error| Error::Form {
-            file: path.to_owned(),
-            place: Place::Character { line: error.line(), column: error.column() },
-            message: format!("found {error}, expected a result of schema {SCHEMA:?}"),
-        })?;
+        let text = read_result(path, "a result.json")?;
+        let result: Self = from_json(path, 1, &text, &format!("a result of schema {SCHEMA:?}"))?;
         if result.schema == SCHEMA {
             Ok(result)
         } else {

@@ -11,7 +11,8 @@ use centrical_table::write_whole;
 use serde::{Deserialize, Serialize};
 
 use crate::document::json;
-use crate::error::{Error, Place};
+use crate::error::Error;
+use crate::settings::{from_json, read_result};
 
 /// What was known after a plateau.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -83,7 +84,14 @@ impl HistoryEstimate {
 pub fn append_history(file: &Path, entry: &HistoryEntry) -> Result<(), Error> {
     let line = json::line("watch-history.jsonl", entry)?;
     let mut open = OpenOptions::new();
-    let written = open.create(true).append(true).open(file).and_then(|file| append(file, line.as_bytes()));
+    // What is no file of its own is not followed: a link, a pipe.
+    let is_other = fs::symlink_metadata(file).is_ok_and(|metadata| !metadata.is_file());
+    let opened = if is_other {
+        Err(io::Error::other("found something that is no regular file, expected the history or a free name"))
+    } else {
+        open.create(true).append(true).open(file)
+    };
+    let written = opened.and_then(|file| append(file, line.as_bytes()));
     written.map_err(|error| Error::writing(file, error))
 }
 
@@ -106,14 +114,8 @@ fn ended(text: &str) -> &str {
 /// [`Error`] when the file cannot be read or a line of it is no state.
 pub fn read_history(file: &Path) -> Result<Vec<HistoryEntry>, Error> {
     let expected = "the history of a watch";
-    let text = fs::read_to_string(file).map_err(|error| Error::reading(file, error, expected))?;
-    let entry = |(n, line): (usize, &str)| {
-        serde_json::from_str(line).map_err(|error| Error::Form {
-            file: file.to_owned(),
-            place: Place::Character { line: n + 1, column: error.column() },
-            message: format!("found {error}, expected {expected}"),
-        })
-    };
+    let text = read_result(file, expected)?;
+    let entry = |(n, line): (usize, &str)| from_json(file, n + 1, line, expected);
     ended(&text).lines().enumerate().map(entry).collect()
 }
 
@@ -125,7 +127,7 @@ pub fn keep_history(file: &Path, plateaus: usize) -> Result<(), Error> {
     if !file.exists() {
         return Ok(());
     }
-    let text = fs::read_to_string(file).map_err(|error| Error::reading(file, error, "the history of a watch"))?;
+    let text = read_result(file, "the history of a watch")?;
     // One plateau may have no line: while nothing is taken up there is nothing to tell.
     let is_of = |line: &&str| serde_json::from_str::<HistoryEntry>(line).is_ok_and(|entry| entry.plateau <= plateaus);
     let kept: String = ended(&text).split_inclusive('\n').take_while(is_of).collect();

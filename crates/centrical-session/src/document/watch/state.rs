@@ -1,6 +1,5 @@
 //! `watch.json`: where a watched session stands, to go on from after a stop.
 
-use std::fs;
 use std::path::Path;
 
 use centrical::Observation;
@@ -13,6 +12,7 @@ use crate::document::json;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::Input;
+use crate::settings::{from_json, read_result};
 
 /// Name of the form's present version.
 const SCHEMA: &str = "centrical-watch/1";
@@ -47,6 +47,9 @@ pub struct WatchedPlateau {
     pub held_out: bool,
 }
 
+/// Numbers beyond this are no means of readings [m/s^2] or covariances of them.
+const LARGEST: f64 = 1e12;
+
 impl WatchState {
     /// The state before the first plateau.
     ///
@@ -62,24 +65,36 @@ impl WatchState {
     ///
     /// # Errors
     /// [`Error`] when the file is of another form or belongs to another experiment file.
-    pub fn resume(session: &Session, file: &Path) -> Result<Self, Error> {
+    pub fn resume(session: &Session, unknowns: usize, file: &Path) -> Result<Self, Error> {
         let fresh = Self::new(session)?;
         if !file.exists() {
             return Ok(fresh);
         }
         let expected = "the state of a watched session";
-        let text = fs::read_to_string(file).map_err(|source| Error::reading(file, source, expected))?;
-        let state: Self = serde_json::from_str(&text).map_err(|error| Error::Form {
-            file: file.to_owned(),
-            place: Place::Character { line: error.line(), column: error.column() },
-            message: format!("found {error}, expected {expected}"),
-        })?;
+        let text = read_result(file, expected)?;
+        let state: Self = from_json(file, 1, &text, expected)?;
+        let refuse = |found: String, expected: &str| Err(Error::content(file, Place::Whole, found, expected));
         let other = state.schema != fresh.schema || state.experiment != fresh.experiment;
         let count = session.experiment.set_points.len();
         if other || state.plateaus.iter().any(|plateau| plateau.set_point >= count) {
             let found = "the state of another experiment file";
             let expected = format!("that of {}, or no such file to begin anew", session.file.display());
             return Err(Error::content(file, Place::Whole, found, expected));
+        }
+        // What the program writes is always so; what another hand wrote is blamed here, not where it is used.
+        if !state.point.is_empty() && state.point.len() != unknowns {
+            return refuse(format!("a point of {} unknowns", state.point.len()), &format!("one of {unknowns}"));
+        }
+        let mut come = vec![false; count];
+        for plateau in &state.plateaus {
+            if std::mem::replace(&mut come[plateau.set_point], true) {
+                return refuse(format!("set point {} a second time", plateau.set_point), "every set point once");
+            }
+            let numbers = plateau.mean.iter().chain(plateau.covariance.iter().flatten());
+            if numbers.into_iter().any(|number| !number.is_finite() || number.abs() >= LARGEST) || !plateau.covers() {
+                let found = format!("a mean and covariance of set point {} that cannot be", plateau.set_point);
+                return refuse(found, "numbers, and a symmetric positive definite covariance");
+            }
         }
         Ok(state)
     }
@@ -111,6 +126,13 @@ impl WatchedPlateau {
             alarm,
             held_out,
         }
+    }
+
+    /// Whether the covariance is one.
+    fn covers(&self) -> bool {
+        let covariance = self.observation().covariance;
+        let asymmetry = (covariance - covariance.transpose()).norm();
+        asymmetry <= 1e-9 * covariance.norm() && covariance.cholesky().is_some()
     }
 
     /// As data of a fit.

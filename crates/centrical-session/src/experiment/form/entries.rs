@@ -26,6 +26,21 @@ pub(crate) struct TermTable {
     pub term: String,
 }
 
+/// Values one by one, or so many at equal steps.
+#[derive(Debug)]
+pub(crate) enum Steps {
+    List(Vec<Quantity>),
+    Range(StepsTable),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StepsTable {
+    pub from: Quantity,
+    pub to: Quantity,
+    pub count: usize,
+}
+
 /// A column by name or number, or in full.
 #[derive(Debug)]
 pub(crate) struct ColumnEntry(pub ColumnTable);
@@ -233,5 +248,29 @@ impl<'de> Deserialize<'de> for TermEntry {
             }
         }
         deserializer.deserialize_any(EntryVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for Steps {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct StepsVisitor;
+        impl<'de> Visitor<'de> for StepsVisitor {
+            type Value = Steps;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(
+                    "a list of quantities, or equal steps such as { from = \"5 g\", to = \"200 g\", count = 8 }",
+                )
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Steps, A::Error> {
+                Vec::deserialize(de::value::SeqAccessDeserializer::new(list)).map(Steps::List)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Steps, A::Error> {
+                StepsTable::deserialize(de::value::MapAccessDeserializer::new(map)).map(Steps::Range)
+            }
+        }
+        deserializer.deserialize_any(StepsVisitor)
     }
 }

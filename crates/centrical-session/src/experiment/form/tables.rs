@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use super::entries::{ColumnEntry, PriorValue, TermList, date_as_text, name_or_number};
+use super::entries::{ColumnEntry, PriorValue, Steps, TermList, date_as_text, name_or_number};
 use crate::quantity::Quantity;
 
 /// The whole file.
@@ -71,22 +71,6 @@ pub(crate) struct CandidatesTable {
     pub repeats: Option<usize>,
     pub max_speed: Option<Quantity>,
     pub max_load: Option<Quantity>,
-}
-
-/// Values one by one, or so many at equal steps.
-#[derive(Debug, Deserialize)]
-#[serde(untagged)]
-pub(crate) enum Steps {
-    List(Vec<Quantity>),
-    Range(StepsTable),
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct StepsTable {
-    pub from: Quantity,
-    pub to: Quantity,
-    pub count: usize,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -1,6 +1,7 @@
 //! Plans with what is expected of the unit: the earlier result that they name.
 
-use std::path::Path;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 
 use crate::document::CalibrationResult;
 use crate::error::Error;
@@ -19,7 +20,18 @@ pub fn read_plan(path: &Path) -> Result<Option<Plan>, Error> {
 /// # Errors
 /// As [`Planning::read`] and [`CalibrationResult::read`].
 pub fn read_planning(path: &Path) -> Result<Planning, Error> {
-    Planning::read(path, &values)
+    read_with_inputs(path).map(|(planning, _)| planning)
+}
+
+/// The same with the files that were read.
+pub(super) fn read_with_inputs(path: &Path) -> Result<(Planning, Vec<PathBuf>), Error> {
+    let inputs = RefCell::new(vec![path.to_owned()]);
+    let earlier = |result: &Path| {
+        inputs.borrow_mut().push(result.to_owned());
+        values(result)
+    };
+    let planning = Planning::read(path, &earlier)?;
+    Ok((planning, inputs.take()))
 }
 
 /// The values of an earlier result that are determined.

@@ -1,5 +1,7 @@
 //! The parts of a plan that are asked for.
 
+use std::path::PathBuf;
+
 /// Levels `m` of [K5.5] on the frontier unless others are given.
 pub const USUAL_LEVELS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 
@@ -17,4 +19,6 @@ pub struct PlanRequest {
     pub levels: Vec<f64>,
     /// Probability that expanded uncertainties are to cover.
     pub coverage: f64,
+    /// Files that will be written: none of them may be one that is read.
+    pub outputs: Vec<PathBuf>,
 }

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use crate::document::{PlanReport, PlannedMounting, PlannedPlateau};
-use crate::error::{Error, Place};
+use crate::error::Error;
+use crate::settings::{editable, read_settings};
 
 impl PlanReport {
     /// The plan as the plan file of a session: the text that it was planned from, with mountings in place of candidates.
@@ -11,13 +12,7 @@ impl PlanReport {
     /// # Errors
     /// [`Error`] when the file cannot be read any more.
     pub fn session_text(&self, file: &Path) -> Result<String, Error> {
-        let text = std::fs::read_to_string(file).map_err(|source| Error::reading(file, source, "a plan"))?;
-        let form = |error: toml_edit::TomlError| Error::Form {
-            file: file.to_owned(),
-            place: Place::Whole,
-            message: error.message().to_owned(),
-        };
-        let mut document: toml_edit::DocumentMut = text.parse().map_err(form)?;
+        let mut document = editable(file, &read_settings(file, "a plan")?)?;
         for key in ["candidates", "cost", "target", "robust"] {
             document.remove(key);
         }

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use centrical::simulate::{SimulatedMounting, Simulation};
-use centrical_table::{ColumnName, TableFormat, create_folder, write_table, write_whole};
+use centrical_table::{ColumnName, TableFormat, claim_folder, create_folder, refuse_inputs, write_table, write_whole};
 use rayon::prelude::*;
 
 use super::files::{pulses_path, record_path, telemetry_path};
@@ -29,6 +29,7 @@ pub fn simulate_session(
     folder: &Path,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<(), Error> {
+    let _claim = claim_folder(folder)?;
     let experiment_file = folder.join(EXPERIMENT_FILE);
     if experiment_file.exists() {
         return Err(Error::content(&experiment_file, Place::Whole, "a session", "a folder without one"));
@@ -50,12 +51,18 @@ pub fn simulate_session(
     let simulation = Simulation::new(&truth.model, &truth.values, &truth.equipment, seed)
         .and_then(|simulation| simulation.with_durations(&durations))
         .map_err(|source| Error::Simulation { file: truth.file.clone(), source })?;
+    let mountings = 0..plan.experiment.mountings.len();
+    let mut outputs = vec![experiment_file.clone(), folder.join("truth.json")];
+    outputs.extend(
+        mountings.clone().flat_map(|m| [record_path(m, format), telemetry_path(m, format)]).map(|f| folder.join(f)),
+    );
+    refuse_inputs(&outputs, &[vec![truth.file.as_path()], plan.files()].concat())?;
     create_folder(&folder.join("records"))?;
     create_folder(&folder.join("telemetry"))?;
     if counts_pulses(plan) {
         create_folder(&folder.join("pulses"))?;
     }
-    let mountings = (0..plan.experiment.mountings.len()).into_par_iter().map(|m| {
+    let mountings = mountings.into_par_iter().map(|m| {
         let written = write_mounting(plan, &columns, &simulation.mounting(m), format, folder, m);
         done(m);
         written

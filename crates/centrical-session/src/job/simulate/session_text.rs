@@ -1,13 +1,12 @@
 //! The plan's text as the session's: every mounting names its files; all else stays as it was written.
 
-use std::fs;
-
 use centrical_table::TableFormat;
-use toml_edit::{DocumentMut, Item, TableLike, Value, value};
+use toml_edit::{Item, TableLike, Value, value};
 
 use super::files::{pulses_path, record_path, telemetry_path};
 use crate::error::{Error, Place};
 use crate::experiment::{Session, SpeedSource};
+use crate::settings::{editable, read_settings};
 
 /// The text of the plan with `record` and `telemetry` of every mounting.
 pub(crate) fn with_files(plan: &Session, format: TableFormat) -> Result<String, Error> {
@@ -16,13 +15,7 @@ pub(crate) fn with_files(plan: &Session, format: TableFormat) -> Result<String, 
         let expected = "a schedule of plateaus in every [[mounting]]";
         return Err(Error::content(file, Place::Whole, "plateaus already averaged", expected));
     }
-    let text = fs::read_to_string(file).map_err(|source| Error::reading(file, source, "a plan"))?;
-    let form = |error: toml_edit::TomlError| Error::Form {
-        file: file.clone(),
-        place: Place::Whole,
-        message: error.message().to_owned(),
-    };
-    let mut document: DocumentMut = text.parse().map_err(form)?;
+    let mut document = editable(file, &read_settings(file, "a plan")?)?;
     let has_pulses = counts_pulses(plan);
     match document.get_mut("mounting") {
         Some(Item::ArrayOfTables(tables)) => {

@@ -17,9 +17,10 @@ use crate::record::{read_growing_pulses, read_growing_record, read_growing_telem
 
 /// A session folder that is looked into again and again.
 ///
-/// A plateau has come when the next one of its schedule has begun, or when the record of its mounting is finished: it has
-/// been left alone for the time called quiet, or one of a later mounting is there and it shows its whole schedule.
-#[derive(Debug)]
+/// A plateau has come when one of its schedule that reads otherwise has begun after it, or when the record of its mounting is
+/// finished: it has been left alone for the time called quiet, or one of a later mounting is there and it shows its whole
+/// schedule. Plateaus that read alike, such as rests, follow each other unseen: part of one would pass for the next.
+#[derive(Debug, Clone)]
 pub struct Watch<'s> {
     session: &'s Session,
     quiet: Duration,
@@ -59,6 +60,20 @@ impl<'s> Watch<'s> {
     /// What is waited for, if something is.
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()
+    }
+
+    /// What a look would find if a record that has just changed counted as finished, for who looks only once.
+    pub fn without_quiet(&self) -> Option<String> {
+        let mut hasty = Self { quiet: Duration::ZERO, seen: None, note: None, ..self.clone() };
+        let changed = format!("records changed within the last {} s; with --quiet 0", self.quiet.as_secs_f64());
+        match hasty.look() {
+            Ok(more) if more.is_empty() => None,
+            Ok(more) => {
+                let end = if hasty.is_complete() { ", and the schedule would be complete" } else { "" };
+                Some(format!("{changed} {} more plateaus would count as arrived{end}", more.len()))
+            }
+            Err(error) => Some(format!("{changed} they would be refused: {error}")),
+        }
     }
 
     /// The measured speed of a plateau that has come, where speeds are measured and the telemetry or the pulses had come too.
@@ -153,7 +168,7 @@ impl<'s> Watch<'s> {
         let mut count = schedule.len();
         while count > 0 {
             match self.reduced(mounting, &record, &schedule[..count]) {
-                Ok(reduced) => return Ok(Some((reduced, count - 1))),
+                Ok(reduced) => return Ok(Some((reduced, over(&schedule[..count])))),
                 Err(
                     ReductionError::PlateauNotFound { index, .. }
                     | ReductionError::PlateauTooShort { index, .. }
@@ -237,4 +252,15 @@ impl<'s> Watch<'s> {
         let file = self.session.mountings[mounting].record.clone().unwrap_or_default();
         Error::Reduction { file, mounting: mounting + 1, source: Box::new(source) }
     }
+}
+
+/// How many plateaus of a schedule that was found are over: those before the last one that reads unlike its predecessor.
+fn over(found: &[ScheduledPlateau]) -> usize {
+    /// Relative difference of specific forces that no error of a unit makes up.
+    const UNLIKE: f64 = 0.02;
+    let is_unlike = |k: &usize| {
+        let [before, after] = [&found[k - 1].nominal_z, &found[*k].nominal_z];
+        (after - before).norm() > UNLIKE * before.norm().max(after.norm())
+    };
+    (1..found.len()).rev().find(is_unlike).unwrap_or(0)
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use centrical::fit::{Follower, Progress};
 use centrical::plan::{Benefit, Criterion, ReadingRange, next_best};
@@ -101,12 +101,13 @@ impl<'a> Following<'a> {
         check_groups(&request.groups, session, model)?;
         let held_out: Vec<usize> =
             request.hold_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
-        let mut state = WatchState::resume(session, &request.out.join(STATE_FILE))?;
+        let state_file = request.out.join(STATE_FILE);
+        let mut state = WatchState::resume(session, model.parameters().len(), &state_file)?;
         keep_history(&request.out.join(HISTORY_FILE), state.plateaus.len())?;
         // One that has been taken up before is held out from now on.
         state.plateaus.iter_mut().for_each(|plateau| plateau.held_out |= held_out.contains(&plateau.set_point));
         let follower = Follower::resume(model, state.taken(), &state.point)
-            .map_err(|source| Error::Fit { file: session.file.clone(), source })?;
+            .map_err(|source| Error::Fit { file: state_file, source })?;
         Ok(Self { request, session, model, follower, state, held_out })
     }
 
@@ -135,10 +136,14 @@ impl<'a> Following<'a> {
                 note = watch.note().map(str::to_owned);
                 note.as_deref().into_iter().for_each(|note| report(WatchEvent::Waiting(note)));
             }
-            if stop.load(Ordering::Relaxed) || self.request.once {
+            if self.request.once {
+                watch.without_quiet().iter().for_each(|note| report(WatchEvent::Waiting(note)));
                 return Ok(self.stopped());
             }
-            thread::sleep(self.request.interval);
+            if stop.load(Ordering::Relaxed) {
+                return Ok(self.stopped());
+            }
+            wait(self.request.interval, stop);
         }
     }
 
@@ -269,3 +274,15 @@ fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) 
 const STATE_FILE: &str = "watch.json";
 
 const HISTORY_FILE: &str = "watch-history.jsonl";
+
+/// Sleeps, but not on when `stop` is raised.
+fn wait(time: Duration, stop: &AtomicBool) {
+    /// How soon a stop is noticed.
+    const SLICE: Duration = Duration::from_millis(50);
+    let begun = Instant::now();
+    while !stop.load(Ordering::Relaxed)
+        && let Some(left) = time.checked_sub(begun.elapsed()).filter(|left| !left.is_zero())
+    {
+        thread::sleep(left.min(SLICE));
+    }
+}

@@ -109,12 +109,12 @@ impl Message<'_> {
         if offset.checked_add(length).is_none_or(|end| end > self.body.end) {
             return Err(wrong());
         }
-        let plain = Bytes { packing: Packing::Plain, offset, length, skip: 0 };
+        let plain = Bytes { packing: Packing::Plain, offset, length, skip: 0, crc_32: None };
         let Some(packing) = packing.filter(|_| length >= 8) else { return Ok(plain) };
         let mut prefix = [0; 8];
         plain.open(self.file, 0).and_then(|mut input| input.read_exact(&mut prefix)).map_err(|_| wrong())?;
         let packing = if prefix == [0xff; 8] { Packing::Plain } else { packing };
-        Ok(Bytes { packing, offset: offset + 8, length: length - 8, skip: 0 })
+        Ok(Bytes { packing, offset: offset + 8, length: length - 8, skip: 0, crc_32: None })
     }
 }
 

@@ -2,11 +2,14 @@
 
 use std::path::Path;
 
-use polars_arrow_format::ipc::{Endianness, FieldRef, Precision, SchemaRef, TimeUnit, TypeRef};
+use polars_arrow_format::ipc::planus::ReadAsRoot;
+use polars_arrow_format::ipc::{
+    Endianness, FieldRef, MessageHeaderRef, MessageRef, Precision, SchemaRef, TimeUnit, TypeRef,
+};
 
 use super::super::arrays::{Array, ArrayColumn, Bytes, Scalar, ScalarKind};
 use super::super::columnar::Column;
-use super::messages::damaged;
+use super::messages::{CONTINUATION, damaged};
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
 
@@ -76,7 +79,14 @@ impl ArrowColumn {
     /// Its array in a batch.
     pub fn array(&self, rows: u64, bytes: Bytes) -> Array {
         let column = ArrayColumn { name: String::new(), start: 0, scalar: self.scalar };
-        Array { name: self.name.clone(), bytes, rows, stride: self.scalar.size as u64, columns: vec![column] }
+        Array {
+            name: self.name.clone(),
+            bytes,
+            rows,
+            stride: self.scalar.size as u64,
+            columns: vec![column],
+            halves: Vec::new(),
+        }
     }
 }
 
@@ -117,10 +127,25 @@ fn numbers(column: &FieldRef, rule: Rule, big_endian: bool) -> Flat<Result<(Scal
             };
             (ScalarKind::Signed, 64, unit)
         }
+        TypeRef::Duration(_) => return Ok(Err("a duration".to_owned())),
         _ => return described(),
     };
     let scalar = usize::try_from(bits / 8).ok().and_then(|size| Scalar::new(kind, size, big_endian));
     Ok(scalar.map(|scalar| (scalar, unit)).ok_or_else(|| format!("numbers of {bits} bits")))
+}
+
+/// Names of the columns that are durations, of a schema as Parquet files keep it: a message of a stream.
+pub(in crate::binary) fn durations(message: &[u8]) -> Vec<String> {
+    let schema = || {
+        let after_length = message.strip_prefix(&CONTINUATION).unwrap_or(message).get(4..)?;
+        match MessageRef::read_as_root(after_length).ok()?.header().ok()?? {
+            MessageHeaderRef::Schema(schema) => schema.fields().ok()?,
+            _ => None,
+        }
+    };
+    let fields = schema().into_iter().flatten().filter_map(Result::ok);
+    let durations = fields.filter(|field| matches!(field.type_(), Ok(Some(TypeRef::Duration(_)))));
+    durations.filter_map(|field| field.name().ok()?.map(str::to_owned)).collect()
 }
 
 /// Nodes and buffers of a column; none where their number depends on the batch.

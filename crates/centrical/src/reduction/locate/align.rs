@@ -42,8 +42,14 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
     if let Some(index) = missing(&cores) {
         let ScheduledPlateau { omega, nominal_z } = schedule[index];
         let stretches = evidence.steady_stretches().into_iter();
-        let seen = stretches.map(|range| stretch(blocks, range, &cores, &candidates)).collect();
-        return Err(ReductionError::PlateauNotFound { index, count: schedule.len(), omega, level_z: nominal_z, seen });
+        let seen: Vec<Stretch> = stretches.map(|range| stretch(blocks, range, &cores, &candidates)).collect();
+        let least = blocks.least(omega) as f64 * blocks.width;
+        let is_too_short = |s: &&Stretch| s.plateau == Some(index) && s.window[1] - s.window[0] < least;
+        if let Some(&Stretch { window, .. }) = seen.iter().find(is_too_short) {
+            return Err(ReductionError::PlateauTooShort { index, window, least });
+        }
+        let count = schedule.len();
+        return Err(ReductionError::PlateauNotFound { index, count, omega, level_z: nominal_z, least, seen });
     }
     // With the plateaus located, the changes on each give their own noise, far below that of a sample. This is repeated
     // until the noise holds no part of the ramps.

@@ -18,7 +18,7 @@ use crate::reduction::error::ReductionError;
 use crate::reduction::plateau::ScheduledPlateau;
 use crate::reduction::survey::Blocks;
 use crate::simd::lanes::{dot, widest};
-use crate::statistics::{cut, median, whole};
+use crate::statistics::{cut, median};
 
 /// The windows of one mounting.
 #[derive(Debug, Clone)]
@@ -69,12 +69,10 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Refuses plateaus of less than a revolution, or of less than twice as many blocks as coefficients.
+    /// Refuses plateaus that are too short.
     fn check(&self) -> Result<(), ReductionError> {
         for (index, core) in self.cores.iter().enumerate() {
-            let omega = self.schedule[index].omega;
-            let revolution = if omega == 0.0 { 0.0 } else { TAU / omega.abs() / self.blocks.width };
-            let least = 8.max(whole(revolution.ceil()));
+            let least = self.blocks.least(self.schedule[index].omega);
             if core.len() < least {
                 let window = [self.blocks.t[core.start], self.blocks.t[core.end - 1]];
                 return Err(ReductionError::PlateauTooShort { index, window, least: least as f64 * self.blocks.width });

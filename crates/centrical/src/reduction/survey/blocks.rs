@@ -1,5 +1,6 @@
 //! A record as block levels.
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -8,7 +9,7 @@ use statrs::function::erf::erf;
 use super::block::Block;
 use super::grid::{Grid, SAMPLES};
 use crate::reduction::error::ReductionError;
-use crate::statistics::median;
+use crate::statistics::{median, whole};
 
 /// A record in equal blocks of time; blocks that fall in a gap are left out.
 #[derive(Debug, Clone)]
@@ -30,6 +31,12 @@ pub(in crate::reduction) struct Blocks {
 }
 
 impl Blocks {
+    /// Fewest blocks of a plateau at a speed [rad/s]: a revolution, and twice as many as a fit has coefficients.
+    pub fn least(&self, omega: f64) -> usize {
+        let revolution = if omega == 0.0 { 0.0 } else { TAU / omega.abs() / self.width };
+        8.max(whole(revolution.ceil()))
+    }
+
     /// The blocks of a record, gathered. Readings have steps of `resolution` at least [m/s^2].
     pub(super) fn new(grid: &Grid, gathered: &[Block], resolution: f64) -> Result<Self, ReductionError> {
         let total = |of: fn(&Block) -> [u64; 3]| {

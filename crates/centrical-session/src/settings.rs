@@ -1,0 +1,93 @@
+//! Settings and documents from their text, and what is wrong with one in words of the file and not of its parser.
+
+use std::path::Path;
+
+use centrical_table::{cut, read_document};
+use serde::de::DeserializeOwned;
+
+use crate::error::{Error, Place};
+
+/// Largest file of settings [bytes]: thousands of mountings fit; more is another kind of file.
+const LARGEST_SETTINGS: u64 = 16 << 20;
+
+/// Largest result, state or history [bytes]: those of ten thousand plateaus fit.
+const LARGEST_DOCUMENT: u64 = 128 << 20;
+
+/// Characters that a message shows of what was found.
+const LONGEST_SENTENCE: usize = 200;
+
+/// The text of a file of settings, which should be what `expected` says.
+pub(crate) fn read_settings(file: &Path, expected: &str) -> Result<String, Error> {
+    Ok(read_document(file, LARGEST_SETTINGS, expected)?)
+}
+
+/// The text of a result, a state or a history.
+pub(crate) fn read_result(file: &Path, expected: &str) -> Result<String, Error> {
+    Ok(read_document(file, LARGEST_DOCUMENT, expected)?)
+}
+
+/// Settings from the text of `file`.
+pub(crate) fn from_toml<T: DeserializeOwned>(file: &Path, text: &str) -> Result<T, Error> {
+    toml::from_str(text).map_err(|error| {
+        let place = error.span().map_or(Place::Whole, |span| Place::of_byte(text, span.start));
+        form_error(file, place, error.message(), "TOML as the form of this file says")
+    })
+}
+
+/// Settings as they are edited: with comments and order.
+pub(crate) fn editable(file: &Path, text: &str) -> Result<toml_edit::DocumentMut, Error> {
+    text.parse().map_err(|error: toml_edit::TomlError| {
+        let place = error.span().map_or(Place::Whole, |span| Place::of_byte(text, span.start));
+        form_error(file, place, error.message(), "TOML")
+    })
+}
+
+/// A document from JSON, which should be what `expected` says; `line` is the number of its first line in the file.
+pub(crate) fn from_json<T: DeserializeOwned>(file: &Path, line: usize, text: &str, expected: &str) -> Result<T, Error> {
+    serde_json::from_str(text).map_err(|error| {
+        let place = Place::Character { line: line + error.line().max(1) - 1, column: error.column() };
+        let sentence = error.to_string();
+        let sentence = sentence.split(" at line ").next().unwrap_or_default();
+        form_error(file, place, sentence, expected)
+    })
+}
+
+/// What a parser says, as what was found and what was expected.
+fn form_error(file: &Path, place: Place, sentence: &str, expected: &str) -> Error {
+    let sentence = sentence.trim().replace('\n', ", ");
+    let message = found_and_expected(&sentence, expected);
+    // What is expected stays whole, however long the value is that was found.
+    let message = match message.rsplit_once(", expected ") {
+        Some((found, expected)) => format!("{}, expected {expected}", cut(found, LONGEST_SENTENCE)),
+        None => cut(&message, LONGEST_SENTENCE).into_owned(),
+    };
+    Error::Form { file: file.to_owned(), place, message }
+}
+
+/// `invalid type: string "x", expected a number` as `found string "x", expected a number`, and so on.
+fn found_and_expected(sentence: &str, expected: &str) -> String {
+    let quoted_name = |rest: &str| rest.strip_prefix('`').and_then(|rest| rest.split('`').next()).map(str::to_owned);
+    if let Some(name) = sentence.strip_prefix("missing field ").and_then(quoted_name) {
+        return format!("found no key `{name}`, expected one");
+    }
+    if let Some(name) = sentence.strip_prefix("duplicate field ").and_then(quoted_name) {
+        return format!("found the key `{name}` twice, expected it once");
+    }
+    if let Some(rest) = sentence.strip_prefix("unknown field ") {
+        let rest = rest.replace(", there are no fields", ", expected none");
+        return format!("found an unknown key {rest}");
+    }
+    for start in ["invalid type: ", "invalid value: ", "unknown variant "] {
+        if let Some(rest) = sentence.strip_prefix(start) {
+            return format!("found {rest}");
+        }
+    }
+    if let Some(rest) = sentence.strip_prefix("invalid length ") {
+        return format!("found a length of {rest}");
+    }
+    if sentence.contains(", expected ") {
+        let start = if sentence.starts_with("found ") { "" } else { "found " };
+        return format!("{start}{sentence}");
+    }
+    format!("found text with a fault ({sentence}), expected {expected}")
+}

@@ -1,0 +1,70 @@
+//! Text of others, made harmless: names, titles and values from files, on their way to a terminal, a comment, a page.
+
+use std::borrow::Cow;
+
+/// Stands for a character that is not shown, as it stands for bytes that are no text.
+const REPLACEMENT: char = '\u{fffd}';
+
+/// The text without what a terminal, a compiler, a browser or a reader of XML takes for anything but a character to be shown: control
+/// characters but the end of a line and the tabulator, marks that reverse the direction of what follows, characters without
+/// a width, and code points that are no characters. Each is replaced by U+FFFD. Most texts are as they were.
+pub fn harmless(text: &str) -> Cow<'_, str> {
+    without(text, |c| !matches!(c, '\n' | '\t') && is_harmful(c))
+}
+
+/// The same on one line: ends of lines and tabulators are blanks.
+pub fn harmless_line(text: &str) -> Cow<'_, str> {
+    let text = without(text, |c| !matches!(c, '\n' | '\r' | '\t') && is_harmful(c));
+    if text.contains(['\n', '\r', '\t']) { Cow::Owned(text.replace(['\n', '\r', '\t'], " ")) } else { text }
+}
+
+/// A text cut to `most` characters, three dots in place of the rest.
+pub fn cut(text: &str, most: usize) -> Cow<'_, str> {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => Cow::Owned(format!("{}...", &text[..end])),
+        None => Cow::Borrowed(text),
+    }
+}
+
+fn without(text: &str, is_left_out: impl Fn(char) -> bool) -> Cow<'_, str> {
+    if text.chars().any(&is_left_out) {
+        Cow::Owned(text.chars().map(|c| if is_left_out(c) { REPLACEMENT } else { c }).collect())
+    } else {
+        Cow::Borrowed(text)
+    }
+}
+
+fn is_harmful(c: char) -> bool {
+    let is_invisible = matches!(
+        c,
+        // Soft hyphen; marks and overrides of direction; no width; line and paragraph separators; invisible operators.
+        '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
+            // Byte order mark, annotations, tags.
+            | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}'
+    );
+    let is_no_character = (c as u32) & 0xfffe == 0xfffe || ('\u{fdd0}'..='\u{fdef}').contains(&c);
+    c.is_control() || is_invisible || is_no_character
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_shown_is_replaced() {
+        for c in ['\0', '\u{1b}', '\u{7f}', '\u{9b}', '\u{202e}', '\u{2066}', '\u{200b}', '\u{fffe}', '\u{1ffff}', '\r']
+        {
+            assert_eq!(harmless(&format!("a{c}b")), "a\u{fffd}b", "{c:?}");
+        }
+        for text in ["Центрифуга", "µg/√Hz", "a\tb\n", "日本", "a\u{301}", "😀"] {
+            assert_eq!(harmless(text), text);
+        }
+        assert_eq!(harmless_line("a\r\nb\u{1b}"), "a  b\u{fffd}");
+    }
+
+    #[test]
+    fn a_long_text_is_cut_between_characters() {
+        assert_eq!(cut("жжж", 3), "жжж");
+        assert_eq!(cut("жжжж", 3), "жжж...");
+    }
+}

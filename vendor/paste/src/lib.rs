@@ -1,0 +1,3 @@
+//! The macro of `pastey` under the name by which `pulp` calls it.
+
+pub use pastey::paste;
