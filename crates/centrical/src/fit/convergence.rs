@@ -1,7 +1,7 @@
 //! How the uncertainties shrink as the session goes on: those of all unknowns after each plateau.
 //!
 //! Square-root information form: the triangular factor `R` of the whitened design starts from a standard deviation of
-//! [`NULL_HOLD`] typical magnitudes for every unknown, and each plateau adds its three whitened rows by a
+//! [`NULL_HOLD`] typical magnitudes for every unknown, and the plateaus of each stage add their whitened rows by a
 //! QR factorisation. The uncertainties are the lengths of the rows of `R^-1`.
 
 use nalgebra::{DMatrix, DVector, Matrix3};
@@ -26,21 +26,25 @@ impl Calibration<'_> {
         let (parameters, typical) = (model.parameters().len(), self.data().typical());
         let p = typical.len();
         let every = observations.len().div_ceil(most.max(1)).max(1);
-        let mut stack = DMatrix::zeros(p + 3, p);
-        stack.fill_diagonal(1.0 / NULL_HOLD);
-        (parameters..p).for_each(|influence| stack[(influence, influence)] = 1.0);
+        let mut triangle = DMatrix::zeros(p, p);
+        triangle.fill_diagonal(1.0 / NULL_HOLD);
+        (parameters..p).for_each(|influence| triangle[(influence, influence)] = 1.0);
         let mut checkpoints = Vec::new();
+        let mut plateaus = 0;
         let linearisations = self.data().linearised(&fit.unknowns());
-        for (n, (linearisation, covariance)) in linearisations.iter().zip(&fit.observation_covariances).enumerate() {
-            stack.rows_mut(p, 3).copy_from(&whitened_rows(linearisation, covariance, &typical, parameters));
-            let equations = LeastSquares::new(stack.clone(), typical.clone());
-            stack.rows_mut(0, p).copy_from(equations.triangle());
-            let plateaus = n + 1;
-            if plateaus % every == 0 || plateaus == observations.len() {
-                let mut standard_uncertainty = equations.standard_uncertainties();
-                standard_uncertainty.truncate(parameters);
-                checkpoints.push(Checkpoint { plateaus, standard_uncertainty });
+        for (linearisations, covariances) in linearisations.chunks(every).zip(fit.observation_covariances.chunks(every))
+        {
+            let mut stack = triangle.resize_vertically(p + 3 * linearisations.len(), 0.0);
+            for (n, (linearisation, covariance)) in linearisations.iter().zip(covariances).enumerate() {
+                let rows = whitened_rows(linearisation, covariance, &typical, parameters);
+                stack.rows_mut(p + 3 * n, 3).copy_from(&rows);
             }
+            let equations = LeastSquares::new(stack, typical.clone());
+            triangle = equations.triangle().clone();
+            plateaus += linearisations.len();
+            let mut standard_uncertainty = equations.standard_uncertainties();
+            standard_uncertainty.truncate(parameters);
+            checkpoints.push(Checkpoint { plateaus, standard_uncertainty });
         }
         checkpoints
     }

@@ -3,7 +3,7 @@
 //! With the whitened design `W J = Q R` at the estimate, a change `dy` of the readings moves the estimates by
 //! `K dy`, `K = R^-1 Q^T W`. `K` is applied by reflections and back substitution and never formed.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::assembly::Assembly;
 use super::data::Data;
@@ -44,10 +44,15 @@ impl Gain {
         Ok(Self { equations, whiteners, linearisations, basis, parameters, priors, residuals: design.misfit })
     }
 
-    /// Changes of the estimates, `p x m` [units of the parameters], that `m` changes of the readings make,
-    /// `3 n x m` [m/s^2], three rows per observation.
-    pub fn apply(&self, readings: &DMatrix<f64>) -> DMatrix<f64> {
-        self.parameters_of(&self.rotated(readings))
+    /// Changes of the estimates, `p x m` [units of the parameters], by `m` changes of one observation each: its index, and the
+    /// change of its reading [m/s^2].
+    pub fn apply(&self, changes: &[(usize, Vector3<f64>)]) -> DMatrix<f64> {
+        let mut followed = DMatrix::zeros(self.basis.ncols(), changes.len());
+        for ((n, change), mut column) in changes.iter().zip(followed.column_iter_mut()) {
+            let rows = self.basis.rows(3 * n, 3);
+            rows.tr_mul_to(&self.whiteners[*n].apply(change), &mut column);
+        }
+        self.parameters_of(&followed)
     }
 
     /// Changes of the estimates, `p x m`, that each of the `m` priors makes when it is off by one standard uncertainty.

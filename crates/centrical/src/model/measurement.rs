@@ -8,10 +8,13 @@ use super::experiment::{Experiment, SetPoint};
 use super::extension::{Difference, Extension};
 use super::frame::carousel;
 use super::history;
-use super::parameter::Parameters;
+use super::parameters::Parameters;
 use super::prior::{self, Prior, PriorError};
 use super::rival::Rival;
 use super::stated::{Influence, TypeB};
+
+/// Mountings that are asked one by one whether they differ from the others: each brings two dozen unknowns to be tried.
+const MOST_SINGLE: usize = 100;
 
 /// An experiment, the unit's error model, and the unknowns that follow from the two.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,13 +90,15 @@ impl MeasurementModel {
     }
 
     /// The rivals that the model leaves out, neither unknown nor stated: of the session, and of each of its mountings.
+    /// A session of more than [`MOST_SINGLE`] mountings is asked for the former alone.
     pub fn left_out(&self) -> Vec<Rival> {
         let common = Rival::COMMON.into_iter().zip(self.stated.effects).filter(|(_, u)| *u == 0.0);
         let of_mounting = |mounting: usize| {
             let differences = [Difference::Shift, Difference::Turn, Difference::Unit];
             differences.map(|difference| Rival::Effect(Extension::OneMounting(difference, mounting)))
         };
-        let mountings = (0..self.experiment.mountings.len()).flat_map(of_mounting);
+        let count = self.experiment.mountings.len();
+        let mountings = (0..count).take_while(|_| count <= MOST_SINGLE).flat_map(of_mounting);
         let all = common.map(|(rival, _)| rival).chain(mountings);
         all.filter(|rival| !rival.is_in(&self.error_model, &self.extensions)).collect()
     }

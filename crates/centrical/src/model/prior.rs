@@ -7,7 +7,7 @@
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use super::parameter::Parameters;
+use super::parameters::Parameters;
 
 /// Prior knowledge of one parameter: a mean with a standard uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]

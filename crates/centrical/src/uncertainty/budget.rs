@@ -201,39 +201,32 @@ fn total(contributions: &[Contribution], p: usize) -> DMatrix<f64> {
     contributions.iter().fold(DMatrix::zeros(p, p), |sum, c| sum + c.covariance())
 }
 
-/// The Cholesky factors of the covariances of the means, block by block, `3 n x 3 n`.
-fn noise(observations: &[Observation]) -> Result<DMatrix<f64>, FitError> {
-    let mut effects = DMatrix::zeros(3 * observations.len(), 3 * observations.len());
+/// Changes of single readings: index of the observation, and the change [m/s^2].
+type Changes = Vec<(usize, Vector3<f64>)>;
+
+/// The columns of the Cholesky factors of the covariances of the means.
+fn noise(observations: &[Observation]) -> Result<Changes, FitError> {
+    let mut changes = Vec::with_capacity(3 * observations.len());
     for (n, observation) in observations.iter().enumerate() {
-        effects.fixed_view_mut::<3, 3>(3 * n, 3 * n).copy_from(&observation.noise_factor()?);
+        let factor = observation.noise_factor()?;
+        changes.extend(factor.column_iter().map(|column| (n, column.into_owned())));
     }
-    Ok(effects)
+    Ok(changes)
 }
 
-/// Changes of the readings by one standard uncertainty of the speed of each plateau, or of the angle of each at rest.
-fn settings(gain: &Gain, model: &MeasurementModel, observations: &[Observation], at_rest: bool) -> DMatrix<f64> {
+/// One standard uncertainty of the speed of each plateau, or of the angle of each at rest.
+fn settings(gain: &Gain, model: &MeasurementModel, observations: &[Observation], at_rest: bool) -> Changes {
     let set_points = &model.experiment().set_points;
-    let acting: Vec<(usize, Vector3<f64>)> = (gain.linearisations().iter().zip(observations).enumerate())
+    (gain.linearisations().iter().zip(observations).enumerate())
         .filter(|(_, (at, o))| set_points[o.set_point].is_rest() == at_rest && at.setting_error != Vector3::zeros())
         .map(|(n, (at, _))| (n, at.setting_error))
-        .collect();
-    let mut effects = DMatrix::zeros(3 * observations.len(), acting.len());
-    for ((n, change), mut column) in acting.iter().zip(effects.column_iter_mut()) {
-        column.fixed_rows_mut::<3>(3 * n).copy_from(change);
-    }
-    effects
+        .collect()
 }
 
 /// One standard uncertainty of the rounding of each mean that is a plateau's own.
-fn rounding(gain: &Gain) -> DMatrix<f64> {
+fn rounding(gain: &Gain) -> Changes {
     let rounded = gain.linearisations().iter().enumerate().filter(|(_, at)| at.rounding > 0.0);
-    let entries: Vec<(usize, f64)> =
-        rounded.flat_map(|(n, at)| (3 * n..3 * n + 3).map(|row| (row, at.rounding))).collect();
-    let mut effects = DMatrix::zeros(3 * gain.linearisations().len(), entries.len());
-    for (column, (row, u)) in entries.into_iter().enumerate() {
-        effects[(row, column)] = u;
-    }
-    effects
+    rounded.flat_map(|(n, at)| (0..3).map(move |axis| (n, Vector3::ith(axis, at.rounding)))).collect()
 }
 
 fn side_by_side(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {

@@ -2,7 +2,7 @@
 
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::{
-    Combination, Course, ErrorModel, Extension, Extra, Law, MeasurementModel, PairRelation, PriorError, Study, Weight,
+    Combination, ErrorModel, Extension, Extra, Law, MeasurementModel, PairRelation, PriorError, Study, Weight,
 };
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
@@ -139,10 +139,10 @@ fn optional_groups_are_recovered() {
     }
     let expected = [
         Extension::SeatLateral,
+        Extension::PositionShift,
         Extension::MountingShift,
         Extension::MountingTurn,
         Extension::SpinTurn,
-        Extension::Disturbance(Course::Rise),
     ];
     assert_eq!(lossy, expected.map(|extension| vec![extension]));
 }

@@ -87,8 +87,8 @@ fn every_effect_is_shown_and_named() {
         assert_eq!(told, SESSIONS, "{}", rival.name());
         assert!(named + 1 >= SESSIONS, "{}: {named}, instead {instead:?}", rival.name());
     }
-    // Seen by second-order traces alone: the lateral place of a seat is a turn of the arm about its axis.
-    assert_eq!(followed, Vec::<String>::new());
+    // The lateral place of a seat acts as the bias of two newtonometers and turns do: no session of this plan can show it.
+    assert_eq!(followed, ["seat-lateral"]);
 }
 
 /// Sound sessions: none is objected to, and no more are reported than the level says.
