@@ -176,14 +176,14 @@ impl Blocks<'_> {
     /// in which nothing is redundant are left out.
     fn predict(&self, members: &[usize]) -> Prediction {
         let rows: Vec<usize> = members.iter().flat_map(|n| 3 * n..3 * n + 3).collect();
-        let q = self.basis.select_rows(&rows);
-        let free = DMatrix::identity(rows.len(), rows.len()) - &q * q.transpose();
         let residuals = DVector::from_fn(rows.len(), |a, _| self.residuals[rows[a]]);
-        let eigen = SymmetricEigen::new(free);
-        let components = eigen.eigenvectors.transpose() * residuals;
-        let (mut statistic, mut score, mut degrees_of_freedom) = (0.0, 0.0, 0);
-        for (component, share) in components.iter().zip(eigen.eigenvalues.iter()) {
-            if *share > REDUNDANT {
+        let Principal { components, shares, beyond } = Principal::of(&self.basis.select_rows(&rows), &residuals);
+        // Directions that the fit does not follow at all are redundant as a whole.
+        let mut statistic = beyond;
+        let mut degrees_of_freedom = rows.len() - shares.len();
+        let mut score = 0.0;
+        for (component, share) in components.iter().zip(shares) {
+            if share > REDUNDANT {
                 statistic += component * component / share;
                 degrees_of_freedom += 1;
             }
@@ -194,5 +194,31 @@ impl Blocks<'_> {
         let left = self.degrees_of_freedom.saturating_sub(degrees_of_freedom);
         let f = (statistic / degrees_of_freedom as f64) / ((self.chi_squared - statistic).max(0.0) / left as f64);
         Prediction { statistic, degrees_of_freedom, score, probability: f_tail(f, degrees_of_freedom, left) }
+    }
+}
+
+/// The principal directions of `E - H_bb = E - Q_b Q_b^T` of a block.
+struct Principal {
+    /// Of the residuals along the directions that the fit follows at least in part.
+    components: DVector<f64>,
+    /// Part of each that is redundant.
+    shares: Vec<f64>,
+    /// Sum of squares of the residuals in all other directions.
+    beyond: f64,
+}
+
+impl Principal {
+    /// Of a block with the rows `q` of the basis: by the eigenvectors of `E - Q_b Q_b^T` where it has fewer rows than there are
+    /// unknowns, else by the left singular vectors of `Q_b`, in time linear in the rows.
+    fn of(q: &DMatrix<f64>, residuals: &DVector<f64>) -> Self {
+        if q.nrows() <= q.ncols() {
+            let eigen = SymmetricEigen::new(DMatrix::identity(q.nrows(), q.nrows()) - q * q.transpose());
+            let components = eigen.eigenvectors.transpose() * residuals;
+            return Self { components, shares: eigen.eigenvalues.as_slice().to_vec(), beyond: 0.0 };
+        }
+        let svd = q.clone().svd(true, false);
+        let components = svd.u.map_or_else(|| DVector::zeros(q.ncols()), |u| u.tr_mul(residuals));
+        let beyond = (residuals.norm_squared() - components.norm_squared()).max(0.0);
+        Self { components, shares: svd.singular_values.iter().map(|s| 1.0 - s * s).collect(), beyond }
     }
 }

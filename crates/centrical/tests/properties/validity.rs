@@ -31,6 +31,27 @@ fn patterns(model: &MeasurementModel, observations: Vec<Observation>) -> Vec<Pat
     Calibration::exact(&data).unwrap().patterns().unwrap()
 }
 
+/// A mounting with more readings than there are unknowns is predicted from the others as any other: its statistic is the fall of
+/// chi^2 in a fit without it, and all its readings but those that it alone determines are redundant.
+#[test]
+fn a_long_mounting_is_predicted_like_any_other() {
+    let mut experiment = source_model().experiment().clone();
+    let first: Vec<_> = experiment.set_points.iter().filter(|s| s.mounting == 0).copied().collect();
+    experiment.set_points.splice(0..0, first.iter().cycle().take(12).copied());
+    let (model, mut random) = (kozlov(experiment), Random::new(12));
+    let data = session(&model, &truth(&model, 1.0, &mut random), &mut random);
+    let all = Data::new(&model, data.clone()).unwrap();
+    let calibration = Calibration::exact(&all).unwrap();
+    let check = calibration.validity().unwrap().mountings[0];
+    let set_points = &model.experiment().set_points;
+    let others: Vec<_> = data.into_iter().filter(|o| set_points[o.set_point].mounting != 0).collect();
+    let without = crate::common::exact(&model, &others).unwrap();
+    let fall = calibration.fit().chi_squared - without.chi_squared;
+    assert!((check.prediction.statistic - fall).abs() < 1e-2, "{} {fall}", check.prediction.statistic);
+    let lost = calibration.fit().observability().rank() - without.observability().rank();
+    assert_eq!(check.prediction.degrees_of_freedom, 63 - lost);
+}
+
 /// Leverages add up to the unknowns; a block's statistic is the fall of chi^2 in a fit without it.
 #[test]
 fn statistics_are_what_a_fit_without_the_block_shows() {
