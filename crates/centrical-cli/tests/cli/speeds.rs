@@ -1,6 +1,7 @@
 //! Telemetry that contradicts the schedule, and speeds that are measured.
 
 use std::f64::consts::TAU;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -17,7 +18,7 @@ fn change(copy: &Copy, mounting: usize, to: impl Fn(f64, f64) -> (f64, f64)) {
         for line in lines {
             let (t, omega) = line.split_once(',').unwrap();
             let (t, omega) = to(t.parse().unwrap(), omega.parse().unwrap());
-            changed.push_str(&format!("{t:.6},{omega:.6}\n"));
+            writeln!(changed, "{t:.6},{omega:.6}").unwrap();
         }
         changed
     });

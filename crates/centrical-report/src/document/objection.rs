@@ -45,7 +45,7 @@ fn left_out(rivals: &[RivalSummary], language: Language) -> String {
     let messages = language.messages();
     let Some((first, alike)) = rivals.split_first() else { return messages.left_out.to_owned() };
     let explained = language.fixed(first.chi_squared, 1);
-    let mut text = format!(
+    let text = format!(
         "{}: {}, {} {explained} {}, {} {}",
         messages.left_out,
         rival(first, language),
@@ -54,12 +54,12 @@ fn left_out(rivals: &[RivalSummary], language: Language) -> String {
         messages.chance,
         language.probability(first.probability)
     );
-    if !alike.is_empty() {
-        let names: Vec<String> = alike.iter().take(ALIKE).map(|other| rival(other, language)).collect();
-        let more = if alike.len() > ALIKE { "; …" } else { "" };
-        text.push_str(&format!("; {}: {}{more}", messages.left_out_alike, names.join("; ")));
+    if alike.is_empty() {
+        return text;
     }
-    text
+    let names: Vec<String> = alike.iter().take(ALIKE).map(|other| rival(other, language)).collect();
+    let more = if alike.len() > ALIKE { "; …" } else { "" };
+    format!("{text}; {}: {}{more}", messages.left_out_alike, names.join("; "))
 }
 
 /// A rival by its cause, its formula and its name in sessions.

@@ -179,7 +179,7 @@ impl SetPoint {
     }
 
     /// Whether it is the same plateau run again: equal set points, or speeds of which one at least was measured and which
-    /// agree to [`SAME_SPEED`].
+    /// agree to a thousandth.
     pub fn repeats(&self, other: &Self) -> bool {
         let is_measured = self.speed_uncertainty.is_some() || other.speed_uncertainty.is_some();
         let close = (self.omega - other.omega).abs() <= SAME_SPEED * other.omega.abs();

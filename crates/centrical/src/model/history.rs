@@ -38,6 +38,8 @@ fn mark_repeated_rests(set_points: &mut [SetPoint]) {
         rests.entry((rest.mounting, rest.angle.to_bits())).or_default().push(n);
     }
     for alike in rests.values().filter(|alike| alike.len() > 1) {
-        alike.iter().for_each(|&n| set_points[n].history.repeats = Some(alike[0]));
+        for &n in alike {
+            set_points[n].history.repeats = Some(alike[0]);
+        }
     }
 }

@@ -90,7 +90,7 @@ impl MeasurementModel {
     }
 
     /// The rivals that the model leaves out, neither unknown nor stated: of the session, and of each of its mountings.
-    /// A session of more than [`MOST_SINGLE`] mountings is asked for the former alone.
+    /// A session of more than a hundred mountings is asked for the former alone.
     pub fn left_out(&self) -> Vec<Rival> {
         let common = Rival::COMMON.into_iter().zip(self.stated.effects).filter(|(_, u)| *u == 0.0);
         let of_mounting = |mounting: usize| {

@@ -101,13 +101,11 @@ impl<'a> Physics<'a> {
 
     #[inline]
     pub fn reading(&self, motion: &ArmMotion) -> Vector3<f64> {
-        match &self.rigid {
-            Some(unit) => self.response.reading(&unit.specific_force(motion)),
-            None => {
-                let unit = self.model.mounted_unit(self.mounting, self.truth, motion.speed);
-                self.response.reading(&unit.specific_force(motion)) + unit.disturbance
-            }
+        if let Some(unit) = &self.rigid {
+            return self.response.reading(&unit.specific_force(motion));
         }
+        let unit = self.model.mounted_unit(self.mounting, self.truth, motion.speed);
+        self.response.reading(&unit.specific_force(motion)) + unit.disturbance
     }
 }
 

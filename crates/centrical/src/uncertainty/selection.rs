@@ -118,7 +118,7 @@ fn with_rivals(model: &MeasurementModel, rivals: Vec<Rival>) -> Candidate {
     Candidate { name: format!("{AS_STATED} + {}", names.join(" + ")), model: model.with_rivals(&rivals), rivals }
 }
 
-/// Compares the candidates beside `model`, and the model with pairs of the [`PAIRED`] rivals that lower BIC most.
+/// Compares the candidates beside `model`, and the model with pairs of the three rivals that lower BIC most.
 ///
 /// # Errors
 /// [`FitError`] when an observation is invalid.

@@ -27,8 +27,8 @@ mod selection;
 mod simulate;
 mod simulated_noise;
 mod speeds;
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod stated;
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod stream;
 #[allow(clippy::cast_possible_truncation, reason = "seeds")]
 mod tilt;

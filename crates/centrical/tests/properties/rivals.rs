@@ -53,8 +53,11 @@ fn afflicted(model: &MeasurementModel, rival: Rival, random: &mut Random) -> Opt
     Some((richer.clone(), at(size)))
 }
 
+/// Sessions in which a rival is shown, those in which it is named, and what is named instead.
+type Outcome = (u64, u64, Vec<String>);
+
 /// How often a rival is shown, and named first or among those which the data cannot tell from the first.
-fn named(model: &MeasurementModel, rival: Rival) -> Option<(u64, u64, Vec<String>)> {
+fn named(model: &MeasurementModel, rival: Rival) -> Option<Outcome> {
     let (mut told, mut named, mut instead) = (0, 0, Vec::new());
     for seed in 0..SESSIONS {
         let mut random = Random::new(1000 + seed);
@@ -75,7 +78,7 @@ fn named(model: &MeasurementModel, rival: Rival) -> Option<(u64, u64, Vec<String
 #[test]
 fn every_effect_is_shown_and_named() {
     let model = source_model();
-    let outcomes: Vec<(Rival, Option<(u64, u64, Vec<String>)>)> =
+    let outcomes: Vec<(Rival, Option<Outcome>)> =
         catalogue().into_par_iter().map(|rival| (rival, named(&model, rival))).collect();
     let mut followed = Vec::new();
     for (rival, outcome) in outcomes {

@@ -278,7 +278,10 @@ fn nonsense_is_refused() {
     assert_eq!(refusal(&x, &equipment), "recorder.rate: found 0, expected a rate above 0, from 1 mHz to 10 MHz");
     let mut equipment = perfect;
     equipment.recorder.gaps.length = 0.5;
-    assert_eq!(refusal(&x, &equipment), "recorder.gaps.length: found 0.5, expected a number of samples, 1 or more");
+    assert_eq!(
+        refusal(&x, &equipment),
+        "recorder.gaps.length: found 0.5, expected a number of samples, 1 to a million"
+    );
     let mut equipment = perfect;
     equipment.recorder.spikes.probability = 1.0;
     assert_eq!(refusal(&x, &equipment), "recorder.spikes.probability: found 1, expected 0 or more and below 1");

@@ -14,8 +14,8 @@ fn model() -> MeasurementModel {
     kozlov(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]))
 }
 
-fn repeated(model: &MeasurementModel, stated: TypeB) -> MonteCarlo {
-    let model = model.clone().with_stated(stated);
+fn repeated(model: &MeasurementModel, stated: &TypeB) -> MonteCarlo {
+    let model = model.clone().with_stated(*stated);
     let x = truth(&model, 0.5, &mut Random::new(3));
     let data = Data::new(&model, observations(&model, &x)).unwrap();
     let settings = Settings { runs: RUNS, seed: 4, coverage: 0.95, method: Method::Exact };
@@ -45,7 +45,7 @@ fn sessions_with_stated_deviations_are_accepted() {
         ("a good laboratory", STATED),
     ];
     for (name, stated) in cases {
-        let shown = repeated(&model(), stated);
+        let shown = repeated(&model(), &stated);
         assert_eq!(shown.failures, 0, "{name}");
         let square = shown.weighted_square.mean / shown.weighted_square.degrees_of_freedom as f64;
         // Five standard deviations of the mean of `RUNS` chi^2 of 49 degrees of freedom.

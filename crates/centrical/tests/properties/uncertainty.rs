@@ -46,9 +46,9 @@ impl Case {
         budget_of(&self.model, &self.observations, stated)
     }
 
-    pub fn monte_carlo(&self, runs: usize, stated: TypeB, method: Method) -> MonteCarlo {
+    pub fn monte_carlo(&self, runs: usize, stated: &TypeB, method: Method) -> MonteCarlo {
         let settings = Settings { runs, seed: 1, coverage: 0.95, method };
-        let model = self.model.clone().with_stated(stated);
+        let model = self.model.clone().with_stated(*stated);
         let data = Data::new(&model, self.observations.clone()).unwrap();
         monte_carlo(&data, &self.truth, &settings, &|_| {}).unwrap()
     }
@@ -239,7 +239,7 @@ fn monte_carlo_does_not_depend_on_threads() {
     let case = Case::new(PairRelation::Opposite);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| case.monte_carlo(300, STATED, Method::Exact))
+        pool.install(|| case.monte_carlo(300, &STATED, Method::Exact))
     };
     let one = on(1);
     assert_eq!(one.runs, 300);
@@ -264,7 +264,7 @@ fn priors_are_part_of_the_budget() {
         let ratio = budget.standard_uncertainty(j).unwrap() / fit.standard_uncertainty(j).unwrap();
         assert!((ratio - 1.0).abs() < 1e-6, "{j}: {ratio}");
     }
-    let monte_carlo = case.monte_carlo(300, TypeB::default(), Method::Exact);
+    let monte_carlo = case.monte_carlo(300, &TypeB::default(), Method::Exact);
     for p in monte_carlo.parameters.iter().flatten() {
         // Five standard deviations of chance.
         assert!((p.standard_deviation / p.stated - 1.0).abs() < 5.0 / 600.0_f64.sqrt(), "{p:?}");

@@ -46,15 +46,11 @@ pub struct ValiditySummary {
     /// Those found at a family-wise error of 5 % (Holm), the likeliest to be real first: beside what the first rival explains.
     pub patterns: Vec<PatternSummary>,
     /// Effects left out by the model that the residuals were asked for.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default)]
     pub rivals_tested: usize,
     /// Those shown at a family-wise error of 5 % (Holm), the one that explains most first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rivals: Vec<RivalSummary>,
-}
-
-fn is_zero(count: &usize) -> bool {
-    *count == 0
 }
 
 /// A plateau that stands out.

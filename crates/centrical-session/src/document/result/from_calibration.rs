@@ -26,13 +26,12 @@ impl CalibrationResult {
         let budget = calibration.budget()?;
         let covariance = |i, j| fit.covariance(i, j);
         let count = model.parameters().len();
-        let (validity, rests_on) = match fit.termination {
-            Termination::Linear => (None, Vec::new()),
-            _ => {
-                let rivals = Rivals::of(calibration)?;
-                let checks = ValiditySummary::of(calibration, &rivals)?;
-                (Some(checks), RestsOn::all(model, rivals.rests_on()?))
-            }
+        let (validity, rests_on) = if fit.termination == Termination::Linear {
+            (None, Vec::new())
+        } else {
+            let rivals = Rivals::of(calibration)?;
+            let checks = ValiditySummary::of(calibration, &rivals)?;
+            (Some(checks), RestsOn::all(model, rivals.rests_on()?))
         };
         Ok(Self {
             schema: SCHEMA.to_owned(),
