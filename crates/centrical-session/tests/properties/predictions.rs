@@ -67,7 +67,7 @@ impl Case {
     }
 
     /// Compares every parameter that is determined; how many there are.
-    fn compare(&self, name: &str, truth: &[f64], stated: TypeB) -> usize {
+    fn compare(&self, name: &str, truth: &[f64], stated: &TypeB) -> usize {
         let compared = self.compared(name, truth, stated);
         for Compared { parameter, ratio, .. } in &compared {
             assert!((ratio - 1.0).abs() < AGREE, "{name}, {parameter}: scatter over prediction {ratio}");
@@ -76,8 +76,8 @@ impl Case {
     }
 
     /// Scatter over prediction of every parameter that is determined: by both alike.
-    fn compared(&self, name: &str, truth: &[f64], stated: TypeB) -> Vec<Compared> {
-        let model = self.model.clone().with_stated(stated);
+    fn compared(&self, name: &str, truth: &[f64], stated: &TypeB) -> Vec<Compared> {
+        let model = self.model.clone().with_stated(*stated);
         let prediction = predict(&model, &self.weights, truth).unwrap();
         let observation =
             |w: &Weight| Observation { set_point: w.set_point, mean: Vector3::zeros(), covariance: w.covariance };
@@ -132,8 +132,8 @@ struct Compared {
 fn every_parameter_of_the_best_plan_scatters_as_predicted() {
     let (best, stated) = Case::planned();
     let zero = best.truth(0.0);
-    assert_eq!(best.compare("best, type A", &zero, TypeB::default()), best.model.parameters().len());
-    best.compare("best of a unit with errors, type A and B", &best.truth(0.3), stated);
+    assert_eq!(best.compare("best, type A", &zero, &TypeB::default()), best.model.parameters().len());
+    best.compare("best of a unit with errors, type A and B", &best.truth(0.3), &stated);
 }
 
 #[test]
@@ -142,8 +142,8 @@ fn every_parameter_of_the_source_scatters_as_predicted() {
     let normalised = Case::normalised();
     let stated = *read_planning(&example("best.toml")).unwrap().task.model().stated();
     let all = normalised.model.parameters().len();
-    assert_eq!(normalised.compare("[K5.5], type A", &normalised.truth(0.0), TypeB::default()), all);
-    normalised.compare("[K5.5] of a unit with errors, type A and B", &normalised.truth(0.3), stated);
+    assert_eq!(normalised.compare("[K5.5], type A", &normalised.truth(0.0), &TypeB::default()), all);
+    normalised.compare("[K5.5] of a unit with errors, type A and B", &normalised.truth(0.3), &stated);
 }
 
 /// The relation of the pairs as the source prints it leaves two combinations open: predicted where no unknown is zero, at which
@@ -152,7 +152,7 @@ fn every_parameter_of_the_source_scatters_as_predicted() {
 #[ignore = "some minutes; run by .ci/run predictions"]
 fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
     let printed = Case::of("normalised.toml", "opposite");
-    assert_eq!(printed.compare("[K5.5] as printed, type A", &printed.truth(1.0), TypeB::default()), 43);
+    assert_eq!(printed.compare("[K5.5] as printed, type A", &printed.truth(1.0), &TypeB::default()), 43);
     let prediction = |truth: &[f64]| predict(&printed.model, &printed.weights, truth).unwrap();
     let (of_none, of_typical) = (prediction(&printed.truth(0.0)), prediction(&printed.truth(1.0)));
     for j in 0..printed.model.parameters().len() {
@@ -188,7 +188,7 @@ fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
 #[ignore = "some minutes; run by .ci/run predictions"]
 fn every_parameter_of_four_positions_scatters_as_predicted() {
     let four = Case::of("four-positions.toml", "opposite");
-    let compared = four.compared("four positions, type A", &four.truth(1.0), TypeB::default());
+    let compared = four.compared("four positions, type A", &four.truth(1.0), &TypeB::default());
     for Compared { parameter, ratio, is_affected_by_null_space } in &compared {
         println!(
             "  {parameter:<14}{ratio:.4}{}",
