@@ -22,7 +22,7 @@ pub(super) fn rests_on(result: &CalibrationResult, language: Language) -> Vec<Bl
         (messages.rests_on_reading, 0.16, Align::Right),
     ];
     let row = |effect: &RestsOn| {
-        let moved = format!("{}: {} u", effect.parameter, language.significant(effect.standard_uncertainties, 2));
+        let moved = format!("{}: {}\u{a0}u", effect.parameter, language.significant(effect.standard_uncertainties, 2));
         let reading = format!("{} {}", language.significant(effect.reading / MICRO_G, 2), language.unit("ug"));
         vec![cause(&effect.name, language), size(effect, language), moved, reading]
     };
@@ -33,16 +33,21 @@ pub(super) fn rests_on(result: &CalibrationResult, language: Language) -> Vec<Bl
     ]
 }
 
-/// One effect in a sentence: size, parameter, reading.
+/// One effect in a sentence: the size below which it would not show, and what that size does.
 pub(crate) fn rests_on_sentence(effect: &RestsOn, language: Language) -> String {
+    let messages = language.messages();
+    let unseen = match effect.smallest_shown {
+        Some(_) => format!("{} {} {}", messages.below, size(effect, language), messages.would_not_show),
+        None => messages.would_never_show.to_owned(),
+    };
+    let uncertainties = language.significant(effect.standard_uncertainties, 2);
     let reading = language.significant(effect.reading / MICRO_G, 2);
     format!(
-        "{}: {}; {} {} u, {} {}",
+        "{}: {unseen} {} {} {uncertainties} {} {reading} {}",
         cause(&effect.name, language),
-        size(effect, language),
         effect.parameter,
-        language.significant(effect.standard_uncertainties, 2),
-        reading,
+        messages.by,
+        messages.uncertainties_and_reading,
         language.unit("ug")
     )
 }

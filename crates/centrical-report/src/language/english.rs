@@ -259,8 +259,13 @@ pub(crate) const ENGLISH: Messages = Messages {
     rests_on_moves: "Moves most",
     rests_on_reading: "Error of a compensated reading",
     not_shown: "not shown at any size",
-    rests_on_sentence: "They presuppose that effects are absent which the measurement would not have shown (smallest size shown \
-        with a probability of 80 %; what it would do, in standard uncertainties u and to a compensated reading)",
+    rests_on_sentence: "They presuppose that effects are absent of which this session would not have shown smaller sizes with a \
+        probability of 80 %. The three that would do most harm",
+    below: "below",
+    would_not_show: "it would not show; that size moves",
+    would_never_show: "it would not show at any size; a typical size moves",
+    by: "by",
+    uncertainties_and_reading: "standard uncertainties and a compensated reading by",
     presupposed: "The stated uncertainties presuppose a rigid arm, a constant temperature of the unit, and speeds whose errors \
         are independent from plateau to plateau.",
     presupposed_exact: " Gravity, radii, attitudes and the places of the proof masses count as exact.",
