@@ -17,6 +17,7 @@ mod assembly;
 mod batch;
 mod calibration;
 mod convergence;
+mod curvature;
 mod data;
 mod design;
 mod estimates;

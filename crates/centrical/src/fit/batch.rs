@@ -4,6 +4,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
+use super::curvature;
 use super::data::Data;
 use super::design::Design;
 use super::estimates::{Fit, Termination};
@@ -19,7 +20,12 @@ const RELEASE_BELOW: f64 = 0.1;
 /// quadratically, so the step after it would be lost in rounding.
 const CONVERGED: f64 = 1e-6;
 
-const ITERATION_LIMIT: usize = 50;
+/// Steps along a curved valley are halved many times; the longest ways seen took 51.
+const ITERATION_LIMIT: usize = 200;
+
+/// Weights that follow the estimate can move it along held null directions without end. There a step below this many standard
+/// uncertainties that no longer shrinks ends the iteration.
+const SETTLED: f64 = 1e-2;
 
 /// Halvings of a step before it is given up: `2^-30` of a Gauss-Newton step is negligible.
 pub(super) const HALVING_LIMIT: u32 = 30;
@@ -89,6 +95,7 @@ impl<'a> Start<'a> {
         Fit {
             values: step.x.rows(0, parameters).as_slice().to_vec(),
             deviations: step.x.rows_range(parameters..).as_slice().to_vec(),
+            curved: DMatrix::zeros(covariance.nrows(), 0),
             covariance,
             chi_squared: whitened.norm_squared() + self.design.rest.powi(2),
             degrees_of_freedom: self.degrees_of_freedom(),
@@ -118,9 +125,13 @@ pub(super) struct Search<'a> {
     /// Weight with which null directions are held: one over [`NULL_HOLD`], then 0 when released.
     null_weight: f64,
     iterations: usize,
+    /// Length of the last step, in standard uncertainties.
+    last_length: f64,
     termination: Option<Termination>,
     /// Of the last linearisation, once the search has ended.
     covariance: DMatrix<f64>,
+    /// What the curvature of the model leaves in the estimates, column by column; see [`curvature`].
+    curved: DMatrix<f64>,
 }
 
 impl<'a> Search<'a> {
@@ -135,8 +146,10 @@ impl<'a> Search<'a> {
             design: None,
             null_weight,
             iterations: 0,
+            last_length: f64::INFINITY,
             termination: None,
             covariance: DMatrix::zeros(0, 0),
+            curved: DMatrix::zeros(0, 0),
         }
     }
 
@@ -170,7 +183,10 @@ impl<'a> Search<'a> {
         let step = equations.solve(misfit);
         // Of a sum of squares of readings that are known to a few units of their last place.
         let rounding = 100.0 * f64::EPSILON * design.magnitude;
-        if step.whitened_length <= CONVERGED + rounding {
+        let is_shrinking = step.whitened_length < 0.5 * self.last_length;
+        let has_settled = self.null_weight > 0.0 && step.whitened_length < SETTLED && !is_shrinking;
+        self.last_length = step.whitened_length;
+        if step.whitened_length <= CONVERGED + rounding || has_settled {
             self.x += &step.x;
             self.termination = (!self.release_null_space(&equations)).then_some(Termination::Converged);
         } else if let Some((x, linearisations)) = self.descend(&step, (objective_norm + rounding).powi(2))? {
@@ -182,7 +198,9 @@ impl<'a> Search<'a> {
             self.termination = Some(Termination::Stalled);
         }
         if self.termination.is_some() {
-            self.covariance = equations.covariance();
+            let Start { data, structure, .. } = self.start;
+            self.curved = curvature::left_by(data, structure, self.null_weight, &self.x, &self.linearisations)?;
+            self.covariance = equations.covariance() + &self.curved * self.curved.transpose();
         }
         Ok(())
     }
@@ -234,6 +252,7 @@ impl<'a> Search<'a> {
             deviations: self.x.rows_range(parameters..).as_slice().to_vec(),
             chi_squared: self.chi_squared(&residuals, &self.x)?,
             covariance: self.covariance,
+            curved: self.curved,
             degrees_of_freedom: self.start.degrees_of_freedom(),
             null_directions_held: self.null_weight > 0.0,
             iterations: self.iterations,

@@ -27,6 +27,9 @@ pub struct Fit {
     pub(super) deviations: Vec<f64>,
     /// Of the parameters, then the influences.
     pub(super) covariance: DMatrix<f64>,
+    /// What the curvature of the model along directions that priors alone determine leaves in the estimates: columns of the
+    /// covariance's root.
+    pub(super) curved: DMatrix<f64>,
     pub(super) observability: Observability,
     /// What the data determine without the priors, if there are any.
     pub(super) of_data: Option<Observability>,
@@ -76,6 +79,11 @@ impl Fit {
         let first = self.values.len();
         let estimates = self.deviations.iter().enumerate();
         estimates.map(|(n, value)| (*value, self.covariance[(first + n, first + n)].sqrt())).collect()
+    }
+
+    /// What the curvature of the model leaves in the parameters, column by column.
+    pub(crate) fn curved(&self) -> DMatrix<f64> {
+        self.curved.rows(0, self.values.len()).into_owned()
     }
 
     /// Where the fit stands: the parameters, then the influences.

@@ -61,6 +61,11 @@ impl Structure {
         &self.observability
     }
 
+    /// Number of combinations that priors alone determine.
+    pub(super) fn lost_by_data(&self) -> usize {
+        self.of_data.as_ref().map_or(0, |data| data.lost().saturating_sub(self.observability.lost()))
+    }
+
     /// The whitened equations and their misfit, with one equation more for each null direction: its component is zero, with
     /// weight `null_weight`.
     pub(super) fn equations(

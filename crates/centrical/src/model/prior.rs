@@ -119,7 +119,8 @@ pub(crate) fn uses(priors: &[Prior], covariance: impl Fn(usize, usize) -> f64) -
 /// `e_k / sigma_k`, so its `b` contributes `(C_jk / sigma_k)^2` to `C_jj`.
 pub(crate) fn share(priors: &[Prior], j: usize, covariance: impl Fn(usize, usize) -> f64) -> f64 {
     let from = |p: &Prior| (covariance(j, p.parameter) / p.standard_uncertainty).powi(2);
-    priors.iter().map(from).sum::<f64>() / covariance(j, j)
+    // What curvature adds to the covariance belongs to the priors, and may exceed what they state.
+    (priors.iter().map(from).sum::<f64>() / covariance(j, j)).min(1.0)
 }
 
 /// What the rows of the priors miss at `x`: `(m_j - x_j) / sigma_j`.

@@ -71,7 +71,7 @@ impl Calibration<'_> {
                 Source::PlateauSpeed => gain.apply(&settings(gain, model, observations, false)),
                 Source::RestAngle => gain.apply(&settings(gain, model, observations, true)),
                 Source::Resolution => gain.apply(&rounding(gain)),
-                Source::Priors => gain.apply_priors(),
+                Source::Priors => side_by_side(&gain.apply_priors(), &self.fit().curved()),
                 Source::Gravity
                 | Source::Latitude
                 | Source::Radius

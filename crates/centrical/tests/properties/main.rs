@@ -34,3 +34,4 @@ mod stream;
 mod tilt;
 mod uncertainty;
 mod validity;
+mod wide_priors;
