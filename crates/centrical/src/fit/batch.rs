@@ -86,9 +86,8 @@ impl<'a> Start<'a> {
         let residuals = (self.data.observations().iter())
             .zip(&self.structure.linearisations)
             .map(|(o, l)| {
-                let predicted: Vector3<f64> = l.columns.iter().map(|(j, column)| column * step.x[*j]).sum();
-                let stated: Vector3<f64> = l.stated.iter().map(|(n, change)| change * step.x[parameters + n]).sum();
-                o.mean - l.reading - predicted - stated
+                let predicted: Vector3<f64> = l.by_unknowns().map(|(j, column)| column * step.x[j]).sum();
+                o.mean - l.reading - predicted
             })
             .collect();
         let whitened = &self.design.misfit - &self.design.rows * &step.x;

@@ -92,11 +92,8 @@ impl<'d> Calibration<'d> {
     /// What the fit expects of a plateau that has no part in it: the covariance of its mean, whose noise has `covariance`, with
     /// the errors of its setting and rounding [m^2/s^4], and its reading [m/s^2].
     pub fn expected(&self, set_point: &SetPoint, covariance: &Matrix3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
-        let mut there = self.data.model().linearise(set_point, self.fit.state());
-        let deviations = self.fit.deviations();
-        for (n, change) in &there.stated {
-            there.reading += change * deviations[*n].0;
-        }
+        let at_parameters = self.data.model().linearise(set_point, self.fit.state());
+        let there = at_parameters.with_influences(&self.fit.unknowns());
         (total_covariance(covariance, &there), there.reading)
     }
 

@@ -36,7 +36,7 @@ impl Calibration<'_> {
         {
             let mut stack = triangle.resize_vertically(p + 3 * linearisations.len(), 0.0);
             for (n, (linearisation, covariance)) in linearisations.iter().zip(covariances).enumerate() {
-                let rows = whitened_rows(linearisation, covariance, &typical, parameters);
+                let rows = whitened_rows(linearisation, covariance, &typical);
                 stack.rows_mut(p + 3 * n, 3).copy_from(&rows);
             }
             let equations = LeastSquares::new(stack, typical.clone());
@@ -51,18 +51,11 @@ impl Calibration<'_> {
 }
 
 /// The rows of one plateau at the fit, whitened, in typical units.
-fn whitened_rows(
-    linearisation: &Linearisation,
-    covariance: &Matrix3<f64>,
-    typical: &DVector<f64>,
-    parameters: usize,
-) -> DMatrix<f64> {
+fn whitened_rows(linearisation: &Linearisation, covariance: &Matrix3<f64>, typical: &DVector<f64>) -> DMatrix<f64> {
     let mut rows = DMatrix::zeros(3, typical.len());
     // A fit accepts positive definite covariances only.
     let Some(factor) = covariance.cholesky() else { return rows };
-    let influences = linearisation.stated.iter().map(|(n, change)| (parameters + n, change));
-    let columns = linearisation.columns.iter().map(|(column, derivative)| (*column, derivative));
-    for (column, derivative) in columns.chain(influences) {
+    for (column, derivative) in linearisation.by_unknowns() {
         if let Some(whitened) = factor.l_dirty().solve_lower_triangular(derivative) {
             rows.column_mut(column).copy_from(&(whitened * typical[column]));
         }

@@ -9,8 +9,8 @@
 //! `e_kl = (f(x + d_k + d_l) - f(x + d_k - d_l) - f(x - d_k + d_l) + f(x - d_k - d_l)) / 4`.
 //!
 //! The gain takes this to the estimates. Its mean `sum_k e_k` and its covariance `2 sum_k e_k e_k^T + sum_(k<l) e_kl e_kl^T` add
-//! to the covariance of the estimates, whatever the directions by which it is written as a sum. Without them the covariance of all unknowns together is far too narrow across the direction (test
-//! `joint_covariance_with_one_radius`).
+//! to the covariance of the estimates, whatever the directions by which it is written as a sum. Without them the joint
+//! covariance is far too narrow across the direction (test `joint_covariance_with_one_radius`).
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 

@@ -73,17 +73,10 @@ impl<'m> Data<'m> {
         DVector::from_iterator(self.unknowns(), parameters.chain(influences))
     }
 
-    /// The exact model of each plateau, linearised at the unknowns `x` of a fit. The influences act linearly.
+    /// The exact model of each plateau, linearised at the unknowns `x` of a fit.
     pub(super) fn linearised(&self, x: &[f64]) -> Vec<Linearisation> {
-        let (parameters, influences) = x.split_at(self.model.parameters().len());
-        let linearised = self.set_points().map(|set_point| {
-            let mut at = self.model.linearise(set_point, parameters);
-            for (n, change) in &at.stated {
-                at.reading += change * influences[*n];
-            }
-            at
-        });
-        linearised.collect()
+        let parameters = &x[..self.model.parameters().len()];
+        self.set_points().map(|set_point| self.model.linearise(set_point, parameters).with_influences(x)).collect()
     }
 
     /// Readings less those of the exact model at the unknowns `x` of a fit [m/s^2].

@@ -26,13 +26,12 @@ impl Design {
     /// [`FitError::Covariance`] when a plateau's covariance is not positive definite.
     pub fn of(data: &Data, linearisations: &[Linearisation]) -> Result<Self, FitError> {
         let observations = data.observations();
-        let parameters = data.model().parameters().len();
         let mut rows = DMatrix::zeros(3 * observations.len(), data.unknowns());
         let mut misfit = DVector::zeros(3 * observations.len());
         let mut magnitude = 0.0;
         for (n, (observation, linearisation)) in observations.iter().zip(linearisations).enumerate() {
             let whitener = Whitener::new(&observation.into(), linearisation)?;
-            whitener.fill(&mut rows, n, linearisation, parameters);
+            whitener.fill(&mut rows, n, linearisation);
             misfit.fixed_rows_mut::<3>(3 * n).copy_from(&whitener.apply(&(observation.mean - linearisation.reading)));
             magnitude += whitener.apply(&linearisation.reading).norm_squared();
         }

@@ -191,12 +191,12 @@ impl MeasurementModel {
         (at(1.0 + STEP) - at(1.0 - STEP)) / (2.0 * STEP)
     }
 
-    /// Changes of the reading by one standard uncertainty of each influence.
+    /// Changes of the reading by one standard uncertainty of each influence, an unknown behind the parameters.
     fn stated_columns(&self, set_point: &SetPoint, partials: &Partials) -> Vec<(usize, Vector3<f64>)> {
-        let influences = self.influences().iter().enumerate();
-        let changes = influences.filter_map(|(n, influence)| {
+        let influences = (self.parameters.len()..).zip(self.influences());
+        let changes = influences.filter_map(|(unknown, influence)| {
             let change = partials.by_share(&self.share(set_point, influence.effect))?;
-            Some((n, change * influence.standard_uncertainty))
+            Some((unknown, change * influence.standard_uncertainty))
         });
         changes.collect()
     }

@@ -33,9 +33,12 @@ impl MeasurementModel {
         // A tilt turns gravity over the carousel angle; without one, the angle at rest changes nothing.
         let by_log_speed = n.by_rate() * (omega * (2.0 * omega + experiment.site.coriolis()));
         let setting_error = by_log_speed * experiment.speed_uncertainty_of(set_point);
-        let stated = self.influences().iter().enumerate();
-        let stated = stated.map(|(j, influence)| {
-            (j, by_share(&n, &self.share(set_point, influence.effect), set_point) * influence.standard_uncertainty)
+        let stated = (self.parameters.len()..).zip(self.influences());
+        let stated = stated.map(|(unknown, influence)| {
+            (
+                unknown,
+                by_share(&n, &self.share(set_point, influence.effect), set_point) * influence.standard_uncertainty,
+            )
         });
         let stated = stated.filter(|(_, derivative)| *derivative != Vector3::zeros()).collect();
         Linearisation { reading: f0, setting_error, rounding: self.own_rounding(set_point), columns, stated }

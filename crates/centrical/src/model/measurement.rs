@@ -44,8 +44,24 @@ pub struct Linearisation {
     pub rounding: f64,
     /// Non-zero columns of the Jacobian: (index of the parameter, `d f' / d x`), each index once.
     pub columns: Vec<(usize, Vector3<f64>)>,
-    /// Non-zero changes of `f'` by one standard uncertainty of an influence [m/s^2]: (index of the influence, change).
+    /// Non-zero changes of `f'` by one standard uncertainty of an influence [m/s^2]: (index of the unknown, change).
+    /// The unknowns of a fit are the parameters, and behind them the influences.
     pub stated: Vec<(usize, Vector3<f64>)>,
+}
+
+impl Linearisation {
+    /// Non-zero changes of `f'` by the unknowns of a fit: (index of the unknown, change).
+    pub fn by_unknowns(&self) -> impl Iterator<Item = (usize, &Vector3<f64>)> {
+        self.columns.iter().chain(&self.stated).map(|(unknown, change)| (*unknown, change))
+    }
+
+    /// The linearisation at the influences of the unknowns `x` of a fit, which act linearly.
+    pub(crate) fn with_influences(mut self, x: &[f64]) -> Self {
+        for (unknown, change) in &self.stated {
+            self.reading += change * x[*unknown];
+        }
+        self
+    }
 }
 
 impl MeasurementModel {

@@ -1,8 +1,8 @@
 //! From plateaus to rows of independent errors of unit variance, three per plateau.
 //!
-//! A plateau's covariance is that of its mean plus the rank-one term `d d^T` of the error of its speed,
-//! `d = sigma d f' / d ln Omega` of the full model (`docs/source-and-findings.md`), or of its angle at rest, and its rounding. Rows are whitened by its Cholesky factor,
-//! so that least squares on them is the generalised least squares of the plateaus.
+//! The covariance of a plateau is that of its mean, a rank-one term `d d^T` and its rounding. The term is that of the
+//! speed, `d = sigma d f' / d ln Omega` of the full model (`docs/source-and-findings.md`), or at rest that of the angle.
+//! Its Cholesky factor whitens the rows. Least squares on them is the generalised least squares of the plateaus.
 
 use nalgebra::{Cholesky, Const, DMatrix, Matrix3, Vector3};
 
@@ -10,19 +10,18 @@ use super::error::FitError;
 use super::measurement::Linearisation;
 use super::observation::Weight;
 
-/// The whitened rows of plateaus of given weights, `3 n x (p + q)`: `parameters`, then influences.
+/// The whitened rows of plateaus of given weights, `3 n x (p + q)`, for all `unknowns`: parameters, then influences.
 ///
 /// # Errors
 /// [`FitError::Covariance`] when a covariance is not positive definite.
 pub(crate) fn whitened_rows(
     weights: &[Weight],
     linearisations: &[Linearisation],
-    parameters: usize,
-    influences: usize,
+    unknowns: usize,
 ) -> Result<DMatrix<f64>, FitError> {
-    let mut rows = DMatrix::zeros(3 * weights.len(), parameters + influences);
+    let mut rows = DMatrix::zeros(3 * weights.len(), unknowns);
     for (n, (weight, linearisation)) in weights.iter().zip(linearisations).enumerate() {
-        Whitener::new(weight, linearisation)?.fill(&mut rows, n, linearisation, parameters);
+        Whitener::new(weight, linearisation)?.fill(&mut rows, n, linearisation);
     }
     Ok(rows)
 }
@@ -46,14 +45,11 @@ impl Whitener {
         self.0.l_dirty().solve_lower_triangular(v).unwrap_or_else(Vector3::zeros)
     }
 
-    /// Writes the three rows of plateau `n`: the `parameters` columns of the unknowns, then those of the influences.
-    pub fn fill(&self, rows: &mut DMatrix<f64>, n: usize, linearisation: &Linearisation, parameters: usize) {
+    /// Writes the three rows of plateau `n`.
+    pub fn fill(&self, rows: &mut DMatrix<f64>, n: usize, linearisation: &Linearisation) {
         let mut block = rows.fixed_rows_mut::<3>(3 * n);
-        for (column, derivative) in &linearisation.columns {
-            block.set_column(*column, &self.apply(derivative));
-        }
-        for (influence, derivative) in &linearisation.stated {
-            block.set_column(parameters + influence, &self.apply(derivative));
+        for (unknown, derivative) in linearisation.by_unknowns() {
+            block.set_column(unknown, &self.apply(derivative));
         }
     }
 }

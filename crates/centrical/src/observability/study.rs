@@ -44,7 +44,7 @@ impl Study {
 
     fn of(model: MeasurementModel, weights: Vec<Weight>, linearisations: Vec<Linearisation>) -> Result<Self, FitError> {
         let (columns, influences) = (model.parameters().len(), model.influences().len());
-        let mut rows = marginal(whitened_rows(&weights, &linearisations, columns, influences)?, columns);
+        let mut rows = marginal(whitened_rows(&weights, &linearisations, columns + influences)?, columns);
         if rows.iter().any(|entry| !entry.is_finite()) {
             return Err(FitError::Overflow);
         }

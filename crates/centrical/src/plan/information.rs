@@ -1,7 +1,7 @@
 //! The information of a design, as a triangular factor, and how the criterion answers to more of it.
 //!
-//! Unknowns are in units of ten typical magnitudes, influences in their standard uncertainties, so the hold is the identity: `M = E + priors + sum J^T N J` over the
-//! visits, `N = Sigma^-1`. With `M = R^T R` by QR of the stacked rows and `P = R^-1`, the covariance is `P P^T` and
+//! Unknowns are in units of ten typical magnitudes, influences in their standard uncertainties: the hold is the identity.
+//! Over the visits `M = E + priors + sum J^T N J`, `N = Sigma^-1`. With `M = R^T R` by QR of the stacked rows and `P = R^-1`, the covariance is `P P^T` and
 //! is never formed. A change `dN` at candidate `c` changes it by `-C J^T Q J C`, `Q = dN (E + A dN)^-1`, `A = J C J^T`, so a
 //! goal `r = sum |P^T k|^2` changes by `-tr(Q G)`, `G = sum (J C k)(J C k)^T`: all in 3x3.
 
@@ -82,14 +82,12 @@ impl LinearisedScenario {
 
     /// The rows of all set points of `model` and the columns of the criterion, without precisions.
     pub fn of(model: &MeasurementModel, nominal: &[f64], criterion: &Criterion) -> Result<Self, PlanError> {
-        let parameters = model.parameters().len();
         // An influence is known to its standard uncertainty, 1: the hold is its prior.
         let influences = model.influences().iter().map(|_| 1.0);
         let scale: Vec<f64> = model.parameters().iter().map(|p| NULL_HOLD * p.typical).chain(influences).collect();
         let jacobian = |set_point| {
-            let Linearisation { columns, stated, .. } = linearised(model, nominal, set_point);
-            let influences = stated.into_iter().map(|(n, change)| (parameters + n, change));
-            columns.into_iter().chain(influences).map(|(j, column)| (j, column * scale[j])).collect::<Vec<_>>()
+            let at = linearised(model, nominal, set_point);
+            at.by_unknowns().map(|(j, column)| (j, column * scale[j])).collect::<Vec<_>>()
         };
         let jacobians: Vec<_> = model.experiment().set_points.iter().map(jacobian).collect();
         let mut squares = vec![1.0; scale.len()];

@@ -88,9 +88,9 @@ impl<'a> Filter<'a> {
     pub fn update(&mut self, place: usize, readings: &Readings) -> Result<f64, FitError> {
         self.advance(place)?;
         self.scratch.clear();
-        for (column, derivative) in self.lifetimes.columns_of(readings) {
-            let slot = self.slot(column, place)?;
-            self.scratch.push((slot, derivative));
+        for (column, derivative) in &readings.columns {
+            let slot = self.slot(*column, place)?;
+            self.scratch.push((slot, *derivative));
         }
         for (slot, derivative) in &self.scratch {
             self.lengths[*slot] += derivative.norm_squared();
@@ -116,11 +116,6 @@ impl<'a> Filter<'a> {
             }
         }
         Ok(())
-    }
-
-    /// The lifetimes of the unknowns.
-    pub(super) fn lifetimes(&self) -> &'a Lifetimes {
-        self.lifetimes
     }
 
     /// Unknowns carried now, in the order of the states of [`Filter::factor`].

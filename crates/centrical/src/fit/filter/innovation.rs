@@ -55,9 +55,9 @@ impl Filter<'_> {
         let before = Unexplained::of(rows.clone(), &lengths, &misfit);
         rows = rows.resize_vertically(states + 3, 0.0);
         misfit = misfit.resize_vertically(states + 3, 0.0);
-        for (column, derivative) in self.lifetimes().columns_of(readings) {
-            let slot = self.slot(column, place)?;
-            rows.fixed_view_mut::<3, 1>(states, slot).copy_from(&derivative);
+        for (column, derivative) in &readings.columns {
+            let slot = self.slot(*column, place)?;
+            rows.fixed_view_mut::<3, 1>(states, slot).copy_from(derivative);
             lengths[slot] += derivative.norm_squared();
         }
         misfit.fixed_rows_mut::<3>(states).copy_from(&readings.misfit);

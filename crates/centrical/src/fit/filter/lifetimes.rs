@@ -1,12 +1,10 @@
 //! Which unknowns a filter has to carry at each plateau of an order.
 //!
-//! An unknown that acts in every position is carried all along, and so is every influence. One that belongs to a position (`delta`), a pair
-//! (`dR`) or a seat is carried from the first plateau there to the last, and then retired. With the experiments
-//! ordered by position these are 30 of the source's 49 at a time: 19 fewer, 15 `delta` and 4 `dR` (source, section 6).
+//! An unknown that acts in every position is carried all along, and so is every influence. One that belongs to a
+//! position (`delta`), a pair (`dR`) or a seat is carried from the first plateau there to the last, and then retired.
+//! With the experiments ordered by position these are 30 of the source's 49 at a time: 19 fewer, 15 `delta` and
+//! 4 `dR` (source, section 6).
 
-use nalgebra::Vector3;
-
-use super::readings::Readings;
 use crate::model::{Effect, Experiment, Kind, MeasurementModel, SetPoint};
 
 /// The lifetimes of the unknowns in an order of plateaus.
@@ -16,8 +14,6 @@ pub struct Lifetimes {
     order: Vec<usize>,
     /// First and last place in the order, per unknown; `None` for one that no plateau of the order sees.
     spans: Vec<Option<(usize, usize)>>,
-    /// Number of parameters; the other unknowns are influences.
-    parameters: usize,
     /// The most states carried at a time if the same plateaus are grouped by pair and position.
     grouped_states: usize,
 }
@@ -30,17 +26,7 @@ impl Lifetimes {
     pub fn new(model: &MeasurementModel, order: &[usize]) -> Self {
         let spans = spans(model, order);
         let grouped_states = most_at_a_time(&self::spans(model, &grouped(model, order)));
-        Self { order: order.to_vec(), spans, parameters: model.parameters().len(), grouped_states }
-    }
-
-    /// Unknowns and whitened columns of a plateau, the influences behind the parameters.
-    pub(super) fn columns_of<'r>(
-        &self,
-        readings: &'r Readings,
-    ) -> impl Iterator<Item = (usize, Vector3<f64>)> + use<'r> {
-        let parameters = self.parameters;
-        let influences = readings.stated.iter().map(move |(n, change)| (parameters + n, *change));
-        readings.columns.iter().copied().chain(influences)
+        Self { order: order.to_vec(), spans, grouped_states }
     }
 
     /// Set points in the order in which they come.

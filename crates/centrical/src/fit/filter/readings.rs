@@ -8,10 +8,8 @@ use crate::model::{FitError, Linearisation, Observation};
 /// Three whitened readings of a plateau, linearised about a point of the unknowns: `rows (x - point) = misfit`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Readings {
-    /// Non-zero columns: (index of the parameter, whitened derivative).
+    /// Non-zero columns: (index of the unknown, whitened derivative). Influences stand behind the parameters.
     pub columns: Vec<(usize, Vector3<f64>)>,
-    /// Non-zero columns of the influences.
-    pub stated: Vec<(usize, Vector3<f64>)>,
     /// Whitened reading less whitened model.
     pub misfit: Vector3<f64>,
     /// Norm of the whitened reading of the model.
@@ -26,8 +24,7 @@ impl Readings {
     pub fn new(observation: &Observation, linearisation: &Linearisation) -> Result<Self, FitError> {
         let whitener = Whitener::new(&observation.into(), linearisation)?;
         Ok(Self {
-            columns: linearisation.columns.iter().map(|(column, d)| (*column, whitener.apply(d))).collect(),
-            stated: linearisation.stated.iter().map(|(n, d)| (*n, whitener.apply(d))).collect(),
+            columns: linearisation.by_unknowns().map(|(column, d)| (column, whitener.apply(d))).collect(),
             misfit: whitener.apply(&(observation.mean - linearisation.reading)),
             magnitude: whitener.apply(&linearisation.reading).norm(),
         })
