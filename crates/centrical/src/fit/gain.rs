@@ -82,17 +82,6 @@ impl Gain {
         &self.linearisations
     }
 
-    /// The part of `m` changes of the readings, `3 n x m` [m/s^2], that no change of the unknowns can follow: whitened,
-    /// in `rows - p` independent coordinates of unit variance.
-    pub fn redundant(&self, readings: &DMatrix<f64>) -> DMatrix<f64> {
-        self.rotated(readings).rows_range(self.equations.columns()..).into_owned()
-    }
-
-    /// The residuals in the same coordinates: their testable part.
-    pub fn redundant_residuals(&self) -> DVector<f64> {
-        self.equations.redundant(&self.residuals)
-    }
-
     /// Whitened residuals, three per observation.
     pub(crate) fn whitened_residuals(&self) -> DVector<f64> {
         self.residuals.rows(0, 3 * self.whiteners.len()).into_owned()
@@ -112,22 +101,5 @@ impl Gain {
     /// What whitens observation `n`.
     pub(crate) fn whitener(&self, n: usize) -> &Whitener {
         &self.whiteners[n]
-    }
-
-    /// Whitened readings, three per observation.
-    pub(crate) fn whitened(&self, readings: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut whitened = DMatrix::zeros(readings.nrows(), readings.ncols());
-        for (n, whitener) in self.whiteners.iter().enumerate() {
-            for (column, mut target) in readings.column_iter().zip(whitened.column_iter_mut()) {
-                let change = column.fixed_rows::<3>(3 * n).into_owned();
-                target.fixed_rows_mut::<3>(3 * n).copy_from(&whitener.apply(&change));
-            }
-        }
-        whitened
-    }
-
-    /// `Q^T W` times changes of the readings.
-    fn rotated(&self, readings: &DMatrix<f64>) -> DMatrix<f64> {
-        self.equations.rotated(self.whitened(readings))
     }
 }

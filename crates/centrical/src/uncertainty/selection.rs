@@ -4,12 +4,13 @@
 //! when it lowers chi^2 by more than `ln n`: 5.8 for the 324 readings of 108 plateaus, 2.4 standard uncertainties. A term
 //! that is not there gets so far once in sixty sessions, one of five standard uncertainties fails to once in two hundred.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use centrical_compensate::Monomial;
-use nalgebra::DMatrix;
+use nalgebra::Vector3;
 
 use super::coverage::chi_squared_tail;
+use super::rivals::columns::Columns;
 use super::validity::f_tail;
 use crate::fit::{Calibration, Data, Fit, Termination};
 use crate::model::{ErrorModel, Extension, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
@@ -123,53 +124,73 @@ fn with_rivals(model: &MeasurementModel, rivals: Vec<Rival>) -> Candidate {
 /// # Errors
 /// [`FitError`] when an observation is invalid.
 pub fn select_beside(model: &MeasurementModel, observations: &[Observation]) -> Result<Selection, FitError> {
-    let mut candidates = candidates_of(model);
-    let data = |candidate: &Candidate| -> Result<f64, FitError> {
-        let data = Data::new(&candidate.model, observations.to_vec())?;
-        let fit = Calibration::exact(&data)?.into_fit();
-        Ok(bic(&fit, observations.len()))
-    };
-    let as_stated = candidates.iter().find(|candidate| candidate.name == AS_STATED).map(data).transpose()?;
-    let mut lower: Vec<(f64, Rival)> = Vec::new();
-    for candidate in &candidates {
-        if let [rival] = candidate.rivals[..] {
-            let bic = data(candidate)?;
-            if as_stated.is_some_and(|as_stated| bic < as_stated) {
-                lower.push((bic, rival));
-            }
-        }
-    }
-    lower.sort_by(|a, b| a.0.total_cmp(&b.0));
-    lower.truncate(PAIRED);
-    for (n, (_, first)) in lower.iter().enumerate() {
-        candidates.extend(lower[n + 1..].iter().map(|(_, second)| with_rivals(model, vec![*first, *second])));
-    }
-    select(&candidates, observations)
+    let single = candidates_of(model);
+    let data = data_of(&single, observations)?;
+    let mut fits = fits(&single, &data)?;
+    let paired = pairs(model, &fits);
+    let data_of_pairs = data_of(&paired, observations)?;
+    fits.extend(self::fits(&paired, &data_of_pairs)?);
+    conclude(&fits)
 }
 
 /// Rivals that are tried in pairs.
 const PAIRED: usize = 3;
+
+/// The model with pairs of the rivals that lower BIC most by themselves.
+fn pairs(model: &MeasurementModel, single: &[(&Candidate, Calibration)]) -> Vec<Candidate> {
+    let bic_of = |calibration: &Calibration| bic(calibration.fit(), calibration.data().observations().len());
+    let as_stated = single.iter().find(|(candidate, _)| candidate.name == AS_STATED).map(|(_, fit)| bic_of(fit));
+    let lowered = |(candidate, calibration): &(&Candidate, Calibration)| match candidate.rivals[..] {
+        [rival] => Some((bic_of(calibration), rival)).filter(|(bic, _)| as_stated.is_some_and(|stated| *bic < stated)),
+        _ => None,
+    };
+    let mut lower: Vec<(f64, Rival)> = single.iter().filter_map(lowered).collect();
+    lower.sort_by(|a, b| a.0.total_cmp(&b.0));
+    lower.truncate(PAIRED);
+    let with_later = |(n, (_, first)): (usize, &(f64, Rival))| {
+        let later = lower[n + 1..].iter();
+        later.map(|(_, second)| with_rivals(model, vec![*first, *second])).collect::<Vec<_>>()
+    };
+    lower.iter().enumerate().flat_map(with_later).collect()
+}
 
 /// Fits all `candidates` to the same plateaus and compares them.
 ///
 /// # Errors
 /// [`FitError`] when an observation cannot be one, or when there is no candidate ([`FitError::Empty`]).
 pub fn select(candidates: &[Candidate], observations: &[Observation]) -> Result<Selection, FitError> {
-    let data: Vec<Data> = (candidates.iter())
-        .map(|candidate| Data::new(&candidate.model, observations.to_vec()))
+    let data = data_of(candidates, observations)?;
+    conclude(&fits(candidates, &data)?)
+}
+
+/// The plateaus with the model of each candidate.
+fn data_of<'c>(candidates: &'c [Candidate], observations: &[Observation]) -> Result<Vec<Data<'c>>, FitError> {
+    candidates.iter().map(|candidate| Data::new(&candidate.model, observations.to_vec())).collect()
+}
+
+/// The candidates with their fits to `data`, in the same order.
+fn fits<'c>(
+    candidates: &'c [Candidate],
+    data: &'c [Data<'c>],
+) -> Result<Vec<(&'c Candidate, Calibration<'c>)>, FitError> {
+    candidates.iter().zip(data).map(|(candidate, data)| Ok((candidate, Calibration::exact(data)?))).collect()
+}
+
+/// Compares the fits.
+fn conclude(fits: &[(&Candidate, Calibration)]) -> Result<Selection, FitError> {
+    let mut fitted: Vec<FittedCandidate> = fits
+        .iter()
+        .map(|(candidate, calibration)| candidate_fitted(candidate, calibration))
         .collect::<Result<_, _>>()?;
-    let calibrations: Vec<Calibration> = data.iter().map(Calibration::exact).collect::<Result<_, _>>()?;
-    let named = candidates.iter().zip(&calibrations);
-    let mut fitted: Vec<FittedCandidate> =
-        named.map(|(c, calibration)| candidate_fitted(c, calibration)).collect::<Result<_, _>>()?;
+    let candidates: Vec<&Candidate> = fits.iter().map(|(candidate, _)| *candidate).collect();
     for n in 0..fitted.len() {
-        fitted[n].against = nested_test(candidates, &fitted, n);
+        fitted[n].against = nested_test(&candidates, &fitted, n);
     }
     let converged = (0..fitted.len()).filter(|&n| fitted[n].converged);
     let recommended = converged.min_by(|&a, &b| fitted[a].bic.total_cmp(&fitted[b].bic)).ok_or(FitError::Empty)?;
-    let best = Best(&calibrations[recommended]);
+    let best = Best(&fits[recommended].1);
     let mut terms = best.own_terms();
-    terms.extend(best.further_terms(candidates)?);
+    terms.extend(best.further_terms(&candidates)?);
     Ok(Selection { candidates: fitted, recommended, terms })
 }
 
@@ -196,7 +217,7 @@ fn bic(fit: &Fit, plateaus: usize) -> f64 {
 }
 
 /// Test of candidate `n` against the largest one whose unknowns are all among its own.
-fn nested_test(candidates: &[Candidate], fitted: &[FittedCandidate], n: usize) -> Option<NestedTest> {
+fn nested_test(candidates: &[&Candidate], fitted: &[FittedCandidate], n: usize) -> Option<NestedTest> {
     let names = |m: usize| candidates[m].model.parameters().iter().map(|p| p.name.as_str()).collect::<HashSet<_>>();
     let own = names(n);
     let is_nested = |m: &usize| fitted[*m].rank < fitted[n].rank && names(*m).is_subset(&own);
@@ -237,19 +258,19 @@ impl Best<'_> {
     }
 
     /// The terms that richer candidates have beyond the model, each as the one further unknown of it: by what is
-    /// redundant of its column in the readings and of the residuals. So many are tried that each has to pass a
-    /// family-wise error of 5 % as well.
-    fn further_terms(&self, candidates: &[Candidate]) -> Result<Vec<TermVerdict>, FitError> {
-        let gain = self.0.gain()?;
-        let e = gain.redundant_residuals();
+    /// redundant of its column in the readings and of the residuals. As there are many, each has to pass a family-wise
+    /// error of 5 % as well.
+    fn further_terms(&self, candidates: &[&Candidate]) -> Result<Vec<TermVerdict>, FitError> {
         let mut terms: Vec<TermVerdict> = Vec::new();
         for richer in candidates.iter().map(|c| &c.model) {
-            for (name, column) in self.further_columns(richer) {
-                let z = gain.redundant(&column);
-                let (size, whole) = (z.norm(), gain.whitened(&column).norm());
-                if terms.iter().all(|t| t.name != name) {
-                    let significance = (size > REDUNDANT * whole).then(|| z.column(0).dot(&e) / size);
-                    terms.push(TermVerdict { name, significance, kept: false });
+            let (further, columns) = self.further_columns(richer)?;
+            let square = columns.redundancy();
+            for (c, j) in further.into_iter().enumerate() {
+                let name = &richer.parameters()[j].name;
+                if terms.iter().all(|t| t.name != *name) {
+                    let is_seen = square[(c, c)] > REDUNDANT * REDUNDANT;
+                    let significance = is_seen.then(|| columns.along[c] / square[(c, c)].sqrt());
+                    terms.push(TermVerdict { name: name.clone(), significance, kept: false });
                 }
             }
         }
@@ -261,29 +282,26 @@ impl Best<'_> {
         Ok(terms)
     }
 
-    /// Names and columns in the readings, `3 n x 1`, of the optional unknowns of `richer` that the model lacks, at the
-    /// estimate; none if `richer` lacks any of the model's own.
-    fn further_columns(&self, richer: &MeasurementModel) -> Vec<(String, DMatrix<f64>)> {
+    /// The optional unknowns of `richer` that the model lacks, with their columns at the estimate; none if `richer` lacks
+    /// any of the model's own.
+    fn further_columns(&self, richer: &MeasurementModel) -> Result<(Vec<usize>, Columns), FitError> {
+        let (own, observations) = (self.0.data().model().parameters(), self.0.data().observations());
+        let is_further = |p: &Parameter| own.find(&p.name).is_none() && can_go(richer, p.kind);
+        let has_own = own.iter().all(|p| richer.parameters().find(&p.name).is_some());
+        let further = richer.parameters().iter().enumerate().filter(|(_, p)| has_own && is_further(p));
+        let further: Vec<usize> = further.map(|(j, _)| j).collect();
         let mut x = vec![0.0; richer.parameters().len()];
-        for (parameter, value) in self.0.data().model().parameters().iter().zip(self.0.fit().state()) {
-            let Some(j) = richer.parameters().find(&parameter.name) else { return Vec::new() };
-            x[j] = *value;
-        }
-        let is_further =
-            |p: &Parameter| self.0.data().model().parameters().find(&p.name).is_none() && can_go(richer, p.kind);
-        let further = richer.parameters().iter().enumerate().filter(|(_, p)| is_further(p));
-        let mut columns: Vec<(usize, DMatrix<f64>)> =
-            further.map(|(j, _)| (j, DMatrix::zeros(3 * self.0.data().observations().len(), 1))).collect();
-        for (n, observation) in self.0.data().observations().iter().enumerate() {
-            let set_point = &richer.experiment().set_points[observation.set_point];
-            let derivatives = richer.linearise(set_point, &x).columns;
-            for (j, column) in &mut columns {
-                if let Some((_, derivative)) = derivatives.iter().find(|(own, _)| own == j) {
-                    column.fixed_view_mut::<3, 1>(3 * n, 0).copy_from(derivative);
-                }
+        for (parameter, value) in own.iter().zip(self.0.fit().state()) {
+            if let Some(j) = richer.parameters().find(&parameter.name) {
+                x[j] = *value;
             }
         }
-        columns.into_iter().map(|(j, column)| (richer.parameters()[j].name.clone(), column)).collect()
+        let at = |o: &Observation| richer.linearise(&richer.experiment().set_points[o.set_point], &x).columns;
+        let linearised: Vec<HashMap<usize, Vector3<f64>>> =
+            observations.iter().map(|o| at(o).into_iter().collect()).collect();
+        let derivative = |n: usize, c: usize| linearised[n].get(&further[c]).copied().unwrap_or_else(Vector3::zeros);
+        let columns = Columns::new(self.0.gain()?, (0..observations.len()).collect(), further.len(), derivative);
+        Ok((further, columns))
     }
 }
 
