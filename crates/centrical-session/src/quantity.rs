@@ -184,7 +184,8 @@ impl<'de> Deserialize<'de> for Quantity {
     }
 }
 
-struct QuantityVisitor;
+/// Takes a number or a text.
+pub(crate) struct QuantityVisitor;
 
 impl Visitor<'_> for QuantityVisitor {
     type Value = Quantity;

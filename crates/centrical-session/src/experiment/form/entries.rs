@@ -6,7 +6,7 @@ use centrical_table::ColumnName;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 
-use crate::quantity::Quantity;
+use crate::quantity::{Quantity, QuantityVisitor};
 
 /// A preset's name, or a list of terms.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct TermTable {
     pub term: String,
 }
 
-/// Values one by one, or so many at equal steps.
+/// Values one by one, or at equal steps.
 #[derive(Debug)]
 pub(crate) enum Steps {
     List(Vec<Quantity>),
@@ -83,15 +83,15 @@ impl<'de> Deserialize<'de> for PriorValue {
             }
 
             fn visit_str<E: de::Error>(self, text: &str) -> Result<PriorValue, E> {
-                Ok(PriorValue { mean: None, standard_uncertainty: Quantity::Text(text.to_owned()) })
+                about_zero(QuantityVisitor.visit_str(text))
             }
 
             fn visit_i64<E: de::Error>(self, number: i64) -> Result<PriorValue, E> {
-                Ok(PriorValue { mean: None, standard_uncertainty: Quantity::Number(number as f64) })
+                about_zero(QuantityVisitor.visit_i64(number))
             }
 
             fn visit_f64<E: de::Error>(self, number: f64) -> Result<PriorValue, E> {
-                Ok(PriorValue { mean: None, standard_uncertainty: Quantity::Number(number) })
+                about_zero(QuantityVisitor.visit_f64(number))
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PriorValue, A::Error> {
@@ -102,6 +102,10 @@ impl<'de> Deserialize<'de> for PriorValue {
         }
         deserializer.deserialize_any(PriorVisitor)
     }
+}
+
+fn about_zero<E>(standard_uncertainty: Result<Quantity, E>) -> Result<PriorValue, E> {
+    Ok(PriorValue { mean: None, standard_uncertainty: standard_uncertainty? })
 }
 
 /// A date as TOML has it, or any text.
