@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// Stands for a character that is not shown, as it stands for bytes that are no text.
+/// Replaces a character that is not shown. Decoders put it in place of bytes that are not text.
 const REPLACEMENT: char = '\u{fffd}';
 
 /// The text without what a terminal, a compiler, a browser or a reader of XML takes for anything but a character to be shown: control

@@ -15,13 +15,13 @@ const SHOWN: usize = 3;
 /// A price below this factor is worth paying: the effect is then better an unknown.
 const CHEAP: f64 = 1.5;
 
-/// The effects whose absence a result rests on most, and what would protect against each. Empty where there is none.
+/// The effects whose absence a result rests on most, and what would protect against each. Without effects the text is empty.
 pub(super) fn rests_on_text(effects: &[RestsOn]) -> String {
     let mut text = String::new();
     if effects.is_empty() {
         return text;
     }
-    text.push_str("RESTS on the absence of effects, of which these sizes would pass unseen; the worst:\n");
+    text.push_str("RESTS on the absence of effects that could pass unseen, up to these sizes; the worst:\n");
     for effect in effects.iter().take(SHOWN) {
         let _ = writeln!(text, "      {}", rests_on_sentence(effect, Language::English));
         let _ = writeln!(text, "        {}", protection(effect));
@@ -32,8 +32,8 @@ pub(super) fn rests_on_text(effects: &[RestsOn]) -> String {
 /// What protects against an effect: an unknown where it costs little, else a bound.
 fn protection(effect: &RestsOn) -> String {
     let bound = effect.name.replace('-', "_");
-    let line = Rival::named(&effect.name).map(|rival| lines_of(&[rival]).join("; ")).unwrap_or_default();
-    if let Some(Rival::Effect(Extension::OneMounting(_, mounting))) = Rival::named(&effect.name) {
+    let line = effect.rival().map(|rival| lines_of(&[rival]).join("; ")).unwrap_or_default();
+    if let Some(Rival::Effect(Extension::OneMounting(_, mounting))) = effect.rival() {
         return format!("protect: mount the unit again as in mounting {}", mounting + 1);
     }
     match effect.price_as_unknown {

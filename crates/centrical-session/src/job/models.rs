@@ -6,8 +6,8 @@ use super::calibrate::Problem;
 use crate::error::Error;
 use crate::experiment::Session;
 
-/// Fits the model of a session with each rival of the catalogue, and with pairs of the best. `progress` is called with the number of bytes read, from any thread; most bytes are
-/// read twice.
+/// Fits the model of a session with each rival of the catalogue, and with pairs of the best. `progress` is called with
+/// the number of bytes read, from any thread; most bytes are read twice.
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.

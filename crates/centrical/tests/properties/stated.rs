@@ -63,8 +63,8 @@ fn sessions_with_stated_deviations_are_accepted() {
     }
 }
 
-/// The data know the difference of the radii better than a loose statement, and the budget says so: what is left of the source
-/// is far below what a fixed radius would leave, and all sources add up to the covariance of the fit.
+/// The data know the difference of the radii better than a loose statement. The budget says so: the contribution of the source
+/// is far below that of a fixed radius, and all sources add up to the covariance of the fit.
 #[test]
 fn data_sharpen_a_loose_statement() {
     let stated = TypeB { radius: 200e-6, ..TypeB::default() };

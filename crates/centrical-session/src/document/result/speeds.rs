@@ -197,8 +197,8 @@ fn shown_by(session: &Session) -> String {
     shows.name().to_owned()
 }
 
-/// What is stated of the speeds of the telemetry against those that were set. The scale of a tachometer of which nothing is
-/// stated is taken to be as uncertain as a speed that is set: it is what the speeds are set by.
+/// What is stated of the speeds of the telemetry against those that were set. Without a stated uncertainty, the scale of a
+/// tachometer is taken to be as uncertain as a speed that is set: the speeds are set by it.
 fn stated(session: &Session) -> StatedSpeeds {
     let speeds = &session.speeds;
     let measured = speeds.measured.filter(|_| speeds.is_in_files());
