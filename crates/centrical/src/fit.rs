@@ -25,6 +25,7 @@ mod estimates;
 pub mod filter;
 mod follower;
 mod gain;
+mod past;
 mod structure;
 
 pub use calibration::Calibration;

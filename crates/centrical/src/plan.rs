@@ -13,7 +13,7 @@
 //!   sequential quadratic programming with the bound of the equivalence theorem (Kiefer and Wolfowitz 1960). `exchange`
 //!   finds them, by rounding and exchange of whole visits;
 //! - [`Prediction`]: the uncertainties of a plan; [`Rationale`]: the reason for each visit; [`frontier`](frontier()): time
-//!   against uncertainty; [`next_best`]: the best next plateau.
+//!   against uncertainty; [`NextPlateau`]: the best next plateau.
 //!
 //! **Unknowns that a schedule does not determine** (turns of a position that is not mounted, lost combinations) are held by a
 //! standard deviation of ten typical magnitudes, as in a fit ([`crate::NULL_HOLD`]): that is `M_0`, with the priors.
@@ -40,7 +40,7 @@ pub use criterion::{Criterion, Goal, ReadingRange, Robustness};
 pub use error::PlanError;
 pub use frontier::{FrontierPoint, frontier};
 pub use goals::{Reached, Task};
-pub use next::{Benefit, next_best};
+pub use next::{Benefit, NextPlateau};
 pub use normalised::Normalised;
 pub use prediction::{Prediction, predict, unit_of};
 pub use rationale::{Rationale, Reason};

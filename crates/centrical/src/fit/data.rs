@@ -44,11 +44,6 @@ impl<'m> Data<'m> {
         Ok(())
     }
 
-    /// Takes the last plateau away.
-    pub(super) fn pop(&mut self) {
-        self.observations.pop();
-    }
-
     /// The data without observation `n`, unless it is the only one.
     pub(crate) fn without(&self, n: usize) -> Result<Self, FitError> {
         let mut observations = self.observations.clone();
@@ -81,12 +76,9 @@ impl<'m> Data<'m> {
 
     /// Readings less those of the exact model at the unknowns `x` of a fit [m/s^2].
     pub(super) fn residuals(&self, x: &[f64]) -> Vec<Vector3<f64>> {
-        if self.model.influences().is_empty() {
-            let pairs = self.observations.iter().zip(self.set_points());
-            return pairs.map(|(observation, set_point)| observation.mean - self.model.reading(set_point, x)).collect();
-        }
-        let pairs = self.observations.iter().zip(self.linearised(x));
-        pairs.map(|(observation, at)| observation.mean - at.reading).collect()
+        let pairs = self.observations.iter().zip(self.set_points());
+        let residual = |(o, set_point): (&Observation, _)| o.mean - self.model.reading_with_influences(set_point, x);
+        pairs.map(residual).collect()
     }
 
     /// Sum of squares of `residuals`, which are those at `x`, with the weights of the linearisations; and the priors' share.
@@ -96,13 +88,18 @@ impl<'m> Data<'m> {
         residuals: &[Vector3<f64>],
         x: &DVector<f64>,
     ) -> Result<f64, FitError> {
-        let priors = self.model.priors().iter();
-        let mut sum: f64 = priors.map(|p| ((x[p.parameter] - p.mean) / p.standard_uncertainty).powi(2)).sum();
-        sum += x.rows_range(self.model.parameters().len()..).norm_squared();
+        let mut sum = self.squared_beforehand(x);
         for ((observation, linearisation), residual) in self.observations.iter().zip(linearisations).zip(residuals) {
             sum += Whitener::new(&observation.into(), linearisation)?.apply(residual).norm_squared();
         }
         Ok(sum)
+    }
+
+    /// The share of the priors and the influences in the sum of squares at `x`.
+    pub(super) fn squared_beforehand(&self, x: &DVector<f64>) -> f64 {
+        let priors = self.model.priors().iter();
+        let sum: f64 = priors.map(|p| ((x[p.parameter] - p.mean) / p.standard_uncertainty).powi(2)).sum();
+        sum + x.rows_range(self.model.parameters().len()..).norm_squared()
     }
 
     /// Covariance of each plateau with the errors of it alone [m^2/s^4].

@@ -1,9 +1,9 @@
 //! Following a session while the centrifuge turns.
 //!
 //! The linear model is off by some 20 ug, which a test of plateaus known to a few ug would take for a fault. So
-//! a follower keeps a point of linearisation, and a new plateau moves it: all plateaus so far and the new one are
-//! linearised there, the earlier ones filtered, and the new one tested and taken up. The point is the estimate
-//! with every unknown held about zero by [`NULL_HOLD`] typical magnitudes, so that what is not
+//! a follower keeps a point of linearisation, and a new plateau moves it: the new one is linearised there, the earlier
+//! ones so close to it that nothing is lost ([`Past`]), and the new one is tested and taken up. The point is the estimate
+//! with every unknown held about zero by its typical magnitude, so that what is not
 //! determined yet stays where units are. The hold places the point; no estimate, uncertainty or test knows of it.
 
 use nalgebra::{DVector, Matrix3};
@@ -12,14 +12,19 @@ use super::assembly::Assembly;
 use super::batch::HALVING_LIMIT;
 use super::data::Data;
 use super::design::Design;
+use super::filter::Readings;
 use super::filter::innovation::{Innovation, Unexplained};
+use super::past::{Linearised, Past, REMAINDER, readings_at_zero, with_readings};
 use super::structure::Structure;
 use crate::linalg::least_squares::LeastSquares;
-use crate::model::{FitError, Linearisation, MeasurementModel, NULL_HOLD, Observation};
+use crate::model::{FitError, MeasurementModel, NULL_HOLD, Observation};
 
 /// A point is close enough when the last step was below this many standard uncertainties: what the step after it would
 /// change is of the square of it.
 const CLOSE: f64 = 1e-3;
+
+/// How the point is held about zero, in typical magnitudes: as units are. What is determined is not held by it.
+const HOLD: f64 = 1.0;
 
 /// Steps towards a point, halved until they descend. They converge quadratically from the point before; a plateau that is
 /// far off may not let them, and is found out by the test wherever the point is.
@@ -30,6 +35,8 @@ const STEP_LIMIT: usize = 10;
 pub struct Follower<'m> {
     data: Data<'m>,
     point: DVector<f64>,
+    /// All plateaus but the last.
+    past: Past<'m>,
 }
 
 /// What is known after some plateaus.
@@ -46,18 +53,28 @@ impl<'m> Follower<'m> {
     pub fn new(model: &'m MeasurementModel) -> Self {
         let data = Data::none(model);
         let point = DVector::zeros(data.unknowns());
-        Self { data, point }
+        Self { past: Past::new(model, point.clone()), data, point }
     }
 
-    /// Where a follower stood that had taken up some plateaus and reached [`Follower::point`]; it goes on as if it had never
-    /// stopped. A point of another length is taken for zeros.
+    /// Where a follower stood that had taken up some plateaus, from its [`Follower::point`] and [`Follower::reference`]; it
+    /// goes on as if it had never stopped. Points of another length are taken for zeros.
     ///
     /// # Errors
-    /// [`FitError`] when an observation cannot be one.
-    pub fn resume(model: &'m MeasurementModel, taken: Vec<Observation>, point: &[f64]) -> Result<Self, FitError> {
+    /// [`FitError`] when an observation is invalid.
+    pub fn resume(
+        model: &'m MeasurementModel,
+        taken: Vec<Observation>,
+        point: &[f64],
+        reference: &[f64],
+    ) -> Result<Self, FitError> {
         let mut follower = Self::new(model);
-        taken.into_iter().try_for_each(|observation| follower.data.push(observation))?;
-        follower.point.iter_mut().zip(point).for_each(|(to, from)| *to = *from);
+        let unknowns = follower.point.len();
+        let filled = |from: &[f64]| {
+            let zeros = DVector::zeros(unknowns);
+            if from.len() == unknowns { DVector::from_column_slice(from) } else { zeros }
+        };
+        (follower.point, follower.past) = (filled(point), Past::new(model, filled(reference)));
+        taken.into_iter().try_for_each(|observation| follower.append(observation))?;
         Ok(follower)
     }
 
@@ -66,70 +83,38 @@ impl<'m> Follower<'m> {
         self.data.observations()
     }
 
-    /// Point of linearisation: parameters, SI, then influences in standard uncertainties.
+    /// Point of linearisation of the last plateau: parameters, SI, then influences in standard uncertainties.
     pub fn point(&self) -> &[f64] {
         self.point.as_slice()
     }
 
-    /// Tests a plateau against those taken up, without taking it up: by how much it raises the least sum of squares
-    /// at the point where it would be taken up, and the rank.
+    /// Point of linearisation of the plateaus before the last.
+    pub fn reference(&self) -> &[f64] {
+        self.past.reference().as_slice()
+    }
+
+    /// The follower with one plateau more, its point moved.
+    ///
+    /// # Errors
+    /// [`FitError`] when the observation is invalid.
+    pub fn with(&self, observation: &Observation) -> Result<Self, FitError> {
+        let mut with = self.clone();
+        with.append(observation.clone())?;
+        with.move_point()?;
+        Ok(with)
+    }
+
+    /// Tests the last plateau against those before: by how much it raises the least sum of squares, at the point with it, and
+    /// the rank.
     ///
     /// As in a fit, rank is decided on `H`, and what `H` does not see is held by [`NULL_HOLD`] typical magnitudes: the exact
     /// model has second-order traces of it, which would pass for something new in every plateau.
     ///
     /// # Errors
-    /// [`FitError`] when the observation cannot be one.
-    pub fn test(&self, observation: &Observation) -> Result<Innovation, FitError> {
-        let mut with = self.clone();
-        with.take(observation.clone())?;
-        let after = with.unexplained()?;
-        with.data.pop();
-        let before = with.unexplained()?;
-        Ok(before.innovation(&after))
-    }
-
-    /// Takes a plateau up and moves the point.
-    ///
-    /// # Errors
-    /// [`FitError`] when the observation cannot be one.
-    pub fn take(&mut self, observation: Observation) -> Result<(), FitError> {
-        self.data.push(observation)?;
-        let typical = self.data.typical();
-        for _ in 0..STEP_LIMIT {
-            let linearisations = self.linearised();
-            let design = self.design_of(&linearisations)?;
-            let (equations, misfit) = self.held(&design, &typical);
-            let step = equations.solve(misfit);
-            if step.whitened_length < CLOSE {
-                self.point += &step.x;
-                break;
-            }
-            let Some(point) = self.descend(&step.x, &linearisations, &typical)? else { break };
-            self.point = point;
-        }
-        Ok(())
-    }
-
-    /// The point one step on, halved until the sum of squares falls; none if it does not: the point stays where it is.
-    fn descend(
-        &self,
-        dx: &DVector<f64>,
-        linearisations: &[Linearisation],
-        typical: &DVector<f64>,
-    ) -> Result<Option<DVector<f64>>, FitError> {
-        let objective = |x: &DVector<f64>| -> Result<f64, FitError> {
-            let residuals = self.data.residuals(x.as_slice());
-            let data = self.data.chi_squared(linearisations, &residuals, x)?;
-            Ok(data + (x.component_div(typical) / NULL_HOLD).norm_squared())
-        };
-        let here = objective(&self.point)?;
-        for halvings in 0..HALVING_LIMIT {
-            let x = &self.point + dx * 0.5_f64.powi(halvings.cast_signed());
-            if objective(&x)? <= here {
-                return Ok(Some(x));
-            }
-        }
-        Ok(None)
+    /// [`FitError::Empty`] before the first plateau.
+    pub fn innovation(&self) -> Result<Innovation, FitError> {
+        let after = self.unexplained(Some(self.last()?))?;
+        Ok(self.unexplained(None)?.innovation(&after))
     }
 
     /// What the plateaus taken up say.
@@ -137,11 +122,9 @@ impl<'m> Follower<'m> {
     /// # Errors
     /// [`FitError::Empty`] before the first.
     pub fn progress(&self) -> Result<Progress, FitError> {
-        if self.taken().is_empty() {
-            return Err(FitError::Empty);
-        }
-        let (structure, _) = Structure::by(Assembly::Filter, &self.data)?;
-        let (equations, misfit) = structure.equations(&self.design()?, &self.point, 1.0 / NULL_HOLD);
+        let last = Some(self.last()?);
+        let structure = self.structure(last)?;
+        let (equations, misfit) = structure.equations(&self.design(last)?, &self.point, 1.0 / NULL_HOLD);
         let (step, covariance) = (equations.solve(misfit), equations.covariance());
         let known = |j: usize| (self.point[j] + step.x[j], covariance[(j, j)].sqrt());
         let estimates = (0..structure.observability.columns())
@@ -160,32 +143,83 @@ impl<'m> Follower<'m> {
         let parameters = &self.point()[..self.data.model().parameters().len()];
         let mean = self.data.model().reading(set_points.get(set_point).ok_or(unknown)?, parameters);
         let mut with = self.clone();
-        with.data.push(Observation { set_point, mean, covariance })?;
+        with.append(Observation { set_point, mean, covariance })?;
         with.progress()
     }
 
-    /// Least sum of squares of the plateaus taken up, linearised at the point, and their rank.
-    fn unexplained(&self) -> Result<Unexplained, FitError> {
-        if self.taken().is_empty() {
-            return Ok(Unexplained { squared: 0.0, rank: self.data.model().priors().len() });
+    /// Adds a plateau where the point is.
+    fn append(&mut self, observation: Observation) -> Result<(), FitError> {
+        if let Some(last) = self.data.observations().last() {
+            self.past.push(last)?;
         }
-        let (structure, _) = Structure::by(Assembly::Filter, &self.data)?;
-        let design = self.design()?;
+        self.data.push(observation)
+    }
+
+    /// Moves the point to the estimate.
+    fn move_point(&mut self) -> Result<(), FitError> {
+        let typical = self.data.typical();
+        for _ in 0..STEP_LIMIT {
+            let last = Linearised::new(self.data.model(), self.last()?, &self.point)?;
+            let (equations, misfit) = self.held(&self.design(Some(self.last()?))?, &typical);
+            let step = equations.solve(misfit);
+            let x = &self.point + &step.x;
+            let remainder = last.remainder(self.data.model(), &step.x, &x).hypot(self.past.remainder(&x));
+            if step.whitened_length < CLOSE || remainder < REMAINDER {
+                self.point = x;
+                return Ok(());
+            }
+            let Some(point) = self.descend(&step.x, &typical)? else { break };
+            self.point = point;
+            self.past.linearise_at(&self.point)?;
+        }
+        Ok(())
+    }
+
+    /// The point one step on, halved until the sum of squares falls; none if it does not: the point stays where it is.
+    fn descend(&self, dx: &DVector<f64>, typical: &DVector<f64>) -> Result<Option<DVector<f64>>, FitError> {
+        let last = Linearised::new(self.data.model(), self.last()?, &self.point)?;
+        let objective = |x: &DVector<f64>| {
+            let plateaus = self.past.squared(x) + last.residual(self.data.model(), x).norm_squared();
+            plateaus + self.data.squared_beforehand(x) + (x.component_div(typical) / HOLD).norm_squared()
+        };
+        let here = objective(&self.point);
+        let mut halved = (0..HALVING_LIMIT).map(|halvings| &self.point + dx * 0.5_f64.powi(halvings.cast_signed()));
+        Ok(halved.find(|x| objective(x) <= here))
+    }
+
+    /// Least sum of squares of the plateaus behind and perhaps the last, linearised at the point, and their rank.
+    fn unexplained(&self, last: Option<&Observation>) -> Result<Unexplained, FitError> {
+        let (structure, design) = (self.structure(last)?, self.design(last)?);
         let (equations, misfit) = structure.equations(&design, &self.point, 1.0 / NULL_HOLD);
         let left = equations.redundant(&misfit).norm_squared();
         Ok(Unexplained { squared: left + design.rest.powi(2), rank: structure.observability.rank() })
     }
 
-    fn linearised(&self) -> Vec<Linearisation> {
-        self.data.linearised(self.point())
+    /// What the plateaus behind and perhaps the last determine.
+    fn structure(&self, last: Option<&Observation>) -> Result<Structure, FitError> {
+        let at_zero = last.map(|last| readings_at_zero(self.data.model(), last)).transpose()?;
+        let design = self.whole(self.past.design_at_zero(), at_zero.as_ref(), &DVector::zeros(self.point.len()));
+        Ok(Structure::decided(Assembly::Filter, &self.data, Vec::new(), &design))
     }
 
-    fn design(&self) -> Result<Design, FitError> {
-        self.design_of(&self.linearised())
+    /// The equations of the plateaus behind and perhaps the last, at the point.
+    fn design(&self, last: Option<&Observation>) -> Result<Design, FitError> {
+        let last = last.map(|last| Linearised::new(self.data.model(), last, &self.point)).transpose()?;
+        Ok(self.whole(self.past.design(&self.point), last.as_ref().map(|last| &last.readings), &self.point))
     }
 
-    fn design_of(&self, linearisations: &[Linearisation]) -> Result<Design, FitError> {
-        Assembly::Filter.design(&self.data, self.point(), linearisations)
+    /// The equations of `past`, of some `readings` more, and of what is known beforehand, at `x`.
+    fn whole(&self, past: Design, readings: Option<&Readings>, x: &DVector<f64>) -> Design {
+        let model = self.data.model();
+        let plateaus = match readings {
+            Some(readings) => with_readings(past, readings),
+            None => past,
+        };
+        plateaus.with_priors(model.priors(), model.influences().len(), x.as_slice())
+    }
+
+    fn last(&self) -> Result<&Observation, FitError> {
+        self.taken().last().ok_or(FitError::Empty)
     }
 
     /// The equations and their misfit, with every unknown held about zero.
@@ -193,9 +227,9 @@ impl<'m> Follower<'m> {
         let (n, p) = design.rows.shape();
         let mut rows = design.rows.clone().resize_vertically(n + p, 0.0);
         rows.column_iter_mut().zip(typical.iter()).for_each(|(mut column, typical)| column *= *typical);
-        rows.rows_mut(n, p).fill_diagonal(1.0 / NULL_HOLD);
+        rows.rows_mut(n, p).fill_diagonal(1.0 / HOLD);
         let mut misfit = design.misfit.clone().resize_vertically(n + p, 0.0);
-        misfit.rows_mut(n, p).copy_from(&(self.point.component_div(typical) / -NULL_HOLD));
+        misfit.rows_mut(n, p).copy_from(&(self.point.component_div(typical) / -HOLD));
         (LeastSquares::new(rows, typical.clone()), misfit)
     }
 }

@@ -40,10 +40,20 @@ impl Structure {
 
     /// The structure, and the equations at `X = 0` that it was decided on.
     pub(super) fn by(assembly: Assembly, data: &Data) -> Result<(Self, Design), FitError> {
-        let model = data.model();
         let linearisations = data.linearised_at_zero();
-        let (columns, influences) = (model.parameters().len(), model.influences().len());
         let design = assembly.design(data, &vec![0.0; data.unknowns()], &linearisations)?;
+        Ok((Self::decided(assembly, data, linearisations, &design), design))
+    }
+
+    /// The structure decided on the equations at `X = 0`, those of the priors and influences among them.
+    pub(super) fn decided(
+        assembly: Assembly,
+        data: &Data,
+        linearisations: Vec<Linearisation>,
+        design: &Design,
+    ) -> Self {
+        let model = data.model();
+        let (columns, influences) = (model.parameters().len(), model.influences().len());
         // The influences have proper distributions of their own: they take part in no null direction.
         let rows_with_priors = design.rows.nrows() - influences;
         let of_rows = |count: usize| Observability::of(&design.rows.view((0, 0), (count, columns)).into_owned());
@@ -53,7 +63,7 @@ impl Structure {
         let mut null_basis = observability.null_basis().clone().resize_vertically(data.unknowns(), 0.0);
         null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);
         let (null_basis, start) = (orthonormal(null_basis), OnceLock::new());
-        Ok((Self { assembly, observability, of_data, null_basis, typical, linearisations, start }, design))
+        Self { assembly, observability, of_data, null_basis, typical, linearisations, start }
     }
 
     /// What the design determines.

@@ -32,6 +32,15 @@ impl MeasurementModel {
         sum / turns.len() as f64 + self.disturbance(set_point, x)
     }
 
+    /// Mean reading `f'` [m/s^2] at the unknowns `x` of a fit: parameters, then influences in their standard uncertainties.
+    pub(crate) fn reading_with_influences(&self, set_point: &SetPoint, x: &[f64]) -> Vector3<f64> {
+        let parameters = &x[..self.parameters.len()];
+        if self.influences().is_empty() {
+            return self.reading(set_point, parameters);
+        }
+        self.linearise(set_point, parameters).with_influences(x).reading
+    }
+
     /// Mean specific force `f` [m/s^2] along the three sensitive axes on a plateau at the unknowns `x`: what an
     /// instrument without errors would read.
     pub fn specific_force(&self, set_point: &SetPoint, x: &[f64]) -> Vector3<f64> {

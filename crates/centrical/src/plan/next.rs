@@ -16,36 +16,56 @@ pub struct Benefit {
     pub factor: f64,
 }
 
-/// The benefit of each of `candidates` after the plateaus `taken`, the best first. Unknowns that are not determined yet are held
-/// by ten typical magnitudes, so that a plateau that determines a new one comes before one that repeats.
-///
-/// # Errors
-/// [`PlanError`] when a weight is invalid, or a goal names an unknown parameter.
-pub fn next_best(
-    model: &MeasurementModel,
-    criterion: &Criterion,
-    taken: &[Weight],
-    candidates: &[Weight],
-) -> Result<Vec<Benefit>, PlanError> {
-    let none = vec![0.0; model.parameters().len()];
-    let scenario = LinearisedScenario::of(model, &none, criterion)?;
-    let factor = factor_of(&scenario, (model, &none), taken)?;
-    let before = LinearisedScenario::value(&factor);
-    let mut benefits = Vec::with_capacity(candidates.len());
-    for candidate in candidates {
-        let dn = precision(model, &none, candidate)?;
-        let after = scenario.value_after(&factor, &scenario.insight(&factor, candidate.set_point), &dn);
-        benefits.push(Benefit { set_point: candidate.set_point, factor: (0.5 * (after - before)).exp() });
-    }
-    benefits.sort_by(|a, b| a.factor.total_cmp(&b.factor).then(a.set_point.cmp(&b.set_point)));
-    Ok(benefits)
+/// What a next plateau would bring, kept up to date as plateaus are taken up. Unknowns that are not determined yet are held by
+/// ten typical magnitudes, so that a plateau that determines a new one comes before one that repeats.
+#[derive(Debug, Clone)]
+pub struct NextPlateau<'m> {
+    model: &'m MeasurementModel,
+    nominal: Vec<f64>,
+    scenario: LinearisedScenario,
+    factor: Factor,
 }
 
-fn factor_of(
-    scenario: &LinearisedScenario,
-    (model, none): (&MeasurementModel, &[f64]),
-    taken: &[Weight],
-) -> Result<Factor, PlanError> {
-    let information = taken.iter().map(|weight| Ok((weight.set_point, precision(model, none, weight)?)));
-    Ok(scenario.factor(&information.collect::<Result<Vec<(usize, Matrix3<f64>)>, PlanError>>()?))
+impl<'m> NextPlateau<'m> {
+    /// Before the first plateau.
+    ///
+    /// # Errors
+    /// [`PlanError`] when a goal names an unknown parameter.
+    pub fn new(model: &'m MeasurementModel, criterion: &Criterion) -> Result<Self, PlanError> {
+        let nominal = vec![0.0; model.parameters().len()];
+        let scenario = LinearisedScenario::of(model, &nominal, criterion)?;
+        let factor = scenario.factor(&[]);
+        Ok(Self { model, nominal, scenario, factor })
+    }
+
+    /// Takes plateaus up.
+    ///
+    /// # Errors
+    /// [`PlanError`] when a weight is invalid.
+    pub fn take(&mut self, plateaus: &[Weight]) -> Result<(), PlanError> {
+        let information = plateaus.iter().map(|weight| Ok((weight.set_point, self.precision(weight)?)));
+        let information = information.collect::<Result<Vec<(usize, Matrix3<f64>)>, PlanError>>()?;
+        self.factor = self.scenario.with(&self.factor, &information);
+        Ok(())
+    }
+
+    /// The benefit of each of `candidates`, the best first.
+    ///
+    /// # Errors
+    /// [`PlanError`] when a weight is invalid.
+    pub fn benefits(&self, candidates: &[Weight]) -> Result<Vec<Benefit>, PlanError> {
+        let before = LinearisedScenario::value(&self.factor);
+        let benefit = |candidate: &Weight| {
+            let insight = self.scenario.insight(&self.factor, candidate.set_point);
+            let after = self.scenario.value_after(&self.factor, &insight, &self.precision(candidate)?);
+            Ok(Benefit { set_point: candidate.set_point, factor: (0.5 * (after - before)).exp() })
+        };
+        let mut benefits = candidates.iter().map(benefit).collect::<Result<Vec<_>, PlanError>>()?;
+        benefits.sort_by(|a, b| a.factor.total_cmp(&b.factor).then(a.set_point.cmp(&b.set_point)));
+        Ok(benefits)
+    }
+
+    fn precision(&self, weight: &Weight) -> Result<Matrix3<f64>, PlanError> {
+        precision(self.model, &self.nominal, weight)
+    }
 }

@@ -1,6 +1,6 @@
 use centrical::plan::{
-    Candidates, Costs, Criterion, Effort, Goal, Noise, Plan, PlanError, Rationale, ReadingRange, Robustness, Scenario,
-    Schedule, Visit, best_for_time, next_best, predict, shortest_for_goals,
+    Candidates, Costs, Criterion, Effort, Goal, NextPlateau, Noise, Plan, PlanError, Rationale, ReadingRange,
+    Robustness, Scenario, Schedule, Visit, best_for_time, predict, shortest_for_goals,
 };
 use centrical::position::{ThirdPosition, kozlov_2017};
 use centrical::reduction::{NoiseModel, Record, ScheduledPlateau, plateau_means, reduce};
@@ -530,7 +530,11 @@ fn next_best_is_the_best() {
     let all: Vec<Weight> = (0..candidates.len()).map(|n| noise.weight(n, 60.0)).collect();
     let (taken, rest) = all.split_at(candidates.len() - 6);
     let criterion = Criterion::Reading(RANGE);
-    let benefits = next_best(model, &criterion, taken, rest).unwrap();
+    let mut next = NextPlateau::new(model, &criterion).unwrap();
+    // As they come: the first ones at once, then one by one.
+    next.take(&taken[..9]).unwrap();
+    taken[9..].iter().for_each(|weight| next.take(&[*weight]).unwrap());
+    let benefits = next.benefits(rest).unwrap();
     assert_eq!(benefits.len(), 6);
     let zero = vec![0.0; model.parameters().len()];
     let reading = |weights: &[Weight]| predict(model, weights, &zero).unwrap().reading(RANGE).unwrap()[1];

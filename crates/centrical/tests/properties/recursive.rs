@@ -458,7 +458,8 @@ fn follow<'m>(model: &'m MeasurementModel, data: &mut Vec<Observation>) -> Follo
     let mut probabilities = Vec::new();
     let mut degrees_of_freedom = 0;
     for (place, observation) in data.iter().enumerate() {
-        let innovation = follower.test(observation).unwrap();
+        let with = follower.with(observation).unwrap();
+        let innovation = with.innovation().unwrap();
         assert_eq!(innovation.is_alarm(0.001, data.len()), place == BAD, "place {place}: {innovation:?}");
         if place == BAD {
             continue;
@@ -467,7 +468,7 @@ fn follow<'m>(model: &'m MeasurementModel, data: &mut Vec<Observation>) -> Follo
         if innovation.degrees_of_freedom > 0 {
             probabilities.push(innovation.probability());
         }
-        follower.take(observation.clone()).unwrap();
+        follower = with;
     }
     assert_uniform(&mut probabilities);
     data.remove(BAD);
@@ -484,13 +485,12 @@ fn expectation_and_resumption_of_a_followed_session() {
     let mut follower = Follower::new(&model);
     assert_eq!(follower.progress(), Err(FitError::Empty));
     for observation in &data[..95] {
-        follower.take(observation.clone()).unwrap();
+        follower = follower.with(observation).unwrap();
     }
     let expected = follower.expected(95, data[95].covariance).unwrap();
-    let resumed = Follower::resume(&model, follower.taken().to_vec(), follower.point());
-    let mut resumed = resumed.unwrap();
-    follower.take(data[95].clone()).unwrap();
-    resumed.take(data[95].clone()).unwrap();
+    let resumed = Follower::resume(&model, follower.taken().to_vec(), follower.point(), follower.reference());
+    let resumed = resumed.unwrap().with(&data[95]).unwrap();
+    follower = follower.with(&data[95]).unwrap();
     assert_eq!(follower.point(), resumed.point());
     let came = follower.progress().unwrap();
     assert_eq!(came, resumed.progress().unwrap());
@@ -531,15 +531,14 @@ fn a_gross_plateau_anywhere_is_alarmed_and_survived() {
             let telling = perfect.innovation(place, &reading(blow)).unwrap().squared > TELLING;
             perfect.update(place, &reading(Vector3::zeros())).unwrap();
 
-            let innovation = follower.test(&bad).unwrap();
+            let taken = follower.with(&bad).unwrap();
+            let innovation = taken.innovation().unwrap();
             let what = format!("{relation:?}, place {place}, {size} m/s^2: {innovation:?}");
             assert!(!telling || innovation.is_alarm(0.01, data.len()), "{what}");
             told += usize::from(telling);
-            let mut taken = follower.clone();
-            taken.take(bad).unwrap();
             assert!(taken.point().iter().all(|x| x.is_finite()), "{what}");
             assert!(taken.progress().unwrap().estimates.iter().flatten().all(|(x, u)| x.is_finite() && u.is_finite()));
-            follower.take(observation.clone()).unwrap();
+            follower = follower.with(observation).unwrap();
         }
         assert!(told > 90, "{relation:?}: only {told} of 108 could be told");
     }
@@ -554,11 +553,11 @@ fn a_follower_resumed_anywhere_is_the_same() {
     let mut through = Follower::new(&model);
     let mut stopped = through.clone();
     for observation in &data {
-        assert_eq!(through.test(observation).unwrap(), stopped.test(observation).unwrap());
-        through.take(observation.clone()).unwrap();
-        stopped.take(observation.clone()).unwrap();
-        let (taken, point) = (stopped.taken().to_vec(), stopped.point().to_vec());
-        stopped = Follower::resume(&model, taken, &point).unwrap();
+        through = through.with(observation).unwrap();
+        stopped = stopped.with(observation).unwrap();
+        assert_eq!(through.innovation().unwrap(), stopped.innovation().unwrap());
+        let taken = stopped.taken().to_vec();
+        stopped = Follower::resume(&model, taken, stopped.point(), stopped.reference()).unwrap();
         assert_eq!(through.point(), stopped.point());
         assert_eq!(through.progress().unwrap(), stopped.progress().unwrap());
     }

@@ -26,6 +26,9 @@ pub struct WatchState {
     experiment: Input,
     /// Point of linearisation reached, SI, in the order of the unknowns.
     pub point: Vec<f64>,
+    /// Point of linearisation of the plateaus before the last, where it is another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    reference: Option<Vec<f64>>,
     /// Plateaus that have come, in their order.
     pub plateaus: Vec<WatchedPlateau>,
 }
@@ -58,7 +61,7 @@ impl WatchState {
     pub fn new(session: &Session) -> Result<Self, Error> {
         let folder = session.file.parent().unwrap_or(Path::new(""));
         let experiment = Input::of(folder, &session.file)?;
-        Ok(Self { schema: SCHEMA.to_owned(), experiment, point: Vec::new(), plateaus: Vec::new() })
+        Ok(Self { schema: SCHEMA.to_owned(), experiment, point: Vec::new(), reference: None, plateaus: Vec::new() })
     }
 
     /// The state in `file`, or the one before the first plateau if there is no such file.
@@ -82,8 +85,10 @@ impl WatchState {
             return Err(Error::content(file, Place::Whole, found, expected));
         }
         // What the program writes is always so; what another hand wrote is blamed here, not where it is used.
-        if !state.point.is_empty() && state.point.len() != unknowns {
-            return refuse(format!("a point of {} unknowns", state.point.len()), &format!("one of {unknowns}"));
+        for point in [&state.point].into_iter().chain(&state.reference) {
+            if !point.is_empty() && point.len() != unknowns {
+                return refuse(format!("a point of {} unknowns", point.len()), &format!("one of {unknowns}"));
+            }
         }
         let mut come = vec![false; count];
         for plateau in &state.plateaus {
@@ -106,6 +111,17 @@ impl WatchState {
     pub fn write(&self, file: &Path) -> Result<(), Error> {
         let text = json::line(SCHEMA, self)?;
         Ok(write_stream(file, |output| output.write_all(text.as_bytes()))?)
+    }
+
+    /// Notes the points of linearisation: that of the last plateau, and that of the plateaus before it.
+    pub fn move_to(&mut self, point: &[f64], reference: &[f64]) {
+        self.point = point.to_vec();
+        self.reference = (reference != point).then(|| reference.to_vec());
+    }
+
+    /// Point of linearisation of the plateaus before the last.
+    pub fn reference(&self) -> &[f64] {
+        self.reference.as_ref().unwrap_or(&self.point)
     }
 
     /// The plateaus that are not held out, as data of a fit.

@@ -1,12 +1,13 @@
 //! A session that is watched: every plateau is tested, taken up or held out, and kept; the calibration when all have arrived.
 
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use centrical::fit::{Follower, Progress};
-use centrical::plan::{Benefit, Criterion, ReadingRange, next_best};
+use centrical::plan::{Benefit, Criterion, NextPlateau, PlanError, ReadingRange};
 use centrical::reduction::MeasuredSpeed;
 use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linear};
 
@@ -87,7 +88,12 @@ pub struct Following<'a> {
     session: &'a Session,
     model: &'a MeasurementModel,
     follower: Follower<'a>,
+    next: NextPlateau<'a>,
     state: WatchState,
+    /// When the state was written last.
+    kept: Instant,
+    /// Whether each set point has come.
+    come: Vec<bool>,
     /// Plateaus that the user holds out, as set points.
     held_out: Vec<usize>,
 }
@@ -106,9 +112,18 @@ impl<'a> Following<'a> {
         keep_history(&request.out.join(HISTORY_FILE), state.plateaus.len())?;
         // One that has been taken up before is held out from now on.
         state.plateaus.iter_mut().for_each(|plateau| plateau.held_out |= held_out.contains(&plateau.set_point));
-        let follower = Follower::resume(model, state.taken(), &state.point)
+        let follower = Follower::resume(model, state.taken(), &state.point, state.reference())
             .map_err(|source| Error::Fit { file: state_file, source })?;
-        Ok(Self { request, session, model, follower, state, held_out })
+        let experiment = &session.experiment;
+        let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
+        let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
+        let planning = |source| Error::Planning { file: session.file.clone(), source };
+        let mut next = NextPlateau::new(model, &Criterion::Reading(ReadingRange { force })).map_err(planning)?;
+        let taken: Vec<Weight> = follower.taken().iter().map(Weight::from).collect();
+        next.take(&taken).map_err(planning)?;
+        let mut come = vec![false; experiment.set_points.len()];
+        state.plateaus.iter().for_each(|plateau| come[plateau.set_point] = true);
+        Ok(Self { request, session, model, follower, next, state, kept: Instant::now(), come, held_out })
     }
 
     /// Looks at the session again and again, until its schedule is complete or `stop` is raised.
@@ -119,8 +134,11 @@ impl<'a> Following<'a> {
         let mut watch = Watch::new(self.session, self.request.quiet);
         let mut note = None;
         loop {
-            for observation in watch.look()? {
+            let arrivals = watch.look()?;
+            let has_come = !arrivals.is_empty();
+            for observation in arrivals {
                 if stop.load(Ordering::Relaxed) {
+                    self.keep()?;
                     return Ok(self.stopped());
                 }
                 let speed = watch.speed(observation.set_point);
@@ -128,6 +146,9 @@ impl<'a> Following<'a> {
                 if let Some(progress) = self.arrived(&observation)? {
                     report(WatchEvent::Plateau(progress));
                 }
+            }
+            if has_come {
+                self.keep()?;
             }
             if watch.is_complete() {
                 return self.finish();
@@ -175,17 +196,20 @@ impl<'a> Following<'a> {
         if self.has(set_point) {
             return Ok(None);
         }
-        let innovation = self.fitted(self.follower.test(observation))?;
+        let with = self.fitted(self.follower.with(observation))?;
+        let innovation = self.fitted(with.innovation())?;
         let alarm = innovation.is_alarm(self.request.false_alarm, self.session.experiment.set_points.len());
         let held_out = self.held_out.contains(&set_point) || alarm && self.request.hold_out_alarms;
         if !held_out {
-            let taken = self.follower.take(observation.clone());
-            self.fitted(taken)?;
+            self.follower = with;
+            let taken = self.next.take(&[Weight::from(observation)]);
+            self.planned(taken)?;
         }
+        self.come[set_point] = true;
         self.state.plateaus.push(WatchedPlateau::new(observation, innovation.into(), alarm, held_out));
-        self.state.point = self.follower.point().to_vec();
+        self.state.move_to(self.follower.point(), self.follower.reference());
         if self.follower.taken().is_empty() {
-            self.state.write(&self.request.out.join(STATE_FILE))?;
+            self.keep()?;
             return Ok(None);
         }
         let now = self.fitted(self.follower.progress())?;
@@ -199,8 +223,17 @@ impl<'a> Following<'a> {
             estimates: HistoryEstimate::all(self.model, &now),
         };
         append_history(&self.request.out.join(HISTORY_FILE), &entry)?;
-        self.state.write(&self.request.out.join(STATE_FILE))?;
+        if self.kept.elapsed() >= KEPT_EACH {
+            self.keep()?;
+        }
         self.progress(now, observation).map(Some)
+    }
+
+    /// Writes the state. It holds all plateaus: many that come at once are not written one by one. After a kill the history
+    /// may be ahead of it, and is cut to it.
+    fn keep(&mut self) -> Result<(), Error> {
+        self.kept = Instant::now();
+        self.state.write(&self.request.out.join(STATE_FILE))
     }
 
     fn progress(&self, now: Progress, last: &Observation) -> Result<WatchProgress<'_>, Error> {
@@ -217,28 +250,24 @@ impl<'a> Following<'a> {
     }
 
     /// The best of the plateaus that remain in the mounting on the arm, and of those of later mountings, by what they would
-    /// bring if they were as noisy as the last one.
+    /// bring if they were as noisy as the last one. Of plateaus that are alike the first is asked for.
     fn best_next(&self, last: &Observation) -> Result<Vec<Benefit>, Error> {
-        let experiment = &self.session.experiment;
-        let remaining: Vec<Weight> = (0..experiment.set_points.len())
-            .filter(|&set_point| !self.has(set_point))
-            .map(|set_point| Weight { set_point, covariance: last.covariance })
-            .collect();
-        let taken: Vec<Weight> = self.follower.taken().iter().map(Weight::from).collect();
-        let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
-        let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
-        let criterion = Criterion::Reading(ReadingRange { force });
-        let benefits = next_best(self.model, &criterion, &taken, &remaining)
-            .map_err(|source| Error::Planning { file: self.session.file.clone(), source })?;
-        let on_the_arm = experiment.set_points[last.set_point].mounting;
-        let is_here = |benefit: &&Benefit| experiment.set_points[benefit.set_point].mounting == on_the_arm;
+        let set_points = &self.session.experiment.set_points;
+        let mut alike = HashSet::new();
+        let mut is_new = |s: &SetPoint| alike.insert((s.mounting, s.omega.to_bits(), s.angle.to_bits()));
+        let remaining = (0..set_points.len()).filter(|&n| !self.has(n) && is_new(&set_points[n]));
+        let remaining: Vec<Weight> =
+            remaining.map(|set_point| Weight { set_point, covariance: last.covariance }).collect();
+        let benefits = self.planned(self.next.benefits(&remaining))?;
+        let on_the_arm = set_points[last.set_point].mounting;
+        let is_here = |benefit: &&Benefit| set_points[benefit.set_point].mounting == on_the_arm;
         let here = benefits.iter().find(is_here);
         let elsewhere = benefits.iter().find(|benefit| !is_here(benefit));
         Ok(here.into_iter().chain(elsewhere).copied().collect())
     }
 
     fn has(&self, set_point: usize) -> bool {
-        self.state.plateaus.iter().any(|plateau| plateau.set_point == set_point)
+        self.come[set_point]
     }
 
     fn stopped(&self) -> WatchEnd {
@@ -251,6 +280,10 @@ impl<'a> Following<'a> {
         let result = calibrate_without(self.session, &held_out, Method::Recursive, &|_| {})?;
         result.write(&self.request.out.join("result.json"))?;
         Ok(WatchEnd::Complete(Box::new(result)))
+    }
+
+    fn planned<T>(&self, outcome: Result<T, PlanError>) -> Result<T, Error> {
+        outcome.map_err(|source| Error::Planning { file: self.session.file.clone(), source })
     }
 
     fn fitted<T>(&self, outcome: Result<T, FitError>) -> Result<T, Error> {
@@ -270,6 +303,9 @@ fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) 
         }
     }
 }
+
+/// Longest time for which plateaus that have come are not in the state on disk.
+const KEPT_EACH: Duration = Duration::from_secs(1);
 
 const STATE_FILE: &str = "watch.json";
 
