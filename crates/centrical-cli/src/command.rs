@@ -11,5 +11,6 @@ pub mod observe;
 pub mod plan;
 pub mod reduce;
 pub mod report;
+pub mod schema;
 pub mod simulate;
 pub mod watch;

@@ -44,6 +44,7 @@ enum Command {
     Observe(command::observe::Arguments),
     Plan(command::plan::Arguments),
     Watch(command::watch::Arguments),
+    Schema(command::schema::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -82,5 +83,6 @@ fn run(command: Command) -> Result<Outcome, Error> {
         Command::Observe(arguments) => command::observe::run(&arguments),
         Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Watch(arguments) => command::watch::run(&arguments),
+        Command::Schema(arguments) => command::schema::run(&arguments),
     }
 }

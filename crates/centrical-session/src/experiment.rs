@@ -17,6 +17,7 @@ mod uncertainty;
 mod unit;
 
 pub use self::candidates::Planning;
+pub(crate) use self::form::{Form as ExperimentForm, PlanForm};
 pub use self::plan::{ExpectedValues, Plan};
 pub use self::plateau_name::PlateauName;
 pub(crate) use self::plateaus::write_plateaus_parquet;

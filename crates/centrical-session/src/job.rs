@@ -11,6 +11,7 @@ mod observe;
 mod plan;
 mod reduce;
 mod reduced_session;
+mod settings_schema;
 mod simulate;
 mod watch;
 
@@ -25,5 +26,6 @@ pub use self::observe::subject;
 pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, read_plan, read_planning};
 pub use self::reduce::{reduce, reduce_without_inputs};
 pub use self::reduced_session::write_reduced;
+pub use self::settings_schema::{SettingsForm, settings_schema};
 pub use self::simulate::simulate_session;
 pub use self::watch::{Following, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest};

@@ -1,8 +1,10 @@
 //! `laboratory.toml`: what a certificate says beyond the calibration itself (ISO/IEC 17025, 7.8.2 and 7.8.4).
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::Path;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Deserializer};
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +13,7 @@ use crate::error::{Error, Place, quoted};
 use crate::settings::{from_toml, read_settings};
 
 /// The whole file.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Laboratory {
     /// Who calibrated.
@@ -37,7 +39,7 @@ pub struct Laboratory {
 }
 
 /// Who calibrated.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LaboratoryTable {
     /// Name.
@@ -52,7 +54,7 @@ pub struct LaboratoryTable {
 }
 
 /// For whom.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Customer {
     /// Name.
@@ -65,7 +67,7 @@ pub struct Customer {
 }
 
 /// A postal address.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Address {
     /// Street and number.
@@ -79,7 +81,7 @@ pub struct Address {
 }
 
 /// How to reach someone.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Contact {
     /// Telephone.
@@ -89,7 +91,7 @@ pub struct Contact {
 }
 
 /// The document.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Certificate {
     /// Its unique number, on every page.
@@ -109,7 +111,7 @@ pub struct Certificate {
 }
 
 /// The unit.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Item {
     /// Manufacturer.
@@ -125,7 +127,7 @@ pub struct Item {
 }
 
 /// The method.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MethodTable {
     /// The laboratory's procedure.
@@ -135,7 +137,7 @@ pub struct MethodTable {
 }
 
 /// Conditions during the calibration.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Environment {
     /// Air temperature [degrees Celsius].
@@ -147,7 +149,7 @@ pub struct Environment {
 }
 
 /// A condition: its mean value and how far it went from it.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Condition {
     /// Value.
@@ -157,7 +159,7 @@ pub struct Condition {
 }
 
 /// A standard.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Standard {
     /// What it is.
@@ -171,7 +173,7 @@ pub struct Standard {
 }
 
 /// Someone responsible.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Person {
     /// Name.
@@ -184,7 +186,7 @@ pub struct Person {
 }
 
 /// A statement of conformity.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Decision {
     /// The specification: document and clause.
@@ -196,7 +198,7 @@ pub struct Decision {
 }
 
 /// How a statement of conformity takes the expanded uncertainty `U` into account (ILAC-G8).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum DecisionRule {
     /// Simple acceptance: the value lies within the limits.
@@ -206,7 +208,7 @@ pub enum DecisionRule {
 }
 
 /// Limits of a parameter.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Limit {
     /// Name of the parameter in the result.
@@ -330,6 +332,16 @@ impl fmt::Display for Date {
     /// ISO 8601.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:04}-{:02}-{:02}", self.year, self.month, self.day)
+    }
+}
+
+impl JsonSchema for Date {
+    fn schema_name() -> Cow<'static, str> {
+        "Date".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "description": "A day such as 2026-10-05.", "type": "string", "format": "date" })
     }
 }
 

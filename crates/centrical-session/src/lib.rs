@@ -57,10 +57,10 @@ pub use experiment::{
 };
 pub use job::{
     Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following,
-    MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series, USUAL_LEVELS, USUAL_TIMES, Watch,
-    WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess, calibrate, calibrate_without, compare_results,
-    compensate, compensate_record, noise_of, plan, read_plan, read_planning, reduce, reduce_without_inputs,
-    select_model, simulate_session, subject, write_reduced,
+    MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series, SettingsForm, USUAL_LEVELS,
+    USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess, calibrate, calibrate_without,
+    compare_results, compensate, compensate_record, noise_of, plan, read_plan, read_planning, reduce,
+    reduce_without_inputs, select_model, settings_schema, simulate_session, subject, write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,

@@ -1,8 +1,10 @@
 //! Quantities as people write them: a number with a unit ("133.7 rpm"), or a plain number in SI.
 
+use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Deserialize, Deserializer, Visitor};
 
 use centrical::STANDARD_GRAVITY;
@@ -181,6 +183,19 @@ impl fmt::Display for Quantity {
 impl<'de> Deserialize<'de> for Quantity {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(QuantityVisitor)
+    }
+}
+
+impl JsonSchema for Quantity {
+    fn schema_name() -> Cow<'static, str> {
+        "Quantity".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "A number in SI, or a string with a unit such as \"133.7 rpm\".",
+            "anyOf": [{ "type": "number" }, { "type": "string" }],
+        })
     }
 }
 

@@ -4,3 +4,4 @@ mod equipment;
 mod file;
 
 pub use self::file::Truth;
+pub(crate) use self::file::TruthForm;

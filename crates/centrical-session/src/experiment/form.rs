@@ -1,10 +1,12 @@
 //! The form of `experiment.toml` and of plans as it is written.
 
 mod entries;
+mod entry_schemas;
 mod tables;
 
 pub(crate) use self::entries::{ColumnEntry, ColumnTable, PriorValue, Steps, TermEntry, TermList, TermTable};
 pub(crate) use self::tables::{
     CandidatesTable, CentrifugeTable, ColumnsTable, CountsTable, Form, MeasuredTable, ModelTable, MountingTable,
-    PlanTable, PlateauEntry, PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, SiteTable, UnitTable,
+    PlanForm, PlanTable, PlateauEntry, PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, SiteTable,
+    UnitTable,
 };

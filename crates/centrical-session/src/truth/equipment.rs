@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use centrical::simulate::{Coloured, Counter, Equipment, Losses, Machine, Recorder, Sensor, Spikes, Tachometer};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::error::Error;
@@ -11,10 +12,10 @@ use crate::quantity::Dimension::{Acceleration, Frequency, Ratio, Speed, Time};
 use crate::quantity::{Dimension, Quantity};
 
 /// A quantity that may be left out.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 struct Given(Option<Quantity>);
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct MachineTable {
     plateau: Given,
@@ -25,7 +26,7 @@ pub(crate) struct MachineTable {
     settling_time: Given,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct SensorTable {
     white: Given,
@@ -39,14 +40,14 @@ pub(crate) struct SensorTable {
     range: Option<Quantity>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct ColouredTable {
     deviation: Given,
     time: Given,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct RecorderTable {
     rate: Given,
@@ -55,14 +56,14 @@ pub(crate) struct RecorderTable {
     repeats: Given,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct SpikesTable {
     probability: Given,
     size: Given,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct GapsTable {
     probability: Given,
@@ -70,7 +71,7 @@ struct GapsTable {
     length: Given,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct TachometerTable {
     rate: Given,
@@ -83,7 +84,7 @@ pub(crate) struct TachometerTable {
     plateau_error: Given,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct CounterTable {
     jitter: Given,

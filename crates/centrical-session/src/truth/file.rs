@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::simulate::{Equipment, draw_truth};
 use centrical::{Extension, MeasurementModel, Parameter};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::equipment::{CounterTable, MachineTable, RecorderTable, SensorTable, TachometerTable, equipment};
@@ -27,20 +28,27 @@ pub struct Truth {
 }
 
 /// The whole file. Every key is known here: one that is not is an error.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct Form {
+pub(crate) struct TruthForm {
+    /// Parameters that are not named are drawn.
     typical: Option<TypicalTable>,
+    /// True values by name.
     #[serde(default)]
     parameters: BTreeMap<String, Quantity>,
+    /// The centrifuge.
     #[serde(default)]
     machine: MachineTable,
+    /// The newtonometers.
     #[serde(default)]
     sensor: SensorTable,
+    /// The recorder of the readings.
     #[serde(default)]
     recorder: RecorderTable,
+    /// The tachometer.
     #[serde(default)]
     tachometer: TachometerTable,
+    /// The counter of pulses.
     #[serde(default)]
     counter: CounterTable,
 }
@@ -49,7 +57,7 @@ struct Form {
 const LARGEST_SIZE: f64 = 1e6;
 
 /// Parameters that are not named are drawn from a normal law about zero.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct TypicalTable {
     /// Its standard deviation in typical magnitudes.
@@ -66,7 +74,7 @@ impl Truth {
     /// sense, or a parameter is not one of the plan's nor of an extension.
     pub fn read(file: &Path, plan: &Session, seed: u64) -> Result<Self, Error> {
         let text = read_settings(file, "a truth file")?;
-        let form: Form = from_toml(file, &text)?;
+        let form: TruthForm = from_toml(file, &text)?;
         let (model, sources) = model(plan, &form);
         let values = values(file, &form, &model, sources, seed)?;
         let tables = (&form.machine, &form.sensor, &form.recorder, &form.tachometer, &form.counter);
@@ -76,7 +84,7 @@ impl Truth {
 }
 
 /// The model with those extensions of which the form names a parameter, and the number of parameters without them.
-fn model(plan: &Session, form: &Form) -> (MeasurementModel, usize) {
+fn model(plan: &Session, form: &TruthForm) -> (MeasurementModel, usize) {
     let with =
         |extensions: &[Extension]| MeasurementModel::new(plan.experiment.clone(), plan.error_model.clone(), extensions);
     let source = with(&[]);
@@ -87,7 +95,13 @@ fn model(plan: &Session, form: &Form) -> (MeasurementModel, usize) {
 }
 
 /// True values: as named; drawn if not named and among the source's, the first `sources` of them; zero otherwise.
-fn values(file: &Path, form: &Form, model: &MeasurementModel, sources: usize, seed: u64) -> Result<Vec<f64>, Error> {
+fn values(
+    file: &Path,
+    form: &TruthForm,
+    model: &MeasurementModel,
+    sources: usize,
+    seed: u64,
+) -> Result<Vec<f64>, Error> {
     let at = TomlPath::table(file, "parameters");
     let parameters = model.parameters();
     let (size, seed) =

@@ -3,4 +3,5 @@
 mod file_messages;
 mod plan_messages;
 mod sample;
+mod schemas;
 mod session_messages;

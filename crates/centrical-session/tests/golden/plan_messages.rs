@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use centrical_session::{Session, read_plan, read_planning, subject};
+use centrical_session::{Session, SettingsForm, read_plan, read_planning, subject};
 
 use crate::sample::{EXPERIMENT, Sample};
+use crate::schemas::refuses_what_the_parser_refuses;
 
 const PRESET: &str = include_str!("../../../../examples/plans/normalised.toml");
 const OWN: &str = include_str!("../../../../examples/plans/four-positions.toml");
@@ -20,6 +21,7 @@ fn message(plan: &str, from: &str, to: &str) -> String {
 fn compare(plan: &str, cases: &[(&str, &str, &str)]) {
     for (from, to, expected) in cases {
         assert_eq!(message(plan, from, to), format!("plan.toml, {expected}"));
+        refuses_what_the_parser_refuses(SettingsForm::Plan, &plan.replacen(from, to, 1), expected);
     }
 }
 

@@ -1,8 +1,9 @@
 //! What is wrong with an experiment file.
 
-use centrical_session::Session;
+use centrical_session::{Session, SettingsForm};
 
 use crate::sample::{EXPERIMENT, Sample};
+use crate::schemas::refuses_what_the_parser_refuses;
 
 /// The message for an experiment file.
 fn message(experiment: impl AsRef<[u8]>) -> String {
@@ -21,6 +22,7 @@ fn spoiled(from: &str, to: &str) -> String {
 fn compare(cases: &[(&str, &str, &str)]) {
     for (from, to, expected) in cases {
         assert_eq!(message(spoiled(from, to)), format!("experiment.toml, {expected}"));
+        refuses_what_the_parser_refuses(SettingsForm::Experiment, &spoiled(from, to), expected);
     }
 }
 

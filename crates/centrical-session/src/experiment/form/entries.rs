@@ -3,6 +3,7 @@
 use std::fmt;
 
 use centrical_table::ColumnName;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 
@@ -19,10 +20,12 @@ pub(crate) enum TermEntry {
     Written(TermTable),
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TermTable {
+    /// The newtonometer whose reading has the term: 1, 2 or 3.
     pub axis: usize,
+    /// The term, such as "f1*f2" or "f2*|f2|".
     pub term: String,
 }
 
@@ -33,11 +36,14 @@ pub(crate) enum Steps {
     Range(StepsTable),
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StepsTable {
+    /// The first value.
     pub from: Quantity,
+    /// The last value.
     pub to: Quantity,
+    /// Number of values.
     pub count: usize,
 }
 
@@ -45,10 +51,12 @@ pub(crate) struct StepsTable {
 #[derive(Debug)]
 pub(crate) struct ColumnEntry(pub ColumnTable);
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ColumnTable {
+    /// Its name, or its number from 1.
     pub column: Option<ColumnLabel>,
+    /// Unit of its numbers.
     pub unit: Option<String>,
     /// Samples per second, where the column counts samples.
     pub rate: Option<Quantity>,
@@ -65,10 +73,12 @@ pub(crate) struct PriorValue {
     pub standard_uncertainty: Quantity,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct PriorTable {
+pub(crate) struct PriorTable {
+    /// The measured mean.
     mean: Quantity,
+    /// Its standard uncertainty.
     standard_uncertainty: Quantity,
 }
 

@@ -2,39 +2,53 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::entries::{ColumnEntry, PriorValue, Steps, TermList, date_as_text, name_or_number};
+use super::entry_schemas;
 use crate::quantity::Quantity;
 
 /// The whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Form {
     /// Path of a table of plateaus already averaged.
     pub plateaus: Option<String>,
     /// What is planned, where nothing is measured yet.
     pub plan: Option<PlanTable>,
-    /// What a plan is chosen from, what it costs, what it is for, and what it must be good for.
+    /// What a plan is chosen from.
     pub candidates: Option<CandidatesTable>,
+    /// What a plan costs.
     #[serde(default)]
     pub cost: CostTable,
+    /// What a plan is for.
     #[serde(default)]
     pub target: TargetTable,
+    /// What a plan must be good for.
     #[serde(default)]
     pub robust: RobustTable,
+    /// Texts for the report.
     #[serde(default)]
     pub session: SessionTable,
+    /// The place.
     pub site: SiteTable,
+    /// The unit under calibration.
     pub unit: UnitTable,
+    /// The machine.
     pub centrifuge: CentrifugeTable,
+    /// The error model of the unit.
     pub model: ModelTable,
+    /// Standard uncertainties of quantities that the model takes as exact (type B), by name.
     #[serde(default)]
     pub uncertainty: BTreeMap<String, Quantity>,
+    /// Columns of the records and of the telemetry.
     #[serde(default)]
     pub columns: ColumnsTable,
+    /// Attitudes of the unit on the arm.
     #[serde(default)]
     pub position: Vec<PositionTable>,
+    /// Installations of the unit, in the order of the session.
     #[serde(default)]
     pub mounting: Vec<MountingTable>,
     /// Standard uncertainties of parameters and groups, by name.
@@ -43,18 +57,21 @@ pub(crate) struct Form {
 }
 
 /// The noise that a plan reckons with.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct PlanTable {
+    /// Noise density of the readings, such as "20 ug/sqrt(Hz)".
     pub noise: Option<Quantity>,
+    /// Noise of a plateau mean that does not fall with time.
     pub floor: Option<Quantity>,
+    /// Duration of a plateau.
     pub duration: Option<Quantity>,
     /// The result.json of an earlier calibration of the unit.
     pub nominal: Option<std::path::PathBuf>,
 }
 
 /// What a plan is chosen from.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CandidatesTable {
     /// Radii of the seats, R0_1.
@@ -62,116 +79,172 @@ pub(crate) struct CandidatesTable {
     /// Ids of positions; all if there is none.
     #[serde(default)]
     pub positions: Vec<String>,
+    /// Speeds of plateaus: a list, or equal steps.
     pub speeds: Option<Steps>,
     /// Loads at the largest radius, in place of speeds or beside them.
     pub loads: Option<Steps>,
+    /// Angles of plateaus at rest.
     #[serde(default)]
     pub rest_angles: Vec<Quantity>,
+    /// Durations of a plateau.
     pub durations: Vec<Quantity>,
+    /// Visits of one plateau at most; 1 if absent.
     pub repeats: Option<usize>,
+    /// The fastest speed that the machine bears.
     pub max_speed: Option<Quantity>,
+    /// The largest load that the unit bears.
     pub max_load: Option<Quantity>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct CostTable {
+    /// Time of a change of position with the first seating in it.
     pub position: Option<Quantity>,
+    /// Time of a change to another radius in the same position.
     pub seat: Option<Quantity>,
+    /// Time to a speed, with its settling, for each visit.
     pub ramp: Option<Quantity>,
+    /// Time to an angle at rest, for each visit.
     pub turn: Option<Quantity>,
+    /// Time from rest to the fastest speed and back, for each mounting.
     pub run_up: Option<Quantity>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct TargetTable {
+    /// `I` (mean variance of the compensated reading), `A`, `D`, or `worst`; `I` if absent.
     pub criterion: Option<String>,
+    /// Largest magnitude of specific force for the compensated reading; 200 g if absent.
     pub range: Option<Quantity>,
+    /// Time available; without it the shortest plan that reaches the goals is sought.
     pub time: Option<Quantity>,
     /// Wanted standard uncertainties by parameter, group or "reading".
     pub uncertainty: BTreeMap<String, Quantity>,
 }
 
 /// States of affairs besides the expected one.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct RobustTable {
     /// "mean" or "worst".
     pub against: Option<String>,
+    /// Noise densities of further scenarios.
     pub noise: Vec<Quantity>,
+    /// Noise floors of further scenarios.
     pub floor: Vec<Quantity>,
+    /// Extensions that are unknowns in one further scenario.
     pub extensions: Vec<String>,
 }
 
 /// A plan of a preset experiment: the whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PresetForm {
+    /// Texts for the report.
     #[serde(default)]
     pub session: SessionTable,
+    /// The preset experiment.
     pub plan: PresetTable,
+    /// The machine.
     #[serde(default)]
     pub centrifuge: PresetCentrifugeTable,
+    /// The error model of the unit.
     pub model: ModelTable,
+    /// Standard uncertainties of parameters and groups, by name.
     #[serde(default)]
     pub prior: BTreeMap<String, PriorValue>,
 }
 
+/// A plan: the form of a session, or that of a preset experiment.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[expect(dead_code, reason = "it describes the files; each is read by the form that it names")]
+pub(crate) enum PlanForm {
+    OfSession(Box<Form>),
+    OfPreset(Box<PresetForm>),
+}
+
 /// A preset experiment. Lengths in units of R* but `arm`, which is R*.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PresetTable {
+    /// Name of the experiment: `kozlov-2017`.
     pub preset: String,
+    /// Attitude of the first sensitive axis: `up` or `down`.
     pub axis_1: Option<String>,
+    /// Radii of the seats over R*.
     pub radii: Option<Vec<f64>>,
+    /// Loads over that of the fastest speed.
     pub levels: Option<Vec<f64>>,
+    /// Angles of plateaus at rest.
     pub rest_angles: Option<Vec<Quantity>>,
+    /// Places of the proof masses over R*.
     pub proof_masses: Option<[[f64; 3]; 3]>,
+    /// R*, the length of the arm.
     pub arm: Option<Quantity>,
+    /// Acceleration of gravity.
     pub gravity: Option<Quantity>,
+    /// Noise density of the readings.
     pub noise: Option<Quantity>,
+    /// Noise that does not fall with time.
     pub floor: Option<Quantity>,
+    /// Duration of a plateau.
     pub duration: Option<Quantity>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PresetCentrifugeTable {
+    /// Relative standard uncertainty with which the speed of a plateau is set.
     pub speed_uncertainty: Option<Quantity>,
+    /// How the speeds of plateaus are measured.
     pub measured: Option<MeasuredTable>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct SessionTable {
+    /// Title of the report.
     pub title: String,
+    /// Date of the session.
     #[serde(deserialize_with = "date_as_text")]
+    #[schemars(schema_with = "entry_schemas::date_or_text")]
     pub date: String,
+    /// Free text for the report.
     pub text: String,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SiteTable {
+    /// Acceleration of gravity at the place, such as "9.81523 m/s^2".
     pub gravity: Quantity,
+    /// Geographic latitude; with it the Earth-rate term is applied.
     pub latitude: Option<Quantity>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct UnitTable {
+    /// Model of the unit.
     #[serde(default)]
     pub model: String,
+    /// Serial number.
     #[serde(default)]
     pub serial: String,
+    /// Unit of the readings: "m/s^2", "g" (9.80665 m/s^2) or "counts".
     pub output_unit: String,
+    /// Nominal scale and bias, where the readings are counts.
     pub counts: Option<CountsTable>,
+    /// Places of the three proof masses in instrument axes.
     pub proof_masses: [[Quantity; 3]; 3],
+    /// What the places are relative to: "first-proof-mass" (default; the first is zero) or "own-axes".
     pub reference: Option<String>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CountsTable {
     /// Counts per m/s^2.
@@ -180,73 +253,106 @@ pub(crate) struct CountsTable {
     pub bias: [f64; 3],
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CentrifugeTable {
+    /// Relative standard uncertainty with which the speed of a plateau is set, such as "10 ppm".
     pub speed_uncertainty: Quantity,
+    /// Sense of positive speeds about the third arm axis: "+3" (right-handed) or "-3".
     pub rotation: String,
+    /// Relative standard uncertainty of the scale of the telemetry, for its comparison with the schedule.
     pub tachometer_uncertainty: Option<Quantity>,
+    /// How the speeds of plateaus are measured, where the fit is to use measured speeds.
     pub measured: Option<MeasuredTable>,
 }
 
 /// How the speeds of plateaus are measured.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MeasuredTable {
+    /// "telemetry", "pulses", or "plateaus".
     pub from: String,
+    /// Relative standard uncertainty of each plateau's speed, independent from plateau to plateau.
     pub uncertainty: Quantity,
+    /// Relative standard uncertainty of the scale common to all speeds.
     pub scale: Option<Quantity>,
+    /// Pulses in a revolution; 1 if absent.
     pub pulses_per_revolution: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModelTable {
+    /// Name of an error model, or a list of terms.
     pub error_model: TermList,
+    /// Errors of place in the two positions of a pair: "common" (of the seat), "opposite" (of the unit) or "free".
     pub pair_relation: String,
+    /// Effects beyond the model that are unknowns.
     #[serde(default)]
     pub extensions: Vec<String>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ColumnsTable {
+    /// Time of the records.
     pub time: Option<ColumnEntry>,
+    /// The three readings.
     pub f: Option<[ColumnEntry; 3]>,
+    /// Time of the telemetry; that of the records if absent.
     pub telemetry_time: Option<ColumnEntry>,
+    /// Times of pulses.
     pub pulse: Option<ColumnEntry>,
+    /// Speed of the telemetry.
     pub speed: Option<ColumnEntry>,
+    /// Unit of the speed.
     pub speed_unit: Option<String>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PositionTable {
+    /// Name of the position.
     #[serde(deserialize_with = "name_or_number")]
+    #[schemars(schema_with = "entry_schemas::name_or_number")]
     pub id: String,
+    /// Arm axes along which the instrument axes 1, 2, 3 point, such as "+2 -3 +1".
     pub axes: Option<String>,
+    /// Direction cosines in place of `axes`: rows are instrument axes in arm axes.
     pub matrix: Option<[[f64; 3]; 3]>,
+    /// Positions with the same name here share the errors of place.
     pub pair: Option<String>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MountingTable {
+    /// Name of the position.
     #[serde(deserialize_with = "name_or_number")]
+    #[schemars(schema_with = "entry_schemas::name_or_number")]
     pub position: String,
+    /// Nominal place of the reference point in arm axes.
     pub arm: [Quantity; 3],
+    /// File of the readings.
     pub record: Option<String>,
+    /// File of the speed against time.
     pub telemetry: Option<String>,
+    /// File of the times of pulses.
     pub pulses: Option<String>,
+    /// The schedule in order.
     #[serde(default)]
     pub plateaus: Vec<PlateauEntry>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PlateauEntry {
+    /// Speed, negative against `rotation`; 0 at rest.
     pub speed: Quantity,
+    /// Relative standard uncertainty of a speed that was measured.
     pub speed_uncertainty: Option<Quantity>,
+    /// Angle of the arm, at rest.
     pub angle: Option<Quantity>,
+    /// Duration, in a plan.
     pub duration: Option<Quantity>,
 }

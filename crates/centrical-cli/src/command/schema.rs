@@ -1,0 +1,50 @@
+//! `centrical schema FORM`: the JSON Schema of a file that people write.
+
+use std::path::PathBuf;
+
+use centrical_session::{Error, SettingsForm, settings_schema, write_whole};
+use clap::ValueEnum;
+
+use crate::outcome::Outcome;
+use crate::output::print;
+
+/// Print the JSON Schema of a settings file, for completion and checks in an editor.
+///
+/// With `#:schema experiment.schema.json` as its first line, editors of TOML (Taplo, Even Better TOML) complete and check the file.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical schema experiment --out experiment.schema.json")]
+pub struct Arguments {
+    /// The file that the schema describes
+    form: FormName,
+    /// Write the schema to a file
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// Files that people write.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FormName {
+    /// experiment.toml of a session
+    Experiment,
+    /// A plan, or a preset experiment
+    Plan,
+    /// The truth file of `simulate`
+    Truth,
+    /// laboratory.toml
+    Laboratory,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let schema = settings_schema(match arguments.form {
+        FormName::Experiment => SettingsForm::Experiment,
+        FormName::Plan => SettingsForm::Plan,
+        FormName::Truth => SettingsForm::Truth,
+        FormName::Laboratory => SettingsForm::Laboratory,
+    })?;
+    match &arguments.out {
+        Some(file) => write_whole(file, schema.as_bytes())?,
+        None => print(&schema)?,
+    }
+    Ok(Outcome::Done)
+}
