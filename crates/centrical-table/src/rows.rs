@@ -1,6 +1,6 @@
 //! Rows of a table, and what holds from one to the next.
 
-use crate::column::{ColumnName, Field};
+use crate::column::{ColumnName, Field, UnitsFound};
 
 /// Rows read together from a binary table: long enough that their overhead vanishes, short enough for the cache.
 pub(crate) const ROWS: usize = 16 * 1024;
@@ -55,6 +55,14 @@ impl RowNumber {
             fields.remove(place);
         }
         Self(place)
+    }
+
+    /// Units of all fields, of which those of the fields in the file are known.
+    pub fn in_all(self, mut found: UnitsFound) -> Option<UnitsFound> {
+        if let Some(place) = self.0 {
+            found.units.insert(place.min(found.units.len()), None);
+        }
+        Some(found)
     }
 
     /// Puts the numbers of the rows from `first` on into their place.
