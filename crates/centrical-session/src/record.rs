@@ -7,6 +7,7 @@ mod passes;
 mod reader;
 mod sample_cache;
 mod times;
+mod units_found;
 
 pub use self::columns::{Column, Columns, Scale};
 pub use self::input::Input;
@@ -15,3 +16,4 @@ pub(crate) use self::passes::RecordFile;
 pub use self::reader::{RecordReader, read_growing_record, read_pulses, read_record, read_telemetry, stretch};
 pub(crate) use self::reader::{read_growing_pulses, read_growing_telemetry};
 pub(crate) use self::sample_cache::{MemoryBudget, SampleCache};
+pub(crate) use self::units_found::check_units;

@@ -54,7 +54,7 @@ pub use document::{open_regular, read_document};
 pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, harmless, harmless_line};
 pub use reader::{Extent, TableReader, estimate_rows, text_form};
-pub use rows::Rows;
+pub use rows::{Rows, StampTexts};
 pub use stamp::StampKind;
 pub use text::{DecimalSign, Index, Reread, Stamps, TextEncoding, TextForm};
 pub use write::{

@@ -13,7 +13,7 @@ use crate::binary::{BinaryFormat, ColumnReader};
 use crate::column::{Field, TableLines, UnitsFound};
 use crate::document::open_regular;
 use crate::error::{Error, Place};
-use crate::rows::{RowNumber, Rows};
+use crate::rows::{RowNumber, Rows, StampTexts};
 use crate::text::{FromUtf16, Index, Lines, Packed, Plain, SIGHT, TextEncoding, TextForm, TextReader};
 use crate::unpacking::Unpacked;
 
@@ -133,6 +133,26 @@ impl TableReader {
             return Err(self.refuse(found));
         }
         Ok(Some(self.source.rows(sets)))
+    }
+
+    /// The rows that were read last, once more.
+    pub fn batch(&mut self) -> &mut [Rows] {
+        self.source.rows(self.batch)
+    }
+
+    /// Keeps stamps in the first field of a text as they are written, for [`TableReader::take_stamps`].
+    pub fn keep_stamps(&mut self) {
+        if let Source::Text(text) = &mut self.source {
+            text.keep_stamps();
+        }
+    }
+
+    /// The stamps of the rows that were read last, for each set of them; of other formats than text there are none.
+    pub fn take_stamps(&mut self) -> Vec<StampTexts> {
+        match &mut self.source {
+            Source::Text(text) => text.take_stamps(self.batch),
+            Source::Binary(_) => vec![StampTexts::default(); self.batch],
+        }
     }
 
     fn refuse(&self, found: String) -> Error {

@@ -34,7 +34,7 @@ use self::piece::Piece;
 use self::prologue::Prologue;
 use crate::column::{Field, TableLines, UnitsFound};
 use crate::error::{Error, Place};
-use crate::rows::{ASCENDING, Backwards, Before, RowNumber, Rows};
+use crate::rows::{ASCENDING, Backwards, Before, RowNumber, Rows, StampTexts};
 
 /// Pieces read at a time.
 const PIECES: usize = 8;
@@ -148,6 +148,16 @@ impl TextReader {
     /// The rows that were read last.
     pub fn rows(&mut self, count: usize) -> &mut [Rows] {
         &mut self.workplace.rows[..count]
+    }
+
+    /// Keeps stamps in the first field as they are written.
+    pub fn keep_stamps(&mut self) {
+        self.workplace.pieces.iter_mut().for_each(|piece| piece.keeps_stamps = true);
+    }
+
+    /// The stamps of the rows that were read last.
+    pub fn take_stamps(&mut self, count: usize) -> Vec<StampTexts> {
+        self.workplace.pieces[..count].iter_mut().map(|piece| std::mem::take(&mut piece.stamps)).collect()
     }
 
     /// After the end: where the rows are, of a text that is not packed.

@@ -1,6 +1,6 @@
 //! The columns of records and telemetry, and what takes their numbers to SI.
 
-use centrical_table::{ColumnName, Field, Rule};
+use centrical_table::{ColumnName, Field, Rule, TableLines};
 
 /// The columns of records and telemetry.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +15,10 @@ pub struct Columns {
     pub f: [Column; 3],
     /// Speed, in the telemetry.
     pub speed: Column,
+    /// Where the table begins in the text of a record, if that is not to be recognised.
+    pub record_lines: TableLines,
+    /// The same in the telemetry.
+    pub telemetry_lines: TableLines,
 }
 
 /// One column: how it is found and what takes it to SI.
@@ -66,6 +70,8 @@ impl Default for Columns {
             pulse: Column::si("t", "s"),
             f: ["f1", "f2", "f3"].map(|name| Column::si(name, "m/s^2")),
             speed: Column::si("omega", "rad/s"),
+            record_lines: TableLines::default(),
+            telemetry_lines: TableLines::default(),
         }
     }
 }

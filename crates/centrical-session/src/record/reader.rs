@@ -1,11 +1,12 @@
 //! Records and telemetry from their files, batch by batch, in SI.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
-use centrical_table::{Extent, Field, Index, Reread, Rows, Rule, TableReader};
+use centrical_table::{Extent, Field, Index, Reread, Rows, Rule, StampTexts, TableLines, TableReader};
 
 use super::columns::{Column, Columns, Scale};
+use super::units_found::check_units;
 use crate::error::Error;
 
 /// Reads the whole record of `file`.
@@ -22,7 +23,8 @@ pub fn read_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
 /// # Errors
 /// As [`RecordReader::next_batch`].
 pub fn read_growing_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
-    RecordReader::with(file, Extent::Growing, &columns.of_record(), "a record")?.into_record()
+    let lines = columns.record_lines;
+    RecordReader::with(file, Extent::Growing, &columns.of_record(), lines, "a record")?.into_record()
 }
 
 /// Reads the telemetry of `file`.
@@ -42,7 +44,8 @@ pub(crate) fn read_growing_telemetry(file: &Path, columns: &Columns) -> Result<S
 }
 
 fn telemetry_of(file: &Path, columns: &Columns, extent: Extent) -> Result<SpeedTrace, Error> {
-    let mut reader = RecordReader::with(file, extent, &[&columns.telemetry_time, &columns.speed], "telemetry")?;
+    let of_telemetry = [&columns.telemetry_time, &columns.speed];
+    let mut reader = RecordReader::with(file, extent, &of_telemetry, columns.telemetry_lines, "telemetry")?;
     let mut telemetry = SpeedTrace::default();
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
@@ -70,7 +73,7 @@ pub(crate) fn read_growing_pulses(file: &Path, columns: &Columns) -> Result<Vec<
 }
 
 fn pulses_of(file: &Path, columns: &Columns, extent: Extent) -> Result<Vec<f64>, Error> {
-    let mut reader = RecordReader::with(file, extent, &[&columns.pulse], "times of pulses")?;
+    let mut reader = RecordReader::with(file, extent, &[&columns.pulse], TableLines::default(), "times of pulses")?;
     let mut times = Vec::new();
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
@@ -82,8 +85,11 @@ fn pulses_of(file: &Path, columns: &Columns, extent: Extent) -> Result<Vec<f64>,
 
 /// A record that is read in memory that does not grow with it.
 pub struct RecordReader {
+    file: PathBuf,
     table: TableReader,
     scales: Scales,
+    /// Names and units of the columns, until those that the file names are held against them.
+    units: Option<Vec<(String, String)>>,
     /// Bytes that [`RecordReader::newly_read`] has returned.
     reported: u64,
 }
@@ -94,12 +100,19 @@ impl RecordReader {
     /// # Errors
     /// If it cannot be read.
     pub fn open(file: &Path, columns: &Columns) -> Result<Self, Error> {
-        Self::with(file, Extent::Whole, &columns.of_record(), "a record")
+        Self::with(file, Extent::Whole, &columns.of_record(), columns.record_lines, "a record")
     }
 
-    fn with(file: &Path, extent: Extent, columns: &[&Column], expected: &str) -> Result<Self, Error> {
-        let table = TableReader::open(file, extent, &fields(columns), expected)?;
-        Ok(Self { table, scales: Scales::of(columns), reported: 0 })
+    fn with(
+        file: &Path,
+        extent: Extent,
+        columns: &[&Column],
+        lines: TableLines,
+        expected: &str,
+    ) -> Result<Self, Error> {
+        let table = TableReader::open_at(file, extent, &fields(columns), expected, lines)?;
+        let units = columns.iter().map(|column| (column.name.to_string(), column.unit.clone())).collect();
+        Ok(Self { file: file.to_owned(), table, scales: Scales::of(columns), units: Some(units), reported: 0 })
     }
 
     /// The next rows: columns of time [s] and of readings [m/s^2] ([`stretch`]), several sets of them, to be worked on where they
@@ -109,10 +122,31 @@ impl RecordReader {
     ///
     /// # Errors
     /// If the file cannot be read, has no rows, lacks a column, or a value is not finite; if time runs
-    /// backwards.
+    /// backwards; if the file names other units than those of the columns.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
-        let batch = self.table.next_batch()?;
-        Ok(batch.map(|batch| self.scales.apply_to(batch)))
+        if self.table.next_batch()?.is_none() {
+            return Ok(None);
+        }
+        if let Some(units) = self.units.take() {
+            let units = units.iter().map(|(name, unit)| (name.clone(), unit.as_str()));
+            check_units(&self.file, self.table.units().as_ref(), units)?;
+        }
+        Ok(Some(self.scales.apply_to(self.table.batch())))
+    }
+
+    /// The rows that were read last, once more.
+    pub(crate) fn batch(&mut self) -> &mut [Rows] {
+        self.table.batch()
+    }
+
+    /// Keeps stamps as they are written, for [`RecordReader::take_stamps`].
+    pub(crate) fn keep_stamps(&mut self) {
+        self.table.keep_stamps();
+    }
+
+    /// Stamps of the rows that were read last, as they are written; one entry for each set.
+    pub(crate) fn take_stamps(&mut self) -> Vec<StampTexts> {
+        self.table.take_stamps()
     }
 
     /// Bytes of the file that were read since this was last asked.

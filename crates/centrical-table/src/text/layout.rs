@@ -161,6 +161,12 @@ impl Layout {
         }
     }
 
+    /// The first field of a line, if it is a stamp.
+    pub fn stamp<'a>(&self, line: &'a [u8]) -> Option<Cow<'a, [u8]>> {
+        let text = self.wanted_texts(line)?.into_iter().next()?;
+        number(&text).is_none().then_some(text)
+    }
+
     /// The row of any line: quotes, blanks, decimal commas, empty fields.
     #[cold]
     fn any_row(&self, line: &[u8], row: &mut [f64], fields: &[Field]) -> Result<(), Fault> {

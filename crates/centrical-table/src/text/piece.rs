@@ -9,7 +9,7 @@ use super::lines::{self, Text};
 use super::prologue::{Line, MOST_ABOVE, Prologue, Start};
 use super::separators::Separators;
 use crate::column::Field;
-use crate::rows::{ASCENDING, Rows, runs_backwards};
+use crate::rows::{ASCENDING, Rows, StampTexts, runs_backwards};
 
 /// A piece on its way from the file to the rows.
 #[derive(Default)]
@@ -21,6 +21,9 @@ pub(super) struct Piece {
     pub first_row: u64,
     /// What stands wrong, and in which line of the piece.
     pub fault: Option<(u64, Fault)>,
+    /// Stamps as they are written, if they are kept.
+    pub stamps: StampTexts,
+    pub keeps_stamps: bool,
     separators: Separators,
     batch: Batch,
 }
@@ -35,6 +38,7 @@ impl Piece {
             text = split_line(text).1;
         }
         (self.lines, self.first_row, self.fault) = (skipped, skipped, None);
+        self.stamps = StampTexts::default();
         if let Some(delimiter) = layout.delimiter() {
             self.separators.find(text, delimiter);
         }
@@ -125,6 +129,11 @@ impl Piece {
                 text = &text[length..];
             } else if is_data(line) {
                 layout.row(line, &mut row, fields).map_err(|fault| (self.lines, fault))?;
+                if self.keeps_stamps
+                    && let Some(stamp) = layout.stamp(line)
+                {
+                    self.stamps.push(rows[0].len(), &stamp);
+                }
                 text = rest;
             } else {
                 self.first_row += u64::from(rows[0].is_empty());

@@ -1,7 +1,7 @@
 //! Units as headers and rows of units write them, in one spelling each.
 
 /// A unit in the spelling of settings, and how files spell it, in lower case.
-const WORDS: [(&str, &[&str]); 24] = [
+const WORDS: [(&str, &[&str]); 27] = [
     ("s", &["s", "sec", "secs", "second", "seconds", "с", "сек", "секунды"]),
     ("ms", &["ms", "msec", "мс", "мсек"]),
     ("us", &["us", "µs", "usec", "мкс"]),
@@ -24,8 +24,11 @@ const WORDS: [(&str, &[&str]); 24] = [
     ("rpm", &["rpm", "rev/min", "1/min", "об/мин"]),
     ("rev/s", &["rev/s", "rps", "об/с"]),
     ("Hz", &["hz", "гц"]),
-    ("degC", &["degc", "°c", "deg c", "c", "°с", "k"]),
-    ("samples", &["samples", "sample", "n", "#"]),
+    ("degC", &["degc", "°c", "deg c", "°с"]),
+    ("samples", &["samples", "sample", "отсчет", "отсчёт"]),
+    ("rad", &["rad", "рад"]),
+    ("deg", &["deg", "°", "град"]),
+    ("m^2/s^4", &["m^2/s^4", "m2/s4", "m²/s⁴", "м^2/с^4", "м²/с⁴"]),
 ];
 
 /// The unit that a text of a file names, with or without brackets, in the spelling of settings.

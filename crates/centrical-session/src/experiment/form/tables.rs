@@ -217,6 +217,11 @@ pub(crate) struct ColumnsTable {
     pub pulse: Option<ColumnEntry>,
     pub speed: Option<ColumnEntry>,
     pub speed_unit: Option<String>,
+    /// Lines of the records, from 1, where they are not recognised; and of the telemetry.
+    pub header_line: Option<u64>,
+    pub first_row: Option<u64>,
+    pub telemetry_header_line: Option<u64>,
+    pub telemetry_first_row: Option<u64>,
 }
 
 #[derive(Debug, Deserialize)]
