@@ -3,8 +3,10 @@
 mod entries;
 mod tables;
 
-pub(crate) use self::entries::{ColumnEntry, ColumnTable, PriorValue, Steps, TermEntry, TermList, TermTable};
+pub(crate) use self::entries::{
+    ColumnEntry, ColumnTable, PriorValue, RecordEntry, Steps, TermEntry, TermList, TermTable,
+};
 pub(crate) use self::tables::{
-    CandidatesTable, CentrifugeTable, ColumnsTable, CountsTable, Form, MeasuredTable, ModelTable, MountingTable,
-    PlanTable, PlateauEntry, PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, SiteTable, UnitTable,
+    CandidatesTable, CentrifugeTable, ColumnsTable, Form, MeasuredTable, ModelTable, MountingTable, PlanTable,
+    PlateauEntry, PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, RawTable, SiteTable, UnitTable,
 };

@@ -85,6 +85,11 @@ pub fn compensate(request: &CompensationRequest) -> Result<(Compensated, Certifi
     let columns = match &request.session {
         Some(session) => {
             let session = Session::read(session)?;
+            if session.mountings.iter().any(|files| files.further_records.is_some()) {
+                let expected = "a session whose records have the readings of all newtonometers in one file, as the record to \
+                                be compensated has them";
+                return Err(Error::content(&session.file, Place::Whole, "one file for each newtonometer", expected));
+            }
             inputs.extend(session.files().into_iter().map(Path::to_owned));
             session.columns
         }

@@ -95,3 +95,13 @@ impl Column {
         Field { name: self.name.clone(), expected: format!("a number in {}", self.unit), rule }
     }
 }
+
+/// Columns as fields of a table, the first of them time.
+pub(super) fn fields(columns: &[&Column]) -> Vec<Field> {
+    let rule = |k: usize, column: &Column| match k {
+        // A stamp is in seconds, whatever the numbers would be in.
+        0 => Rule::Ascending { stamps: column.scale == Scale::factor(1.0) },
+        _ => Rule::Any,
+    };
+    columns.iter().enumerate().map(|(k, column)| column.field(rule(k, column))).collect()
+}

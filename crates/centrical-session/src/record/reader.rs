@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
-use centrical_table::{Extent, Field, Index, Reread, Rows, Rule, StampTexts, TableLines, TableReader};
+use centrical_table::{Extent, Index, Reread, Rows, StampTexts, TableLines, TableReader};
 
-use super::columns::{Column, Columns, Scale};
+use super::columns::{Column, Columns, Scale, fields};
+use super::joined::Joined;
 use super::units_found::check_units;
 use crate::error::Error;
 
@@ -15,6 +16,22 @@ use crate::error::Error;
 /// As [`RecordReader::next_batch`].
 pub fn read_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
     RecordReader::open(file, columns)?.into_record()
+}
+
+/// Reads the whole record of a mounting in its file, or in the three of its newtonometers.
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub(crate) fn read_records(files: &[&Path], columns: &Columns) -> Result<Record, Error> {
+    RecordReader::open_all(files, Extent::Whole, columns)?.into_record()
+}
+
+/// Reads the part of them that was written so far.
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub(crate) fn read_growing_records(files: &[&Path], columns: &Columns) -> Result<Record, Error> {
+    RecordReader::open_all(files, Extent::Growing, columns)?.into_record()
 }
 
 /// Reads the part written so far of a record that is still growing: an incomplete last line is left for the next
@@ -86,7 +103,7 @@ fn pulses_of(file: &Path, columns: &Columns, extent: Extent) -> Result<Vec<f64>,
 /// A record that is read in memory that does not grow with it.
 pub struct RecordReader {
     file: PathBuf,
-    table: TableReader,
+    table: Source,
     scales: Scales,
     /// Names and units of the columns, until those that the file names are held against them.
     units: Option<Vec<(String, String)>>,
@@ -103,6 +120,25 @@ impl RecordReader {
         Self::with(file, Extent::Whole, &columns.of_record(), columns.record_lines, "a record")
     }
 
+    /// Opens the record in a file, or in three, one for each newtonometer.
+    ///
+    /// # Errors
+    /// If one cannot be read.
+    pub(crate) fn open_all(files: &[&Path], extent: Extent, columns: &Columns) -> Result<Self, Error> {
+        let of_record = columns.of_record();
+        match *files {
+            [x, y, z] => {
+                let joined = Box::new(Joined::open([x, y, z], extent, columns)?);
+                let (file, scales) = (x.to_owned(), Scales::of(&of_record));
+                Ok(Self { file, table: Source::Three(joined), scales, units: None, reported: 0 })
+            }
+            _ => {
+                let file = files.first().copied().unwrap_or(Path::new(""));
+                Self::with(file, extent, &of_record, columns.record_lines, "a record")
+            }
+        }
+    }
+
     fn with(
         file: &Path,
         extent: Extent,
@@ -112,6 +148,7 @@ impl RecordReader {
     ) -> Result<Self, Error> {
         let table = TableReader::open_at(file, extent, &fields(columns), expected, lines)?;
         let units = columns.iter().map(|column| (column.name.to_string(), column.unit.clone())).collect();
+        let table = Source::One(table);
         Ok(Self { file: file.to_owned(), table, scales: Scales::of(columns), units: Some(units), reported: 0 })
     }
 
@@ -124,12 +161,16 @@ impl RecordReader {
     /// If the file cannot be read, has no rows, lacks a column, or a value is not finite; if time runs
     /// backwards; if the file names other units than those of the columns.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
-        if self.table.next_batch()?.is_none() {
+        let is_over = match &mut self.table {
+            Source::One(table) => table.next_batch()?.is_none(),
+            Source::Three(joined) => joined.next_batch()? == 0,
+        };
+        if is_over {
             return Ok(None);
         }
-        if let Some(units) = self.units.take() {
+        if let (Some(units), Source::One(table)) = (self.units.take(), &self.table) {
             let units = units.iter().map(|(name, unit)| (name.clone(), unit.as_str()));
-            check_units(&self.file, self.table.units().as_ref(), units)?;
+            check_units(&self.file, table.units().as_ref(), units)?;
         }
         Ok(Some(self.scales.apply_to(self.table.batch())))
     }
@@ -141,12 +182,17 @@ impl RecordReader {
 
     /// Keeps stamps as they are written, for [`RecordReader::take_stamps`].
     pub(crate) fn keep_stamps(&mut self) {
-        self.table.keep_stamps();
+        if let Source::One(table) = &mut self.table {
+            table.keep_stamps();
+        }
     }
 
     /// Stamps of the rows that were read last, as they are written; one entry for each set.
     pub(crate) fn take_stamps(&mut self) -> Vec<StampTexts> {
-        self.table.take_stamps()
+        match &mut self.table {
+            Source::One(table) => table.take_stamps(),
+            Source::Three(joined) => vec![StampTexts::default(); joined.batch().len()],
+        }
     }
 
     /// Bytes of the file that were read since this was last asked.
@@ -158,7 +204,8 @@ impl RecordReader {
     /// After the end: where the samples are, if any part can be read again.
     pub(super) fn into_index(self) -> Option<RecordIndex> {
         let scales = self.scales;
-        self.table.into_index().map(|index| RecordIndex { index, scales })
+        let Source::One(table) = self.table else { return None };
+        table.into_index().map(|index| RecordIndex { index, scales })
     }
 
     fn into_record(mut self) -> Result<Record, Error> {
@@ -169,6 +216,28 @@ impl RecordReader {
             }
         }
         Ok(record)
+    }
+}
+
+/// The file of a record, or its three.
+enum Source {
+    One(TableReader),
+    Three(Box<Joined>),
+}
+
+impl Source {
+    fn batch(&mut self) -> &mut [Rows] {
+        match self {
+            Self::One(table) => table.batch(),
+            Self::Three(joined) => joined.batch(),
+        }
+    }
+
+    fn bytes(&self) -> u64 {
+        match self {
+            Self::One(table) => table.bytes(),
+            Self::Three(joined) => joined.bytes(),
+        }
     }
 }
 
@@ -232,14 +301,4 @@ impl Scales {
         let slack = 1e-12 * from.abs().max(to.abs());
         [from - slack, to + slack]
     }
-}
-
-/// Columns as fields of a table, the first of them time.
-fn fields(columns: &[&Column]) -> Vec<Field> {
-    let rule = |k: usize, column: &Column| match k {
-        // A stamp is in seconds, whatever the numbers would be in.
-        0 => Rule::Ascending { stamps: column.scale == Scale::factor(1.0) },
-        _ => Rule::Any,
-    };
-    columns.iter().enumerate().map(|(k, column)| column.field(rule(k, column))).collect()
 }

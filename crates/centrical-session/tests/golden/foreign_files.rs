@@ -112,3 +112,64 @@ fn units_of_telemetry_and_plateaus() {
          in [columns])"
     );
 }
+
+#[test]
+fn volts_have_a_scale_and_a_bias() {
+    let with = |lines: &str| EXPERIMENT.replace("output_unit = \"m/s^2\"", lines);
+    let outcome = |lines: &str, record: &str| {
+        let sample = Sample::new(with(lines));
+        sample.file("records/m01.csv", record);
+        match Session::read(&sample.path()).and_then(|session| session.record(0)) {
+            Ok(record) => format!("{:?}", record.f_z.map(|f| f[0])),
+            Err(error) => sample.relative(&error.to_string()),
+        }
+    };
+    let volts = "output_unit = \"V\"\nvolts = { scale = [0.5, 0.25, -0.5], bias = [2.5, 0, 1] }";
+    let cases = [
+        (volts, "t;f1;f2;f3\ns;V;[Volts];В\n0;3;1;0\n", "[1.0, 4.0, 2.0]"),
+        (
+            volts,
+            "t;f1;f2;f3\ns;V;V;mV\n0;3;1;0\n",
+            "records/m01.csv, line 2, f3: found the unit mV, expected V, as the session says (output_unit in [unit], or a unit \
+             in [columns])",
+        ),
+        (
+            "output_unit = \"V\"",
+            "",
+            "experiment.toml, [unit], volts: found no such key, expected volts = { scale = [...], bias = [...] }: volts per \
+             m/s^2 and volts at none",
+        ),
+        (
+            "output_unit = \"g\"\nvolts = { scale = [1, 1, 1], bias = [0, 0, 0] }",
+            "",
+            "experiment.toml, [unit], volts: found volts and output_unit = \"g\", expected no volts, or output_unit = \"V\"",
+        ),
+        (
+            "output_unit = \"V\"\nvolts = { scale = [1, 0, 1], bias = [0, 0, 0] }",
+            "",
+            "experiment.toml, [unit.volts], scale: found 0.0, expected volts per m/s^2, not zero",
+        ),
+    ];
+    for (lines, record, expected) in cases {
+        assert_eq!(outcome(lines, record), expected, "{lines}");
+    }
+}
+
+#[test]
+fn records_in_several_files() {
+    let entry = |entry: &str| {
+        let sample = Sample::new(EXPERIMENT.replace("record = \"records/m01.csv\"", &format!("record = {entry}")));
+        Session::read(&sample.path()).map_or_else(|error| sample.relative(&error.to_string()), |_| "read".to_owned())
+    };
+    assert_eq!(entry("[\"x.csv\", \"y.csv\", \"z.csv\"]"), "read");
+    assert_eq!(
+        entry("[\"x.csv\", \"y.csv\"]"),
+        "experiment.toml, line 37, column 10: found a length of 2, expected the path of a record, or three paths, one for each \
+         newtonometer"
+    );
+    assert_eq!(
+        entry("3"),
+        "experiment.toml, line 37, column 10: found integer `3`, expected the path of a record, or three paths, one for each \
+         newtonometer"
+    );
+}

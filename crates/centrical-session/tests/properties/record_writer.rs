@@ -100,7 +100,8 @@ fn stamps_go_through_letter_by_letter() {
         compensate_record(&compensation, &input, &Columns::default(), &output).unwrap();
         let text = fs::read_to_string(&output).unwrap();
         let quoted = |stamp: &str| if stamp.contains(',') { format!("\"{stamp}\"") } else { stamp.to_owned() };
-        let expected: Vec<String> = stamps.iter().map(|stamp| format!("{},0.5,-0.25,9.75", quoted(stamp))).collect();
+        let expected: Vec<String> =
+            stamps.iter().map(|stamp| format!("{},0.5000000000,-0.2500000000,9.7500000000", quoted(stamp))).collect();
         assert_eq!(text.lines().skip(1).collect::<Vec<_>>(), expected);
         let [before, after] = [&input, &output].map(|file| read_record(file, &Columns::default()).unwrap());
         assert_eq!(before, after);

@@ -10,7 +10,7 @@ use super::encoding::TextEncoding;
 use super::fields::{Delimiter, Fault, number, unquoted};
 use super::layout::Layout;
 use super::shape::{Shape, after_preamble, are_units, is_number};
-use super::unit_words::{name_and_unit, unit};
+use super::unit_words::{name_and_unit, unit_in_any};
 use crate::column::{ColumnName, Field, TableLines, UnitsFound};
 use crate::error::quoted;
 
@@ -232,10 +232,7 @@ impl Layout {
     /// The units of the fields, where a line is a row of units: those that are understood, in the order of the fields.
     fn units(&self, line: &[u8]) -> Option<Vec<Option<&'static str>>> {
         let texts = self.wanted_texts(line)?;
-        are_units(&texts).then(|| {
-            let of = |text: &Cow<[u8]>| unit(&TextEncoding::of_bytes(text).decode(text));
-            texts.iter().map(of).collect()
-        })
+        are_units(&texts).then(|| texts.iter().map(|text| unit_in_any(text)).collect())
     }
 
     /// Takes up how many fields the first row has: names of columns that no row has, and empty fields that have no name, are left

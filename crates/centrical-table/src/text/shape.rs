@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::fields::{Delimiter, number};
-use super::unit_words::unit;
+use super::unit_words::unit_in_any;
 use crate::stamp;
 
 /// Lines at the end of a sample that show what a row is.
@@ -56,12 +56,9 @@ pub(super) fn after_preamble(lines: &[&[u8]]) -> usize {
 
 /// Whether the texts are units, some of them empty.
 pub(super) fn are_units(texts: &[Cow<[u8]>]) -> bool {
-    let is_unit = |text: &str| unit(text).is_some();
-    let is_empty = |text: &str| matches!(text.trim(), "" | "-" | "--" | "[]" | "()" | "[-]" | "(-)");
-    let is_bracketed = |text: &str| text.starts_with(['[', '(']) && text.ends_with([']', ')']);
-    let texts: Vec<String> =
-        texts.iter().map(|text| super::encoding::TextEncoding::of_bytes(text).decode(text).into_owned()).collect();
-    let is_one = |text: &String| is_unit(text) || is_bracketed(text.trim()) && !is_empty(text);
+    let is_empty = |text: &[u8]| matches!(text, b"" | b"-" | b"--" | b"[]" | b"()" | b"[-]" | b"(-)");
+    let is_bracketed = |text: &[u8]| matches!(text, [b'[', .., b']'] | [b'(', .., b')']) && !is_empty(text);
+    let is_one = |text: &Cow<[u8]>| is_bracketed(text) || unit_in_any(text).is_some();
     texts.iter().any(is_one) && texts.iter().all(|text| is_one(text) || is_empty(text))
 }
 

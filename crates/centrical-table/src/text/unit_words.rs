@@ -1,5 +1,7 @@
 //! Units as headers and rows of units write them, in one spelling each.
 
+use super::encoding::TextEncoding;
+
 /// A unit in the spelling of settings, and how files spell it, in lower case.
 const WORDS: [(&str, &[&str]); 27] = [
     ("s", &["s", "sec", "secs", "second", "seconds", "с", "сек", "секунды"]),
@@ -35,6 +37,12 @@ const WORDS: [(&str, &[&str]); 27] = [
 pub(super) fn unit(text: &str) -> Option<&'static str> {
     let text = without_brackets(text.trim()).to_lowercase().replace('μ', "µ");
     WORDS.iter().find(|(_, spellings)| spellings.contains(&text.as_str())).map(|(unit, _)| *unit)
+}
+
+/// The unit that bytes of a file name in any encoding: a row of units is too short to show which it is.
+pub(super) fn unit_in_any(text: &[u8]) -> Option<&'static str> {
+    let encodings = [TextEncoding::Utf8].into_iter().chain(TextEncoding::OF_BYTES);
+    encodings.into_iter().find_map(|encoding| unit(&encoding.decode(text)))
 }
 
 /// A name with the unit behind it, `f1 [g]`, `t (s)` or `f1, g`: the name and the unit.
@@ -74,6 +82,10 @@ mod tests {
         ];
         for (text, expected) in cases {
             assert_eq!(unit(text), expected, "{text}");
+            for encoding in [encoding_rs::WINDOWS_1251, encoding_rs::WINDOWS_1252] {
+                let (bytes, _, is_lossy) = encoding.encode(text);
+                assert!(is_lossy || unit_in_any(&bytes) == expected, "{text}");
+            }
         }
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use super::entries::{ColumnEntry, PriorValue, Steps, TermList, date_as_text, name_or_number};
+use super::entries::{ColumnEntry, PriorValue, RecordEntry, Steps, TermList, date_as_text, name_or_number};
 use crate::quantity::Quantity;
 
 /// The whole file.
@@ -166,17 +166,19 @@ pub(crate) struct UnitTable {
     #[serde(default)]
     pub serial: String,
     pub output_unit: String,
-    pub counts: Option<CountsTable>,
+    pub counts: Option<RawTable>,
+    pub volts: Option<RawTable>,
     pub proof_masses: [[Quantity; 3]; 3],
     pub reference: Option<String>,
 }
 
+/// The coarse scale and bias of a raw output, in counts or volts.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct CountsTable {
-    /// Counts per m/s^2.
+pub(crate) struct RawTable {
+    /// Counts or volts per m/s^2.
     pub scale: [f64; 3],
-    /// Counts at no specific force.
+    /// Counts or volts at no specific force.
     pub bias: [f64; 3],
 }
 
@@ -240,7 +242,7 @@ pub(crate) struct MountingTable {
     #[serde(deserialize_with = "name_or_number")]
     pub position: String,
     pub arm: [Quantity; 3],
-    pub record: Option<String>,
+    pub record: Option<RecordEntry>,
     pub telemetry: Option<String>,
     pub pulses: Option<String>,
     #[serde(default)]

@@ -65,6 +65,15 @@ impl Series {
         Ok(Self { file: file.to_owned(), t, columns: readings.iter().zip(values).map(named).collect() })
     }
 
+    /// The readings of a mounting whose newtonometers have a file each.
+    fn of_files(session: &Session, mounting: usize, window: [f64; 2]) -> Result<Self, Error> {
+        let record = session.record(mounting)?;
+        let inside = record.as_slice().between(window);
+        let named = |(column, values): (&Column, &[f64])| (column.name.to_string(), si_unit(column), values.to_vec());
+        let columns = session.columns.f.iter().zip(inside.f_z).map(named).collect();
+        Ok(Self { file: session.record_file(mounting)?.to_owned(), t: inside.t.to_vec(), columns })
+    }
+
     /// The readings of one plateau of a session, in the window that a calibration would use; without a name those of
     /// the longest plateau at rest. Its name as well.
     ///
@@ -85,6 +94,10 @@ impl Series {
             return Err(none("plateaus already averaged"));
         };
         let columns = &session.columns;
+        if files.further_records.is_some() {
+            let series = Self::of_files(session, set_points[set_point].mounting, window)?;
+            return Ok((series, PlateauName::of(session, set_point)));
+        }
         let series = Self::read(record, columns.record_lines, &columns.time, &columns.f, window)?;
         Ok((series, PlateauName::of(session, set_point)))
     }
