@@ -93,6 +93,7 @@ pub(crate) struct FromUtf16<R> {
     /// Bytes of `raw` that are not decoded yet.
     from: usize,
     at_end: bool,
+    is_finished: bool,
     /// UTF-8 that did not fit.
     rest: Vec<u8>,
 }
@@ -102,7 +103,8 @@ impl<R: Read> FromUtf16<R> {
     pub fn new(input: R, encoding: TextEncoding) -> Self {
         let of = if encoding == TextEncoding::Utf16Be { UTF_16BE } else { UTF_16LE };
         let (raw, rest) = (Vec::new(), Vec::new());
-        Self { input, decoder: of.new_decoder_with_bom_removal(), raw, from: 0, at_end: false, rest }
+        let decoder = of.new_decoder_with_bom_removal();
+        Self { input, decoder, raw, from: 0, at_end: false, is_finished: false, rest }
     }
 
     /// Reads more, if all is decoded.
@@ -128,12 +130,17 @@ impl<R: Read> Read for FromUtf16<R> {
                 self.rest.drain(..count);
                 return Ok(count);
             }
+            if self.is_finished {
+                return Ok(0);
+            }
             self.fill()?;
             let was_at_end = self.at_end;
             let mut few = [0; LONGEST];
             let into = if bytes.len() < LONGEST { &mut few[..] } else { &mut *bytes };
             let (result, read, written, _) = self.decoder.decode_to_utf8(&self.raw[self.from..], into, was_at_end);
             self.from += read;
+            // A decoder is not asked again after its end.
+            self.is_finished = was_at_end && result == CoderResult::InputEmpty;
             if bytes.len() < LONGEST {
                 self.rest.extend_from_slice(&few[..written]);
                 if written > 0 {
@@ -141,11 +148,6 @@ impl<R: Read> Read for FromUtf16<R> {
                 }
             } else if written > 0 {
                 return Ok(written);
-            }
-            if was_at_end && result == CoderResult::InputEmpty {
-                // A decoder is not asked again after its end.
-                self.decoder = UTF_16LE.new_decoder_without_bom_handling();
-                return Ok(0);
             }
         }
     }
