@@ -21,8 +21,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
 
     while !watch.is_complete() {
         for observation in watch.look()? {
-            let test = follower.test(&observation)?;
-            follower.take(observation)?;
+            follower = follower.with(&observation)?;
+            let test = follower.innovation()?;
             let now = follower.progress()?;
             let u = now.estimates[column].map_or("not determined".to_owned(), |(_, u)| format!("{u:.2e} s^2/m"));
             println!("rank {}, G1_11: {u}, probability of the plateau {:.2}", now.rank, test.probability());

@@ -2,11 +2,13 @@
 
 mod columns;
 mod input;
+mod joined;
 mod overview;
 mod passes;
 mod reader;
 mod sample_cache;
 mod times;
+mod units_found;
 
 pub use self::columns::{Column, Columns, Scale};
 pub use self::input::Input;
@@ -14,4 +16,6 @@ pub use self::overview::RecordOverview;
 pub(crate) use self::passes::RecordFile;
 pub use self::reader::{RecordReader, read_growing_record, read_pulses, read_record, read_telemetry, stretch};
 pub(crate) use self::reader::{read_growing_pulses, read_growing_telemetry};
+pub(crate) use self::reader::{read_growing_records, read_records};
 pub(crate) use self::sample_cache::{MemoryBudget, SampleCache};
+pub(crate) use self::units_found::check_units;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use centrical::reduction::RecordSlice;
-use centrical_table::{Decimals, TableFormat, TableWriter};
+use centrical_table::{Decimals, StampTexts, TableFormat, TableWriter};
 
 use crate::error::Error;
 
@@ -61,6 +61,15 @@ impl RecordWriter {
     pub fn write_all(&mut self, stretches: &[RecordSlice]) -> Result<(), Error> {
         let pieces: Vec<_> = stretches.iter().map(|RecordSlice { t, f_z: [f1, f2, f3] }| [*t, f1, f2, f3]).collect();
         Ok(self.table.write(&pieces)?)
+    }
+
+    /// Adds a stretch whose rows begin with stamps as they were read; only text has them, Parquet has their seconds.
+    ///
+    /// # Errors
+    /// As [`RecordWriter::write`].
+    pub fn write_stamped(&mut self, stamps: &StampTexts, stretch: RecordSlice) -> Result<(), Error> {
+        let RecordSlice { t, f_z: [f1, f2, f3] } = stretch;
+        Ok(self.table.write_stamped(stamps, [t, f1, f2, f3])?)
     }
 
     /// Ends the record; only now the file is there.

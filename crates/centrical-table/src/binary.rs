@@ -11,6 +11,7 @@ mod npy;
 mod npy_literal;
 mod parquet;
 mod parquet_pages;
+mod tdms;
 
 use std::fs::File;
 use std::path::Path;
@@ -34,12 +35,16 @@ pub(crate) enum BinaryFormat {
     Hdf5,
     /// MATLAB, version 7.3: HDF5 after a header of its own.
     MatHdf5,
+    /// TDMS of National Instruments.
+    Tdms,
+    /// Its index file, which has no numbers.
+    TdmsIndex,
 }
 
 impl BinaryFormat {
     /// The format of a file that starts like this, if it is one of them.
     pub fn of(magic: &[u8]) -> Option<Self> {
-        const MAGIC: [(&[u8], BinaryFormat); 8] = [
+        const MAGIC: [(&[u8], BinaryFormat); 10] = [
             (b"PAR1", BinaryFormat::Parquet),
             (b"ARROW1", BinaryFormat::Arrow),
             (&arrow::CONTINUATION, BinaryFormat::Arrow),
@@ -48,6 +53,8 @@ impl BinaryFormat {
             (b"MATLAB 5", BinaryFormat::Mat),
             (b"\x89HDF\r\n\x1a\n", BinaryFormat::Hdf5),
             (b"MATLAB 7", BinaryFormat::MatHdf5),
+            (b"TDSm", BinaryFormat::Tdms),
+            (tdms::INDEX_MAGIC, BinaryFormat::TdmsIndex),
         ];
         MAGIC.into_iter().find(|(start, _)| magic.starts_with(start)).map(|(_, format)| format)
     }
@@ -66,6 +73,16 @@ impl BinaryFormat {
             Self::Npy => npy::columns(file, &input, &fields)?,
             Self::Npz => npy::archive_columns(file, input, &fields)?,
             Self::Mat => mat::columns(file, &input, &fields)?,
+            Self::Tdms => tdms::columns(file, input, &fields)?,
+            Self::TdmsIndex => {
+                let expected = "the file of the same name that ends in .tdms";
+                return Err(Error::content(
+                    file,
+                    Place::Whole,
+                    "the index of a TDMS file, without its numbers",
+                    expected,
+                ));
+            }
             #[cfg(feature = "hdf5")]
             Self::Hdf5 | Self::MatHdf5 => hdf5::columns(file, self == Self::MatHdf5, &fields, most)?,
             #[cfg(not(feature = "hdf5"))]

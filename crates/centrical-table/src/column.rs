@@ -48,6 +48,24 @@ impl Rule {
     }
 }
 
+/// Where a table begins in a text, where it is not to be recognised: lines of the file, counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TableLines {
+    /// The line with the names of the columns.
+    pub header: Option<u64>,
+    /// The first row.
+    pub first_row: Option<u64>,
+}
+
+/// Units that a text names beside or below the names of its columns.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnitsFound {
+    /// The line, counted from 1.
+    pub line: u64,
+    /// Of every field the unit, in the spelling of settings (`m/s^2`, `ms`, `V`), if it is understood.
+    pub units: Vec<Option<&'static str>>,
+}
+
 impl fmt::Display for ColumnName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -7,7 +7,7 @@
 //! # Formats
 //! | format | columns |
 //! |---|---|
-//! | text, also in gzip or Zstandard: any delimiter, decimal commas, comments | by name, or by number without a header |
+//! | text, also in gzip or Zstandard: any delimiter, decimal commas, comments, lines above the header, a row of units; UTF-8, UTF-16, Windows-1251 and -1252 | by name, or by number without a header |
 //! | Parquet (uncompressed, snappy, gzip, lz4, zstd) | by name or number |
 //! | Arrow IPC: files (Feather) and streams, plain, lz4 or zstd | by name or number |
 //! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number |
@@ -49,13 +49,14 @@ mod text;
 mod unpacking;
 mod write;
 
-pub use column::{ColumnName, Field, Rule};
+pub use column::{ColumnName, Field, Rule, TableLines, UnitsFound};
 pub use document::{open_regular, read_document};
 pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, harmless, harmless_line};
-pub use reader::{Extent, TableReader, estimate_rows};
-pub use rows::Rows;
-pub use text::{Index, Reread};
+pub use reader::{Extent, TableReader, estimate_rows, text_form};
+pub use rows::{Rows, StampTexts};
+pub use stamp::StampKind;
+pub use text::{DecimalSign, Index, Reread, Stamps, TextEncoding, TextForm};
 pub use write::{
     ClaimedFolder, Decimals, TableFormat, TableWriter, abandon_files, claim_folder, create_folder, parquet_bytes,
     refuse_inputs, write_stream, write_table, write_whole,

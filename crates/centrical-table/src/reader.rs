@@ -7,14 +7,15 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
-use memchr::memchr_iter;
+use memchr::{memchr_iter, memrchr};
 
 use crate::binary::{BinaryFormat, ColumnReader};
-use crate::column::Field;
+use crate::column::{Field, TableLines, UnitsFound};
 use crate::document::open_regular;
 use crate::error::{Error, Place};
-use crate::rows::{RowNumber, Rows};
-use crate::text::{Index, Lines, Packed, Plain, TextReader};
+use crate::rows::{RowNumber, Rows, StampTexts};
+use crate::text::{FromUtf16, Index, Lines, Packed, Plain, SIGHT, TextEncoding, TextForm, TextReader};
+use crate::unpacking::Unpacked;
 
 /// Rows per byte of a packed file: the noise of a sensor takes a bit a row and more, however it is packed.
 const ROWS_PER_BYTE: u64 = 8;
@@ -58,10 +59,25 @@ impl TableReader {
     /// # Errors
     /// If it cannot be read, or a binary table lacks a column.
     pub fn open(file: &Path, extent: Extent, fields: &[Field], expected: &str) -> Result<Self, Error> {
+        Self::open_at(file, extent, fields, expected, TableLines::default())
+    }
+
+    /// The same of a text whose header or first row stands in a line that is known.
+    ///
+    /// # Errors
+    /// As [`TableReader::open`].
+    pub fn open_at(
+        file: &Path,
+        extent: Extent,
+        fields: &[Field],
+        expected: &str,
+        lines: TableLines,
+    ) -> Result<Self, Error> {
+        let said = lines;
         let failed = |e| Error::reading(file, e, expected);
         let mut input = open_regular(file, expected)?;
         let length = input.metadata().map_err(failed)?.len();
-        let magic = first_bytes(&mut input).map_err(failed)?;
+        let magic = first_bytes(&mut input, SIGHT).map_err(failed)?;
         if magic.is_empty() {
             return Err(Error::content(file, Place::Whole, "an empty file", expected));
         }
@@ -70,7 +86,9 @@ impl TableReader {
         let source = match Format::of(&magic) {
             Format::Binary(format) => Source::Binary(format.open(file, input, fields, most_rows(length))?),
             format => {
+                let utf_16 = TextEncoding::utf_16(&magic).filter(|_| format == Format::Text);
                 let lines = match (format, extent) {
+                    _ if utf_16.is_some() => Lines::Packed(utf_16_lines(file, input, utf_16, extent).map_err(failed)?),
                     (Format::Gzip, _) => Lines::Packed(Packed::new(file, MultiGzDecoder::new(input), length)),
                     (Format::Zstd, _) => {
                         Lines::Packed(Packed::new(file, zstd::Decoder::new(input).map_err(failed)?, length))
@@ -80,7 +98,7 @@ impl TableReader {
                         Lines::Plain(Plain::new(file, input).and_then(Plain::complete).map_err(failed)?)
                     }
                 };
-                Source::Text(TextReader::new(file, lines, fields))
+                Source::Text(TextReader::new(file, lines, fields, said))
             }
         };
         let (file, expected) = (file.to_owned(), expected.to_owned());
@@ -117,6 +135,26 @@ impl TableReader {
         Ok(Some(self.source.rows(sets)))
     }
 
+    /// The rows that were read last, once more.
+    pub fn batch(&mut self) -> &mut [Rows] {
+        self.source.rows(self.batch)
+    }
+
+    /// Keeps stamps in the first field of a text as they are written, for [`TableReader::take_stamps`].
+    pub fn keep_stamps(&mut self) {
+        if let Source::Text(text) = &mut self.source {
+            text.keep_stamps();
+        }
+    }
+
+    /// The stamps of the rows that were read last, for each set of them; of other formats than text there are none.
+    pub fn take_stamps(&mut self) -> Vec<StampTexts> {
+        match &mut self.source {
+            Source::Text(text) => text.take_stamps(self.batch),
+            Source::Binary(_) => vec![StampTexts::default(); self.batch],
+        }
+    }
+
     fn refuse(&self, found: String) -> Error {
         Error::content(&self.file, Place::Whole, found, self.expected.as_str())
     }
@@ -124,6 +162,12 @@ impl TableReader {
     /// Bytes of the file that were read so far; of a packed or binary file none before its end.
     pub fn bytes(&self) -> u64 {
         self.bytes
+    }
+
+    /// Units that a text names beside or below the names of its columns, once rows were read.
+    pub fn units(&self) -> Option<UnitsFound> {
+        let Source::Text(text) = &self.source else { return None };
+        self.row_number.in_all(text.units()?.clone())
     }
 
     /// After the end: where the rows are, so that any part can be read again; only of a text that is not packed.
@@ -155,12 +199,14 @@ pub fn estimate_rows(file: &Path) -> Option<u64> {
     const SAMPLE: u64 = 1 << 16;
     let mut input = open_regular(file, "a table of numbers").ok()?;
     let bytes = input.metadata().ok()?.len();
-    let format = Format::of(&first_bytes(&mut input).ok()?);
+    let magic = first_bytes(&mut input, SIGHT).ok()?;
+    let format = Format::of(&magic);
     let mut sample = Vec::new();
     input.seek(SeekFrom::Start(bytes.saturating_sub(SAMPLE) / 2)).ok()?;
     input.take(SAMPLE).read_to_end(&mut sample).ok()?;
     let lines = memchr_iter(b'\n', &sample).count() as u64;
-    (format == Format::Text && lines > 0).then(|| bytes.div_ceil(sample.len() as u64) * lines)
+    (format == Format::Text && TextEncoding::utf_16(&magic).is_none() && lines > 0)
+        .then(|| bytes.div_ceil(sample.len() as u64) * lines)
 }
 
 /// The formats, recognised by their first bytes.
@@ -184,10 +230,71 @@ impl Format {
     }
 }
 
-/// The first bytes, up to 8, leaving the file at its start.
-fn first_bytes(input: &mut File) -> io::Result<Vec<u8>> {
+/// What a table as text looks like, from its first lines: encoding, delimiter, decimal sign, lines above the header, names, units, kind
+/// of stamps. Nothing of other formats, and of text that is no table of numbers.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn text_form(file: &Path) -> Result<Option<TextForm>, Error> {
+    const SAMPLE: u64 = 1 << 16;
+    const EXPECTED: &str = "a table of numbers";
+    let failed = |e| Error::reading(file, e, EXPECTED);
+    let mut input = open_regular(file, EXPECTED)?;
+    let length = input.metadata().map_err(failed)?.len();
+    let text: Box<dyn Read> = match Format::of(&first_bytes(&mut input, SIGHT).map_err(failed)?) {
+        Format::Text => Box::new(input),
+        Format::Gzip => Box::new(Unpacked::new(MultiGzDecoder::new(input), length, None)),
+        Format::Zstd => Box::new(Unpacked::new(zstd::Decoder::new(input).map_err(failed)?, length, None)),
+        Format::Binary(_) => return Ok(None),
+    };
+    let mut sample = Vec::new();
+    text.take(SAMPLE).read_to_end(&mut sample).map_err(|e| Error::unpacking(file, e, EXPECTED))?;
+    let is_cut = sample.len() as u64 == SAMPLE;
+    let encoding = TextEncoding::utf_16(&sample[..sample.len().min(SIGHT)]);
+    if let Some(encoding) = encoding {
+        let mut text = Vec::new();
+        FromUtf16::new(sample.as_slice(), encoding).read_to_end(&mut text).map_err(failed)?;
+        sample = text;
+    }
+    if is_cut {
+        sample.truncate(memrchr(b'\n', &sample).map_or(0, |end| end + 1));
+    }
+    Ok(TextForm::of(sample.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&sample), encoding))
+}
+
+/// A text in UTF-16, from its start to its end or to that of the last complete line.
+fn utf_16_lines(file: &Path, mut input: File, encoding: Option<TextEncoding>, extent: Extent) -> io::Result<Packed> {
+    let length = match (encoding, extent) {
+        (Some(encoding), Extent::Growing) => complete_lines(&mut input, encoding)?,
+        _ => input.metadata()?.len(),
+    };
+    Ok(Packed::new(file, input.take(length), length))
+}
+
+/// Bytes up to the end of the last complete line of a text in UTF-16, leaving the file at its start.
+fn complete_lines(input: &mut File, encoding: TextEncoding) -> io::Result<u64> {
+    const PIECE: u64 = 1 << 16;
+    let newline: [u8; 2] = if encoding == TextEncoding::Utf16Be { [0, b'\n'] } else { [b'\n', 0] };
+    let (mut end, mut bytes) = (input.metadata()?.len() & !1, Vec::new());
+    while end > 0 {
+        let start = end.saturating_sub(PIECE);
+        input.seek(SeekFrom::Start(start))?;
+        bytes.clear();
+        input.take(end - start).read_to_end(&mut bytes)?;
+        if let Some(last) = bytes.as_chunks().0.iter().rposition(|unit| *unit == newline) {
+            end = start + 2 * (last as u64 + 1);
+            break;
+        }
+        end = start;
+    }
+    input.rewind()?;
+    Ok(end)
+}
+
+/// The first bytes, `most` of them, leaving the file at its start.
+fn first_bytes(input: &mut File, most: usize) -> io::Result<Vec<u8>> {
     let mut magic = Vec::new();
-    input.take(8).read_to_end(&mut magic)?;
+    input.take(most as u64).read_to_end(&mut magic)?;
     input.rewind()?;
     Ok(magic)
 }

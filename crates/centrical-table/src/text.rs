@@ -7,23 +7,34 @@
 //! A text is read in pieces of whole lines, several at a time on all threads.
 
 mod batch;
+mod encoding;
+mod fields;
+mod form;
 mod layout;
 mod lines;
 mod number;
 mod piece;
+mod prologue;
 mod separators;
+mod shape;
+mod unit_words;
 
 use std::path::{Path, PathBuf};
 
 use memchr::memchr_iter;
 use rayon::prelude::*;
 
-use self::layout::{Fault, Layout, Prologue};
+pub use self::encoding::TextEncoding;
+pub(crate) use self::encoding::{FromUtf16, SIGHT};
+use self::fields::Fault;
+pub use self::form::{DecimalSign, Stamps, TextForm};
+use self::layout::Layout;
 pub(crate) use self::lines::{Lines, Packed, Plain};
 use self::piece::Piece;
-use crate::column::Field;
+use self::prologue::Prologue;
+use crate::column::{Field, TableLines, UnitsFound};
 use crate::error::{Error, Place};
-use crate::rows::{ASCENDING, Backwards, Before, RowNumber, Rows};
+use crate::rows::{ASCENDING, Backwards, Before, RowNumber, Rows, StampTexts};
 
 /// Pieces read at a time.
 const PIECES: usize = 8;
@@ -34,8 +45,11 @@ pub(crate) struct TextReader {
     fields: Vec<Field>,
     lines: Lines,
     prologue: Prologue,
-    /// What the first line shows, and the pieces read so far.
+    /// What the first lines show, and the pieces read so far.
     table: Option<(Layout, Vec<IndexedPiece>)>,
+    /// Lines before the first row.
+    skipped: Skipped,
+    units: Option<UnitsFound>,
     workplace: Workplace,
     /// Number of the next piece, and of its first line.
     number: u64,
@@ -45,12 +59,14 @@ pub(crate) struct TextReader {
 
 impl TextReader {
     /// The table of `file` with these lines.
-    pub fn new(file: &Path, lines: Lines, fields: Vec<Field>) -> Self {
+    pub fn new(file: &Path, lines: Lines, fields: Vec<Field>, said: TableLines) -> Self {
         Self {
             file: file.to_owned(),
             lines,
-            prologue: Prologue::default(),
+            prologue: Prologue::at(said),
             table: None,
+            skipped: Skipped::default(),
+            units: None,
             workplace: Workplace::new(fields.len()),
             number: 0,
             line: 1,
@@ -62,8 +78,8 @@ impl TextReader {
     /// Reads the next rows: how many sets of them, and the bytes of the file they were in, 0 if it is packed; none at the
     /// end.
     pub fn read(&mut self) -> Result<Option<(usize, u64)>, Error> {
-        let Self { file, fields, lines, prologue, table, workplace: Workplace { pieces, rows }, number, line, before } =
-            self;
+        let Self { file, fields, lines, prologue, table, workplace, number, line, before, .. } = self;
+        let Workplace { pieces, rows } = workplace;
         loop {
             // The first piece alone: its first line shows how the others are to be read.
             let is_first = table.is_none();
@@ -81,16 +97,18 @@ impl TextReader {
             let read = |k: usize, piece: &mut Piece| {
                 plain.map_or(Ok(()), |lines| lines.read(*number + k as u64, &mut piece.text))
             };
-            let mut skipped = 0;
+            let mut skip = 0;
             if is_first {
                 read(0, &mut pieces[0])?;
                 let start = match lines::endless_line(&pieces[0].text) {
                     Some((at, found)) => Err((at, Fault::no_table(found))),
-                    None => prologue.read(&pieces[0].text, fields),
+                    None => prologue.read(&pieces[0].text, *line - 1, fields),
                 };
-                let (layout, skip) = start.map_err(|(at, fault)| located(file, *line + at, fault))?;
-                *table = layout.map(|layout| (layout, Vec::new()));
-                skipped = skip;
+                if let Some(start) = start.map_err(|(at, fault)| located(file, *line + at, fault))? {
+                    *table = Some((start.layout, Vec::new()));
+                    skip = start.skipped;
+                    (self.skipped, self.units) = (Skipped { piece: *number, lines: skip }, start.units);
+                }
             }
             let Some((layout, index)) = table else {
                 // Nothing but comments so far.
@@ -102,7 +120,7 @@ impl TextReader {
                 if !is_first {
                     read(k, piece)?;
                 }
-                piece.read(layout, skipped, fields, rows);
+                piece.read(layout, skip, fields, rows);
                 Ok(())
             };
             let parsed = pieces.par_iter_mut().zip(&mut *rows).enumerate().map(parse);
@@ -132,11 +150,27 @@ impl TextReader {
         &mut self.workplace.rows[..count]
     }
 
+    /// Keeps stamps in the first field as they are written.
+    pub fn keep_stamps(&mut self) {
+        self.workplace.pieces.iter_mut().for_each(|piece| piece.keeps_stamps = true);
+    }
+
+    /// The stamps of the rows that were read last.
+    pub fn take_stamps(&mut self, count: usize) -> Vec<StampTexts> {
+        self.workplace.pieces[..count].iter_mut().map(|piece| std::mem::take(&mut piece.stamps)).collect()
+    }
+
     /// After the end: where the rows are, of a text that is not packed.
     pub fn into_index(self, row_number: RowNumber) -> Option<Index> {
         let (layout, pieces) = self.table?;
         let Lines::Plain(lines) = self.lines else { return None };
-        Some(Index { file: self.file, fields: self.fields, row_number, lines, layout, pieces })
+        let (file, fields, skipped) = (self.file, self.fields, self.skipped);
+        Some(Index { file, fields, row_number, lines, layout, skipped, pieces })
+    }
+
+    /// Units that stand beside or below the names of the columns, once rows were read.
+    pub fn units(&self) -> Option<&UnitsFound> {
+        self.units.as_ref()
     }
 }
 
@@ -171,7 +205,16 @@ pub struct Index {
     row_number: RowNumber,
     lines: Plain,
     layout: Layout,
+    /// Lines before the first row.
+    skipped: Skipped,
     pieces: Vec<IndexedPiece>,
+}
+
+/// Lines before the first row, in the piece in which the table begins.
+#[derive(Debug, Clone, Copy, Default)]
+struct Skipped {
+    piece: u64,
+    lines: u64,
 }
 
 /// A piece that has rows.
@@ -240,7 +283,7 @@ impl Reread<'_> {
     /// # Errors
     /// If the file cannot be read, or has changed.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
-        let Index { file, fields, row_number, lines, layout, .. } = self.index;
+        let Index { file, fields, row_number, lines, layout, skipped, .. } = self.index;
         let Workplace { pieces, rows } = &mut self.workplace;
         row_number.remove(&mut rows[..std::mem::take(&mut self.count)]);
         let mut batch = Vec::with_capacity(PIECES);
@@ -255,9 +298,8 @@ impl Reread<'_> {
         }
         let read = |((piece, rows), wanted): ((&mut Piece, &mut Rows), &&IndexedPiece)| {
             lines.read(wanted.number, &mut piece.text)?;
-            let start = (wanted.first_row == 0).then(|| Prologue::default().read(&piece.text, fields));
-            let skipped = start.and_then(Result::ok).map_or(0, |(_, skipped)| skipped);
-            piece.read(layout, skipped, fields, rows);
+            let skip = if wanted.number == skipped.piece { skipped.lines } else { 0 };
+            piece.read(layout, skip, fields, rows);
             row_number.put(wanted.first_row, rows);
             let found = "another text than a moment ago";
             let changed = |_| Error::content(file, Place::Whole, found, "a file that nobody writes to");

@@ -26,6 +26,7 @@ use self::parquet::{Layout, ParquetTable};
 use self::row_groups::RowGroups;
 pub use self::text_lines::Decimals;
 use crate::error::Error;
+use crate::rows::StampTexts;
 
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -91,6 +92,19 @@ impl<const N: usize> TableWriter<N> {
         let written = match &mut self.table {
             Table::Text(table) => table.write(pieces),
             Table::Parquet(table) => table.write(pieces),
+        };
+        written.map_err(|error| Error::writing(&self.file, error))
+    }
+
+    /// Adds rows that begin with stamps as they were read, where they have one, given as a piece of all columns. Only text has them;
+    /// Parquet has the numbers.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if they cannot be written.
+    pub fn write_stamped(&mut self, stamps: &StampTexts, piece: [&[f64]; N]) -> Result<(), Error> {
+        let written = match &mut self.table {
+            Table::Text(table) => table.write_stamped(stamps, piece),
+            Table::Parquet(table) => table.write(&[piece]),
         };
         written.map_err(|error| Error::writing(&self.file, error))
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical_table::ColumnName;
+use centrical_table::{ColumnName, TableLines};
 
 use super::form::{ColumnEntry, ColumnTable, ColumnsTable, UnitTable};
 use super::toml_path::TomlPath;
@@ -15,6 +15,9 @@ use crate::record::{Column, Columns, Scale};
 pub(crate) fn columns(file: &Path, table: &ColumnsTable, unit: &UnitTable) -> Result<Columns, Error> {
     let at = TomlPath::table(file, "columns");
     let mut columns = Columns::default();
+    columns.record_lines = lines(&at, "header_line", table.header_line, "first_row", table.first_row)?;
+    let (header, first_row) = (table.telemetry_header_line, table.telemetry_first_row);
+    columns.telemetry_lines = lines(&at, "telemetry_header_line", header, "telemetry_first_row", first_row)?;
     for (column, scale) in columns.f.iter_mut().zip(unit::output(file, unit)?) {
         column.scale = scale;
         column.unit.clone_from(&unit.output_unit);
@@ -43,6 +46,27 @@ pub(crate) fn columns(file: &Path, table: &ColumnsTable, unit: &UnitTable) -> Re
         }
     }
     Ok(columns)
+}
+
+/// Where a table begins in its file.
+fn lines(
+    at: &TomlPath,
+    header_key: &str,
+    header: Option<u64>,
+    row_key: &str,
+    first_row: Option<u64>,
+) -> Result<TableLines, Error> {
+    for (key, line) in [(header_key, header), (row_key, first_row)] {
+        if line == Some(0) {
+            return Err(at.unexpected(key, "0", "a line of the file, counted from 1"));
+        }
+    }
+    match (header, first_row) {
+        (Some(header), Some(row)) if row <= header => {
+            Err(at.unexpected(row_key, row.to_string(), format!("a line below {header_key} = {header}")))
+        }
+        _ => Ok(TableLines { header, first_row }),
+    }
 }
 
 /// The time of the telemetry: as it is given; else that of the records, but for a sampling rate, which is the records' own.

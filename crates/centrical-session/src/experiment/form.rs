@@ -4,9 +4,11 @@ mod entries;
 mod entry_schemas;
 mod tables;
 
-pub(crate) use self::entries::{ColumnEntry, ColumnTable, PriorValue, Steps, TermEntry, TermList, TermTable};
+pub(crate) use self::entries::{
+    ColumnEntry, ColumnTable, PriorValue, RecordEntry, Steps, TermEntry, TermList, TermTable,
+};
 pub(crate) use self::tables::{
-    CandidatesTable, CentrifugeTable, ColumnsTable, CountsTable, Form, MeasuredTable, ModelTable, MountingTable,
-    PlanForm, PlanTable, PlateauEntry, PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, SiteTable,
+    CandidatesTable, CentrifugeTable, ColumnsTable, Form, MeasuredTable, ModelTable, MountingTable, PlanForm,
+    PlanTable, PlateauEntry, PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, RawTable, SiteTable,
     UnitTable,
 };

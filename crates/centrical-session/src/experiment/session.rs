@@ -9,7 +9,7 @@ use centrical::{
     Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
 };
 
-use super::form::{Form, ModelTable, SiteTable};
+use super::form::{Form, ModelTable, RecordEntry, SiteTable};
 use super::plateaus::PlateauTable;
 use super::prior::{self, PriorEntry};
 use super::speeds::{SpeedSource, Speeds};
@@ -18,7 +18,7 @@ use super::unit::OutputUnit;
 use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
 use crate::error::{Error, quoted};
 use crate::quantity::Dimension;
-use crate::record::{Columns, read_pulses, read_record, read_telemetry};
+use crate::record::{Columns, read_pulses, read_records, read_telemetry};
 use crate::settings::{from_toml, read_settings};
 
 /// Name of the experiment file in a session folder.
@@ -65,12 +65,21 @@ pub struct Session {
 /// The files of one mounting.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct MountingFiles {
-    /// The record.
+    /// The record; where every newtonometer has a file of its own, that of the first.
     pub record: Option<PathBuf>,
+    /// The files of the second and the third newtonometer, where every one has its own.
+    pub further_records: Option<[PathBuf; 2]>,
     /// The telemetry.
     pub telemetry: Option<PathBuf>,
     /// Times of the pulses of an index mark or an encoder.
     pub pulses: Option<PathBuf>,
+}
+
+impl MountingFiles {
+    /// The file of the record, or the three of the newtonometers.
+    pub fn records(&self) -> impl Iterator<Item = &PathBuf> {
+        self.record.iter().chain(self.further_records.iter().flatten())
+    }
 }
 
 impl Session {
@@ -158,10 +167,15 @@ impl Session {
             extensions: extensions(file, &form.model)?,
             columns: columns::columns(file, &form.columns, &form.unit)?,
             mountings: (form.mounting.iter())
-                .map(|m| MountingFiles {
-                    record: path(&m.record),
-                    telemetry: path(&m.telemetry),
-                    pulses: path(&m.pulses),
+                .map(|m| {
+                    let (record, further_records) = match &m.record {
+                        None => (None, None),
+                        Some(RecordEntry::One(name)) => (Some(folder.join(name)), None),
+                        Some(RecordEntry::Three([first, others @ ..])) => {
+                            (Some(folder.join(first)), Some(others.each_ref().map(|name| folder.join(name))))
+                        }
+                    };
+                    MountingFiles { record, further_records, telemetry: path(&m.telemetry), pulses: path(&m.pulses) }
                 })
                 .collect(),
             plateaus: None,
@@ -175,7 +189,7 @@ impl Session {
     /// # Errors
     /// If the mounting has no record, or as [`read_record`].
     pub fn record(&self, mounting: usize) -> Result<Record, Error> {
-        read_record(self.record_file(mounting)?, &self.columns)
+        read_records(&self.record_files(mounting)?, &self.columns)
     }
 
     /// Reads the telemetry of a mounting, if it has any.
@@ -200,18 +214,24 @@ impl Session {
 
     /// Size of the records [bytes]; zero for a session that comes already averaged, and of records that are not there.
     pub fn record_bytes(&self) -> u64 {
-        let files = self.mountings.iter().filter(|_| self.plateaus.is_none()).filter_map(|m| m.record.as_ref());
+        let files = self.mountings.iter().filter(|_| self.plateaus.is_none()).flat_map(MountingFiles::records);
         files.filter_map(|file| fs::metadata(file).ok()).map(|metadata| metadata.len()).sum()
     }
 
     /// All files of the session in the order they are named: the experiment file first.
     pub fn files(&self) -> Vec<&Path> {
-        let of_mountings = self.mountings.iter().flat_map(|m| m.record.iter().chain(&m.telemetry).chain(&m.pulses));
+        let of_mountings = self.mountings.iter().flat_map(|m| m.records().chain(&m.telemetry).chain(&m.pulses));
         let table = self.plateaus.iter().map(|table| &table.file);
         std::iter::once(&self.file).chain(table).chain(of_mountings).map(PathBuf::as_path).collect()
     }
 
-    /// The file of a mounting's record.
+    /// The file of a mounting's record, or the three of its newtonometers.
+    pub(crate) fn record_files(&self, mounting: usize) -> Result<Vec<&Path>, Error> {
+        self.record_file(mounting)?;
+        Ok(self.mountings[mounting].records().map(PathBuf::as_path).collect())
+    }
+
+    /// The file of a mounting's record, the first of several.
     pub(crate) fn record_file(&self, mounting: usize) -> Result<&Path, Error> {
         let record = self.mountings.get(mounting).and_then(|m| m.record.as_deref());
         record.ok_or_else(|| {

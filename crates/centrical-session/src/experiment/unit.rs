@@ -5,7 +5,7 @@ use std::path::Path;
 use centrical::{ReferencePoint, Unit};
 use nalgebra::Matrix3;
 
-use super::form::{CountsTable, UnitTable};
+use super::form::{RawTable, UnitTable};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
 use crate::quantity::Dimension;
@@ -48,6 +48,8 @@ pub(crate) fn geometry(file: &Path, table: &UnitTable) -> Result<Unit, Error> {
 pub enum OutputUnit {
     /// Whole counts.
     Counts,
+    /// Volts.
+    Volts,
     /// A unit of acceleration.
     Acceleration,
 }
@@ -55,46 +57,55 @@ pub enum OutputUnit {
 impl OutputUnit {
     /// The kind of the unit that a session names.
     pub(crate) fn named(name: &str) -> Self {
-        if name == "counts" { Self::Counts } else { Self::Acceleration }
+        match name {
+            "counts" => Self::Counts,
+            "V" => Self::Volts,
+            _ => Self::Acceleration,
+        }
     }
 }
 
 /// What takes the raw output of each newtonometer to m/s^2.
 pub(crate) fn output(file: &Path, table: &UnitTable) -> Result<[Scale; 3], Error> {
     let at = TomlPath::table(file, "unit");
-    match (OutputUnit::named(&table.output_unit), &table.counts) {
-        (OutputUnit::Counts, Some(counts)) => from_counts(file, counts),
-        (OutputUnit::Counts, None) => {
-            let expected = "counts = { scale = [...], bias = [...] }: counts per m/s^2 and counts at none";
-            Err(at.unexpected("counts", "no such key", expected))
-        }
-        (OutputUnit::Acceleration, counts) => {
-            let unit = table.output_unit.as_str();
-            let factor = Dimension::Acceleration.factor(unit).ok_or_else(|| {
-                let expected = format!("\"counts\" or one of {}", Dimension::Acceleration.unit_list());
-                at.unexpected("output_unit", quoted(unit.as_bytes()), expected)
-            })?;
-            if counts.is_some() {
-                let expected = "no counts, or output_unit = \"counts\"";
-                return Err(at.unexpected("counts", format!("counts and output_unit = {unit:?}"), expected));
+    let unit = table.output_unit.as_str();
+    let kind = OutputUnit::named(unit);
+    // Keys of raw outputs, and what each is for.
+    let keys = [("counts", OutputUnit::Counts, &table.counts), ("volts", OutputUnit::Volts, &table.volts)];
+    for (key, of, coarse) in keys {
+        match coarse {
+            Some(coarse) if kind == of => return from_raw(file, key, coarse),
+            None if kind == of => {
+                let expected = format!("{key} = {{ scale = [...], bias = [...] }}: {key} per m/s^2 and {key} at none");
+                return Err(at.unexpected(key, "no such key", expected));
             }
-            Ok([Scale::factor(factor); 3])
+            Some(_) => {
+                let own = if of == OutputUnit::Counts { "counts" } else { "V" };
+                let expected = format!("no {key}, or output_unit = {own:?}");
+                return Err(at.unexpected(key, format!("{key} and output_unit = {unit:?}"), expected));
+            }
+            None => {}
         }
     }
+    let factor = Dimension::Acceleration.factor(unit).ok_or_else(|| {
+        let expected = format!("\"counts\", \"V\" or one of {}", Dimension::Acceleration.unit_list());
+        at.unexpected("output_unit", quoted(unit.as_bytes()), expected)
+    })?;
+    Ok([Scale::factor(factor); 3])
 }
 
-/// `f = (counts - bias) / scale`.
-fn from_counts(file: &Path, table: &CountsTable) -> Result<[Scale; 3], Error> {
-    let at = TomlPath::table(file, "unit.counts");
+/// `f = (raw - bias) / scale`, raw in counts or volts.
+fn from_raw(file: &Path, key: &str, table: &RawTable) -> Result<[Scale; 3], Error> {
+    let at = TomlPath::table(file, &format!("unit.{key}"));
     let mut scales = [Scale::factor(1.0); 3];
     for (j, scale) in scales.iter_mut().enumerate() {
         let (bias, per_unit) = (table.bias[j], table.scale[j]);
         if !bias.is_finite() {
-            return Err(at.unexpected("bias", format!("{bias:?}"), "finite counts"));
+            return Err(at.unexpected("bias", format!("{bias:?}"), format!("finite {key}")));
         }
         // A converter of 64 bits over a thousandth of a g makes 2e21 counts per m/s^2.
         if !(1e-24..=1e24).contains(&per_unit.abs()) {
-            return Err(at.unexpected("scale", format!("{per_unit:?}"), "counts per m/s^2, not zero"));
+            return Err(at.unexpected("scale", format!("{per_unit:?}"), format!("{key} per m/s^2, not zero")));
         }
         *scale = Scale { offset: bias, factor: 1.0 / per_unit };
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::RecordSlice;
 use centrical_compensate::{Certificate, Compensation};
-use centrical_table::{Rows, refuse_inputs};
+use centrical_table::{Rows, StampTexts, refuse_inputs};
 use rayon::prelude::*;
 
 use crate::document::CalibrationResult;
@@ -85,6 +85,11 @@ pub fn compensate(request: &CompensationRequest) -> Result<(Compensated, Certifi
     let columns = match &request.session {
         Some(session) => {
             let session = Session::read(session)?;
+            if session.mountings.iter().any(|files| files.further_records.is_some()) {
+                let expected = "a session whose records have the readings of all newtonometers in one file, as the record to \
+                                be compensated has them";
+                return Err(Error::content(&session.file, Place::Whole, "one file for each newtonometer", expected));
+            }
             inputs.extend(session.files().into_iter().map(Path::to_owned));
             session.columns
         }
@@ -100,7 +105,8 @@ pub fn compensate(request: &CompensationRequest) -> Result<(Compensated, Certifi
 
 /// Compensates the record in `input` into `output`, CSV or Parquet by its name. The same bytes on any machine.
 ///
-/// Time is written as it was read, to the bit. So are specific forces as Parquet has them; as CSV has them, they are rounded to at
+/// Time is written as it was read: a number to the bit, a stamp in text letter by letter where the output is text, and otherwise as
+/// its seconds since 1970. So are specific forces as Parquet has them; as CSV has them, they are rounded to at
 /// most `10^-12` of the range ([`RecordWriter::create_rounded`]).
 ///
 /// # Errors
@@ -122,6 +128,7 @@ fn on_this_thread(
     output: &Path,
 ) -> Result<Compensated, Error> {
     let mut record = RecordReader::open(input, columns)?;
+    record.keep_stamps();
     let mut writer = RecordWriter::create_rounded(output, compensation.certificate().range)?;
     let mut sum = Compensated { decimals: writer.decimals(), ..Compensated::default() };
     while let Some(batch) = record.next_batch()? {
@@ -134,8 +141,13 @@ fn on_this_thread(
             let expected = format!("readings within the calibration, {:.1?} m/s^2", calibrated.limit);
             return Err(Error::content(input, Place::Whole, found, expected));
         }
-        let stretches: Vec<RecordSlice> = batch.iter().map(stretch).collect();
-        writer.write_all(&stretches)?;
+        let stamps = record.take_stamps();
+        let stretches: Vec<RecordSlice> = record.batch().iter().map(stretch).collect();
+        if stamps.iter().all(StampTexts::is_empty) {
+            writer.write_all(&stretches)?;
+        } else {
+            stretches.iter().zip(&stamps).try_for_each(|(rows, stamps)| writer.write_stamped(stamps, *rows))?;
+        }
     }
     writer.finish()?;
     Ok(sum)

@@ -1,6 +1,6 @@
 //! The columns of records and telemetry, and what takes their numbers to SI.
 
-use centrical_table::{ColumnName, Field, Rule};
+use centrical_table::{ColumnName, Field, Rule, TableLines};
 
 /// The columns of records and telemetry.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +15,10 @@ pub struct Columns {
     pub f: [Column; 3],
     /// Speed, in the telemetry.
     pub speed: Column,
+    /// Where the table begins in the text of a record, if that is not to be recognised.
+    pub record_lines: TableLines,
+    /// The same in the telemetry.
+    pub telemetry_lines: TableLines,
 }
 
 /// One column: how it is found and what takes it to SI.
@@ -66,6 +70,8 @@ impl Default for Columns {
             pulse: Column::si("t", "s"),
             f: ["f1", "f2", "f3"].map(|name| Column::si(name, "m/s^2")),
             speed: Column::si("omega", "rad/s"),
+            record_lines: TableLines::default(),
+            telemetry_lines: TableLines::default(),
         }
     }
 }
@@ -88,4 +94,14 @@ impl Column {
     pub(crate) fn field(&self, rule: Rule) -> Field {
         Field { name: self.name.clone(), expected: format!("a number in {}", self.unit), rule }
     }
+}
+
+/// Columns as fields of a table, the first of them time.
+pub(super) fn fields(columns: &[&Column]) -> Vec<Field> {
+    let rule = |k: usize, column: &Column| match k {
+        // A stamp is in seconds, whatever the numbers would be in.
+        0 => Rule::Ascending { stamps: column.scale == Scale::factor(1.0) },
+        _ => Rule::Any,
+    };
+    columns.iter().enumerate().map(|(k, column)| column.field(rule(k, column))).collect()
 }

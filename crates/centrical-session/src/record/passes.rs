@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use centrical::reduction::{Averaging, Located, PlateauFit, Record, RecordSlice, ReductionError, Survey};
+use centrical_table::Extent;
 use rayon::prelude::*;
 
 use super::columns::Columns;
@@ -20,21 +21,22 @@ type Mean = Result<PlateauFit, ReductionError>;
 
 /// The record in a file.
 pub(crate) struct RecordFile<'a> {
-    pub file: &'a Path,
+    /// The file, or the three of the newtonometers.
+    files: Vec<&'a Path>,
     columns: &'a Columns,
     /// Told of bytes as they are read.
     progress: &'a (dyn Fn(u64) + Sync),
 }
 
 impl<'a> RecordFile<'a> {
-    pub fn new(file: &'a Path, columns: &'a Columns, progress: &'a (dyn Fn(u64) + Sync)) -> Self {
-        Self { file, columns, progress }
+    pub fn new(files: Vec<&'a Path>, columns: &'a Columns, progress: &'a (dyn Fn(u64) + Sync)) -> Self {
+        Self { files, columns, progress }
     }
 
     /// First pass: surveys the record, its stretches condensed on all threads, and keeps its samples if they are not too
     /// many.
     pub fn survey(&self, cache: &mut SampleCache) -> Result<Survey, Error> {
-        let mut record = RecordReader::open(self.file, self.columns)?;
+        let mut record = RecordReader::open_all(&self.files, Extent::Whole, self.columns)?;
         let mut beginning = Record::default();
         let mut survey: Option<Survey> = None;
         cache.begin();
@@ -70,7 +72,8 @@ impl<'a> RecordFile<'a> {
             (0..located.windows().len()).map(|k| PlateauInParts::new(located, k)).collect();
         match &cache.index {
             _ if cache.is_whole => {
-                (self.progress)(std::fs::metadata(self.file).map_or(0, |file| file.len()));
+                let length = |file: &&Path| std::fs::metadata(file).map_or(0, |file| file.len());
+                (self.progress)(self.files.iter().map(length).sum());
                 Ok(means_of_cache(cache, plateaus))
             }
             Some(index) => self.means_reread(index, plateaus),
@@ -103,7 +106,7 @@ impl<'a> RecordFile<'a> {
 
     /// All of the record once more, where it can only be read from its start.
     fn means_in_order(&self, mut plateaus: Vec<PlateauInParts>) -> Result<Vec<Mean>, Error> {
-        let mut record = RecordReader::open(self.file, self.columns)?;
+        let mut record = RecordReader::open_all(&self.files, Extent::Whole, self.columns)?;
         let mut gathered: Vec<Record> = plateaus.iter().map(|_| Record::default()).collect();
         while let Some(batch) = record.next_batch()? {
             for stretch in batch.iter().map(stretch) {

@@ -1,11 +1,13 @@
 //! Records and telemetry from their files, batch by batch, in SI.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
-use centrical_table::{Extent, Field, Index, Reread, Rows, Rule, TableReader};
+use centrical_table::{Extent, Index, Reread, Rows, StampTexts, TableLines, TableReader};
 
-use super::columns::{Column, Columns, Scale};
+use super::columns::{Column, Columns, Scale, fields};
+use super::joined::Joined;
+use super::units_found::check_units;
 use crate::error::Error;
 
 /// Reads the whole record of `file`.
@@ -16,13 +18,30 @@ pub fn read_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
     RecordReader::open(file, columns)?.into_record()
 }
 
+/// Reads the whole record of a mounting in its file, or in the three of its newtonometers.
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub(crate) fn read_records(files: &[&Path], columns: &Columns) -> Result<Record, Error> {
+    RecordReader::open_all(files, Extent::Whole, columns)?.into_record()
+}
+
+/// Reads the part of them that was written so far.
+///
+/// # Errors
+/// As [`RecordReader::next_batch`].
+pub(crate) fn read_growing_records(files: &[&Path], columns: &Columns) -> Result<Record, Error> {
+    RecordReader::open_all(files, Extent::Growing, columns)?.into_record()
+}
+
 /// Reads the part written so far of a record that is still growing: an incomplete last line is left for the next
 /// time. A file of another format than text has to appear whole, by renaming.
 ///
 /// # Errors
 /// As [`RecordReader::next_batch`].
 pub fn read_growing_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
-    RecordReader::with(file, Extent::Growing, &columns.of_record(), "a record")?.into_record()
+    let lines = columns.record_lines;
+    RecordReader::with(file, Extent::Growing, &columns.of_record(), lines, "a record")?.into_record()
 }
 
 /// Reads the telemetry of `file`.
@@ -42,7 +61,8 @@ pub(crate) fn read_growing_telemetry(file: &Path, columns: &Columns) -> Result<S
 }
 
 fn telemetry_of(file: &Path, columns: &Columns, extent: Extent) -> Result<SpeedTrace, Error> {
-    let mut reader = RecordReader::with(file, extent, &[&columns.telemetry_time, &columns.speed], "telemetry")?;
+    let of_telemetry = [&columns.telemetry_time, &columns.speed];
+    let mut reader = RecordReader::with(file, extent, &of_telemetry, columns.telemetry_lines, "telemetry")?;
     let mut telemetry = SpeedTrace::default();
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
@@ -70,7 +90,7 @@ pub(crate) fn read_growing_pulses(file: &Path, columns: &Columns) -> Result<Vec<
 }
 
 fn pulses_of(file: &Path, columns: &Columns, extent: Extent) -> Result<Vec<f64>, Error> {
-    let mut reader = RecordReader::with(file, extent, &[&columns.pulse], "times of pulses")?;
+    let mut reader = RecordReader::with(file, extent, &[&columns.pulse], TableLines::default(), "times of pulses")?;
     let mut times = Vec::new();
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
@@ -82,8 +102,11 @@ fn pulses_of(file: &Path, columns: &Columns, extent: Extent) -> Result<Vec<f64>,
 
 /// A record that is read in memory that does not grow with it.
 pub struct RecordReader {
-    table: TableReader,
+    file: PathBuf,
+    table: Source,
     scales: Scales,
+    /// Names and units of the columns, until those that the file names are held against them.
+    units: Option<Vec<(String, String)>>,
     /// Bytes that [`RecordReader::newly_read`] has returned.
     reported: u64,
 }
@@ -94,12 +117,39 @@ impl RecordReader {
     /// # Errors
     /// If it cannot be read.
     pub fn open(file: &Path, columns: &Columns) -> Result<Self, Error> {
-        Self::with(file, Extent::Whole, &columns.of_record(), "a record")
+        Self::with(file, Extent::Whole, &columns.of_record(), columns.record_lines, "a record")
     }
 
-    fn with(file: &Path, extent: Extent, columns: &[&Column], expected: &str) -> Result<Self, Error> {
-        let table = TableReader::open(file, extent, &fields(columns), expected)?;
-        Ok(Self { table, scales: Scales::of(columns), reported: 0 })
+    /// Opens the record in a file, or in three, one for each newtonometer.
+    ///
+    /// # Errors
+    /// If one cannot be read.
+    pub(crate) fn open_all(files: &[&Path], extent: Extent, columns: &Columns) -> Result<Self, Error> {
+        let of_record = columns.of_record();
+        match *files {
+            [x, y, z] => {
+                let joined = Box::new(Joined::open([x, y, z], extent, columns)?);
+                let (file, scales) = (x.to_owned(), Scales::of(&of_record));
+                Ok(Self { file, table: Source::Three(joined), scales, units: None, reported: 0 })
+            }
+            _ => {
+                let file = files.first().copied().unwrap_or(Path::new(""));
+                Self::with(file, extent, &of_record, columns.record_lines, "a record")
+            }
+        }
+    }
+
+    fn with(
+        file: &Path,
+        extent: Extent,
+        columns: &[&Column],
+        lines: TableLines,
+        expected: &str,
+    ) -> Result<Self, Error> {
+        let table = TableReader::open_at(file, extent, &fields(columns), expected, lines)?;
+        let units = columns.iter().map(|column| (column.name.to_string(), column.unit.clone())).collect();
+        let table = Source::One(table);
+        Ok(Self { file: file.to_owned(), table, scales: Scales::of(columns), units: Some(units), reported: 0 })
     }
 
     /// The next rows: columns of time [s] and of readings [m/s^2] ([`stretch`]), several sets of them, to be worked on where they
@@ -109,10 +159,40 @@ impl RecordReader {
     ///
     /// # Errors
     /// If the file cannot be read, has no rows, lacks a column, or a value is not finite; if time runs
-    /// backwards.
+    /// backwards; if the file names other units than those of the columns.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
-        let batch = self.table.next_batch()?;
-        Ok(batch.map(|batch| self.scales.apply_to(batch)))
+        let is_over = match &mut self.table {
+            Source::One(table) => table.next_batch()?.is_none(),
+            Source::Three(joined) => joined.next_batch()? == 0,
+        };
+        if is_over {
+            return Ok(None);
+        }
+        if let (Some(units), Source::One(table)) = (self.units.take(), &self.table) {
+            let units = units.iter().map(|(name, unit)| (name.clone(), unit.as_str()));
+            check_units(&self.file, table.units().as_ref(), units)?;
+        }
+        Ok(Some(self.scales.apply_to(self.table.batch())))
+    }
+
+    /// The rows that were read last, once more.
+    pub(crate) fn batch(&mut self) -> &mut [Rows] {
+        self.table.batch()
+    }
+
+    /// Keeps stamps as they are written, for [`RecordReader::take_stamps`].
+    pub(crate) fn keep_stamps(&mut self) {
+        if let Source::One(table) = &mut self.table {
+            table.keep_stamps();
+        }
+    }
+
+    /// Stamps of the rows that were read last, as they are written; one entry for each set.
+    pub(crate) fn take_stamps(&mut self) -> Vec<StampTexts> {
+        match &mut self.table {
+            Source::One(table) => table.take_stamps(),
+            Source::Three(joined) => vec![StampTexts::default(); joined.batch().len()],
+        }
     }
 
     /// Bytes of the file that were read since this was last asked.
@@ -124,7 +204,8 @@ impl RecordReader {
     /// After the end: where the samples are, if any part can be read again.
     pub(super) fn into_index(self) -> Option<RecordIndex> {
         let scales = self.scales;
-        self.table.into_index().map(|index| RecordIndex { index, scales })
+        let Source::One(table) = self.table else { return None };
+        table.into_index().map(|index| RecordIndex { index, scales })
     }
 
     fn into_record(mut self) -> Result<Record, Error> {
@@ -135,6 +216,28 @@ impl RecordReader {
             }
         }
         Ok(record)
+    }
+}
+
+/// The file of a record, or its three.
+enum Source {
+    One(TableReader),
+    Three(Box<Joined>),
+}
+
+impl Source {
+    fn batch(&mut self) -> &mut [Rows] {
+        match self {
+            Self::One(table) => table.batch(),
+            Self::Three(joined) => joined.batch(),
+        }
+    }
+
+    fn bytes(&self) -> u64 {
+        match self {
+            Self::One(table) => table.bytes(),
+            Self::Three(joined) => joined.bytes(),
+        }
     }
 }
 
@@ -198,14 +301,4 @@ impl Scales {
         let slack = 1e-12 * from.abs().max(to.abs());
         [from - slack, to + slack]
     }
-}
-
-/// Columns as fields of a table, the first of them time.
-fn fields(columns: &[&Column]) -> Vec<Field> {
-    let rule = |k: usize, column: &Column| match k {
-        // A stamp is in seconds, whatever the numbers would be in.
-        0 => Rule::Ascending { stamps: column.scale == Scale::factor(1.0) },
-        _ => Rule::Any,
-    };
-    columns.iter().enumerate().map(|(k, column)| column.field(rule(k, column))).collect()
 }

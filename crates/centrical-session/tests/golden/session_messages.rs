@@ -39,7 +39,7 @@ fn the_form_is_kept() {
         (
             "output_unit =",
             "outputunit =",
-            r"line 10, column 1: found an unknown key `outputunit`, expected one of `model`, `serial`, `output_unit`, `counts`, `proof_masses`, `reference`",
+            r"line 10, column 1: found an unknown key `outputunit`, expected one of `model`, `serial`, `output_unit`, `counts`, `volts`, `proof_masses`, `reference`",
         ),
         (
             "rotation =",
@@ -54,7 +54,7 @@ fn the_form_is_kept() {
         (
             "speed_unit =",
             "speed_units =",
-            r"line 22, column 1: found an unknown key `speed_units`, expected one of `time`, `f`, `telemetry_time`, `pulse`, `speed`, `speed_unit`",
+            r"line 22, column 1: found an unknown key `speed_units`, expected one of `time`, `f`, `telemetry_time`, `pulse`, `speed`, `speed_unit`, `header_line`, `first_row`, `telemetry_header_line`, `telemetry_first_row`",
         ),
         (
             "pair =",
@@ -149,7 +149,7 @@ fn unit() {
         (
             "\"m/s^2\"\n",
             "\"furlong\"\n",
-            r#"[unit], output_unit: found "furlong", expected "counts" or one of m/s^2, m/s2, mm/s^2, g, mg, ug, Gal, mGal"#,
+            r#"[unit], output_unit: found "furlong", expected "counts", "V" or one of m/s^2, m/s2, mm/s^2, g, mg, ug, Gal, mGal"#,
         ),
         (
             "\"m/s^2\"\n",

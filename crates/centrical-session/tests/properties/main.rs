@@ -4,5 +4,6 @@ mod columns;
 mod predictions;
 mod record_writer;
 mod session_forms;
+mod three_files;
 mod two_passes;
 mod watched;

@@ -85,3 +85,25 @@ fn nothing_is_left_of_half_a_record() {
     let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left, ["bad.csv"]);
 }
+
+#[test]
+fn stamps_go_through_letter_by_letter() {
+    let stamps = ["05.10.2026 09:10:00,0100", "05.10.2026 09:10:00,02", "05.10.2026 09:10:1,1000000000"];
+    let rows: Vec<String> = stamps.iter().map(|stamp| format!("{stamp};0,5;-0,25;9,75")).collect();
+    let iso = ["2026-10-05T09:10:00.0100+03:00", "2026-10-05T09:10:00.02+03:00"];
+    let iso_rows: Vec<String> = iso.iter().map(|stamp| format!("{stamp},0.5,-0.25,9.75")).collect();
+    let compensation = Compensation::new(&[], 100.0).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let (input, output) = (folder.path().join("in.csv"), folder.path().join("out.csv"));
+    for (header, rows, stamps) in [("t;f1;f2;f3", rows, &stamps[..]), ("t,f1,f2,f3", iso_rows, &iso[..])] {
+        fs::write(&input, format!("{header}\n{}", rows.join("\n"))).unwrap();
+        compensate_record(&compensation, &input, &Columns::default(), &output).unwrap();
+        let text = fs::read_to_string(&output).unwrap();
+        let quoted = |stamp: &str| if stamp.contains(',') { format!("\"{stamp}\"") } else { stamp.to_owned() };
+        let expected: Vec<String> =
+            stamps.iter().map(|stamp| format!("{},0.5000000000,-0.2500000000,9.7500000000", quoted(stamp))).collect();
+        assert_eq!(text.lines().skip(1).collect::<Vec<_>>(), expected);
+        let [before, after] = [&input, &output].map(|file| read_record(file, &Columns::default()).unwrap());
+        assert_eq!(before, after);
+    }
+}

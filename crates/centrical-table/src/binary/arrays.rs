@@ -209,9 +209,9 @@ impl Scalar {
     }
 
     /// The number in the first bytes, as many as its size.
-    fn read(self, bytes: &[u8]) -> f64 {
+    pub fn read(self, bytes: &[u8]) -> f64 {
         let mut low = [0; 8];
-        low[..self.size].copy_from_slice(bytes);
+        low[..self.size].copy_from_slice(&bytes[..self.size]);
         if self.big_endian {
             low[..self.size].reverse();
         }

@@ -2,36 +2,15 @@
 
 use std::borrow::Cow;
 
-use memchr::{memchr, memchr2, memchr3};
+use memchr::{memchr2, memchr3};
 
 use super::batch::{Batch, ROWS};
+use super::fields::{Delimiter, Fault, number, unquoted};
 use super::number::plain;
 use crate::column::{ColumnName, Field, LARGEST, Rule};
 use crate::error::quoted;
 use crate::rows::Rows;
 use crate::stamp;
-
-/// What stands wrong in a line.
-pub(super) struct Fault {
-    /// Name of the column, where one is meant.
-    pub column: Option<String>,
-    pub found: String,
-    pub expected: String,
-}
-
-/// The lines before the first row.
-#[derive(Default)]
-pub(super) struct Prologue {
-    /// The last comment without its `#`: some programs write the header so.
-    comment: Vec<u8>,
-}
-
-/// What the first line shows.
-pub(super) struct FirstLine {
-    pub layout: Layout,
-    /// Whether that line holds the names rather than the first row.
-    pub is_header: bool,
-}
 
 /// Where the wanted numbers stand in a line.
 #[derive(Debug, Clone)]
@@ -41,71 +20,7 @@ pub(super) struct Layout {
     wanted: Vec<Option<usize>>,
 }
 
-/// What divides the fields of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Delimiter {
-    Byte(u8),
-    /// Any number of spaces and tabs.
-    Blanks,
-}
-
-impl Prologue {
-    /// Notes a line that is a comment, or blank.
-    pub fn comment(&mut self, line: &[u8]) {
-        if let Some(text) = line.trim_ascii_start().strip_prefix(b"#") {
-            self.comment = text.to_vec();
-        }
-    }
-
-    /// What the first line that is neither blank nor a comment shows of the table.
-    pub fn first_line(&self, line: &[u8], fields: &[Field]) -> Result<FirstLine, Fault> {
-        let delimiter = Delimiter::of(line);
-        let names = delimiter.texts(line)?;
-        let by_name = fields.iter().any(|field| matches!(field.name, ColumnName::Name(_)));
-        let named = |names: &[Cow<[u8]>]| names.iter().any(|name| fields.iter().any(|field| field.is(name)));
-        let is_header = named(&names) || !names.iter().any(|name| number(name).is_some());
-        let names = if by_name && !is_header { Delimiter::of(&self.comment).texts(&self.comment)? } else { names };
-        let columns = if by_name && !is_header { delimiter.texts(line)?.len() } else { names.len() };
-        if by_name && !is_header && !named(&names) {
-            let expected = "the names of the columns (for a file without them give [columns] by number)";
-            return Err(Fault { column: None, found: quoted(line), expected: expected.to_owned() });
-        }
-        let mut wanted = vec![None; columns];
-        for (k, field) in fields.iter().enumerate() {
-            let place = field.find(&names, columns)?;
-            if wanted[place].is_some() {
-                let found = format!("column {} asked for twice", place + 1);
-                return Err(field.fault(found, "a column of its own for every quantity"));
-            }
-            wanted[place] = Some(k);
-        }
-        Ok(FirstLine { layout: Layout { delimiter, wanted }, is_header })
-    }
-}
-
 impl Field {
-    fn is(&self, name: &[u8]) -> bool {
-        matches!(&self.name, ColumnName::Name(own) if own.as_bytes() == name)
-    }
-
-    /// The only place of this field among the names of the columns.
-    fn find(&self, names: &[Cow<[u8]>], columns: usize) -> Result<usize, Fault> {
-        if let ColumnName::Number(number) = self.name {
-            let found = format!("{columns} columns");
-            return number
-                .checked_sub(1)
-                .filter(|i| *i < columns)
-                .ok_or_else(|| self.fault(found, "that many columns"));
-        }
-        let list = || quoted(&names.join(&b", "[..]));
-        let mut places = (0..columns.min(names.len())).filter(|i| self.is(&names[*i]));
-        match (places.next(), places.next()) {
-            (Some(place), None) => Ok(place),
-            (Some(_), Some(_)) => Err(self.fault(format!("two such columns in {}", list()), "one")),
-            (None, _) => Err(self.fault(format!("columns {}", list()), "a column of this name")),
-        }
-    }
-
     /// The value of this field from a field of a line.
     fn value(&self, text: &[u8]) -> Result<f64, Fault> {
         let text = unquoted(text);
@@ -117,12 +32,38 @@ impl Field {
         }
     }
 
-    fn fault(&self, found: String, expected: &str) -> Fault {
+    pub(super) fn fault(&self, found: String, expected: &str) -> Fault {
         Fault { column: Some(self.name.to_string()), found, expected: expected.to_owned() }
     }
 }
 
 impl Layout {
+    /// Of every column of the file, divided so, the field that it is.
+    pub fn new(delimiter: Delimiter, wanted: Vec<Option<usize>>) -> Self {
+        Self { delimiter, wanted }
+    }
+
+    /// All fields of a line.
+    pub fn texts<'a>(&self, line: &'a [u8]) -> Result<Vec<Cow<'a, [u8]>>, Fault> {
+        self.delimiter.texts(line)
+    }
+
+    /// The wanted fields of a line, in their order; none where one of them is missing.
+    pub fn wanted_texts<'a>(&self, line: &'a [u8]) -> Option<Vec<Cow<'a, [u8]>>> {
+        let mut texts = self.texts(line).ok()?;
+        let count = self.wanted.iter().flatten().count();
+        let place = |field| self.wanted.iter().position(|own| *own == Some(field));
+        (0..count).map(|field| Some(std::mem::take(texts.get_mut(place(field)?)?))).collect()
+    }
+
+    /// Has `columns` fields from now on, if none is lost that is wanted and others may be added.
+    pub fn resize(&mut self, columns: usize, may_grow: bool) {
+        let needed = self.wanted.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+        if (needed..=self.wanted.len()).contains(&columns) || may_grow && columns > self.wanted.len() {
+            self.wanted.resize(columns, None);
+        }
+    }
+
     /// Reads the wanted numbers of a line into `row`, in the order of the fields.
     pub fn row(&self, line: &[u8], row: &mut [f64], fields: &[Field]) -> Result<(), Fault> {
         match self.plain_row(line, row) {
@@ -220,6 +161,12 @@ impl Layout {
         }
     }
 
+    /// The first field of a line, if it is a stamp.
+    pub fn stamp<'a>(&self, line: &'a [u8]) -> Option<Cow<'a, [u8]>> {
+        let text = self.wanted_texts(line)?.into_iter().next()?;
+        number(&text).is_none().then_some(text)
+    }
+
     /// The row of any line: quotes, blanks, decimal commas, empty fields.
     #[cold]
     fn any_row(&self, line: &[u8], row: &mut [f64], fields: &[Field]) -> Result<(), Fault> {
@@ -229,7 +176,7 @@ impl Layout {
             let field;
             (field, rest) = self.delimiter.split(text)?;
             if let Some(k) = wanted {
-                row[*k] = fields[*k].value(field)?;
+                row[*k] = fields[*k].value(field).map_err(|fault| self.header_again(line, fields).unwrap_or(fault))?;
             }
         }
         // Some loggers end every row, but not the header, with a delimiter.
@@ -239,88 +186,23 @@ impl Layout {
         }
     }
 
+    /// What is wrong with a line that has the names of the columns in place of their numbers, as where files were put together.
+    fn header_again(&self, line: &[u8], fields: &[Field]) -> Option<Fault> {
+        let texts = self.wanted_texts(line.strip_prefix("\u{feff}".as_bytes()).unwrap_or(line))?;
+        let is_name = |(field, text): (&Field, &Cow<[u8]>)| match &field.name {
+            ColumnName::Name(name) => name.as_bytes() == &*unquoted(text),
+            _ => false,
+        };
+        fields.iter().zip(&texts).all(is_name).then(|| Fault {
+            column: None,
+            found: "the names of the columns again".to_owned(),
+            expected: "a row of numbers (two files in one?)".to_owned(),
+        })
+    }
+
     fn wrong_count(&self, line: &[u8], found: usize) -> Fault {
         let expected = format!("{} as in the first line", self.wanted.len());
         Fault { column: None, found: format!("{found} fields in {}", quoted(line)), expected }
-    }
-}
-
-impl Delimiter {
-    /// The delimiter of a line: the first of `;`, tab, `,` that occurs outside quotes, or else blanks.
-    fn of(line: &[u8]) -> Self {
-        let mut inside = false;
-        let outside: Vec<u8> = line
-            .iter()
-            .copied()
-            .filter(|byte| {
-                inside ^= *byte == b'"';
-                !inside
-            })
-            .collect();
-        let decimal_commas =
-            || outside.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).all(|w| number(w).is_some());
-        match [b';', b'\t', b','].into_iter().find(|byte| outside.trim_ascii().contains(byte)) {
-            Some(b',') if outside.trim_ascii().contains(&b' ') && decimal_commas() => Self::Blanks,
-            Some(byte) => Self::Byte(byte),
-            None => Self::Blanks,
-        }
-    }
-
-    /// A line without what stands before its first field and after its last.
-    #[inline]
-    fn trimmed(self, line: &[u8]) -> &[u8] {
-        if self == Self::Blanks { line.trim_ascii() } else { line }
-    }
-
-    /// The first field as it is written, and any rest of the line.
-    fn split(self, text: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
-        let start = text.len() - text.trim_ascii_start().len();
-        let quote = if text[start..].first() == Some(&b'"') { end_of_quote(text, start)? } else { 0 };
-        let open = &text[quote..];
-        let end = match self {
-            Self::Byte(delimiter) => memchr(delimiter, open),
-            Self::Blanks => open.iter().position(u8::is_ascii_whitespace),
-        };
-        let (field, after) = text.split_at(end.map_or(text.len(), |end| quote + end));
-        let rest = after.get(1..).map(|rest| if self == Self::Blanks { rest.trim_ascii_start() } else { rest });
-        Ok((field, rest))
-    }
-
-    /// All fields of a line, without quotes and blanks around.
-    fn texts(self, line: &[u8]) -> Result<Vec<Cow<'_, [u8]>>, Fault> {
-        let mut texts = Vec::new();
-        let mut rest = Some(self.trimmed(line));
-        while let Some(text) = rest {
-            let field;
-            (field, rest) = self.split(text)?;
-            texts.push(unquoted(field));
-        }
-        Ok(texts)
-    }
-}
-
-/// Place after the quote that closes the one at `start`; a quote inside is doubled.
-fn end_of_quote(text: &[u8], start: usize) -> Result<usize, Fault> {
-    let mut at = start + 1;
-    while let Some(quote) = memchr(b'"', &text[at..]) {
-        at += quote + 1;
-        if text.get(at) != Some(&b'"') {
-            return Ok(at);
-        }
-        at += 1;
-    }
-    Err(Fault { column: None, found: quoted(text), expected: "a closing quote".to_owned() })
-}
-
-/// A field without quotes and blanks around it.
-fn unquoted(field: &[u8]) -> Cow<'_, [u8]> {
-    let field = field.trim_ascii();
-    match field.strip_prefix(b"\"").and_then(|f| f.strip_suffix(b"\"")) {
-        Some(inner) => {
-            let text = String::from_utf8_lossy(inner).replace("\"\"", "\"");
-            Cow::Owned(text.trim().as_bytes().to_vec())
-        }
-        None => Cow::Borrowed(field),
     }
 }
 
@@ -334,13 +216,4 @@ fn any_number(text: &[u8]) -> Option<(f64, usize)> {
 #[inline]
 fn plausible(number: f64) -> Option<f64> {
     (number.abs() <= LARGEST).then_some(number)
-}
-
-/// A number with a decimal point or, as the delimiter can not be inside a field, a decimal comma.
-fn number(text: &[u8]) -> Option<f64> {
-    if !text.contains(&b',') {
-        return fast_float2::parse(text).ok();
-    }
-    let point: Vec<u8> = text.iter().map(|byte| if *byte == b',' { b'.' } else { *byte }).collect();
-    fast_float2::parse(point).ok()
 }

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use memchr::{memchr, memchr_iter, memrchr};
 
-use crate::error::{Error, quoted};
+use super::encoding::{FromUtf16, SIGHT, TextEncoding};
+use crate::error::Error;
 use crate::unpacking::Unpacked;
 
 /// Bytes in a piece, more or less a line: several make up a plateau, and each is worth the way to it.
@@ -58,6 +59,8 @@ pub(crate) struct Plain {
 pub(crate) struct Packed {
     file: PathBuf,
     input: Box<dyn Read + Send>,
+    /// Whether the beginning was looked at.
+    is_begun: bool,
     /// Begin of a line that goes on.
     rest: Vec<u8>,
     at_end: bool,
@@ -165,11 +168,28 @@ impl Packed {
     /// The text that `input` gives of a file of `length` bytes.
     pub fn new(file: &Path, input: impl Read + Send + 'static, length: u64) -> Self {
         let input = Unpacked::new(input, length, None);
-        Self { file: file.to_owned(), input: Box::new(input), rest: Vec::new(), at_end: false }
+        Self { file: file.to_owned(), input: Box::new(input), is_begun: false, rest: Vec::new(), at_end: false }
+    }
+
+    /// Looks at the beginning: UTF-16 is turned into UTF-8.
+    fn begin(&mut self) -> io::Result<()> {
+        let mut start = Vec::new();
+        (&mut self.input).take(SIGHT as u64).read_to_end(&mut start)?;
+        let encoding = TextEncoding::utf_16(&start);
+        let rest = std::mem::replace(&mut self.input, Box::new(io::empty()));
+        let whole = io::Cursor::new(start).chain(rest);
+        self.input = match encoding {
+            Some(encoding) => Box::new(FromUtf16::new(whole, encoding)),
+            None => Box::new(whole),
+        };
+        Ok(())
     }
 
     /// Reads the next piece, the first one without a mark of the byte order; false at the end.
     pub(super) fn read(&mut self, first: bool, text: &mut Text) -> Result<bool, Error> {
+        if !std::mem::replace(&mut self.is_begun, true) {
+            self.begin().map_err(|e| Error::unpacking(&self.file, e, TABLE))?;
+        }
         if self.at_end && self.rest.is_empty() {
             return Ok(false);
         }
@@ -204,16 +224,6 @@ pub(super) fn endless_line(text: &[u8]) -> Option<(u64, String)> {
     let start = memrchr(b'\n', &text[..text.len().saturating_sub(1)]).map_or(0, |end| end + 1);
     let line = || memchr_iter(b'\n', &text[..start]).count() as u64;
     (text.len() - start > LONGEST_LINE).then(|| (line(), format!("a line longer than {LONGEST_LINE} bytes")))
-}
-
-/// Text must be UTF-8: in any other encoding the names of columns would not be found. Of text that is not: the line,
-/// counted from 0, and what was found there.
-pub(super) fn check_utf8(text: &[u8]) -> Result<(), (u64, Option<String>, String)> {
-    let Err(error) = std::str::from_utf8(text) else { return Ok(()) };
-    let bad = error.valid_up_to();
-    let line = memchr_iter(b'\n', &text[..bad]).count() as u64;
-    let start = memrchr(b'\n', &text[..bad]).map_or(0, |end| end + 1);
-    Err((line, None, format!("byte 0x{:02x} after {}", text[bad], quoted(&text[start..bad]))))
 }
 
 /// Length of the first `count` lines.

@@ -3,11 +3,13 @@
 use memchr::{memchr, memchr_iter, memrchr};
 
 use super::batch::{self, Batch, ROWS};
-use super::layout::{Fault, Layout, Prologue};
+use super::fields::Fault;
+use super::layout::Layout;
 use super::lines::{self, Text};
+use super::prologue::{Line, MOST_ABOVE, Prologue, Start};
 use super::separators::Separators;
 use crate::column::Field;
-use crate::rows::{ASCENDING, Rows, runs_backwards};
+use crate::rows::{ASCENDING, Rows, StampTexts, runs_backwards};
 
 /// A piece on its way from the file to the rows.
 #[derive(Default)]
@@ -19,6 +21,9 @@ pub(super) struct Piece {
     pub first_row: u64,
     /// What stands wrong, and in which line of the piece.
     pub fault: Option<(u64, Fault)>,
+    /// Stamps as they are written, if they are kept.
+    pub stamps: StampTexts,
+    pub keeps_stamps: bool,
     separators: Separators,
     batch: Batch,
 }
@@ -33,10 +38,9 @@ impl Piece {
             text = split_line(text).1;
         }
         (self.lines, self.first_row, self.fault) = (skipped, skipped, None);
-        let is_ascii = layout.delimiter().is_some_and(|delimiter| self.separators.find(text, delimiter));
-        if !is_ascii && let Err((at, column, found)) = lines::check_utf8(text) {
-            self.fault = Some((skipped + at, Fault { column, found, expected: "text in UTF-8".to_owned() }));
-            text = &text[..lines::before_line(text, at)];
+        self.stamps = StampTexts::default();
+        if let Some(delimiter) = layout.delimiter() {
+            self.separators.find(text, delimiter);
         }
         if let Some((at, found)) = lines::endless_line(text) {
             self.fault = Some((skipped + at, Fault::no_table(found)));
@@ -125,6 +129,11 @@ impl Piece {
                 text = &text[length..];
             } else if is_data(line) {
                 layout.row(line, &mut row, fields).map_err(|fault| (self.lines, fault))?;
+                if self.keeps_stamps
+                    && let Some(stamp) = layout.stamp(line)
+                {
+                    self.stamps.push(rows[0].len(), &stamp);
+                }
                 text = rest;
             } else {
                 self.first_row += u64::from(rows[0].is_empty());
@@ -177,26 +186,35 @@ impl Fault {
 }
 
 impl Prologue {
-    /// Reads the lines before the first row: the layout of the rows and how many lines to skip; no layout if there are
-    /// only comments.
-    pub fn read(&mut self, text: &[u8], fields: &[Field]) -> Result<(Option<Layout>, u64), (u64, Fault)> {
-        let mut rest = text;
-        let mut number = 0;
-        while !rest.is_empty() {
+    /// Reads the lines before the first row, `first` lines of the file being before the text; nothing if there are only comments.
+    pub fn read(&mut self, text: &[u8], first: u64, fields: &[Field]) -> Result<Option<Start>, (u64, Fault)> {
+        let (mut rest, mut number) = (text, 0);
+        let mut lines = Vec::new();
+        while !rest.is_empty() && lines.len() <= MOST_ABOVE {
             let line;
             (line, rest) = split_line(rest);
             if is_data(line) {
-                if let Err((_, column, found)) = lines::check_utf8(line) {
-                    return Err((number, Fault { column, found, expected: "text in UTF-8".to_owned() }));
-                }
-                let first = self.first_line(line, fields).map_err(|fault| (number, fault))?;
-                return Ok((Some(first.layout), number + u64::from(first.is_header)));
+                lines.push((number, line));
+            } else if lines.is_empty() {
+                self.comment(line);
             }
-            self.comment(line);
             number += 1;
         }
-        Ok((None, number))
+        if lines.is_empty() { Ok(None) } else { self.start(&lines, first, fields).map(Some) }
     }
+}
+
+/// The first lines of a text that are neither blank nor comments, with their numbers from 0.
+pub(super) fn data_lines(text: &[u8]) -> Vec<Line<'_>> {
+    let (mut rest, mut number) = (text, 0);
+    let mut lines = Vec::new();
+    while !rest.is_empty() {
+        let line;
+        (line, rest) = split_line(rest);
+        lines.extend(is_data(line).then_some((number, line)));
+        number += 1;
+    }
+    lines
 }
 
 /// The first line without its end, and the rest.
@@ -215,12 +233,19 @@ fn is_data(line: &[u8]) -> bool {
     match line.first() {
         None => false,
         Some(b'#') => is_failed_cell(line),
+        // A row of a spreadsheet in which nothing stands.
+        Some(b';' | b',' | b'"') => !is_empty_row(line),
         Some(b' ' | b'\t') => {
             let text = line.trim_ascii_start();
-            !text.is_empty() && (text[0] != b'#' || is_failed_cell(text))
+            !text.is_empty() && (text[0] != b'#' || is_failed_cell(text)) && !is_empty_row(text)
         }
         Some(_) => true,
     }
+}
+
+/// Whether nothing but delimiters stands in a line.
+fn is_empty_row(line: &[u8]) -> bool {
+    line.iter().all(|byte| matches!(byte, b';' | b',' | b'\t' | b' ' | b'"'))
 }
 
 /// Whether a text that starts with `#` is not a comment but a row whose first cell a spreadsheet could not compute.

@@ -35,8 +35,8 @@ pub(super) fn header(names: &[&str]) -> String {
     names.iter().map(|name| field(name)).collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// A name as a field of the header, quoted where it must be.
-fn field(name: &str) -> String {
+/// A text as a field, quoted where it must be.
+pub(super) fn field(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 

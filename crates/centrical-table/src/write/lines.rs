@@ -2,11 +2,13 @@
 
 use std::io::{self, Write};
 
+use memchr::memchr;
 use rayon::prelude::*;
 
-use super::csv::header;
+use super::csv::{field, header};
 use super::output::{Output, Sink, SteadyFile};
 use super::text_lines::{Decimals, ROWS, write_lines};
+use crate::rows::StampTexts;
 
 /// Pieces of lines that may wait to be written.
 const AHEAD: usize = 32;
@@ -59,6 +61,27 @@ impl<const N: usize> TextTable<N> {
         });
         let written: Vec<Lines> = written.collect();
         written.into_iter().try_for_each(|lines| self.output.send(lines))
+    }
+
+    /// Adds the rows of a piece with these stamps in place of the numbers of the first column.
+    pub fn write_stamped(&mut self, stamps: &StampTexts, columns: [&[f64]; N]) -> io::Result<()> {
+        let count = columns[0].len();
+        for from in (0..count).step_by(ROWS) {
+            let rows = columns.map(|column| &column[from..count.min(from + ROWS)]);
+            let mut numbers = self.output.room();
+            numbers.start = write_lines(&mut numbers.text, self.decimals, rows);
+            let mut text = Vec::with_capacity(2 * (numbers.text.len() - numbers.start));
+            for (row, line) in numbers.text[numbers.start..].split_inclusive(|byte| *byte == b'\n').enumerate() {
+                let after = memchr(b',', line).unwrap_or(0);
+                match stamps.get(from + row) {
+                    Some(stamp) => text.extend_from_slice(field(&String::from_utf8_lossy(stamp)).as_bytes()),
+                    None => text.extend_from_slice(&line[..after]),
+                }
+                text.extend_from_slice(&line[after..]);
+            }
+            self.output.send(Lines { text, start: 0 })?;
+        }
+        Ok(())
     }
 
     /// Writes the rest and sees it to the disk.

@@ -1,6 +1,6 @@
 """Writes the records in this folder, the same 300 rows in every format, with the programs laboratories use.
 
-    pip install h5py numpy pandas polars pyarrow scipy && python generate.py [FOLDER]
+    pip install h5py npTDMS numpy openpyxl pandas polars pyarrow scipy && python generate.py [FOLDER]
 
 `.ci/run generated` writes them anew into another folder and has the tests read those.
 
@@ -10,6 +10,7 @@ float32 or counts, what that type makes of them). The numbers are drawn from a f
 
 import datetime
 import gzip
+import struct
 import sys
 from pathlib import Path
 
@@ -21,6 +22,7 @@ import pyarrow as pa
 import pyarrow.feather as feather
 import pyarrow.parquet as pq
 import scipy.io
+from nptdms import ChannelObject, GroupObject, RootObject, TdmsFile, TdmsWriter
 
 HERE = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent
 
@@ -43,6 +45,9 @@ def main():
     write_hdf5(t, f)
     write_arrow(t, f)
     write_frames(t, f)
+    write_tdms(t, f)
+    write_encodings(t, f)
+    write_sheets(t, f)
 
 
 def write_text(t, f):
@@ -196,6 +201,119 @@ def write_frames(t, f):
     polars.write_parquet(HERE / "polars.parquet")
     polars.write_ipc(HERE / "polars.arrow", compression="zstd")
     polars.write_ipc_stream(HERE / "polars.arrows", compression="lz4")
+
+
+def write_tdms(t, f):
+    names = ["t", "f1", "f2", "f3"]
+    values = dict(zip(names, [t, f[:, 0], f[:, 1], f[:, 2]]))
+    with TdmsWriter(HERE / "plain.tdms", index_file=False) as writer:
+        writer.write_segment([RootObject({"title": "a record"}), *(ChannelObject("g", n, v) for n, v in values.items())])
+    # Several segments; the last ones say nothing new. Another group has text and a channel of its own length.
+    with TdmsWriter(HERE / "segments.tdms") as writer:
+        others = [ChannelObject("notes", "text", ["one", "two"]), ChannelObject("notes", "f9", np.arange(7, dtype=np.int8))]
+        writer.write_segment(others + [ChannelObject("g", n, v[:10]) for n, v in values.items()])
+        for k in range(10, 300, 29):
+            writer.write_segment([ChannelObject("g", n, v[k : k + 29]) for n, v in values.items()])
+    counts = {n: np.round(values[n] * 8192) for n in names[1:]}
+    linear = lambda slope, intercept: {
+        "NI_Number_Of_Scales": 1,
+        "NI_Scaling_Status": "unscaled",
+        "NI_Scale[0]_Scale_Type": "Linear",
+        "NI_Scale[0]_Linear_Slope": slope,
+        "NI_Scale[0]_Linear_Y_Intercept": intercept,
+        "NI_Scale[0]_Linear_Input_Source": 0xFFFFFFFF,
+    }
+    chain = {
+        "NI_Number_Of_Scales": 2,
+        "NI_Scale[0]_Scale_Type": "Polynomial",
+        "NI_Scale[0]_Polynomial_Coefficients_Size": 3,
+        "NI_Scale[0]_Polynomial_Coefficients[0]": 1.0,
+        "NI_Scale[0]_Polynomial_Coefficients[1]": 0.5,
+        "NI_Scale[0]_Polynomial_Coefficients[2]": 0.0,
+        "NI_Scale[0]_Polynomial_Input_Source": 0xFFFFFFFF,
+        "NI_Scale[1]_Scale_Type": "Linear",
+        "NI_Scale[1]_Linear_Slope": 2 / 8192,
+        "NI_Scale[1]_Linear_Y_Intercept": -2 / 8192,
+        "NI_Scale[1]_Linear_Input_Source": 0,
+    }
+    with TdmsWriter(HERE / "scaled.tdms") as writer:
+        writer.write_segment([
+            ChannelObject("g", "t", t),
+            ChannelObject("g", "f1", counts["f1"].astype(np.int32), linear(1 / 8192, 0.0)),
+            ChannelObject("g", "f2", counts["f2"].astype(np.int16), chain),
+            ChannelObject("g", "f3", values["f3"].astype(np.float32), {"NI_Number_Of_Scales": 1, "NI_Scaling_Status": "scaled"}),
+        ])
+    waveform = {"wf_start_time": np.datetime64("2026-10-05T10:00:00"), "wf_start_offset": 0.25, "wf_increment": 1 / 128}
+    with TdmsWriter(HERE / "waveform.tdms") as writer:
+        writer.write_segment([ChannelObject("g", n, values[n], waveform) for n in names[1:]])
+    stamps = np.datetime64("2026-10-05T10:00:00", "us") + np.round(t * 1e6).astype("timedelta64[us]")
+    with TdmsWriter(HERE / "stamps.tdms") as writer:
+        writer.write_segment([ChannelObject("g", "t", stamps), *(ChannelObject("g", n, values[n]) for n in names[1:])])
+    # npTDMS writes neither interleaved data nor those of the driver DAQmx nor the high byte first: by the description of the format,
+    # and read by npTDMS as what they are meant to be.
+    rows = np.column_stack(list(values.values()))
+    for name, order in [("interleaved.tdms", "<"), ("big_endian.tdms", ">")]:
+        index = [struct.pack(order + "IIIQ", 20, 10, 1, 1) for _ in names]
+        data = rows.astype(order + "f8").tobytes()
+        (HERE / name).write_bytes(segment(names, index, data, 1 << 5, order))
+    widths = [10]
+    scalers = [(3, 0, 0, 0), (5, 0, 2, 0), (3, 0, 6, 0), (2, 0, 8, 0)]  # type, buffer, byte, scale
+    index = [
+        struct.pack("<IIIQI", 0x1269, 0xFFFFFFFF, 1, 100, 1) + struct.pack("<IIIII", kind, buffer, byte, 0, scale) + struct.pack("<II", 1, *widths)
+        for kind, buffer, byte, scale in scalers
+    ]
+    raw = np.zeros(300, np.dtype({"names": names, "formats": ["<i2", "<i4", "<i2", "<u2"], "offsets": [0, 2, 6, 8], "itemsize": 10}))
+    raw["t"] = np.round(t * 128)
+    for n in names[1:]:
+        raw[n] = counts[n] - (60000 if n == "f3" else 0)
+    scale = lambda slope, intercept: {
+        "NI_Number_Of_Scales": 2,
+        "NI_Scale[1]_Scale_Type": "Linear",
+        "NI_Scale[1]_Linear_Slope": slope,
+        "NI_Scale[1]_Linear_Y_Intercept": intercept,
+        "NI_Scale[1]_Linear_Input_Source": 0,
+    }
+    properties = [scale(1 / 128, 0.0), scale(1 / 8192, 0.0), scale(1 / 8192, 0.0), scale(1 / 8192, 60000 / 8192)]
+    first = segment(names, index, raw[:200].tobytes(), 1 << 7, "<", properties)
+    # The second segment has no metadata, and ends within a chunk.
+    second = b"TDSm" + struct.pack("<IIQQ", 1 << 3 | 1 << 7, 4713, 1000, 0) + raw[200:].tobytes()
+    (HERE / "daqmx.tdms").write_bytes(first + second)
+    for name in ["plain", "segments", "scaled", "stamps", "interleaved", "big_endian", "daqmx"]:
+        group = TdmsFile.read(HERE / f"{name}.tdms")["g"]
+        for n in names[name == "stamps" :]:
+            assert np.array_equal(group[n][:], values[n]), (name, n)
+
+
+def segment(names, indices, data, contents, order, properties=({},) * 4):
+    text = lambda words: struct.pack(order + "I", len(words)) + words.encode()
+    metadata = struct.pack(order + "I", len(names))
+    for name, index, own in zip(names, indices, properties):
+        metadata += text(f"/'g'/'{name}'") + index + struct.pack(order + "I", len(own))
+        for key, value in own.items():
+            kind = {str: 0x20, float: 10, int: 7}[type(value)]
+            metadata += text(key) + struct.pack(order + "I", kind)
+            metadata += text(value) if kind == 0x20 else struct.pack(order + ("d" if kind == 10 else "I"), value)
+    contents |= 1 << 1 | 1 << 2 | 1 << 3 | (1 << 6 if order == ">" else 0)
+    lead_in = b"TDSm" + struct.pack("<I", contents) + struct.pack(order + "IQQ", 4713, len(metadata) + len(data), len(metadata))
+    return lead_in + metadata + data
+
+
+def write_encodings(t, f):
+    """Text as Excel and LabVIEW write it: decimal commas, a header that is no ASCII, lines above it, a row of units."""
+    names = ["Время", "Ускорение 1", "Ускорение 2", "Ускорение 3"]
+    start = datetime.datetime(2026, 10, 5, 10, 0, 0)
+    stamps = [(start + datetime.timedelta(seconds=float(v))).strftime("%d.%m.%Y %H:%M:%S,%f") for v in t]
+    rows = [";".join([stamp, *(repr(float(v)).replace(".", ",") for v in row)]) for stamp, row in zip(stamps, f)]
+    above = ["Рекордер;7", "Дата;05.10.2026", "", ";".join(names) + ";;", ";м/с^2;м/с^2;м/с^2;;"]
+    text = "\r\n".join(above + [row + ";;" for row in rows] + [";;;;;"])
+    for name, encoding in [("windows_1251", "cp1251"), ("utf_16", "utf-16"), ("utf_16_be", "utf-16-be"), ("utf_8_mark", "utf-8-sig")]:
+        (HERE / f"{name}.csv").write_bytes(text.encode(encoding))
+    table = pd.DataFrame({"Zeit": t, "Größe 1": f[:, 0], "Größe 2": f[:, 1], "Größe 3": f[:, 2]})
+    table.to_csv(HERE / "latin_1.csv", sep="\t", decimal=",", encoding="latin-1", index=False)
+
+
+def write_sheets(t, f):
+    pass
 
 
 if __name__ == "__main__":

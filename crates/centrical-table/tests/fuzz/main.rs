@@ -38,6 +38,7 @@ fn parsers() -> Vec<Parser> {
         ("mat", "record.mat", &["mat"]),
         ("arrow", "record.arrow", &["arrow", "arrows", "feather"]),
         ("hdf5", "record.h5", &["h5"]),
+        ("tdms", "record.tdms", &["tdms"]),
     ]
     .map(|(name, file, extensions)| Parser { name, file, seeds: data(extensions), read: table })
     .into();

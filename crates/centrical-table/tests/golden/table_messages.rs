@@ -72,11 +72,30 @@ fn what_is_no_table() {
         ),
     ]);
     assert_eq!(
-        message(b"t,f1,f2,f3,\xb0C\n0,1,2,3,20\n"),
-        "m01.csv, line 1: found byte 0xb0 after \"t,f1,f2,f3,\", expected text in UTF-8"
+        message(b"t,f1,f2,\xb0C\n0,1,2,20\n"),
+        "m01.csv, line 1, f3: found columns \"t, f1, f2, \u{b0}C\", expected a column of this name"
     );
     assert_eq!(
         message(vec![b'x'; 3 << 20]),
         "m01.csv, line 1: found a line longer than 1048576 bytes, expected a table of numbers as text"
     );
+}
+
+#[test]
+fn lines_above_the_header() {
+    compare(&[
+        (
+            "Date;05.10.2026\nSamples;3\nt;f1;f2;f33\n0;1;2;3\n",
+            r#", line 3, f3: found columns "t, f1, f2, f33", expected a column of this name"#,
+        ),
+        (
+            "Date;05.10.2026\nSamples;3\nTime;A;B;C\ns;g;g;g\n0;1;2;3\n1;1;2;3\n",
+            r#", line 3, t: found columns "Time, A, B, C", expected a column of this name"#,
+        ),
+        ("t;f1;f2;f3\ns;g;g;fine\n0;1;2;3\n", r#", line 2, t: found "s", expected a number in s"#),
+        (
+            "t;f1;f2;f3\n0;1;2;3\n\u{feff}t;f1;f2;f3\n1;1;2;3\n",
+            ", line 3: found the names of the columns again, expected a row of numbers (two files in one?)",
+        ),
+    ]);
 }

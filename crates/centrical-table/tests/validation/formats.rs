@@ -227,3 +227,76 @@ fn parquet_that_is_no_record() {
     let expected = "g2: found columns \"t, f1, f2, f3\", expected one column of this name";
     assert_eq!(error.to_string(), format!("{}, {expected}", file.display()));
 }
+
+#[test]
+fn channels_of_tdms() {
+    for name in ["plain.tdms", "segments.tdms", "scaled.tdms", "interleaved.tdms", "big_endian.tdms", "daqmx.tdms"] {
+        assert_eq!(read_record(&data(name), &named()).unwrap(), reference(), "{name}");
+    }
+    assert_eq!(read_record(&data("plain.tdms"), &numbered()).unwrap(), reference());
+    let full = ["g/t", "g/f1", "g/f2", "g/f3"].map(|name| ColumnName::Name(name.to_owned()));
+    assert_eq!(read_record(&data("segments.tdms"), &full).unwrap(), reference());
+}
+
+/// 2026-10-05T10:00:00Z.
+const START: f64 = 1_791_194_400.0;
+
+#[test]
+fn times_of_tdms() {
+    let [t, f @ ..] = read_record(&data("stamps.tdms"), &named()).unwrap();
+    // To the microseconds that the generator wrote and the 2^-22 s that a number of seconds of this size resolves.
+    let is_near = |(own, reference): (&f64, &f64)| (own - START - reference).abs() < 1e-6;
+    assert!(t.len() == 300 && t.iter().zip(&reference()[0]).all(is_near));
+    assert_eq!(f[..], reference()[1..]);
+    let [t, f @ ..] = read_record(&data("waveform.tdms"), &named()).unwrap();
+    assert!(t.iter().enumerate().all(|(k, t)| *t == START + 0.25 + k as f64 / 128.0) && t.len() == 300);
+    assert_eq!(f[..], reference()[1..]);
+}
+
+#[test]
+fn text_as_recorders_write_it() {
+    let names = ["Время", "Ускорение 1", "Ускорение 2", "Ускорение 3"].map(|name| ColumnName::Name(name.to_owned()));
+    for name in ["windows_1251.csv", "utf_16.csv", "utf_16_be.csv", "utf_8_mark.csv"] {
+        let [t, f @ ..] = read_record(&data(name), &names).unwrap();
+        assert!(t.iter().zip(&reference()[0]).all(|(own, reference)| (own - START - reference).abs() < 1e-6), "{name}");
+        assert_eq!(f[..], reference()[1..], "{name}");
+    }
+    let names = ["Zeit", "Größe 1", "Größe 2", "Größe 3"].map(|name| ColumnName::Name(name.to_owned()));
+    assert_eq!(read_record(&data("latin_1.csv"), &names).unwrap(), reference());
+}
+
+#[test]
+fn tdms_that_is_no_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let message = |bytes: &[u8], names: [&str; 4]| {
+        let file = folder.path().join("record.tdms");
+        fs::write(&file, bytes).unwrap();
+        let names = names.map(|name| ColumnName::Name(name.to_owned()));
+        read_record(&file, &names).unwrap_err().to_string().replace(&file.display().to_string(), "record.tdms")
+    };
+    let segments = fs::read(data("segments.tdms")).unwrap();
+    assert_eq!(
+        message(&segments, ["t", "f1", "f2", "f9"]),
+        "record.tdms, f9: found 7 rows where t has 300, expected columns of equal length"
+    );
+    assert_eq!(
+        message(&segments, ["t", "f1", "f2", "f4"]),
+        "record.tdms, f4: found channels \"notes/f9, g/t, g/f1, g/f2, g/f3\", expected a channel of this name"
+    );
+    assert_eq!(
+        message(b"TDSh\x0e\0\0\0", ["t", "f1", "f2", "f3"]),
+        "record.tdms: found the index of a TDMS file, without its numbers, expected the file of the same name that ends in .tdms"
+    );
+    assert_eq!(
+        message(&segments[..40], ["t", "f1", "f2", "f3"]),
+        "record.tdms: found a damaged TDMS file (metadata that end within a value), expected a TDMS file that is whole"
+    );
+    let scaled = fs::read(data("scaled.tdms")).unwrap();
+    let at = scaled.windows(6).position(|bytes| bytes == b"Linear").unwrap();
+    let mut other = scaled.clone();
+    other[at..at + 6].copy_from_slice(b"Strain");
+    assert_eq!(
+        message(&other, ["t", "f1", "f2", "f3"]),
+        "record.tdms, f1: found a scale of type Strain, expected linear and polynomial scales, or data that are scaled already"
+    );
+}

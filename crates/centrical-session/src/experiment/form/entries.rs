@@ -47,6 +47,37 @@ pub(crate) struct StepsTable {
     pub count: usize,
 }
 
+/// The path of a record, or of three: one for each newtonometer.
+#[derive(Debug)]
+pub(crate) enum RecordEntry {
+    One(String),
+    Three([String; 3]),
+}
+
+impl<'de> Deserialize<'de> for RecordEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct EntryVisitor;
+        impl<'de> Visitor<'de> for EntryVisitor {
+            type Value = RecordEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the path of a record, or three paths, one for each newtonometer")
+            }
+
+            fn visit_str<E: de::Error>(self, path: &str) -> Result<RecordEntry, E> {
+                Ok(RecordEntry::One(path.to_owned()))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<RecordEntry, A::Error> {
+                let paths = Vec::<String>::deserialize(de::value::SeqAccessDeserializer::new(list))?;
+                let count = paths.len();
+                paths.try_into().map(RecordEntry::Three).map_err(|_| de::Error::invalid_length(count, &self))
+            }
+        }
+        deserializer.deserialize_any(EntryVisitor)
+    }
+}
+
 /// A column by name or number, or in full.
 #[derive(Debug)]
 pub(crate) struct ColumnEntry(pub ColumnTable);

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 
 use super::entries::{
-    ColumnEntry, ColumnLabel, ColumnTable, PriorTable, PriorValue, Steps, StepsTable, TermList, TermTable,
+    ColumnEntry, ColumnLabel, ColumnTable, PriorTable, PriorValue, RecordEntry, Steps, StepsTable, TermList, TermTable,
 };
 use crate::quantity::Quantity;
 
@@ -60,6 +60,17 @@ impl JsonSchema for PriorValue {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let about_zero = generator.subschema_for::<Quantity>();
         json_schema!({ "anyOf": [about_zero, generator.subschema_for::<PriorTable>()] })
+    }
+}
+
+impl JsonSchema for RecordEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Record".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let three = json_schema!({ "type": "array", "items": { "type": "string" }, "minItems": 3, "maxItems": 3 });
+        json_schema!({ "anyOf": [{ "type": "string" }, three] })
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::entries::{ColumnEntry, PriorValue, Steps, TermList, date_as_text, name_or_number};
+use super::entries::{ColumnEntry, PriorValue, RecordEntry, Steps, TermList, date_as_text, name_or_number};
 use super::entry_schemas;
 use crate::quantity::Quantity;
 
@@ -234,22 +234,25 @@ pub(crate) struct UnitTable {
     /// Serial number.
     #[serde(default)]
     pub serial: String,
-    /// Unit of the readings: "m/s^2", "g" (9.80665 m/s^2) or "counts".
+    /// Unit of the readings: "m/s^2", "g" (9.80665 m/s^2), "counts" or "V".
     pub output_unit: String,
     /// Nominal scale and bias, where the readings are counts.
-    pub counts: Option<CountsTable>,
+    pub counts: Option<RawTable>,
+    /// Nominal scale and bias, where the readings are volts.
+    pub volts: Option<RawTable>,
     /// Places of the three proof masses in instrument axes.
     pub proof_masses: [[Quantity; 3]; 3],
     /// What the places are relative to: "first-proof-mass" (default; the first is zero) or "own-axes".
     pub reference: Option<String>,
 }
 
+/// The coarse scale and bias of a raw output, in counts or volts.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct CountsTable {
-    /// Counts per m/s^2.
+pub(crate) struct RawTable {
+    /// Counts or volts per m/s^2.
     pub scale: [f64; 3],
-    /// Counts at no specific force.
+    /// Counts or volts at no specific force.
     pub bias: [f64; 3],
 }
 
@@ -307,6 +310,14 @@ pub(crate) struct ColumnsTable {
     pub speed: Option<ColumnEntry>,
     /// Unit of the speed.
     pub speed_unit: Option<String>,
+    /// Line of a record with the names of its columns, from 1, where it is not recognised.
+    pub header_line: Option<u64>,
+    /// Line of the first row of a record, where it is not recognised.
+    pub first_row: Option<u64>,
+    /// Line of the telemetry with the names of its columns.
+    pub telemetry_header_line: Option<u64>,
+    /// Line of the first row of the telemetry.
+    pub telemetry_first_row: Option<u64>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -333,8 +344,8 @@ pub(crate) struct MountingTable {
     pub position: String,
     /// Nominal place of the reference point in arm axes.
     pub arm: [Quantity; 3],
-    /// File of the readings.
-    pub record: Option<String>,
+    /// File of the readings, or three files, one for each newtonometer.
+    pub record: Option<RecordEntry>,
     /// File of the speed against time.
     pub telemetry: Option<String>,
     /// File of the times of pulses.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical::stability::Estimator;
-use centrical_table::ColumnName;
+use centrical_table::{ColumnName, TableLines};
 
 use super::analysis::analyse_noise;
 use super::series::Series;
@@ -57,14 +57,16 @@ fn series(request: &NoiseRequest) -> Result<(Series, Option<PlateauName>), Error
         let (series, name) = Series::of_plateau(&Session::read(file)?, request.plateau)?;
         return Ok((series, Some(name)));
     }
+    let mut lines = TableLines::default();
     let (time, readings) = match &request.session {
         Some(session) => {
-            let Columns { time, f, .. } = Session::read(session)?.columns;
+            let Columns { time, f, record_lines, .. } = Session::read(session)?.columns;
+            lines = record_lines;
             (time, f.to_vec())
         }
         None => columns(request),
     };
-    Ok((Series::read(file, &time, &readings, request.window)?, None))
+    Ok((Series::read(file, lines, &time, &readings, request.window)?, None))
 }
 
 fn columns(request: &NoiseRequest) -> (Column, Vec<Column>) {

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_table::{Extent, Rule, TableReader};
+use centrical_table::{Extent, Rule, TableLines, TableReader};
 
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
 use crate::job::reduce::reduce;
 use crate::quantity::Dimension;
-use crate::record::{Column, Scale};
+use crate::record::{Column, Scale, check_units};
 
 /// Columns of readings, and their time.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,13 +26,26 @@ impl Series {
     ///
     /// # Errors
     /// As of a record; and if nothing is in the window.
-    pub fn read(file: &Path, time: &Column, readings: &[Column], window: [f64; 2]) -> Result<Self, Error> {
+    pub fn read(
+        file: &Path,
+        lines: TableLines,
+        time: &Column,
+        readings: &[Column],
+        window: [f64; 2],
+    ) -> Result<Self, Error> {
         let mut fields = vec![time.field(Rule::Ascending { stamps: true })];
         fields.extend(readings.iter().map(|column| column.field(Rule::OrMissing)));
         let (mut t, mut values) = (Vec::new(), vec![Vec::new(); readings.len()]);
         let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut table = TableReader::open(file, Extent::Whole, &fields, "a record")?;
-        while let Some(batch) = table.next_batch()? {
+        let mut table = TableReader::open_at(file, Extent::Whole, &fields, "a record", lines)?;
+        let mut is_first = true;
+        while table.next_batch()?.is_some() {
+            if std::mem::take(&mut is_first) {
+                let columns = std::iter::once(time).chain(readings);
+                let units = columns.map(|column| (column.name.to_string(), column.unit.as_str()));
+                check_units(file, table.units().as_ref(), units)?;
+            }
+            let batch = table.batch();
             for rows in batch.iter().filter(|rows| !rows[0].is_empty()) {
                 let times: Vec<f64> = rows[0].iter().map(|raw| si(time, *raw)).collect();
                 ends = [ends[0].min(times[0]), ends[1].max(times[times.len() - 1])];
@@ -50,6 +63,15 @@ impl Series {
         }
         let named = |(column, values): (&Column, Vec<f64>)| (column.name.to_string(), si_unit(column), values);
         Ok(Self { file: file.to_owned(), t, columns: readings.iter().zip(values).map(named).collect() })
+    }
+
+    /// The readings of a mounting whose newtonometers have a file each.
+    fn of_files(session: &Session, mounting: usize, window: [f64; 2]) -> Result<Self, Error> {
+        let record = session.record(mounting)?;
+        let inside = record.as_slice().between(window);
+        let named = |(column, values): (&Column, &[f64])| (column.name.to_string(), si_unit(column), values.to_vec());
+        let columns = session.columns.f.iter().zip(inside.f_z).map(named).collect();
+        Ok(Self { file: session.record_file(mounting)?.to_owned(), t: inside.t.to_vec(), columns })
     }
 
     /// The readings of one plateau of a session, in the window that a calibration would use; without a name those of
@@ -72,7 +94,11 @@ impl Series {
             return Err(none("plateaus already averaged"));
         };
         let columns = &session.columns;
-        let series = Self::read(record, &columns.time, &columns.f, window)?;
+        if files.further_records.is_some() {
+            let series = Self::of_files(session, set_points[set_point].mounting, window)?;
+            return Ok((series, PlateauName::of(session, set_point)));
+        }
+        let series = Self::read(record, columns.record_lines, &columns.time, &columns.f, window)?;
         Ok((series, PlateauName::of(session, set_point)))
     }
 }

@@ -14,9 +14,10 @@ pub(super) fn reduce_mounting(
     progress: &(dyn Fn(u64) + Sync),
     cache: &mut SampleCache,
 ) -> Result<(ReducedMounting, RecordOverview), Error> {
-    let record = RecordFile::new(session.record_file(number)?, &session.columns, progress);
+    let record = RecordFile::new(session.record_files(number)?, &session.columns, progress);
+    let file = session.record_file(number)?;
     let refused = |source: ReductionError| Error::Reduction {
-        file: record.file.to_owned(),
+        file: file.to_owned(),
         mounting: number + 1,
         source: Box::new(source),
     };

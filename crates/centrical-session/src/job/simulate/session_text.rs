@@ -27,6 +27,12 @@ pub(crate) fn with_files(plan: &Session, format: TableFormat) -> Result<String, 
         }
         _ => {}
     }
+    if let Some(columns) = document.get_mut("columns").and_then(Item::as_table_like_mut) {
+        // The files that are written begin with their header.
+        for key in ["header_line", "first_row", "telemetry_header_line", "telemetry_first_row"] {
+            columns.remove(key);
+        }
+    }
     Ok(document.to_string())
 }
 

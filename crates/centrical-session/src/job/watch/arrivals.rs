@@ -13,7 +13,7 @@ use centrical::{Observation, SetPoint, linear};
 
 use crate::error::Error;
 use crate::experiment::{PlateauMean, Session, SpeedSource};
-use crate::record::{read_growing_pulses, read_growing_record, read_growing_telemetry};
+use crate::record::{read_growing_pulses, read_growing_records, read_growing_telemetry};
 
 /// A session folder that is looked into again and again.
 ///
@@ -122,7 +122,7 @@ impl<'s> Watch<'s> {
         self.seen = Some(look);
         self.note = None;
         let finished = look.left_alone || look.followed;
-        let reduced = if finished { self.whole(mounting, file, look).map(Some) } else { self.begun(mounting, file) };
+        let reduced = if finished { self.whole(mounting, look).map(Some) } else { self.begun(mounting) };
         match reduced {
             Err(error) if !look.left_alone => self.note = Some(format!("not yet: {error}")),
             Err(error) => return Err(error),
@@ -141,30 +141,35 @@ impl<'s> Watch<'s> {
 
     /// `None` while there is no record.
     fn look_of(&self, mounting: usize, file: &Path) -> Option<Look> {
-        let metadata = fs::metadata(file).ok()?;
-        let changed = metadata.modified().ok();
+        let (mut bytes, mut changed) = (fs::metadata(file).ok()?.len(), fs::metadata(file).ok()?.modified().ok());
+        // Where every newtonometer has a file, the last one to change counts.
+        for file in self.session.mountings[mounting].further_records.iter().flatten() {
+            let metadata = fs::metadata(file).ok()?;
+            bytes += metadata.len();
+            changed = changed.max(metadata.modified().ok());
+        }
         let left_alone = changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= self.quiet);
         let mut later = self.session.mountings[mounting + 1..].iter().filter_map(|m| m.record.as_deref());
-        Some(Look { bytes: metadata.len(), changed, left_alone, followed: later.any(Path::exists) })
+        Some(Look { bytes, changed, left_alone, followed: later.any(Path::exists) })
     }
 
     /// All plateaus of a finished mounting. Unless it has been left alone a last line without end is not read: it may have
     /// come in part.
-    fn whole(&self, mounting: usize, file: &Path, look: Look) -> Result<(ReducedMounting, usize), Error> {
+    fn whole(&self, mounting: usize, look: Look) -> Result<(ReducedMounting, usize), Error> {
         let schedule = self.schedule(mounting);
         let record = if look.left_alone {
             self.session.record(mounting)?
         } else {
-            read_growing_record(file, &self.session.columns)?
+            read_growing_records(&self.session.record_files(mounting)?, &self.session.columns)?
         };
         let reduced = self.reduced(mounting, &record, &schedule).map_err(|source| self.refused(mounting, source))?;
         Ok((reduced, schedule.len()))
     }
 
     /// The plateaus that a growing record shows, and how many of them have come to their end.
-    fn begun(&self, mounting: usize, file: &Path) -> Result<Option<(ReducedMounting, usize)>, Error> {
+    fn begun(&self, mounting: usize) -> Result<Option<(ReducedMounting, usize)>, Error> {
         let schedule = self.schedule(mounting);
-        let record = read_growing_record(file, &self.session.columns)?;
+        let record = read_growing_records(&self.session.record_files(mounting)?, &self.session.columns)?;
         let mut count = schedule.len();
         while count > 0 {
             match self.reduced(mounting, &record, &schedule[..count]) {

@@ -1,0 +1,112 @@
+//! What a table as text looks like: for whoever writes down how it is to be read.
+
+use super::encoding::TextEncoding;
+use super::fields::{Delimiter, number};
+use super::piece::data_lines;
+use super::shape::Shape;
+use super::unit_words::{name_and_unit, unit};
+use crate::stamp::{self, StampKind};
+
+/// What a table as text looks like, from its first lines.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TextForm {
+    /// The encoding of names and other words. Numbers are read in any of them.
+    pub encoding: TextEncoding,
+    /// What divides the fields: `;`, `,`, a tab, or a blank for any number of blanks.
+    pub delimiter: char,
+    /// The sign before the decimals.
+    pub decimal: DecimalSign,
+    /// The lines above the header, or above the first row; comments and blank lines are not among them.
+    pub above: Vec<String>,
+    /// The line of the header, counted from 1; none where there are only numbers.
+    pub header_line: Option<u64>,
+    /// The names of the columns in UTF-8, as settings may write them.
+    pub names: Vec<String>,
+    /// The line of a row of units, counted from 1.
+    pub units_line: Option<u64>,
+    /// Units of the columns, in the spelling of settings, from the row of units or behind the names; none where there is none or it is
+    /// not understood.
+    pub units: Vec<Option<&'static str>>,
+    /// The line of the first row, counted from 1.
+    pub first_row_line: u64,
+    /// The fields of the first row as they are written.
+    pub first_row: Vec<String>,
+    /// The first column of stamps, counted from 0, and their kind.
+    pub stamps: Option<Stamps>,
+}
+
+/// The sign before the decimals of numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DecimalSign {
+    /// 0.5
+    Point,
+    /// 0,5
+    Comma,
+    /// There are only whole numbers.
+    Unseen,
+}
+
+/// A column of stamps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stamps {
+    /// Counted from 0.
+    pub column: usize,
+    /// How they are written.
+    pub kind: StampKind,
+}
+
+impl TextForm {
+    /// The form that the first lines show, turned into UTF-8 if `encoding` is UTF-16; nothing where they are no table of numbers.
+    pub(crate) fn of(text: &[u8], encoding: Option<TextEncoding>) -> Option<Self> {
+        let lines = data_lines(text);
+        let texts: Vec<&[u8]> = lines.iter().map(|(_, line)| *line).collect();
+        let shape = Shape::of(&texts)?;
+        let start = &texts[..=shape.first_row];
+        let encoding = encoding.unwrap_or_else(|| TextEncoding::of_bytes(&start.join(&b'\n')));
+        let fields = |index: usize| -> Vec<String> {
+            let texts = shape.delimiter.texts(texts[index]).unwrap_or_default();
+            texts.iter().map(|text| encoding.decode(text).into_owned()).collect()
+        };
+        let names = shape.header.map(fields).unwrap_or_default();
+        let units = match shape.units.map(fields) {
+            Some(row) => row.iter().map(|text| unit(text)).collect(),
+            None => names.iter().map(|name| name_and_unit(name).map(|(_, unit)| unit)).collect(),
+        };
+        let first_row = fields(shape.first_row);
+        let line = |index: usize| lines[index].0 + 1;
+        let above = shape.header.unwrap_or(shape.first_row);
+        let stamp = |(column, text): (usize, &String)| Some(Stamps { column, kind: stamp::kind(text.as_bytes())? });
+        Some(Self {
+            encoding,
+            delimiter: match shape.delimiter {
+                Delimiter::Byte(byte) => char::from(byte),
+                Delimiter::Blanks => ' ',
+            },
+            decimal: DecimalSign::of(&texts[shape.first_row..], shape.delimiter),
+            above: texts[..above].iter().map(|line| encoding.decode(line).into_owned()).collect(),
+            header_line: shape.header.map(line),
+            names,
+            units_line: shape.units.map(line),
+            units,
+            first_row_line: line(shape.first_row),
+            stamps: first_row.iter().enumerate().filter(|(_, text)| number(text.as_bytes()).is_none()).find_map(stamp),
+            first_row,
+        })
+    }
+}
+
+impl DecimalSign {
+    /// The first one in a number of some rows.
+    fn of(rows: &[&[u8]], delimiter: Delimiter) -> Self {
+        for row in rows {
+            for text in delimiter.texts(row).unwrap_or_default().iter().filter(|text| number(text).is_some()) {
+                if text.contains(&b',') {
+                    return Self::Comma;
+                } else if text.contains(&b'.') {
+                    return Self::Point;
+                }
+            }
+        }
+        Self::Unseen
+    }
+}
