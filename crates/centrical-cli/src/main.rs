@@ -31,6 +31,7 @@ const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the result is not acce
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Init(command::init::Arguments),
     Calibrate(command::calibrate::Arguments),
     Reduce(command::reduce::Arguments),
     Compensate(command::compensate::Arguments),
@@ -70,6 +71,7 @@ fn main() -> ExitCode {
 
 fn run(command: Command) -> Result<Outcome, Error> {
     match command {
+        Command::Init(arguments) => command::init::run(&arguments),
         Command::Calibrate(arguments) => command::calibrate::run(&arguments),
         Command::Reduce(arguments) => command::reduce::run(&arguments),
         Command::Compensate(arguments) => command::compensate::run(&arguments),

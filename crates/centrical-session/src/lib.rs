@@ -56,11 +56,12 @@ pub use experiment::{
     Session, SpeedSource, Speeds, read_plateaus, write_plateaus,
 };
 pub use job::{
-    Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, FirstOutside, Following,
-    MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series, SettingsForm, USUAL_LEVELS,
-    USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess, calibrate, calibrate_without,
-    compare_results, compensate, compensate_record, noise_of, plan, read_plan, read_planning, reduce,
-    reduce_without_inputs, select_model, settings_schema, simulate_session, subject, write_reduced,
+    Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, Draft, FillIn, FirstOutside,
+    Following, InitRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series,
+    SettingsForm, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess,
+    calibrate, calibrate_without, compare_results, compensate, compensate_record, init, noise_of, plan, read_plan,
+    read_planning, reduce, reduce_without_inputs, select_model, settings_schema, simulate_session, subject,
+    write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,

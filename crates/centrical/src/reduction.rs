@@ -30,6 +30,7 @@
 mod average;
 mod colour;
 mod error;
+mod levels;
 mod locate;
 mod mistake;
 mod plateau;
@@ -41,6 +42,7 @@ mod triangle;
 pub use average::{Averaging, PlateauFit, ReducedMounting, average};
 pub use colour::{NoiseModel, plateau_means};
 pub use error::{ReductionError, Stretch};
+pub use levels::{Level, levels};
 pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate};
 pub use mistake::Mistake;
 pub use plateau::{LeftOut, PlateauMean, ScheduledPlateau};

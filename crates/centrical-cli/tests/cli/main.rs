@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod compensate;
+mod init;
 #[cfg(unix)]
 mod killed;
 mod noise;

@@ -42,7 +42,7 @@ impl Planning {
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, or has no `[candidates]`.
     pub fn read(path: &Path, earlier: EarlierResult) -> Result<Self, Error> {
-        let mut form: Form = from_toml(path, &read_text(path)?)?;
+        let mut form = from_toml::<Form>(path, &read_text(path)?)?.with_schedules();
         let at = TomlPath::table(path, "candidates");
         let Some(table) = form.candidates.take() else {
             return Err(at.unexpected("radii", "no [candidates]", "what the plan is chosen from"));

@@ -86,7 +86,7 @@ impl Plan {
         if is_measured && probe.plan.is_none() {
             return Ok(None);
         }
-        let form: Form = from_toml(path, &text)?;
+        let form = from_toml::<Form>(path, &text)?.with_schedules();
         let expected = expected_values(path, form.plan.as_ref(), earlier)?;
         Self::of_form(path, &form, &expected).map(Some)
     }

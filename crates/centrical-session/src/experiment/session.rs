@@ -90,7 +90,7 @@ impl Session {
     /// known, every quantity finite and of its dimension, every position a rotation and mounted.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let file = if path.is_dir() { path.join(EXPERIMENT_FILE) } else { path.to_owned() };
-        let form: Form = from_toml(&file, &read_text(&file)?)?;
+        let form = from_toml::<Form>(&file, &read_text(&file)?)?.with_schedules();
         let folder = file.parent().unwrap_or(Path::new(""));
         let mut session = Self::without_plateaus(&file, &form)?;
         let rotation = session.experiment.centrifuge.rotation;

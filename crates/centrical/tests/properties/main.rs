@@ -11,6 +11,7 @@ mod coverage;
 mod fit;
 mod frame;
 mod invariance;
+mod levels;
 mod measurement;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod mistakes;

@@ -48,6 +48,9 @@ pub(crate) struct Form {
     /// Attitudes of the unit on the arm.
     #[serde(default)]
     pub position: Vec<PositionTable>,
+    /// The schedule of the mountings that have none of their own.
+    #[serde(default)]
+    pub schedule: ScheduleTable,
     /// Installations of the unit, in the order of the session.
     #[serde(default)]
     pub mounting: Vec<MountingTable>,
@@ -355,7 +358,25 @@ pub(crate) struct MountingTable {
     pub plateaus: Vec<PlateauEntry>,
 }
 
-#[derive(Debug, Deserialize, JsonSchema)]
+/// The schedule common to mountings.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct ScheduleTable {
+    /// Plateaus in order.
+    pub plateaus: Vec<PlateauEntry>,
+}
+
+impl Form {
+    /// The form with the common schedule in every mounting that has none of its own.
+    pub fn with_schedules(mut self) -> Self {
+        for mounting in self.mounting.iter_mut().filter(|mounting| mounting.plateaus.is_empty()) {
+            mounting.plateaus.clone_from(&self.schedule.plateaus);
+        }
+        self
+    }
+}
+
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PlateauEntry {
     /// Speed, negative against `rotation`; 0 at rest.

@@ -1,0 +1,72 @@
+//! `centrical init FILES... --out experiment.toml`: an experiment file from what the files show.
+
+use std::path::{Path, PathBuf};
+
+use centrical_session::{Draft, Error, InitRequest, Place, init, write_whole};
+use clap::ValueEnum;
+
+use crate::outcome::Outcome;
+use crate::output::print;
+
+/// Draft experiment.toml from records and telemetry: what the files show, what is likely, and what only a person knows.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical init records/ telemetry/ --out experiment.toml")]
+pub struct Arguments {
+    /// Records and telemetry, or folders of them
+    #[arg(required = true, value_name = "FILE|FOLDER")]
+    inputs: Vec<PathBuf>,
+    /// The experiment file to write; a file that exists is not overwritten. Without it the draft is printed
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Positions to write out where the readings do not show them
+    #[arg(long, value_name = "PRESET")]
+    positions: Option<Positions>,
+}
+
+/// Positions written out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Positions {
+    /// The six positions of the source
+    Six,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    if let Some(file) = arguments.out.as_ref().filter(|file| file.exists()) {
+        return Err(Error::content(
+            file,
+            Place::Whole,
+            "a file that exists",
+            "a new file: no draft replaces what was written",
+        ));
+    }
+    let folder = match arguments.out.as_deref().and_then(Path::parent) {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+        _ => PathBuf::from("."),
+    };
+    let six_positions = arguments.positions == Some(Positions::Six);
+    let draft = init(&InitRequest { inputs: arguments.inputs.clone(), folder, six_positions })?;
+    match &arguments.out {
+        Some(file) => {
+            write_whole(file, draft.text.as_bytes())?;
+            print(&summary(file, &draft))?;
+        }
+        None => print(&draft.text)?,
+    }
+    Ok(Outcome::Done)
+}
+
+/// What remains to be done.
+fn summary(file: &Path, draft: &Draft) -> String {
+    let mut text = format!(
+        "Written to {}. Guesses to check: {}. Lines to fill in: {}\n",
+        file.display(),
+        draft.guesses,
+        draft.fill_in.len()
+    );
+    for entry in &draft.fill_in {
+        text.push_str(&format!("  line {}: {}: {}\n", entry.line, entry.key, entry.reason));
+    }
+    text.push_str(&format!("Then: centrical calibrate {}\n", file.display()));
+    text
+}

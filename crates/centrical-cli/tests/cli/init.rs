@@ -1,0 +1,99 @@
+//! `centrical init` on the files of the example: what it asks for, and that the filled draft calibrates to the same numbers.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::session::Copy;
+
+/// The example's own values of what no file shows, by the start of the line that asks for them.
+const FILLED: [(&str, &str); 4] = [
+    ("gravity = \"?\"", "gravity = \"9.81523 m/s^2\""),
+    ("serial = \"?\"", "serial = \"0001\""),
+    (
+        "proof_masses = [[0, 0, 0], [\"?\", \"?\", \"?\"], [\"?\", \"?\", \"?\"]]",
+        "proof_masses = [[0, 0, 0], [0.0210, 0.0120, 0.0105], [0.0150, -0.0100, -0.0140]]",
+    ),
+    ("speed_uncertainty = \"?\"", "speed_uncertainty = 1e-5"),
+];
+
+fn drafted(copy: &Copy) -> String {
+    fs::rename(copy.session().join("experiment.toml"), copy.session().join("own.toml")).unwrap();
+    let draft = copy.session().join("experiment.toml");
+    let output = copy.run(&["init", copy.session().to_str().unwrap(), "--out", draft.to_str().unwrap()]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    said
+}
+
+fn parameters(result: &Value) -> Vec<(String, f64, f64)> {
+    let row = |p: &Value| {
+        (
+            p["name"].as_str().unwrap().to_owned(),
+            p["value"].as_f64().unwrap(),
+            p["standard_uncertainty"].as_f64().unwrap(),
+        )
+    };
+    result["parameters"].as_array().unwrap().iter().map(row).collect()
+}
+
+#[test]
+fn a_filled_draft_calibrates_to_the_same_numbers() {
+    let copy = Copy::new();
+    assert_eq!(copy.calibrate(&[]).status.code(), Some(0));
+    let expected = parameters(&serde_json::from_slice(&fs::read(copy.out().join("result.json")).unwrap()).unwrap());
+    fs::remove_file(copy.out().join("result.json")).unwrap();
+
+    let said = drafted(&copy);
+    let asked = said.lines().filter(|line| line.trim_start().starts_with("line ")).count();
+    assert!((1..=10).contains(&asked), "{said}");
+
+    // Left as it is, the draft is refused by the first question.
+    let refused = copy.calibrate(&[]);
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(message.contains("[site], gravity: found \"?\""), "{message}");
+
+    copy.edit("experiment.toml", |mut text| {
+        for (question, answer) in FILLED {
+            assert!(text.contains(question), "{question}");
+            text = text.replace(question, answer);
+        }
+        text.replacen("angle = \"?\"", "angle = \"0 deg\"", 1).replacen("angle = \"?\"", "angle = \"180 deg\"", 1)
+    });
+    let output = copy.calibrate(&[]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let found = parameters(&serde_json::from_slice(&fs::read(copy.out().join("result.json")).unwrap()).unwrap());
+    assert_eq!(expected.len(), found.len());
+    for ((name, value, u), (other, again, _)) in expected.iter().zip(&found) {
+        assert_eq!(name, other);
+        assert!((value - again).abs() <= 1e-6 * u, "{name}: {value} and {again}, u {u}");
+    }
+}
+
+#[test]
+fn a_draft_replaces_nothing_and_needs_a_record() {
+    let copy = Copy::new();
+    let session = copy.session();
+    let own = session.join("experiment.toml");
+    let output = copy.run(&["init", session.to_str().unwrap(), "--out", own.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("found a file that exists"));
+
+    let output = copy.run(&["init", session.join("telemetry").to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("found no record, expected a table with a time and three readings"), "{message}");
+}
+
+/// Without telemetry the levels of the readings are asked for their speed, and positions can be written out.
+#[test]
+fn records_alone_are_asked_for_speeds_and_positions() {
+    let copy = Copy::new();
+    let records = copy.session().join("records");
+    let output = copy.run(&["init", records.to_str().unwrap(), "--positions", "six"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let draft = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(draft.matches("[[position]]").count(), 6);
+    assert_eq!(draft.matches("speed = \"?\"").count(), 9 * draft.matches("plateaus = [").count(), "{draft}");
+}

@@ -1,0 +1,46 @@
+//! `experiment.toml` from the files of a laboratory: what they show, what is guessed from them, and what only a person knows.
+//!
+//! Files are told apart by their columns: a record has a time and three readings (or one, with a file for each
+//! newtonometer), telemetry a time and a speed. The telemetry shows the schedule. The readings show the attitude: at
+//! rest the axis that reads `+-g` is vertical, while spinning the axis that reads most lies along the arm. Their ratio to
+//! the square of the speed is the radius.
+
+mod attitude;
+mod draft;
+mod experiment_text;
+mod file_roles;
+mod raw;
+mod schedule;
+mod seats;
+mod sighting;
+
+use std::path::{Path, PathBuf};
+
+pub use self::draft::{Draft, FillIn};
+use crate::error::{Error, Place};
+
+/// What `experiment.toml` is to be drafted from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InitRequest {
+    /// Files of records and telemetry, or folders of them.
+    pub inputs: Vec<PathBuf>,
+    /// Folder of the experiment file, which names the others relative to itself.
+    pub folder: PathBuf,
+    /// Whether to write the source's six positions out where the files do not show the positions.
+    pub six_positions: bool,
+}
+
+/// Drafts an experiment file.
+///
+/// # Errors
+/// [`Error`] when a file cannot be read, or when none is a record.
+pub fn init(request: &InitRequest) -> Result<Draft, Error> {
+    let groups = file_roles::groups(&request.inputs)?;
+    if groups.is_empty() {
+        let inputs = request.inputs.first().map_or(Path::new("."), PathBuf::as_path);
+        let expected = "a table with a time and three readings, as text, Parquet, Arrow, NumPy, MATLAB or TDMS";
+        return Err(Error::content(inputs, Place::Whole, "no record", expected));
+    }
+    let mountings = groups.into_iter().map(sighting::sight).collect::<Result<Vec<_>, _>>()?;
+    Ok(experiment_text::draft(&mountings, request))
+}

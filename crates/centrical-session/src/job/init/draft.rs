@@ -1,0 +1,53 @@
+//! A text with marks: what was found, what is guessed, and what is to be filled in.
+
+use std::fmt::Write;
+
+/// A drafted file.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Draft {
+    /// The text.
+    pub text: String,
+    /// The lines to be filled in, in their order.
+    pub fill_in: Vec<FillIn>,
+    /// Number of guesses.
+    pub guesses: usize,
+}
+
+/// A line that only a person can complete.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FillIn {
+    /// The line, counted from 1.
+    pub line: usize,
+    /// What is asked for: table and key.
+    pub key: String,
+    /// Why the files do not show it, or how to find it.
+    pub reason: String,
+}
+
+/// Stands where a person has to write: the program refuses it by name, so that nothing is forgotten.
+pub(super) const UNKNOWN: &str = "\"?\"";
+
+impl Draft {
+    pub(super) fn line(&mut self, line: &str) {
+        self.text.push_str(line);
+        self.text.push('\n');
+    }
+
+    /// A line that the files show.
+    pub(super) fn found(&mut self, line: &str, how: &str) {
+        let _ = writeln!(self.text, "{line}  # FOUND: {how}");
+    }
+
+    /// A line that is likely.
+    pub(super) fn guess(&mut self, line: &str, why: &str) {
+        self.guesses += 1;
+        let _ = writeln!(self.text, "{line}  # GUESS: {why}");
+    }
+
+    /// A line to be completed.
+    pub(super) fn fill_in(&mut self, key: &str, line: &str, reason: &str) {
+        let _ = writeln!(self.text, "{line}  # FILL IN: {reason}");
+        let line = self.text.lines().count();
+        self.fill_in.push(FillIn { line, key: key.to_owned(), reason: reason.to_owned() });
+    }
+}

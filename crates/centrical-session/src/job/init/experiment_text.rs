@@ -1,0 +1,401 @@
+//! The draft of `experiment.toml`.
+
+use std::path::Path;
+
+use centrical::STANDARD_GRAVITY;
+use centrical_table::{ColumnName, DecimalSign, TextForm};
+
+use super::InitRequest;
+use super::attitude::{Attitude, attitude};
+use super::draft::{Draft, UNKNOWN};
+use super::file_roles::{FileColumns, Label};
+use super::raw::{Extremes, Raw};
+use super::schedule::{Set, schedules};
+use super::seats::seats;
+use super::sighting::SeenMounting;
+use crate::quantity::Dimension;
+
+/// The six positions of the source: attitude and pair.
+const SIX: &str = include_str!("six-positions.toml");
+
+/// What all mountings together show.
+struct Findings {
+    unit: OutputUnit,
+    /// Of each mounting: the attitude, and the radius [m].
+    attitudes: Vec<Option<Attitude>>,
+    radii: Vec<Option<f64>>,
+    schedules: Vec<Vec<Set>>,
+}
+
+/// The unit of the readings: its name and how it was recognised.
+enum OutputUnit {
+    Named(&'static str),
+    ByGravity(&'static str, f64),
+    Raw { name: &'static str, unit: &'static str, coarse: Option<Raw> },
+}
+
+/// Drafts the file from what the mountings show.
+pub(super) fn draft(mountings: &[SeenMounting], request: &InitRequest) -> Draft {
+    let findings = Findings::of(mountings);
+    let mut draft = Draft::default();
+    heading(&mut draft, mountings);
+    session(&mut draft);
+    unit(&mut draft, &findings.unit);
+    machine(&mut draft);
+    columns(&mut draft, mountings, &findings.unit);
+    let ids = positions(&mut draft, &findings.attitudes, request.six_positions);
+    let is_common = findings.schedules.iter().all(|schedule| *schedule == findings.schedules[0]);
+    if is_common {
+        draft.line("[schedule]");
+        plateaus(&mut draft, &mountings[0], &findings.schedules[0], "[schedule]");
+        draft.line("");
+    }
+    for (m, mounting) in mountings.iter().enumerate() {
+        draft.line("[[mounting]]");
+        match &ids[m] {
+            Some(id) => draft.found(&format!("position = \"{id}\""), "the attitude that the readings show"),
+            None => {
+                draft.fill_in(&format!("[[mounting]] {}", m + 1), "position = \"?\"", "which of the positions above")
+            }
+        }
+        arm(&mut draft, m, findings.radii[m]);
+        files(&mut draft, mounting, &request.folder);
+        if !is_common {
+            plateaus(&mut draft, mounting, &findings.schedules[m], &format!("[[mounting]] {}", m + 1));
+        }
+        draft.line("");
+    }
+    draft.text.truncate(draft.text.trim_end().len());
+    draft.text.push('\n');
+    draft
+}
+
+impl Findings {
+    fn of(mountings: &[SeenMounting]) -> Self {
+        let extremes: Vec<Option<Extremes>> = mountings.iter().map(SeenMounting::extremes).collect();
+        let unit = OutputUnit::of(mountings, &extremes);
+        let in_si: Vec<Option<Extremes>> = extremes.iter().map(|e| e.as_ref()?.in_si(&unit.raw()?)).collect();
+        let attitudes: Vec<Option<Attitude>> =
+            in_si.iter().map(|e| e.as_ref().and_then(|e| attitude(&e.rest, &e.fast))).collect();
+        let radii: Vec<Option<f64>> = in_si.iter().map(|e| e.as_ref().map(Extremes::radius)).collect();
+        let radii = seats(&attitudes, &radii);
+        Self { unit, attitudes, radii, schedules: schedules(mountings) }
+    }
+}
+
+impl OutputUnit {
+    /// By the unit that the files name, else by the magnitude of the readings at rest.
+    fn of(mountings: &[SeenMounting], extremes: &[Option<Extremes>]) -> Self {
+        let mut labels = mountings.iter().flat_map(|m| &m.group.records).flat_map(|file| &file.readings);
+        match labels.find_map(|label| label.unit) {
+            Some("V") => return Self::Raw { name: "volts", unit: "V", coarse: Raw::by_gravity(extremes) },
+            Some(unit) => return Self::Named(unit),
+            None => {}
+        }
+        let Some(seen) = extremes.iter().flatten().next() else { return Self::Named("m/s^2") };
+        let norm = seen.rest.iter().map(|f| f * f).sum::<f64>().sqrt();
+        let is_near = |unit: &&str| {
+            let factor = Dimension::Acceleration.factor(unit).unwrap_or(f64::NAN);
+            (norm * factor / STANDARD_GRAVITY - 1.0).abs() < 0.1
+        };
+        match ["m/s^2", "g", "mg"].into_iter().find(is_near) {
+            Some(unit) => Self::ByGravity(unit, norm),
+            None => Self::Raw { name: "counts", unit: "counts", coarse: Raw::by_gravity(extremes) },
+        }
+    }
+
+    /// What takes readings to m/s^2, if it is known.
+    fn raw(&self) -> Option<Raw> {
+        match self {
+            Self::Named(unit) | Self::ByGravity(unit, _) => {
+                Dimension::Acceleration.factor(unit).map(|factor| Raw { scale: [1.0 / factor; 3], bias: [0.0; 3] })
+            }
+            Self::Raw { coarse, .. } => *coarse,
+        }
+    }
+}
+
+fn heading(draft: &mut Draft, mountings: &[SeenMounting]) {
+    draft.line("#:schema ./experiment.schema.json");
+    draft.line(
+        "# Drafted by `centrical init`. FOUND: the files show it. GUESS: likely; check it. FILL IN: no file shows it.",
+    );
+    let forms: Vec<&TextForm> = mountings.iter().filter_map(|m| m.group.records[0].form.as_ref()).collect();
+    if let Some(form) = forms.first() {
+        let delimiter = match form.delimiter {
+            '\t' => "tab".to_owned(),
+            ' ' => "blanks".to_owned(),
+            other => format!("`{other}`"),
+        };
+        let decimal = match form.decimal {
+            DecimalSign::Point => ", decimal points",
+            DecimalSign::Comma => ", decimal commas",
+            DecimalSign::Unseen => "",
+        };
+        let above = match form.above.len() {
+            0 => String::new(),
+            count => format!(", {count} lines above the header"),
+        };
+        let units = form.units_line.map_or(String::new(), |line| format!(", units in line {line}"));
+        draft.line(&format!(
+            "# Records are text in {:?}, divided by {delimiter}{decimal}{above}{units}; read without a setting.",
+            form.encoding
+        ));
+    }
+    if let Some(rate) = mountings.iter().find_map(|m| m.rate) {
+        draft.line(&format!("# {} records, {rate:.4} samples per second in the first.", mountings.len()));
+    }
+    draft.line("");
+}
+
+fn session(draft: &mut Draft) {
+    draft.line("[session]");
+    draft.line("title = \"\"");
+    draft.line("");
+    draft.line("[site]");
+    draft.fill_in(
+        "[site] gravity",
+        &format!("gravity = {UNKNOWN}"),
+        "such as \"9.81523 m/s^2\"; 1e-5 of it is 1e-5 of every scale factor",
+    );
+    draft.line("# latitude = \"55.7 deg\"  # with it the Earth-rate term is applied");
+    draft.line("");
+}
+
+fn unit(draft: &mut Draft, unit: &OutputUnit) {
+    draft.line("[unit]");
+    draft.fill_in("[unit] serial", &format!("serial = {UNKNOWN}"), "the number on the unit; results are filed by it");
+    match unit {
+        OutputUnit::Named(name @ ("m/s^2" | "g")) => {
+            draft.found(&format!("output_unit = \"{name}\""), "the unit beside the names");
+        }
+        OutputUnit::ByGravity(name @ ("m/s^2" | "g"), norm) => {
+            draft.guess(&format!("output_unit = \"{name}\""), &format!("the readings at rest are {norm:.3} long"));
+        }
+        OutputUnit::Named(_) | OutputUnit::ByGravity(..) => draft.line("output_unit = \"m/s^2\""),
+        OutputUnit::Raw { name, unit, coarse } => {
+            let how = "the unit beside the names, or readings at rest that are no gravity in m/s^2, g or mg";
+            draft.guess(&format!("output_unit = \"{unit}\""), how);
+            raw(draft, name, coarse.as_ref());
+        }
+    }
+    draft.fill_in(
+        "[unit] proof_masses",
+        "proof_masses = [[0, 0, 0], [\"?\", \"?\", \"?\"], [\"?\", \"?\", \"?\"]]",
+        "places of the three proof masses in instrument axes, m; 0.5 mm is 1e-3 of a reading at 0.5 m",
+    );
+    draft.line("");
+}
+
+/// Nominal scale and bias of a raw output.
+fn raw(draft: &mut Draft, name: &str, coarse: Option<&Raw>) {
+    let list = |numbers: &[f64; 3]| numbers.map(|number| format!("{number:.3e}")).join(", ");
+    match coarse {
+        Some(Raw { scale, bias }) => draft.guess(
+            &format!("{name} = {{ scale = [{}], bias = [{}] }}", list(scale), list(bias)),
+            &format!("{name} per m/s^2 and {name} at no force, from the rests; take those of the data sheet"),
+        ),
+        None => draft.fill_in(
+            &format!("[unit] {name}"),
+            &format!(
+                "{name} = {{ scale = [{UNKNOWN}, {UNKNOWN}, {UNKNOWN}], bias = [{UNKNOWN}, {UNKNOWN}, {UNKNOWN}] }}"
+            ),
+            &format!("nominal {name} per m/s^2 and {name} at no force, from the data sheet"),
+        ),
+    }
+}
+
+fn machine(draft: &mut Draft) {
+    draft.line("[centrifuge]");
+    draft.fill_in(
+        "[centrifuge] speed_uncertainty",
+        &format!("speed_uncertainty = {UNKNOWN}"),
+        "such as \"10 ppm\": relative standard uncertainty of a set speed, from the certificate of the machine",
+    );
+    draft.guess("rotation = \"+3\"", "positive speeds turn right-handed about Up; the files do not show the sense");
+    draft.line("");
+    draft.line("[model]");
+    draft.guess(
+        "error_model = \"kozlov-2017\"",
+        "bias, scale, misalignment, squares, cubes; `centrical models` compares others",
+    );
+    draft.guess(
+        "pair_relation = \"common\"",
+        "errors of place belong to the seat; \"opposite\" if they belong to the unit",
+    );
+    draft.line("");
+}
+
+fn columns(draft: &mut Draft, mountings: &[SeenMounting], unit: &OutputUnit) {
+    let records = &mountings[0].group.records;
+    let telemetry = mountings.iter().find_map(|m| m.group.telemetry.as_ref());
+    draft.line("[columns]");
+    match &records[0].time {
+        Some(label) => draft.found(&format!("time = {}", written(label, "s")), "time"),
+        None => {
+            draft.fill_in("[columns] time", "time = { rate = \"?\" }", "such as \"1 kHz\": the records have no time")
+        }
+    }
+    let readings: Vec<&Label> = if records.len() == 3 {
+        records.iter().map(|r| &r.readings[0]).collect()
+    } else {
+        records[0].readings.iter().collect()
+    };
+    let unit_of_reading = match unit {
+        OutputUnit::Named(name) | OutputUnit::ByGravity(name, _) if !["m/s^2", "g"].contains(name) => Some(*name),
+        _ => None,
+    };
+    let name = |label: &&Label| match unit_of_reading {
+        Some(unit) => format!("{{ column = {}, unit = \"{unit}\" }}", column(&label.column)),
+        None => column(&label.column),
+    };
+    draft.found(&format!("f = [{}]", readings.iter().map(name).collect::<Vec<_>>().join(", ")), "the three readings");
+    if let Some(telemetry) = telemetry {
+        of_telemetry(draft, telemetry, records[0].time.as_ref());
+    }
+    draft.line("");
+}
+
+fn of_telemetry(draft: &mut Draft, telemetry: &FileColumns, of_records: Option<&Label>) {
+    if let Some(time) = telemetry.time.as_ref().filter(|time| Some(*time) != of_records) {
+        draft.found(&format!("telemetry_time = {}", written(time, "s")), "time of the telemetry");
+    }
+    if let Some(speed) = &telemetry.speed {
+        let line = format!("speed = {}", column(&speed.column));
+        match speed.unit {
+            Some(unit) => {
+                draft.found(&line, "speed");
+                draft.found(&format!("speed_unit = \"{unit}\""), "the unit beside its name");
+            }
+            None => {
+                draft.found(&line, "speed");
+                draft.guess("speed_unit = \"rad/s\"", "the file names no unit; \"rpm\" and \"deg/s\" are others");
+            }
+        }
+    }
+}
+
+/// A column, with its unit if that is not the usual one.
+fn written(label: &Label, usual: &str) -> String {
+    match label.unit.filter(|unit| *unit != usual) {
+        Some(unit) => format!("{{ column = {}, unit = \"{unit}\" }}", column(&label.column)),
+        None => column(&label.column),
+    }
+}
+
+fn column(name: &ColumnName) -> String {
+    match name {
+        ColumnName::Name(name) => quoted(name),
+        ColumnName::Number(number) => number.to_string(),
+        ColumnName::Row => "\"\"".to_owned(),
+    }
+}
+
+fn quoted(text: &str) -> String {
+    toml_edit::Value::from(text).to_string().trim().to_owned()
+}
+
+/// Writes the positions out; returns the id of each mounting's.
+fn positions(draft: &mut Draft, attitudes: &[Option<Attitude>], six: bool) -> Vec<Option<String>> {
+    let mut distinct: Vec<Attitude> = Vec::new();
+    for attitude in attitudes.iter().flatten() {
+        if !distinct.contains(attitude) {
+            distinct.push(*attitude);
+        }
+    }
+    if distinct.is_empty() {
+        if six {
+            draft.line(SIX);
+        } else {
+            draft.line("[[position]]");
+            draft.line("id = \"1\"");
+            let reason =
+                "arm axes along which the instrument axes 1, 2, 3 point, such as \"+1 +2 +3\"; or use --positions six";
+            draft.fill_in("[[position]] axes", &format!("axes = {UNKNOWN}"), reason);
+            draft.line("pair = \"A\"");
+            draft.line("");
+        }
+        return vec![None; attitudes.len()];
+    }
+    let mut verticals = Vec::new();
+    for (k, attitude) in distinct.iter().enumerate() {
+        let vertical = attitude.vertical();
+        let pair = verticals.iter().position(|v| *v == vertical).unwrap_or_else(|| {
+            verticals.push(vertical);
+            verticals.len() - 1
+        });
+        draft.line("[[position]]");
+        draft.line(&format!("id = \"{}\"", k + 1));
+        draft.found(&format!("axes = \"{}\"", attitude.axes()), "gravity at rest, pull at speed");
+        let letter = char::from(b'A' + u8::try_from(pair % 26).unwrap_or(0));
+        draft.guess(&format!("pair = \"{letter}\""), "positions with the same axis upwards share the errors of place");
+        draft.line("");
+    }
+    let id = |a: &Option<Attitude>| a.and_then(|a| Some((distinct.iter().position(|d| *d == a)? + 1).to_string()));
+    attitudes.iter().map(id).collect()
+}
+
+fn arm(draft: &mut Draft, mounting: usize, radius: Option<f64>) {
+    match radius {
+        Some(radius) => {
+            draft.guess(
+                &format!("arm = [{radius:.3}, 0.0, 0.0]"),
+                "from readings and speed, to 5 mm; take the radius of the drawing",
+            );
+        }
+        None => draft.fill_in(
+            &format!("[[mounting]] {} arm", mounting + 1),
+            &format!("arm = [{UNKNOWN}, 0.0, 0.0]"),
+            "radius of the reference point by the drawing, m",
+        ),
+    }
+}
+
+fn files(draft: &mut Draft, mounting: &SeenMounting, folder: &Path) {
+    let names: Vec<String> = mounting.records().map(|path| quoted(&relative(path, folder))).collect();
+    match names.as_slice() {
+        [one] => draft.line(&format!("record = {one}")),
+        three => draft.line(&format!("record = [{}]", three.join(", "))),
+    }
+    if let Some(telemetry) = &mounting.group.telemetry {
+        draft.line(&format!("telemetry = {}", quoted(&relative(&telemetry.path, folder))));
+    }
+}
+
+/// The schedule; what no file shows is to be filled in.
+fn plateaus(draft: &mut Draft, mounting: &SeenMounting, schedule: &[Set], table: &str) {
+    draft.line("plateaus = [");
+    for (index, (set, level)) in schedule.iter().zip(&mounting.levels).enumerate() {
+        let seconds = level.window[1] - level.window[0];
+        let key = format!("{table} plateau {}", index + 1);
+        match set {
+            Set::Rest => draft.fill_in(
+                &key,
+                "  { speed = 0, angle = \"?\" },",
+                &format!("angle of the arm at rest, such as \"0 deg\"; seen for {seconds:.0} s"),
+            ),
+            Set::Speed(speed) => draft.guess(
+                &format!("  {{ speed = \"{speed}\" }},"),
+                &format!("seen for {seconds:.0} s; write what was set"),
+            ),
+            Set::Unknown => draft.fill_in(
+                &key,
+                "  { speed = \"?\" },",
+                &format!("a level of the readings for {seconds:.0} s; no file has the speed"),
+            ),
+        }
+    }
+    draft.line("]");
+}
+
+/// The path as the experiment file names it, with slashes.
+fn relative(path: &Path, folder: &Path) -> String {
+    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let (path, folder) = (absolute(path), absolute(folder));
+    let path = path.strip_prefix(&folder).map(Path::to_owned).unwrap_or(path);
+    path.components()
+        .map(|c| c.as_os_str().to_string_lossy().into_owned())
+        .collect::<Vec<_>>()
+        .join("/")
+        .replace("//", "/")
+}

@@ -1,0 +1,180 @@
+//! What the files of one mounting show: levels, and the readings there.
+
+use std::path::PathBuf;
+
+use centrical::reduction::{Level, levels};
+use centrical_table::ColumnName;
+
+use super::file_roles::{FileColumns, Group, Label};
+use super::raw::Extremes;
+use crate::error::Error;
+use crate::quantity::Dimension;
+use crate::record::{Column, Columns, RecordReader, Scale, read_telemetry};
+
+/// The part of a level over which readings are averaged: its middle, which clocks that differ by seconds share.
+const MIDDLE: [f64; 2] = [0.35, 0.65];
+
+/// Samples of a reading are thinned to this step [s] where levels are sought in them.
+const STEP: f64 = 0.05;
+
+/// The files of a mounting and what they show.
+#[derive(Debug)]
+pub(super) struct SeenMounting {
+    pub group: Group,
+    pub levels: Vec<SeenLevel>,
+    /// Samples per second.
+    pub rate: Option<f64>,
+}
+
+/// A level, and what is known of it.
+#[derive(Debug, Clone)]
+pub(super) struct SeenLevel {
+    pub window: [f64; 2],
+    /// By the telemetry [rad/s], with its standard uncertainty.
+    pub speed: Option<[f64; 2]>,
+    /// Mean readings, in their unit as it is written.
+    pub readings: Option<[f64; 3]>,
+}
+
+/// Reads the files of a mounting.
+pub(super) fn sight(group: Group) -> Result<SeenMounting, Error> {
+    let mut seen = Seen::default();
+    let mut levels = Vec::new();
+    if let Some(telemetry) = &group.telemetry {
+        let trace = read_telemetry(&telemetry.path, &columns_of(telemetry))?;
+        let seen_levels = self::levels(&trace.t, &trace.omega);
+        let speed = |level: &Level| Some([level.value, level.standard_uncertainty]);
+        levels = seen_levels.iter().map(|l| SeenLevel { window: l.window, speed: speed(l), readings: None }).collect();
+        seen.read(&group, &levels, false)?;
+    } else {
+        seen.read(&group, &[], true)?;
+        let magnitude: Vec<f64> = seen.thinned.iter().map(|(_, f)| *f).collect();
+        let times: Vec<f64> = seen.thinned.iter().map(|(t, _)| *t).collect();
+        let bare = |l: &Level| SeenLevel { window: l.window, speed: None, readings: None };
+        levels.extend(self::levels(&times, &magnitude).iter().map(bare));
+        seen = Seen::default();
+        seen.read(&group, &levels, false)?;
+    }
+    for (level, (sum, count)) in levels.iter_mut().zip(&seen.sums) {
+        level.readings = (*count > 0).then(|| sum.map(|sum| sum / *count as f64));
+    }
+    Ok(SeenMounting { group, levels, rate: seen.rate() })
+}
+
+/// What a pass over a record collects.
+#[derive(Default)]
+struct Seen {
+    sums: Vec<([f64; 3], usize)>,
+    /// Times and magnitudes, thinned.
+    thinned: Vec<(f64, f64)>,
+    first: Option<f64>,
+    last: f64,
+    samples: usize,
+}
+
+impl Seen {
+    /// Sums the readings in the middle of every level, or keeps thinned magnitudes.
+    fn read(&mut self, group: &Group, levels: &[SeenLevel], is_thinned: bool) -> Result<(), Error> {
+        self.sums = vec![([0.0; 3], 0); levels.len()];
+        let middle = |level: &SeenLevel| {
+            let [start, end] = level.window;
+            MIDDLE.map(|part| start + part * (end - start))
+        };
+        let middles: Vec<[f64; 2]> = levels.iter().map(middle).collect();
+        let columns = columns_of_records(&group.records);
+        let files: Vec<&std::path::Path> = group.records.iter().map(|file| file.path.as_path()).collect();
+        let mut reader = RecordReader::open_all(&files, centrical_table::Extent::Whole, &columns)?;
+        while let Some(batch) = reader.next_batch()? {
+            for rows in batch {
+                for (n, &t) in rows[0].iter().enumerate() {
+                    let f = [rows[1][n], rows[2][n], rows[3][n]];
+                    self.take(t, f, &middles, is_thinned);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, t: f64, f: [f64; 3], middles: &[[f64; 2]], is_thinned: bool) {
+        self.first.get_or_insert(t);
+        (self.last, self.samples) = (t, self.samples + 1);
+        if f.iter().any(|f| !f.is_finite()) {
+            return;
+        }
+        if is_thinned && self.thinned.last().is_none_or(|(last, _)| t - last >= STEP) {
+            self.thinned.push((t, f.iter().map(|f| f * f).sum::<f64>().sqrt()));
+        }
+        // The levels follow each other in time.
+        let level = middles.partition_point(|middle| middle[1] < t);
+        if middles.get(level).is_some_and(|middle| middle[0] <= t) {
+            let (sum, count) = &mut self.sums[level];
+            sum.iter_mut().zip(f).for_each(|(sum, f)| *sum += f);
+            *count += 1;
+        }
+    }
+
+    fn rate(&self) -> Option<f64> {
+        let time = self.last - self.first?;
+        (time > 0.0).then(|| (self.samples - 1) as f64 / time)
+    }
+}
+
+/// Columns of a record whose readings stay in the unit that the file has.
+fn columns_of_records(records: &[FileColumns]) -> Columns {
+    let mut columns = columns_of(&records[0]);
+    let raw = |label: &Label| Column {
+        name: label.column.clone(),
+        unit: label.unit.unwrap_or("as it is").to_owned(),
+        scale: Scale::factor(1.0),
+    };
+    if records.len() == 3 {
+        for (column, record) in columns.f.iter_mut().zip(records) {
+            *column = raw(&record.readings[0]);
+        }
+    } else {
+        for (column, label) in columns.f.iter_mut().zip(&records[0].readings) {
+            *column = raw(label);
+        }
+    }
+    columns
+}
+
+/// Time and speed of a file.
+fn columns_of(file: &FileColumns) -> Columns {
+    let usual = Columns::default();
+    let column = |label: &Option<Label>, usual: &Column, dimension: Dimension| match label {
+        Some(label) => Column {
+            name: label.column.clone(),
+            unit: label.unit.unwrap_or(&usual.unit).to_owned(),
+            scale: Scale::factor(label.unit.and_then(|unit| dimension.factor(unit)).unwrap_or(1.0)),
+        },
+        None => Column { name: ColumnName::Row, ..usual.clone() },
+    };
+    let time = column(&file.time, &usual.time, Dimension::Time);
+    Columns { telemetry_time: time.clone(), speed: column(&file.speed, &usual.speed, Dimension::Speed), time, ..usual }
+}
+
+impl SeenMounting {
+    /// The files of the record.
+    pub(super) fn records(&self) -> impl Iterator<Item = &PathBuf> {
+        self.group.records.iter().map(|file| &file.path)
+    }
+
+    /// Mean readings at rest and at the fastest level, where both are seen.
+    pub(super) fn extremes(&self) -> Option<Extremes> {
+        let rest = self.levels.iter().find(|level| level.is_rest() == Some(true))?.readings?;
+        let speed = |level: &&SeenLevel| level.speed.map_or(0.0, |[omega, _]| omega.abs());
+        let fastest = self.levels.iter().max_by(|a, b| speed(a).total_cmp(&speed(b)))?;
+        let omega = speed(&fastest);
+        (omega > 0.0).then_some(Extremes { rest, fast: fastest.readings?, omega })
+    }
+}
+
+impl SeenLevel {
+    /// Whether the arm is at rest, by the telemetry.
+    pub(super) fn is_rest(&self) -> Option<bool> {
+        /// A creep that no schedule asks for [rad/s].
+        const CREEP: f64 = 0.02;
+        self.speed.map(|[omega, _]| omega.abs() < CREEP)
+    }
+}

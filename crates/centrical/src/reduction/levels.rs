@@ -1,0 +1,100 @@
+//! Levels of a signal that stands still, ramps to another level, and stands still again: what a schedule looks like to
+//! someone who does not have it.
+//!
+//! Means of half-second blocks stand still from one to the next where they differ by no more than their noise, or by less
+//! than 2e-3 of the largest level in a second, which no ramp is slow enough for. The noise of a sample is that of
+//! neighbours, `1.4826 median |y_k+1 - y_k| / sqrt(2)`. The level is the median over the later three quarters of a
+//! stretch: the beginning may still settle.
+
+use crate::statistics::median;
+
+/// Length of a block [s].
+const BLOCK: f64 = 0.5;
+
+/// Fewest samples of a block.
+const SAMPLES: usize = 5;
+
+/// Slowest ramp, as a part of the largest level [1/s].
+const RAMP: f64 = 2e-3;
+
+/// Shortest level [s].
+const SHORTEST: f64 = 2.0;
+
+/// A stretch in which the signal stands still.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Level {
+    /// First and last time [s].
+    pub window: [f64; 2],
+    /// The level, in the unit of the signal.
+    pub value: f64,
+    /// Its standard uncertainty, from the scatter of the blocks.
+    pub standard_uncertainty: f64,
+}
+
+/// Mean of consecutive samples.
+struct Block {
+    window: [f64; 2],
+    mean: f64,
+    samples: usize,
+}
+
+/// The levels of a signal `y` over the times `t` [s], which do not decrease; as many as there are of both.
+pub fn levels(t: &[f64], y: &[f64]) -> Vec<Level> {
+    let blocks = blocks(t, y);
+    let noise = noise(y);
+    let largest = blocks.iter().map(|block| block.mean.abs()).fold(0.0, f64::max);
+    let is_still = |pair: &[Block]| {
+        let white = 5.0 * noise * (1.0 / pair[0].samples as f64 + 1.0 / pair[1].samples as f64).sqrt();
+        let time = pair[1].window[0] - pair[0].window[0];
+        (pair[1].mean - pair[0].mean).abs() <= white.max(RAMP * largest * time)
+    };
+    let still: Vec<bool> = blocks.windows(2).map(is_still).collect();
+    let mut levels = Vec::new();
+    let mut first = 0;
+    for end in 1..=blocks.len() {
+        if end == blocks.len() || !still[end - 1] {
+            levels.extend(level(&blocks[first..end]));
+            first = end;
+        }
+    }
+    levels
+}
+
+/// The level of blocks that stand still, if they do so for long enough.
+fn level(blocks: &[Block]) -> Option<Level> {
+    let window = [blocks.first()?.window[0], blocks.last()?.window[1]];
+    if window[1] - window[0] < SHORTEST {
+        return None;
+    }
+    // A block at either end may hold a part of a ramp.
+    let settled = &blocks[(blocks.len() / 4).max(1)..blocks.len() - 1];
+    let means: Vec<f64> = settled.iter().map(|block| block.mean).collect();
+    if means.is_empty() {
+        return None;
+    }
+    let value = median(&mut means.clone());
+    let scatter = 1.4826 * median(&mut means.iter().map(|mean| (mean - value).abs()).collect::<Vec<_>>());
+    // The median of normal values is 1.25 times as uncertain as their mean.
+    Some(Level { window, value, standard_uncertainty: 1.25 * scatter / (means.len() as f64).sqrt() })
+}
+
+fn blocks(t: &[f64], y: &[f64]) -> Vec<Block> {
+    let count = t.len().min(y.len());
+    let mut blocks = Vec::new();
+    let mut first = 0;
+    for n in 0..count {
+        if t[n] - t[first] >= BLOCK && n - first >= SAMPLES {
+            let samples = n - first;
+            let mean = y[first..n].iter().sum::<f64>() / samples as f64;
+            blocks.push(Block { window: [t[first], t[n - 1]], mean, samples });
+            first = n;
+        }
+    }
+    blocks
+}
+
+/// Standard deviation of a sample, from neighbours.
+fn noise(y: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = y.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    if steps.is_empty() { 0.0 } else { 1.4826 / 2.0_f64.sqrt() * median(&mut steps) }
+}

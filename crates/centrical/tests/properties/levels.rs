@@ -1,0 +1,46 @@
+//! Levels of a signal, without its schedule.
+
+use centrical::reduction::levels;
+
+use crate::common::Random;
+
+/// A staircase with ramps, settling and noise: as many levels as it has, each where it is, within five standard uncertainties.
+#[test]
+fn levels_of_a_noisy_staircase() {
+    for seed in 0..20 {
+        let mut random = Random::new(seed);
+        let set = [0.0, 14.0, 19.8, 28.0, 62.65, 0.0];
+        let (mut t, mut y) = (Vec::new(), Vec::new());
+        let mut now = 0.0;
+        let (noise, rate) = (1e-3, 20.0);
+        for (n, &level) in set.iter().enumerate() {
+            let before = if n == 0 { level } else { set[n - 1] };
+            let (ramp, stay) = (if n == 0 { 0.0 } else { 6.0 }, 10.0 + random.below(20) as f64);
+            let start = now;
+            while now < start + ramp + stay {
+                let part = ((now - start) / ramp).min(1.0);
+                let settling = if part < 1.0 { 0.0 } else { 1e-3 * level * (-(now - start - ramp) / 0.4).exp() };
+                let ideal = if n == 0 { level } else { before + part * (level - before) };
+                t.push(now);
+                y.push(ideal + settling + noise * random.normal());
+                now += 1.0 / rate;
+            }
+        }
+        let found = levels(&t, &y);
+        assert_eq!(found.len(), set.len(), "seed {seed}: {found:?}");
+        for (level, set) in found.iter().zip(set) {
+            assert!(level.window[1] - level.window[0] > 8.0, "{level:?}");
+            let sigma = level.standard_uncertainty.max(noise / 20.0);
+            assert!((level.value - set).abs() < 5.0 * sigma, "seed {seed}: {level:?} is not {set}");
+        }
+    }
+}
+
+/// Nothing stands still in a ramp, and nothing is found in nothing.
+#[test]
+fn no_levels() {
+    let t: Vec<f64> = (0..2000).map(|n| f64::from(n) * 0.05).collect();
+    assert!(levels(&t, &t).is_empty());
+    assert!(levels(&[], &[]).is_empty());
+    assert!(levels(&t[..3], &[1.0; 3]).is_empty());
+}
