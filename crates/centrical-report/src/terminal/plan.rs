@@ -1,4 +1,5 @@
-//! A plan as text for the terminal: the schedule, the reason for each plateau, the uncertainties to be expected, time against uncertainty.
+//! A plan as text for the terminal: time against uncertainty, the schedule, the reason for each plateau, the uncertainties to be
+//! expected.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -16,6 +17,7 @@ use crate::number::{digits, short};
 pub fn plan_text(report: &PlanReport) -> String {
     let mut text = String::new();
     heading(&mut text, report);
+    frontier(&mut text, report);
     text.push_str(
         "\nSCHEDULE  what is lost without a plateau: rise of the criterion, and the parameter that suffers most\n",
     );
@@ -28,7 +30,6 @@ pub fn plan_text(report: &PlanReport) -> String {
     goals(&mut text, report);
     text.push('\n');
     text.push_str(&prediction_text(&report.prediction));
-    frontier(&mut text, report);
     scenarios(&mut text, report);
     floors(&mut text, report);
     text
@@ -192,6 +193,7 @@ fn frontier(text: &mut String, report: &PlanReport) {
             shown(row.normalised)
         );
     }
+    text.push_str("  [K5.5] has speeds and a duration of its own, which need not be among the candidates.\n");
 }
 
 /// What the plan reaches in each scenario, and how they count.

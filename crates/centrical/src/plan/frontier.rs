@@ -36,19 +36,33 @@ pub fn frontier(
 }
 
 impl Candidates {
-    /// The uniform plan: every candidate once, all for the same duration, in `time` [s]. Returns the schedule and its criterion
-    /// (variance units); `None` if set-ups and ramps leave nothing to measure in.
+    /// The uniform plan: every candidate once, all for the longest of the durations for which `time` [s] suffices. It is one of
+    /// the plans that a search considers, so no bound is above it. Returns the schedule and its criterion (variance units);
+    /// `None` if the time suffices for no duration.
     ///
     /// # Errors
     /// As [`best_for_time`], but for the time.
     pub fn uniform(&self, criterion: &Criterion, time: f64) -> Result<Option<(Schedule, f64)>, PlanError> {
-        let visits = |duration: f64| (0..self.len()).map(|candidate| Visit { candidate, duration }).collect::<Vec<_>>();
-        let duration = (time - self.time_of(&visits(0.0))) / self.len() as f64;
-        if duration <= 0.0 {
-            return Ok(None);
-        }
-        let uniform = Self { durations: vec![duration], repeats: 1, ..self.clone() };
-        let value = Problem::new(&uniform, criterion)?.everything().value;
-        Ok(Some((uniform.schedule(visits(duration)), value.exp())))
+        let longest = self.durations.iter().rev().find(|duration| self.time_of(&self.each_once(**duration)) <= time);
+        longest.map(|duration| self.valued(criterion, *duration)).transpose()
+    }
+
+    /// Every candidate once, all for the duration that fills `time` [s], which need not be one of the durations.
+    ///
+    /// # Errors
+    /// As [`best_for_time`], but for the time.
+    pub fn filled(&self, criterion: &Criterion, time: f64) -> Result<Option<(Schedule, f64)>, PlanError> {
+        let duration = (time - self.time_of(&self.each_once(0.0))) / self.len() as f64;
+        (duration > 0.0).then(|| self.valued(criterion, duration)).transpose()
+    }
+
+    fn each_once(&self, duration: f64) -> Vec<Visit> {
+        (0..self.len()).map(|candidate| Visit { candidate, duration }).collect()
+    }
+
+    fn valued(&self, criterion: &Criterion, duration: f64) -> Result<(Schedule, f64), PlanError> {
+        let only = Self { durations: vec![duration], repeats: 1, ..self.clone() };
+        let value = Problem::new(&only, criterion)?.everything().value;
+        Ok((only.schedule(self.each_once(duration)), value.exp()))
     }
 }

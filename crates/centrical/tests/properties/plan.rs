@@ -569,14 +569,27 @@ fn rationales_are_what_is_lost() {
     }
 }
 
-/// The bound is below any plan: also below a uniform plan for the same time.
+/// The bound is below any plan: also below a uniform plan, at every time of a frontier, and the best plan is below it too.
 #[test]
 fn no_usual_plan_is_below_the_bound() {
     let candidates = large(6, &[30.0, 60.0, 120.0]);
     let criterion = Criterion::Reading(RANGE);
-    let time = 7.0 * 3600.0;
-    let plan = best_for_time(&candidates, &criterion, time, Effort::usual(candidates.len())).unwrap();
-    let (schedule, uniform) = candidates.uniform(&criterion, time).unwrap().unwrap();
-    assert!((schedule.time - time).abs() < 1e-6);
-    assert!(plan.bound <= plan.criterion && plan.criterion < uniform, "{} {} {uniform}", plan.bound, plan.criterion);
+    let mut compared = 0;
+    for hours in [3.4, 4.0, 5.5, 7.0] {
+        let time = hours * 3600.0;
+        let plan = best_for_time(&candidates, &criterion, time, Effort::usual(candidates.len())).unwrap();
+        let Some((schedule, uniform)) = candidates.uniform(&criterion, time).unwrap() else { continue };
+        assert!(schedule.time <= time, "{hours} h: {}", schedule.time);
+        assert!(schedule.visits.iter().all(|visit| candidates.durations.contains(&visit.duration)));
+        assert!(
+            plan.bound <= plan.criterion && plan.criterion < uniform,
+            "{} {} {uniform}",
+            plan.bound,
+            plan.criterion
+        );
+        let (filled, _) = candidates.filled(&criterion, time).unwrap().unwrap();
+        assert!((filled.time - time).abs() < 1e-6);
+        compared += 1;
+    }
+    assert!(compared >= 2, "only {compared} times suffice for a uniform plan");
 }

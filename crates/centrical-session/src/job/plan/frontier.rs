@@ -1,6 +1,6 @@
 //! Time against uncertainty, with plans that are made without a search beside the best.
 
-use centrical::plan::{Candidates, Effort, FrontierPoint, PlanError, Task, frontier};
+use centrical::plan::{Candidates, Effort, FrontierPoint, Schedule, Task, frontier};
 use centrical::{Experiment, SetPoint};
 
 use super::request::PlanRequest;
@@ -22,17 +22,15 @@ pub(super) fn frontier_rows(planning: &Planning, time: f64, request: &PlanReques
     let experiment = candidates.experiment();
     let uniform = with_set_points(candidates, &uniform_set_points(experiment));
     let normalised = with_set_points(candidates, &normalised_set_points(experiment, &request.levels));
-    let of = |candidates: &Candidates, time: f64| {
-        let found = candidates.uniform(criterion, time)?;
-        Ok::<_, PlanError>(found.map(|(_, value)| value.sqrt()))
-    };
+    let root = |found: Option<(_, f64)>| found.map(|(_, value): (Schedule, f64)| value.sqrt());
     let row = |point: FrontierPoint| {
         Ok(FrontierRow {
             time: point.time,
             best: point.plan.criterion.sqrt(),
             bound: point.plan.bound.sqrt(),
-            uniform: of(&uniform, point.time)?,
-            normalised: of(&normalised, point.time)?,
+            uniform: root(uniform.uniform(criterion, point.time)?),
+            // Its speeds are its own, and so is its duration.
+            normalised: root(normalised.filled(criterion, point.time)?),
         })
     };
     let rows = points.and_then(|points| points.into_iter().map(row).collect());
