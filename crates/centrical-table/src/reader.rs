@@ -51,7 +51,7 @@ pub struct TableReader {
 }
 
 enum Source {
-    Text(TextReader),
+    Text(Box<TextReader>),
     Binary(ColumnReader),
 }
 
@@ -90,7 +90,7 @@ impl TableReader {
                 let text = workbook_text(file, input)?;
                 let most = length.max(text.len() as u64);
                 let lines = Lines::Packed(Packed::new(file, io::Cursor::new(text), most));
-                Source::Text(TextReader::new(file, lines, fields, said))
+                Source::Text(Box::new(TextReader::new(file, lines, fields, said)))
             }
             Format::Binary(format) => Source::Binary(format.open(file, input, fields, most_rows(length))?),
             format => {
@@ -106,7 +106,7 @@ impl TableReader {
                         Lines::Plain(Plain::new(file, input).and_then(Plain::complete).map_err(failed)?)
                     }
                 };
-                Source::Text(TextReader::new(file, lines, fields, said))
+                Source::Text(Box::new(TextReader::new(file, lines, fields, said)))
             }
         };
         let (file, expected) = (file.to_owned(), expected.to_owned());
@@ -175,7 +175,7 @@ impl TableReader {
     /// Units that a text names beside or below the names of its columns, once rows were read.
     pub fn units(&self) -> Option<UnitsFound> {
         let Source::Text(text) = &self.source else { return None };
-        self.row_number.in_all(text.units()?.clone())
+        Some(self.row_number.in_all(text.units()?.clone()))
     }
 
     /// After the end: where the rows are, so that any part can be read again; only of a text that is not packed.

@@ -21,11 +21,11 @@ type Cell = (u32, u32, String);
 /// The text of the first sheet.
 pub(crate) fn text(file: File) -> io::Result<Vec<u8>> {
     check_size(&file)?;
-    let mut workbook = Xlsx::new(io::BufReader::new(file)).map_err(wrong)?;
-    let name = workbook.sheet_names().first().cloned().ok_or_else(|| wrong("no sheet"))?;
-    let mut reader = workbook.worksheet_cells_reader(&name).map_err(wrong)?;
+    let mut workbook = Xlsx::new(io::BufReader::new(file)).map_err(|e| wrong(&e))?;
+    let name = workbook.sheet_names().first().cloned().ok_or_else(|| wrong(&"no sheet"))?;
+    let mut reader = workbook.worksheet_cells_reader(&name).map_err(|e| wrong(&e))?;
     let (mut cells, mut bytes): (Vec<Cell>, usize) = (Vec::new(), 0);
-    while let Some(cell) = reader.next_cell().map_err(wrong)? {
+    while let Some(cell) = reader.next_cell().map_err(|e| wrong(&e))? {
         let (row, column) = cell.get_position();
         let text = cell_text(cell.get_value());
         if text.is_empty() {
@@ -33,7 +33,7 @@ pub(crate) fn text(file: File) -> io::Result<Vec<u8>> {
         }
         bytes += text.len();
         if cells.len() == MOST_CELLS || column >= MOST_COLUMNS || bytes > MOST_BYTES {
-            return Err(wrong(format!("more than {MOST_CELLS} cells, {MOST_COLUMNS} columns or {MOST_BYTES} bytes")));
+            return Err(wrong(&format!("more than {MOST_CELLS} cells, {MOST_COLUMNS} columns or {MOST_BYTES} bytes")));
         }
         cells.push((row, column, text));
     }
@@ -43,15 +43,15 @@ pub(crate) fn text(file: File) -> io::Result<Vec<u8>> {
 
 /// Refuses archives that unpack to more than a workbook that people type.
 fn check_size(file: &File) -> io::Result<()> {
-    let mut archive = zip::ZipArchive::new(file).map_err(wrong)?;
+    let mut archive = zip::ZipArchive::new(file).map_err(|e| wrong(&e))?;
     let mut left = MOST_BYTES as u64;
     for member in 0..archive.len() {
-        let member = archive.by_index(member).map_err(wrong)?;
+        let member = archive.by_index(member).map_err(|e| wrong(&e))?;
         let packed = member.compressed_size();
         let mut unpacked = Unpacked::new(member, packed, None).take(left + 1);
         let unpacked = io::copy(&mut unpacked, &mut io::sink())?;
         left =
-            left.checked_sub(unpacked).ok_or_else(|| wrong(format!("it unpacks to more than {MOST_BYTES} bytes")))?;
+            left.checked_sub(unpacked).ok_or_else(|| wrong(&format!("it unpacks to more than {MOST_BYTES} bytes")))?;
     }
     Ok(())
 }
@@ -72,7 +72,7 @@ fn lines(cells: &[Cell]) -> io::Result<Vec<u8>> {
         text.push(b'\n');
         next_row = row[0].0 + 1;
         if text.len() > MOST_BYTES {
-            return Err(wrong(format!("more than {MOST_BYTES} bytes of text")));
+            return Err(wrong(&format!("more than {MOST_BYTES} bytes of text")));
         }
     }
     Ok(text)
@@ -108,6 +108,6 @@ fn field(text: &str) -> String {
     if text.contains([';', ',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
 }
 
-fn wrong(error: impl ToString) -> io::Error {
+fn wrong(error: &impl ToString) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, error.to_string())
 }

@@ -143,9 +143,6 @@ impl<R: Read> Read for FromUtf16<R> {
             self.is_finished = was_at_end && result == CoderResult::InputEmpty;
             if bytes.len() < LONGEST {
                 self.rest.extend_from_slice(&few[..written]);
-                if written > 0 {
-                    continue;
-                }
             } else if written > 0 {
                 return Ok(written);
             }
