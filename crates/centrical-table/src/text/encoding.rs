@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn utf_16_is_known_and_decoded() {
-        let text = "\u{feff}Время, с;µ;😀\r\n0,5;1;2\r\n".repeat(1) + &"1,25;-3;4\r\n".repeat(20_000);
+        let text = "\u{feff}Время, с;µ;😀\r\n0,5;1;2\r\n".to_owned() + &"1,25;-3;4\r\n".repeat(20_000);
         for encoding in [TextEncoding::Utf16Le, TextEncoding::Utf16Be] {
             for text in [text.as_str(), &text[3..]] {
                 let bytes = utf_16(text, encoding);
