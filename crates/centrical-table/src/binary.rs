@@ -16,6 +16,8 @@ mod tdms;
 use std::fs::File;
 use std::path::Path;
 
+#[cfg(feature = "xlsx")]
+pub(crate) use self::catch_panic::catch_panic;
 pub(crate) use self::columnar::ColumnReader;
 use crate::column::Field;
 use crate::error::{Error, Place};

@@ -10,6 +10,8 @@
 //! | text, also in gzip or Zstandard: any delimiter, decimal commas, comments, lines above the header, a row of units; UTF-8, UTF-16, Windows-1251 and -1252 | by name, or by number without a header |
 //! | Parquet (uncompressed, snappy, gzip, lz4, zstd) | by name or number |
 //! | Arrow IPC: files (Feather) and streams, plain, lz4 or zstd | by name or number |
+//! | TDMS of National Instruments | channels by name or `group/name`; time of waveforms |
+//! | workbooks (`.xlsx`) with the feature `xlsx`: the first sheet, as text | by name or number |
 //! | NumPy: `.npy` matrices and records, `.npz` | by name; of a matrix by number |
 //! | MATLAB 5 (`save -v6`, `-v7`) | variables by name; of a matrix by number |
 //! | HDF5 and MATLAB 7.3, with the feature `hdf5` | datasets by name; of a matrix by number |
@@ -44,6 +46,8 @@ mod error;
 mod foreign;
 mod reader;
 mod rows;
+#[cfg(feature = "xlsx")]
+mod sheet;
 mod stamp;
 mod text;
 mod unpacking;

@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 use flate2::read::MultiGzDecoder;
 use memchr::{memchr_iter, memrchr};
 
+#[cfg(feature = "xlsx")]
+use crate::binary::catch_panic;
 use crate::binary::{BinaryFormat, ColumnReader};
 use crate::column::{Field, TableLines, UnitsFound};
 use crate::document::open_regular;
@@ -49,7 +51,7 @@ pub struct TableReader {
 }
 
 enum Source {
-    Text(TextReader),
+    Text(Box<TextReader>),
     Binary(ColumnReader),
 }
 
@@ -84,6 +86,12 @@ impl TableReader {
         let mut fields = fields.to_vec();
         let row_number = RowNumber::take_out(&mut fields);
         let source = match Format::of(&magic) {
+            Format::Binary(BinaryFormat::Npz) if is_workbook(&mut input) => {
+                let text = workbook_text(file, input)?;
+                let most = length.max(text.len() as u64);
+                let lines = Lines::Packed(Packed::new(file, io::Cursor::new(text), most));
+                Source::Text(Box::new(TextReader::new(file, lines, fields, said)))
+            }
             Format::Binary(format) => Source::Binary(format.open(file, input, fields, most_rows(length))?),
             format => {
                 let utf_16 = TextEncoding::utf_16(&magic).filter(|_| format == Format::Text);
@@ -98,7 +106,7 @@ impl TableReader {
                         Lines::Plain(Plain::new(file, input).and_then(Plain::complete).map_err(failed)?)
                     }
                 };
-                Source::Text(TextReader::new(file, lines, fields, said))
+                Source::Text(Box::new(TextReader::new(file, lines, fields, said)))
             }
         };
         let (file, expected) = (file.to_owned(), expected.to_owned());
@@ -167,7 +175,7 @@ impl TableReader {
     /// Units that a text names beside or below the names of its columns, once rows were read.
     pub fn units(&self) -> Option<UnitsFound> {
         let Source::Text(text) = &self.source else { return None };
-        self.row_number.in_all(text.units()?.clone())
+        Some(self.row_number.in_all(text.units()?.clone()))
     }
 
     /// After the end: where the rows are, so that any part can be read again; only of a text that is not packed.
@@ -245,6 +253,9 @@ pub fn text_form(file: &Path) -> Result<Option<TextForm>, Error> {
         Format::Text => Box::new(input),
         Format::Gzip => Box::new(Unpacked::new(MultiGzDecoder::new(input), length, None)),
         Format::Zstd => Box::new(Unpacked::new(zstd::Decoder::new(input).map_err(failed)?, length, None)),
+        Format::Binary(BinaryFormat::Npz) if is_workbook(&mut input) => {
+            Box::new(io::Cursor::new(workbook_text(file, input)?))
+        }
         Format::Binary(_) => return Ok(None),
     };
     let mut sample = Vec::new();
@@ -260,6 +271,31 @@ pub fn text_form(file: &Path) -> Result<Option<TextForm>, Error> {
         sample.truncate(memrchr(b'\n', &sample).map_or(0, |end| end + 1));
     }
     Ok(TextForm::of(sample.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&sample), encoding))
+}
+
+/// Whether a zip archive is a workbook. The file is at its start then.
+fn is_workbook(input: &mut File) -> bool {
+    let is = zip::ZipArchive::new(&*input).is_ok_and(|archive| archive.index_for_name("xl/workbook.xml").is_some());
+    input.rewind().is_ok() && is
+}
+
+/// The first sheet of a workbook as text.
+fn workbook_text(file: &Path, input: File) -> Result<Vec<u8>, Error> {
+    #[cfg(feature = "xlsx")]
+    {
+        let damaged = |found| Error::content(file, Place::Whole, found, "a workbook (.xlsx) that is whole");
+        match catch_panic(|| crate::sheet::text(input)) {
+            Ok(text) => Ok(text),
+            Err(Some(error)) => Err(damaged(format!("a damaged workbook ({error})"))),
+            Err(None) => Err(damaged("a damaged workbook".to_owned())),
+        }
+    }
+    #[cfg(not(feature = "xlsx"))]
+    {
+        drop(input);
+        let expected = "the sheet saved as text (this program was built without the feature xlsx)";
+        Err(Error::content(file, Place::Whole, "a workbook (.xlsx)", expected))
+    }
 }
 
 /// A text in UTF-16, from its start to its end or to that of the last complete line.

@@ -90,11 +90,11 @@ impl RowNumber {
     }
 
     /// Units of all fields, of which those of the fields in the file are known.
-    pub fn in_all(self, mut found: UnitsFound) -> Option<UnitsFound> {
+    pub fn in_all(self, mut found: UnitsFound) -> UnitsFound {
         if let Some(place) = self.0 {
             found.units.insert(place.min(found.units.len()), None);
         }
-        Some(found)
+        found
     }
 
     /// Puts the numbers of the rows from `first` on into their place.

@@ -14,10 +14,10 @@ use crate::record::{Column, Columns, Scale};
 /// The columns, those not given at their usual names.
 pub(crate) fn columns(file: &Path, table: &ColumnsTable, unit: &UnitTable) -> Result<Columns, Error> {
     let at = TomlPath::table(file, "columns");
-    let mut columns = Columns::default();
-    columns.record_lines = lines(&at, "header_line", table.header_line, "first_row", table.first_row)?;
+    let record_lines = lines(&at, "header_line", table.header_line, "first_row", table.first_row)?;
     let (header, first_row) = (table.telemetry_header_line, table.telemetry_first_row);
-    columns.telemetry_lines = lines(&at, "telemetry_header_line", header, "telemetry_first_row", first_row)?;
+    let telemetry_lines = lines(&at, "telemetry_header_line", header, "telemetry_first_row", first_row)?;
+    let mut columns = Columns { record_lines, telemetry_lines, ..Columns::default() };
     for (column, scale) in columns.f.iter_mut().zip(unit::output(file, unit)?) {
         column.scale = scale;
         column.unit.clone_from(&unit.output_unit);

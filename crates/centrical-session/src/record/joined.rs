@@ -21,7 +21,8 @@ pub(super) struct Joined {
     extent: Extent,
     sets: Vec<Rows>,
     filled: usize,
-    joined: u64,
+    /// Rows that were joined so far.
+    count: u64,
 }
 
 /// One of them.
@@ -51,7 +52,7 @@ impl Joined {
         };
         let parts: [Result<Part, Error>; 3] = [0, 1, 2].map(open);
         let [x, y, z] = parts;
-        Ok(Self { parts: [x?, y?, z?], extent, sets: vec![vec![Vec::new(); 4]; SETS], filled: 0, joined: 0 })
+        Ok(Self { parts: [x?, y?, z?], extent, sets: vec![vec![Vec::new(); 4]; SETS], filled: 0, count: 0 })
     }
 
     /// The next rows: time and three readings, raw. How many sets there are; none at the end.
@@ -99,13 +100,13 @@ impl Joined {
                 }
             }
         }
-        self.joined += rows[0].len() as u64;
+        self.count += rows[0].len() as u64;
         Ok(!rows[0].is_empty())
     }
 
     /// Sees at the end that most rows of every file found partners.
     fn check(&mut self) -> Result<(), Error> {
-        let joined = self.joined;
+        let joined = self.count;
         for part in &mut self.parts {
             while part.time()?.is_some() {
                 part.at = part.rows[0].len();

@@ -126,17 +126,13 @@ impl RecordReader {
     /// If one cannot be read.
     pub(crate) fn open_all(files: &[&Path], extent: Extent, columns: &Columns) -> Result<Self, Error> {
         let of_record = columns.of_record();
-        match *files {
-            [x, y, z] => {
-                let joined = Box::new(Joined::open([x, y, z], extent, columns)?);
-                let (file, scales) = (x.to_owned(), Scales::of(&of_record));
-                Ok(Self { file, table: Source::Three(joined), scales, units: None, reported: 0 })
-            }
-            _ => {
-                let file = files.first().copied().unwrap_or(Path::new(""));
-                Self::with(file, extent, &of_record, columns.record_lines, "a record")
-            }
+        if let [x, y, z] = *files {
+            let joined = Box::new(Joined::open([x, y, z], extent, columns)?);
+            let (file, scales) = (x.to_owned(), Scales::of(&of_record));
+            return Ok(Self { file, table: Source::Three(joined), scales, units: None, reported: 0 });
         }
+        let file = files.first().copied().unwrap_or(Path::new(""));
+        Self::with(file, extent, &of_record, columns.record_lines, "a record")
     }
 
     fn with(
@@ -148,7 +144,7 @@ impl RecordReader {
     ) -> Result<Self, Error> {
         let table = TableReader::open_at(file, extent, &fields(columns), expected, lines)?;
         let units = columns.iter().map(|column| (column.name.to_string(), column.unit.clone())).collect();
-        let table = Source::One(table);
+        let table = Source::One(Box::new(table));
         Ok(Self { file: file.to_owned(), table, scales: Scales::of(columns), units: Some(units), reported: 0 })
     }
 
@@ -221,7 +217,7 @@ impl RecordReader {
 
 /// The file of a record, or its three.
 enum Source {
-    One(TableReader),
+    One(Box<TableReader>),
     Three(Box<Joined>),
 }
 

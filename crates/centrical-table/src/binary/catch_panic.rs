@@ -11,7 +11,7 @@ thread_local! {
 }
 
 /// Calls; a panic is `Err(None)`, and nothing is printed of it. Nothing half done is used again.
-pub(super) fn catch_panic<T, E>(call: impl FnOnce() -> Result<T, E>) -> Result<T, Option<E>> {
+pub(crate) fn catch_panic<T, E>(call: impl FnOnce() -> Result<T, E>) -> Result<T, Option<E>> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let tell = take_hook();

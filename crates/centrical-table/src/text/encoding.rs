@@ -143,9 +143,6 @@ impl<R: Read> Read for FromUtf16<R> {
             self.is_finished = was_at_end && result == CoderResult::InputEmpty;
             if bytes.len() < LONGEST {
                 self.rest.extend_from_slice(&few[..written]);
-                if written > 0 {
-                    continue;
-                }
             } else if written > 0 {
                 return Ok(written);
             }
@@ -164,7 +161,7 @@ mod tests {
 
     #[test]
     fn utf_16_is_known_and_decoded() {
-        let text = "\u{feff}Время, с;µ;😀\r\n0,5;1;2\r\n".repeat(1) + &"1,25;-3;4\r\n".repeat(20_000);
+        let text = "\u{feff}Время, с;µ;😀\r\n0,5;1;2\r\n".to_owned() + &"1,25;-3;4\r\n".repeat(20_000);
         for encoding in [TextEncoding::Utf16Le, TextEncoding::Utf16Be] {
             for text in [text.as_str(), &text[3..]] {
                 let bytes = utf_16(text, encoding);

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+import openpyxl
 import pandas as pd
 import polars as pl
 import pyarrow as pa
@@ -313,7 +314,36 @@ def write_encodings(t, f):
 
 
 def write_sheets(t, f):
-    pass
+    """Workbooks as people type them: a title over merged cells, a row of units, a second sheet; with dates; with formulas that nobody computed."""
+    names = ["t", "f1", "f2", "f3"]
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet["A1"] = "A record; typed"
+    sheet.merge_cells("A1:D1")
+    sheet.append([])
+    sheet.append([*names, "note"])
+    sheet.append(["s", "m/s^2", "м/с²", "m/s2"])
+    for row in np.column_stack([t, f]):
+        sheet.append([*map(float, row), "a, \"b\""])
+    book.create_sheet("other")["A1"] = "nothing"
+    save_workbook(book, "typed.xlsx")
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.append(names)
+    start = datetime.datetime(2026, 10, 5, 10, 0, 0)
+    for k, row in enumerate(f):
+        sheet.append([start + datetime.timedelta(milliseconds=8 * k), *map(float, row)])
+    save_workbook(book, "dates.xlsx")
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.append(names)
+    sheet.append([0, 1, 2, "=B2+C2"])
+    save_workbook(book, "formula.xlsx")
+
+
+def save_workbook(book, name):
+    book.properties.created = book.properties.modified = datetime.datetime(2026, 10, 5)
+    book.save(HERE / name)
 
 
 if __name__ == "__main__":

@@ -39,6 +39,7 @@ fn parsers() -> Vec<Parser> {
         ("arrow", "record.arrow", &["arrow", "arrows", "feather"]),
         ("hdf5", "record.h5", &["h5"]),
         ("tdms", "record.tdms", &["tdms"]),
+        ("xlsx", "record.xlsx", &["xlsx"]),
     ]
     .map(|(name, file, extensions)| Parser { name, file, seeds: data(extensions), read: table })
     .into();

@@ -300,3 +300,27 @@ fn tdms_that_is_no_record() {
         "record.tdms, f1: found a scale of type Strain, expected linear and polynomial scales, or data that are scaled already"
     );
 }
+
+#[test]
+#[cfg(feature = "xlsx")]
+fn workbooks() {
+    assert_eq!(read_record(&data("typed.xlsx"), &named()).unwrap(), reference());
+    let [t, f @ ..] = read_record(&data("dates.xlsx"), &named()).unwrap();
+    assert_eq!(f[..], reference()[1..]);
+    // A workbook keeps a date to some microseconds; it is read to the millisecond.
+    assert!(t.iter().enumerate().all(|(k, t)| (t - START - 0.008 * k as f64).abs() < 1e-6), "{t:?}");
+    let error = read_record(&data("formula.xlsx"), &named()).unwrap_err().to_string();
+    assert!(error.ends_with("formula.xlsx, line 2, f3: found \"\", expected a number in m/s^2"), "{error}");
+    let form = centrical_table::text_form(&data("typed.xlsx")).unwrap().unwrap();
+    assert_eq!((form.header_line, form.units_line, form.first_row_line), (Some(3), Some(4), 5));
+    assert_eq!(form.above, ["\"A record; typed\";;;;"]);
+}
+
+#[test]
+#[cfg(not(feature = "xlsx"))]
+fn workbooks_are_named() {
+    let error = read_record(&data("typed.xlsx"), &named()).unwrap_err().to_string();
+    let expected = "typed.xlsx: found a workbook (.xlsx), expected the sheet saved as text (this program was built without the \
+                    feature xlsx)";
+    assert!(error.ends_with(expected), "{error}");
+}

@@ -12,7 +12,8 @@ use crate::binary::arrays::{Scalar, ScalarKind};
 
 /// First bytes of a segment.
 const TAG: &[u8; 4] = b"TDSm";
-const LEAD_IN: u64 = 28;
+const LEAD_IN_BYTES: usize = 28;
+const LEAD_IN: u64 = LEAD_IN_BYTES as u64;
 
 /// Bits of the table of contents.
 const METADATA: u32 = 1 << 1;
@@ -192,7 +193,7 @@ struct LeadIn {
 
 impl LeadIn {
     fn read(file: &mut File, at: u64) -> io::Result<Self> {
-        let mut bytes = [0; LEAD_IN as usize];
+        let mut bytes = [0; LEAD_IN_BYTES];
         file.seek(SeekFrom::Start(at))?;
         file.read_exact(&mut bytes)?;
         let Some(rest) = bytes.strip_prefix(TAG) else { return Err(wrong(format!("no segment at byte {at}"))) };
