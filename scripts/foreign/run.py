@@ -24,6 +24,7 @@ GRAVITY = 9.80665
 
 ANSWERS = {
     'gravity = "?"': 'gravity = "9.81523 m/s^2"',
+    'latitude = "?"': 'latitude = "55.7 deg"',
     'serial = "?"': 'serial = "0001"',
     'speed_uncertainty = "?"': "speed_uncertainty = 1e-5",
     'proof_masses = [[0, 0, 0], ["?", "?", "?"], ["?", "?", "?"]]':

@@ -7,7 +7,8 @@ use serde_json::Value;
 use crate::session::Copy;
 
 /// The example's own values of what no file shows, by the start of the line that asks for them.
-const FILLED: [(&str, &str); 4] = [
+const FILLED: [(&str, &str); 5] = [
+    ("latitude = \"?\"", "latitude = \"55.7 deg\""),
     ("gravity = \"?\"", "gravity = \"9.81523 m/s^2\""),
     ("serial = \"?\"", "serial = \"0001\""),
     (

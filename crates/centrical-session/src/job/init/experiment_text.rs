@@ -158,7 +158,11 @@ fn session(draft: &mut Draft) {
         &format!("gravity = {UNKNOWN}"),
         "such as \"9.81523 m/s^2\"; 1e-5 of it is 1e-5 of every scale factor",
     );
-    draft.line("# latitude = \"55.7 deg\"  # with it the Earth-rate term is applied");
+    draft.fill_in(
+        "[site] latitude",
+        &format!("latitude = {UNKNOWN}"),
+        "such as \"55.7 deg\"; the turn of the Earth adds up to 2e-5 of a reading",
+    );
     draft.line("");
 }
 
