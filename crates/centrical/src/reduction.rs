@@ -42,7 +42,7 @@ mod triangle;
 pub use average::{Averaging, PlateauFit, ReducedMounting, average};
 pub use colour::{NoiseModel, plateau_means};
 pub use error::{ReductionError, Stretch};
-pub use levels::{Level, levels};
+pub use levels::{Level, Staircase, levels, staircase};
 pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate};
 pub use mistake::Mistake;
 pub use plateau::{LeftOut, PlateauMean, ScheduledPlateau};

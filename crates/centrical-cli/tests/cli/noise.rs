@@ -34,7 +34,7 @@ fn white_noise_is_quoted_and_a_line_is_not() {
     let said = text(&output);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(
-        said.contains("F1  19995 readings every 0.010000 s; missing: 5, the longest run 1; left out as spikes: 5"),
+        said.contains("f1  19995 readings every 0.010000 s; missing: 5, the longest run 1; left out as spikes: 5"),
         "{said}"
     );
     // 1e-3 m/s^2 at 100 Hz: 1e-4 m/s^2/sqrt(Hz), 10.197 ug/sqrt(Hz).
@@ -108,4 +108,15 @@ fn what_is_no_record_is_refused() {
     .unwrap();
     let output = copy.run(&["noise", "still.csv", "--readings", "f1"]);
     assert!(text(&output).contains("it holds no noise to analyse"), "{}", text(&output));
+}
+
+/// A whole record of a session is no noise: the message says so and what to do.
+#[test]
+fn a_record_with_ramps_is_named() {
+    let copy = Copy::new();
+    let record = copy.session().join("records/m01.csv");
+    let output = copy.run(&["noise", record.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output).contains("f1: the record stands at 9 levels from"), "{}", text(&output));
+    assert!(text(&output).contains("choose one level with --from and --to, or a plateau"), "{}", text(&output));
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use centrical::reduction::Staircase;
 use centrical::stability::{Analysis, Coefficient, Deviation, Estimator, NoiseTerm};
 use centrical_session::{NoiseAnalysis, ReadingNoise};
 
@@ -28,7 +29,7 @@ pub fn noise_table(analysis: &NoiseAnalysis) -> String {
 
 fn heading(text: &mut String, reading: &ReadingNoise) {
     let ReadingNoise { name, noise: Analysis { samples, interval, spikes, repeated, gaps, .. }, .. } = reading;
-    let _ = write!(text, "\n{}  {samples} readings every {interval:.6} s", name.to_uppercase());
+    let _ = write!(text, "\n{}  {samples} readings every {interval:.6} s", name);
     if gaps.missing > 0 {
         let _ = write!(text, "; missing: {}, the longest run {}", gaps.missing, gaps.longest);
     }
@@ -133,7 +134,16 @@ pub fn noise_warnings(analysis: &NoiseAnalysis) -> Vec<String> {
         )),
         Err(error) => Some(format!("{}: no noise terms: {error}", reading.name)),
     };
-    analysis.readings.iter().filter_map(warning).collect()
+    let ramps = |reading: &ReadingNoise| {
+        let Staircase { levels, lowest, highest } = reading.staircase?;
+        let [low, high] = [lowest, highest].map(|level| significant(level, 4));
+        Some(format!(
+            "{}: the record stands at {levels} levels from {low} to {high} {} with ramps between them, and these are no noise; choose one \
+             level with --from and --to, or a plateau of a session with --plateau",
+            reading.name, reading.unit
+        ))
+    };
+    analysis.readings.iter().flat_map(|reading| ramps(reading).or_else(|| warning(reading))).collect()
 }
 
 /// A number to `digits` significant digits; with an exponent only where it would be long without.

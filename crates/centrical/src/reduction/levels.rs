@@ -31,6 +31,29 @@ pub struct Level {
     pub standard_uncertainty: f64,
 }
 
+/// A signal that moves from level to level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Staircase {
+    /// Number of levels.
+    pub levels: usize,
+    /// The lowest, in the unit of the signal.
+    pub lowest: f64,
+    /// The highest.
+    pub highest: f64,
+}
+
+/// Whether a signal moves from level to level: it stands still for half of the time, at levels that differ by more than a
+/// hundred times the noise of a sample and a twentieth of the largest. Drift and noise of any colour do not.
+pub fn staircase(t: &[f64], y: &[f64]) -> Option<Staircase> {
+    let levels = levels(t, y);
+    let still: f64 = levels.iter().map(|level| level.window[1] - level.window[0]).sum();
+    let values = levels.iter().map(|level| level.value);
+    let [lowest, highest] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+    let is_apart = highest - lowest > (100.0 * noise(y)).max(0.05 * lowest.abs().max(highest.abs()));
+    let is_still = 2.0 * still >= t.last()? - t.first()?;
+    (is_apart && is_still).then_some(Staircase { levels: levels.len(), lowest, highest })
+}
+
 /// Mean of consecutive samples.
 struct Block {
     window: [f64; 2],

@@ -1,6 +1,6 @@
 //! Levels of a signal, without its schedule.
 
-use centrical::reduction::levels;
+use centrical::reduction::{levels, staircase};
 
 use crate::common::Random;
 
@@ -27,6 +27,7 @@ fn levels_of_a_noisy_staircase() {
             }
         }
         let found = levels(&t, &y);
+        assert_eq!(staircase(&t, &y).map(|s| s.levels), Some(set.len()));
         assert_eq!(found.len(), set.len(), "seed {seed}: {found:?}");
         for (level, set) in found.iter().zip(set) {
             assert!(level.window[1] - level.window[0] > 8.0, "{level:?}");
@@ -43,4 +44,25 @@ fn no_levels() {
     assert!(levels(&t, &t).is_empty());
     assert!(levels(&[], &[]).is_empty());
     assert!(levels(&t[..3], &[1.0; 3]).is_empty());
+}
+
+/// White noise, a random walk, a drift and a sine about zero are no staircases.
+#[test]
+fn noise_is_no_staircase() {
+    for seed in 0..20 {
+        let mut random = Random::new(100 + seed);
+        let t: Vec<f64> = (0..30_000).map(|n| f64::from(n) * 0.01).collect();
+        let mut walk = 0.0;
+        let white: Vec<f64> = t.iter().map(|_| random.normal()).collect();
+        let mut step = || {
+            walk += random.normal();
+            walk
+        };
+        let walked: Vec<f64> = t.iter().map(|_| step()).collect();
+        let sine: Vec<f64> = t.iter().zip(&white).map(|(t, w)| 30.0 * (t / 7.0).sin() + w).collect();
+        let drift: Vec<f64> = t.iter().zip(&white).map(|(t, w)| 9.8 + 1e-3 * (w + t / 10.0)).collect();
+        for (name, y) in [("white", white), ("walk", walked), ("sine", sine), ("drift", drift)] {
+            assert_eq!(staircase(&t, &y), None, "{name}, seed {seed}");
+        }
+    }
 }

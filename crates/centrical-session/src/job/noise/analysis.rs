@@ -1,5 +1,6 @@
 //! Noise of a record: stability deviations, spectrum and noise terms of every column of readings.
 
+use centrical::reduction::staircase;
 use centrical::stability::{CONFIDENCE, Estimator, analyse};
 use rayon::prelude::*;
 
@@ -16,7 +17,12 @@ pub fn analyse_noise(series: &Series, estimators: &[Estimator]) -> Result<NoiseA
     let analysed = columns.map(|(name, unit, values)| {
         let failed = |source| Error::Noise { file: series.file.clone(), reading: name.clone(), source };
         let noise = analyse(&series.t, values, estimators).map_err(failed)?;
-        Ok::<_, Error>(ReadingNoise { name: name.clone(), unit: unit.clone(), noise })
+        Ok::<_, Error>(ReadingNoise {
+            name: name.clone(),
+            unit: unit.clone(),
+            staircase: staircase(&series.t, values),
+            noise,
+        })
     });
     Ok(NoiseAnalysis {
         file: series.file.clone(),
