@@ -10,7 +10,7 @@ use centrical_session::{Date, Symbol};
 use self::english::ENGLISH;
 pub(crate) use self::messages::Messages;
 use self::russian::RUSSIAN;
-use crate::number::{power_of_ten, scientific, shortest, significant, superscript, with_uncertainty};
+use crate::number::{power_of_ten, scientific, shortest, significant, superscript, unsigned_zero, with_uncertainty};
 
 /// A language of the documents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -50,7 +50,7 @@ impl Language {
 
     /// A number to `places` decimal places.
     pub(crate) fn fixed(self, value: f64, places: usize) -> String {
-        self.number(&format!("{value:.places$}"))
+        self.number(&unsigned_zero(format!("{value:.places$}")))
     }
 
     /// A probability to three places, a small one to two digits and a power of ten.
@@ -63,7 +63,7 @@ impl Language {
 
     /// A number to `digits` significant digits, never in powers of ten.
     pub(crate) fn significant(self, value: f64, digits: u8) -> String {
-        self.number(&significant(value, digits, i32::MIN..i32::MAX))
+        self.number(&unsigned_zero(significant(value, digits, i32::MIN..i32::MAX)))
     }
 
     /// `1.5·10⁻⁵`, with the digits that the number has.
@@ -106,6 +106,23 @@ impl Language {
         plain.split('/').map(words).collect::<Vec<_>>().join("/")
     }
 
+    /// A day as a session writes it: what is no day of ISO 8601 stays as it is.
+    pub(crate) fn written_date(self, text: &str) -> String {
+        text.parse().map_or_else(|_| text.to_owned(), |date| self.date(date))
+    }
+
+    /// A whole number.
+    pub(crate) fn count(self, number: u64) -> String {
+        const GROUP: usize = 3;
+        let digits = number.to_string();
+        if digits.len() <= GROUP + 1 {
+            return digits;
+        }
+        // Groups of three from the right, a narrow space that does not break between (ISO 80000-1, 7.3.1).
+        let groups = digits.as_bytes().rchunks(GROUP).rev();
+        groups.map(String::from_utf8_lossy).collect::<Vec<_>>().join("\u{202f}")
+    }
+
     /// A day.
     pub(crate) fn date(self, date: Date) -> String {
         match self {
@@ -130,6 +147,9 @@ mod tests {
         assert_eq!(English.significant(1234.5, 3), "1234");
         assert_eq!(Russian.significant(0.012_345, 3), "0,0123");
         assert_eq!((English.unit("ug/g^2"), Russian.unit("ug/g^2")), ("µg/g²".to_owned(), "мкg/g²".to_owned()));
+        assert_eq!(["2026-10-05", "October"].map(|day| Russian.written_date(day)), ["05.10.2026", "October"]);
+        assert_eq!([108, 1234, 105_893].map(|n| Russian.count(n)), ["108", "1234", "105\u{202f}893"]);
+        assert_eq!((Russian.fixed(-0.001, 2), Russian.fixed(-0.01, 2)), ("0,00".to_owned(), "−0,01".to_owned()));
         assert_eq!(Russian.unit("urad at 10 rev/s"), "мкрад при 10 об/с");
         assert_eq!((English.unit("s^4/m^2"), Russian.unit("s^4/m^2")), ("s⁴/m²".to_owned(), "с⁴/м²".to_owned()));
     }

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{DocumentRequest, Language, verdict_text, write_documents};
+use centrical_report::{
+    DocumentRequest, Language, UnitStatement, UnitVerdict, unit_text, verdict_text, write_documents,
+};
 use centrical_session::Error;
 use clap::ValueEnum;
 
@@ -40,7 +42,8 @@ pub struct Arguments {
 /// Language of the documents, and the laboratory's data in them.
 #[derive(Debug, clap::Args)]
 pub struct Documents {
-    /// Laboratory file: laboratory, customer, dates, standards and persons named in the certificates
+    /// Laboratory file: laboratory, customer, dates, standards and persons named in the certificates, and limits of the
+    /// unit; a unit that is not within them ends with exit code 1
     #[arg(long, value_name = "FILE")]
     pub laboratory: Option<PathBuf>,
     /// Language of the documents
@@ -68,7 +71,7 @@ impl From<LanguageName> for Language {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let result = write_documents(&DocumentRequest {
+    let documents = write_documents(&DocumentRequest {
         result: arguments.result.clone(),
         html: arguments.html.clone(),
         history: arguments.history.clone(),
@@ -79,9 +82,19 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         laboratory: arguments.documents.laboratory.clone(),
         language: arguments.documents.language.into(),
     })?;
+    let (result, unit) = (documents.result, documents.unit);
     let objections = result.objections();
     if !objections.is_empty() {
         print(&verdict_text(&objections))?;
     }
-    Ok(Outcome::acceptable(objections.is_empty()))
+    let is_within = is_within_limits(unit.as_ref());
+    if !is_within {
+        print(&unit.as_ref().map(unit_text).unwrap_or_default())?;
+    }
+    Ok(Outcome::acceptable(objections.is_empty() && is_within))
+}
+
+/// Whether the unit keeps the limits that were asked for; limits that were not are kept.
+pub fn is_within_limits(unit: Option<&UnitStatement>) -> bool {
+    unit.is_none_or(|unit| unit.verdict() == UnitVerdict::Within)
 }

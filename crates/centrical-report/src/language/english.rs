@@ -11,8 +11,8 @@ use super::speeds;
 /// English.
 pub(crate) const ENGLISH: Messages = Messages {
     calibration_report: "Calibration report",
-    acceptable: "Acceptable",
-    not_acceptable: "Not acceptable",
+    acceptable: "Calibration acceptable",
+    not_acceptable: "Calibration not acceptable",
     verdict_good: "The result can be used as it stands: the fit converged, the residuals agree with the stated \
         uncertainties, and every parameter of the instrument is determined.",
     verdict_bad: "The result must not be used as it stands:",
@@ -43,10 +43,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     newtonometer: "Newtonometer",
     number_sign: "No.",
     parameters: "Parameters",
-    parameters_note: "Value ± expanded uncertainty U = k·u with coverage factor k = 2, which for a normal \
-        distribution is a level of confidence of about 95 %; where the effective degrees of freedom are finite, k is that of Student’s \
-        distribution. 1 g = 9.80665 m/s².",
-    instrument: "Instrument",
+    parameters_note: "Value ± expanded uncertainty U = k·u for a coverage probability of 95.45 %: k = 2 for a normal \
+        distribution; where the effective degrees of freedom are finite, that of Student’s distribution. 1 g = 9.80665 m/s².",
     mounting: "Geometry of the experiment",
     parameter: "Parameter",
     value: "Value ± U",
@@ -94,7 +92,6 @@ pub(crate) const ENGLISH: Messages = Messages {
         rotation axis up.",
     position: "Position",
     pair: "pair",
-    plots: "Plots",
     force_axis: "specific force along the loaded axis, g",
     error_before_axis: "reading error, mg",
     error_after_axis: "reading error, µg",
@@ -193,10 +190,10 @@ pub(crate) const ENGLISH: Messages = Messages {
     traceable_to: "Traceable to",
     results: "Results",
     results_model: "Error model of the reading f′ of axis i at the specific force f:",
-    uncertainty_statement: "The expanded uncertainty U is the standard uncertainty multiplied by the coverage \
-        factor k = 2, which for a normal distribution corresponds to a coverage probability of approximately 95 %. \
-        Where the effective degrees of freedom are finite, k is that of Student’s distribution for the same \
-        probability. It was evaluated in accordance with JCGM 100 (GUM). 1 g = 9.80665 m/s².",
+    uncertainty_statement: "The reported expanded uncertainty U is the standard uncertainty multiplied by the coverage \
+        factor k for a coverage probability of approximately 95 % (95.45 %): k = 2 for a normal distribution; where the \
+        effective degrees of freedom ν_eff are finite, that of Student’s distribution. It was evaluated in accordance with \
+        JCGM 100 (GUM) and EA-4/02. 1 g = 9.80665 m/s².",
     adjustment: "Before and after adjustment",
     before_adjustment: "Before adjustment, ± U",
     after_adjustment: "After adjustment, ± U",
@@ -227,8 +224,51 @@ pub(crate) const ENGLISH: Messages = Messages {
     uncertainty: "Expanded uncertainty",
     covariance: "Covariance matrix of the parameters",
     specific_force: "Specific force",
+    unit_within: "Unit within its limits",
+    unit_outside: "Unit not within its limits",
+    unit_not_stated: "Unit: conformity not stated",
+    unit_not_asked: "Unit: no limits given",
+    unit_within_text: "Every limit below is kept by the decision rule.",
+    unit_outside_text: "By the decision rule these limits are not kept:",
+    unit_not_stated_text: "Nothing is stated from a calibration that is not acceptable, or of a parameter that the data do not \
+        determine.",
+    unit_not_asked_text: "The verdict on the left is on the calibration alone. Whether the unit meets a specification is \
+        stated where the laboratory’s file gives limits.",
+    limits_judged: "Limits judged",
+    headline: "Reading error, root mean square",
+    headline_note: "Over all plateaus of the calibrated range, against the specific force of the fitted geometry. The \
+        compensated error is without what each plateau’s own speed explains, which along the arm is nearly \
+        all of it; U is what the parameters leave in a compensated reading.",
+    root_mean_square: "Root mean square",
+    largest: "Largest magnitude",
+    error_model: "Error model of the unit",
+    error_model_note: "f′ is a reading in m/s², f the specific force along the sensitive axes:",
+    parameters_of_instrument: "Parameters of the instrument",
+    first_plots: "What the unit does and what is left",
+    further_plots: "Further plots",
+    checks: "Checks of the fit",
+    contents: "Further, to be opened",
+    effects_absent: "Effects whose absence is presupposed",
+    counts_as_exact: "Counts as exact",
+    nothing_exact: "nothing of what enters the model",
+    all_rests_on: "Effects presupposed absent, in full",
+    corrected_for: "corrected for the number of mountings,",
+    f_test: "F test",
+    coverage_factor: "k",
+    effective_degrees: "ν_eff",
+    unit_temperature: "Temperature of the unit",
+    nominal_output: "Nominal conversion of the output",
+    nominal_output_text: "Readings are f′ = (N − b)/S with the nominal scale S and the nominal bias b of the raw output N; \
+        these are conventions, without uncertainty, and the parameters are corrections to them.",
+    nominal_scale: "Nominal scale S",
+    nominal_bias: "Nominal bias b",
+    compensated_reading: "compensated reading, axis",
+    at_plateau: "plateau",
+    signed_on: "date",
+    mark_place: "place for mark or seal",
     words: Words {
         group,
+        meaning,
         source,
         method,
         termination,
@@ -268,7 +308,6 @@ pub(crate) const ENGLISH: Messages = Messages {
     uncertainties_and_reading: "standard uncertainties and a compensated reading by",
     presupposed: "The stated uncertainties presuppose a rigid arm, a constant temperature of the unit, and speeds whose errors \
         are independent from plateau to plateau.",
-    presupposed_exact: " Gravity, radii, attitudes and the places of the proof masses count as exact.",
     chi_squared_small: "Residuals are smaller than the stated uncertainties allow: these are too large.",
     lost_parameters: "parameters of the instrument are not determined",
     speeds: "Speeds of the plateaus",
@@ -299,6 +338,20 @@ fn group(group: Group) -> &'static str {
         Group::MountingTurn => "Turn of one mounting",
         Group::MountingTilt => "Tilt of the axis in one mounting",
         Group::Disturbance => "Disturbance of the readings",
+    }
+}
+
+fn meaning(of: Group) -> &'static str {
+    match of {
+        Group::Bias => "bias: reading at no specific force",
+        Group::Scale => "scale error: relative error of the slope along the own axis",
+        Group::Misalignment => "misalignment: part of a force along another axis that is read, an angle",
+        Group::Quadratic => "quadratic coefficient: reading for the square of the force along axis j",
+        Group::Cubic => "cubic coefficient along the own axis",
+        Group::CrossCoupling => "cross-coupling: reading for the product of two forces",
+        Group::Asymmetry => "asymmetry: scale that differs with the sign of the force",
+        Group::HigherOrder => "coefficient of a higher power",
+        _ => group(of),
     }
 }
 

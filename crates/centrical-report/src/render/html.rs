@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::document::{Block, Document, Opening, Row, Section, Table, TableKind, Tone};
+use crate::document::{Block, Document, Layer, Opening, Row, Section, Table, TableKind, Tone};
 use crate::figure::Figure;
 use crate::plot::Escaped;
 
@@ -19,8 +19,17 @@ pub fn html(document: &Document) -> String {
         Escaped(&document.title)
     );
     opening(&mut html, &document.opening);
-    for part in &document.sections {
-        section(&mut html, part);
+    let (first, further): (Vec<_>, Vec<_>) = document.sections.iter().partition(|part| part.layer == Layer::First);
+    let (verdicts, text): (Vec<&Section>, Vec<_>) = first.into_iter().partition(|part| part.tone != Tone::Plain);
+    if !verdicts.is_empty() {
+        html.push_str("<div class=\"verdicts\">\n");
+        verdicts.into_iter().for_each(|part| section(&mut html, part));
+        html.push_str("</div>\n");
+    }
+    text.into_iter().for_each(|part| section(&mut html, part));
+    if !further.is_empty() {
+        contents(&mut html, &document.contents, &further);
+        further.into_iter().enumerate().for_each(|(n, part)| folded(&mut html, n, part));
     }
     let _ = write!(html, "<footer>{}</footer>\n</main></body></html>\n", Escaped(&document.margins.foot));
     html
@@ -39,9 +48,35 @@ fn opening(html: &mut String, opening: &Opening) {
     html.push_str("</header>\n");
 }
 
+/// What a reader may open.
+fn contents(html: &mut String, title: &str, sections: &[&Section]) {
+    let entry =
+        |(n, section): (usize, &&Section)| format!("<li><a href=\"#part-{n}\">{}</a></li>", Escaped(heading(section)));
+    let entries: String = sections.iter().enumerate().map(entry).collect();
+    let _ = writeln!(html, "<nav><h2>{}</h2><ul>{entries}</ul></nav>", Escaped(title));
+}
+
+/// A section that is opened by its heading, or by a way to what is inside.
+fn folded(html: &mut String, n: usize, section: &Section) {
+    let _ = writeln!(html, "<details><summary><h2>{}</h2></summary><div id=\"part-{n}\">", Escaped(heading(section)));
+    let is_heading = |part: &Block| matches!(part, Block::Heading(..));
+    section.blocks.iter().filter(|part| !is_heading(part)).for_each(|part| block(html, part));
+    html.push_str("</div></details>\n");
+}
+
+/// The heading that a section begins with.
+fn heading(section: &Section) -> &str {
+    section
+        .blocks
+        .iter()
+        .find_map(|part| if let Block::Heading(text, _) = part { Some(text.as_str()) } else { None })
+        .unwrap_or_default()
+}
+
 fn section(html: &mut String, section: &Section) {
     html.push_str(match section.tone {
         Tone::Plain => "<section>",
+        Tone::Neutral => "<section class=\"verdict\">",
         Tone::Good => "<section class=\"verdict good\">",
         Tone::Bad => "<section class=\"verdict bad\">",
     });
@@ -68,7 +103,7 @@ fn block(html: &mut String, block: &Block) {
         }
         Block::Table(table) => whole_table(html, table),
         Block::Figure(figure) => draw(html, figure),
-        Block::Signature { name, role, word } => {
+        Block::Signature { name, role, word, .. } => {
             writeln!(html, "<p>{}: ____ {}, {}</p>", Escaped(word), Escaped(name), Escaped(role))
         }
     };

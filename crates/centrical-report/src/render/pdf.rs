@@ -34,6 +34,6 @@ fn block(layout: &mut Layout, block: &Block) {
         Block::Table(table) => layout.table(table),
         // Drawings are SVG, which a PDF does not take as it is.
         Block::Figure(figure) => layout.paragraph(&figure.caption),
-        Block::Signature { name, role, word } => layout.signature(name, role, word),
+        Block::Signature { name, role, word, date, mark } => layout.signature([name, role, word, date, mark]),
     }
 }

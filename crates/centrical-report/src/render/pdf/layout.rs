@@ -87,16 +87,23 @@ impl Layout {
         self.space(6.0);
     }
 
-    /// A line for a signature, with who signs beside it.
-    pub fn signature(&mut self, name: &str, role: &str, word: &str) {
-        self.keep(54.0);
+    /// A line for a signature with who signs beside it, a line for the date, and under them free room for a mark.
+    pub fn signature(&mut self, [name, role, word, date, mark]: [&str; 5]) {
+        const SMALL: f32 = 8.0;
+        const ROOM: f32 = 62.0;
+        self.keep(64.0 + ROOM);
         self.space(26.0);
         let y = self.y;
-        self.page().set_line_width(0.5).move_to(LEFT, y).line_to(LEFT + 170.0, y).stroke();
-        self.text(word, Weight::Regular, 8.0, LEFT, y - 10.0);
+        let date_line = (LEFT + WIDTH - 90.0, LEFT + WIDTH);
+        for (from, to) in [(LEFT, LEFT + 170.0), date_line] {
+            self.page().set_line_width(0.5).move_to(from, y).line_to(to, y).stroke();
+        }
+        self.text(word, Weight::Regular, SMALL, LEFT, y - 10.0);
+        self.text(date, Weight::Regular, SMALL, date_line.0, y - 10.0);
         self.text(name, Weight::Bold, SIZE, LEFT + 190.0, y);
         self.text(role, Weight::Regular, SIZE, LEFT + 190.0, y - 12.0);
-        self.space(22.0);
+        self.text(mark, Weight::Regular, SMALL, LEFT, y - 26.0);
+        self.space(26.0 + ROOM);
     }
 
     /// Free space, none at the head of a page.
