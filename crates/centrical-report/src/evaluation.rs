@@ -23,4 +23,4 @@ pub(crate) use self::group::by_group;
 pub(crate) use self::noise::Shown;
 pub(crate) use self::not_used::not_used;
 pub(crate) use self::reading_error::{ReadingError, compensated, reading_errors};
-pub(crate) use self::symbol::symbol;
+pub(crate) use self::symbol::{newtonometer, symbol};

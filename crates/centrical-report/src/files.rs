@@ -18,7 +18,7 @@ use crate::picture::read_picture;
 use crate::render::{html, pdf};
 
 /// The documents that are made of a result.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct DocumentRequest {
     /// The result of a calibration.
     pub result: PathBuf,
@@ -34,6 +34,8 @@ pub struct DocumentRequest {
     pub dcc: Option<PathBuf>,
     /// Folder for the compensation as source code.
     pub code: Option<PathBuf>,
+    /// Largest specific force on each axis that the source code takes [m/s^2]; the result's own range if none.
+    pub range: Option<f64>,
     /// What the certificates say of the laboratory.
     pub laboratory: Option<PathBuf>,
     /// Language of the documents.
@@ -90,7 +92,7 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
         }
     }
     if let Some(folder) = &request.code {
-        write_source(&result, &request.result, &inputs, folder)?;
+        write_source(&result, request, &inputs, folder)?;
     }
     Ok(Documents { unit: issuer.and_then(|issuer| issuer.unit), result })
 }
@@ -201,13 +203,18 @@ fn dcc(result: &CalibrationResult, issuer: &Issuer, language: Language, file: &P
 }
 
 /// Writes the compensation as source code.
-fn write_source(result: &CalibrationResult, file: &Path, inputs: &[PathBuf], folder: &Path) -> Result<(), Error> {
-    let file = || file.to_owned();
+fn write_source(
+    result: &CalibrationResult,
+    request: &DocumentRequest,
+    inputs: &[PathBuf],
+    folder: &Path,
+) -> Result<(), Error> {
+    let file = || request.result.clone();
     let no_model = |source| Error::ErrorModel { file: file(), source };
     let terms = NamedTerm::of(result).map_err(no_model)?;
     let plain = result.error_terms().map_err(no_model)?;
-    let sources = (result.compensation_range(&plain))
-        .and_then(|range| compensation_source(&heading(result), &terms, range))
+    let sources = (request.range.map_or_else(|| result.compensation_range(&plain), Ok))
+        .and_then(|range| compensation_source(&heading(result), &terms, result.output.as_ref(), range))
         .map_err(|source| Error::NotInvertible { file: file(), source })?;
     let _claim = claim_folder(folder)?;
     refuse_inputs(&sources.iter().map(|source| folder.join(source.name)).collect::<Vec<_>>(), inputs)?;

@@ -8,6 +8,7 @@ use centrical_report::{
 use centrical_session::Error;
 use clap::ValueEnum;
 
+use crate::command::compensate::acceleration;
 use crate::outcome::Outcome;
 use crate::output::print;
 
@@ -35,6 +36,10 @@ pub struct Arguments {
     /// Write the compensation as source code with test vectors to this folder: C99, MATLAB and Octave, Python
     #[arg(long, alias = "c", value_name = "DIR")]
     code: Option<PathBuf>,
+    /// Largest specific force on each axis that the source code takes, such as "200 g"
+    /// [default: twice the largest plateau reading of the calibration, within the range of the certified inverse]
+    #[arg(long, value_name = "QUANTITY", value_parser = acceleration, requires = "code")]
+    range: Option<f64>,
     #[command(flatten)]
     documents: Documents,
 }
@@ -79,6 +84,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         before: arguments.before.clone(),
         dcc: arguments.dcc.clone(),
         code: arguments.code.clone(),
+        range: arguments.range,
         laboratory: arguments.documents.laboratory.clone(),
         language: arguments.documents.language.into(),
     })?;

@@ -3,13 +3,13 @@
 use centrical_session::{Address, CalibrationResult, Condition, Contact, Laboratory, customary};
 
 use super::conformity::{conformity_table, rule};
-use super::content::{Align, Block, Document, Margins, Opening, Picture, Section, Table};
+use super::content::{Align, Block, Document, Margins, Opening, Picture, Row, Section, Table};
 use super::drift::drift_facts;
 use super::objection::objection;
 use super::reading_error::error_table;
 use super::rests_on::{counts_as_exact, rests_on_sentence};
 use super::symbols::nominal_output;
-use super::tables::coverage;
+use super::tables::cells;
 use crate::evaluation::{UnitStatement, by_group, equations, expanded, symbol};
 use crate::language::Language;
 
@@ -205,35 +205,26 @@ fn traceability(laboratory: &Laboratory, language: Language) -> Vec<Block> {
 fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let messages = language.messages();
     let terms: Vec<_> = result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect();
-    let rows = by_group(&terms).into_iter().map(|parameter| {
-        let (factor, unit) = customary(&parameter.unit, parameter.group);
-        let [shown, k, nu, si] = match (parameter.value, expanded(result, parameter)) {
-            (Some(value), Some(expanded)) => {
-                let [k, nu] = coverage(&expanded, language);
-                let expanded = expanded.uncertainty;
-                let shown = language.plus_minus(value * factor, expanded * factor);
-                [shown, k, nu, language.plus_minus_scientific(value, expanded)]
-            }
-            _ => [messages.not_determined.to_owned(), String::new(), String::new(), String::new()],
-        };
-        let group = (messages.words.group)(parameter.group).to_owned();
-        let units = [unit, &parameter.unit].map(|unit| language.unit(unit));
-        let [unit, si_unit] = units;
-        vec![symbol(&parameter.name), group, shown, unit, k, nu, si, si_unit]
-    });
     let columns = [
-        ("", 0.07, Align::Left),
-        ("", 0.22, Align::Left),
-        (messages.value, 0.2, Align::Right),
-        ("", 0.08, Align::Left),
-        (messages.coverage_factor, 0.055, Align::Right),
-        (messages.effective_degrees, 0.065, Align::Right),
-        (messages.value_si, 0.24, Align::Right),
-        ("", 0.07, Align::Left),
+        ("", 0.1, Align::Left),
+        (messages.value, 0.26, Align::Right),
+        ("", 0.12, Align::Left),
+        (messages.coverage_and_degrees, 0.12, Align::Right),
+        (messages.value_si, 0.3, Align::Right),
+        ("", 0.1, Align::Left),
     ];
+    let mut table = Table::numbers(columns, []);
+    let mut group = None;
+    for parameter in by_group(&terms) {
+        if group != Some(parameter.group) {
+            group = Some(parameter.group);
+            table.rows.push(Row::Group((messages.words.group)(parameter.group).to_owned()));
+        }
+        table.rows.push(Row::Cells(cells(result, parameter, language)));
+    }
     let mut blocks = vec![Block::heading(messages.results, 14), Block::paragraph(messages.results_model)];
     blocks.extend(equations(result).map(Block::Paragraph));
-    blocks.push(Block::Table(Table::numbers(columns, rows)));
+    blocks.push(Block::Table(table));
     blocks.push(Block::paragraph(messages.uncertainty_statement));
     blocks.push(Block::facts([(messages.counts_as_exact, counts_as_exact(result, language))]));
     blocks.push(Block::paragraph(&presupposed(result, language)));

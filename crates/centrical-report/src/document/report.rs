@@ -124,7 +124,8 @@ fn of_unit(unit: Option<&UnitStatement>, language: Language) -> Section {
     }
     blocks.push(Block::facts([
         (messages.specification, unit.specification.clone()),
-        (messages.decision_rule, rule(unit.rule, language).to_owned()),
+        // What the rule asks for stands in the certificate.
+        (messages.decision_rule, rule(unit.rule, language).split(':').next().unwrap_or_default().to_owned()),
         (messages.limits_judged, unit.judged.len().to_string()),
     ]));
     Section { tone, ..Section::plain(blocks) }

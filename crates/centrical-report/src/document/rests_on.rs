@@ -74,7 +74,7 @@ pub(crate) fn rests_on_sentence(effect: &RestsOn, language: Language) -> String 
     format!(
         "{}: {unseen} {} {} {uncertainties} {} {reading} {}",
         cause(&effect.name, language),
-        effect.parameter,
+        symbol(&effect.parameter),
         messages.by,
         messages.uncertainties_and_reading,
         language.unit("ug")

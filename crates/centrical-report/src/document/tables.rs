@@ -3,7 +3,7 @@
 use centrical_session::{BudgetSource, CalibrationResult, ParameterEstimate, customary};
 
 use super::content::{Align, Column, Row, Table, TableKind};
-use crate::evaluation::{Expanded, expanded, symbol};
+use crate::evaluation::{expanded, symbol};
 use crate::language::Language;
 
 /// What a source leaves is not shown below this part of the combined uncertainty.
@@ -16,8 +16,7 @@ pub(super) fn parameters(result: &CalibrationResult, shown: &[&ParameterEstimate
         (messages.parameter, 0.12, Align::Left),
         (messages.value, 0.24, Align::Right),
         (messages.unit, 0.12, Align::Left),
-        (messages.coverage_factor, 0.08, Align::Right),
-        (messages.effective_degrees, 0.08, Align::Right),
+        (messages.coverage_and_degrees, 0.16, Align::Right),
         (messages.value_si, 0.26, Align::Right),
         (messages.unit, 0.1, Align::Left),
     ];
@@ -33,24 +32,23 @@ pub(super) fn parameters(result: &CalibrationResult, shown: &[&ParameterEstimate
     table
 }
 
-fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) -> Vec<String> {
+/// Symbol, value and unit in the customary unit, coverage factor, the same in SI. Effective degrees of freedom stand beside
+/// the coverage factor where they are finite, cut to a whole number (EA-4/02, E.3).
+pub(super) fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) -> Vec<String> {
     let (factor, unit) = customary(&parameter.unit, parameter.group);
-    let [shown, k, nu, si] = match (parameter.value, expanded(result, parameter)) {
-        (Some(value), Some(expanded)) => [
-            language.plus_minus(value * factor, expanded.uncertainty * factor),
-            coverage(&expanded, language)[0].clone(),
-            coverage(&expanded, language)[1].clone(),
-            language.plus_minus_scientific(value, expanded.uncertainty),
-        ],
-        _ => [language.messages().not_determined.to_owned(), String::new(), String::new(), String::new()],
+    let [shown, k, si] = match (parameter.value, expanded(result, parameter)) {
+        (Some(value), Some(expanded)) => {
+            let k = language.fixed(expanded.factor, 2);
+            let degrees = expanded.degrees_of_freedom.map(|nu| format!("{k} ({})", language.fixed(nu.floor(), 0)));
+            [
+                language.plus_minus(value * factor, expanded.uncertainty * factor),
+                degrees.unwrap_or(k),
+                language.plus_minus_scientific(value, expanded.uncertainty),
+            ]
+        }
+        _ => [language.messages().not_determined.to_owned(), String::new(), String::new()],
     };
-    vec![symbol(&parameter.name), shown, language.unit(unit), k, nu, si, language.unit(&parameter.unit)]
-}
-
-/// Coverage factor and effective degrees of freedom, which are cut to a whole number (EA-4/02, E.3).
-pub(super) fn coverage(expanded: &Expanded, language: Language) -> [String; 2] {
-    let degrees = expanded.degrees_of_freedom.map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0));
-    [language.fixed(expanded.factor, 2), degrees]
+    vec![symbol(&parameter.name), shown, language.unit(unit), k, si, language.unit(&parameter.unit)]
 }
 
 /// Standard uncertainty by source; `None` if no budget was made.

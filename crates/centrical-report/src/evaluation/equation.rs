@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use centrical_session::{CalibrationResult, TermSummary};
 
-use super::symbol::symbol;
-use super::typeset::{lowered, typeset};
+use super::symbol::{newtonometer, symbol};
+use super::typeset::typeset;
 
 /// The equations of the three newtonometers, separated by semicolons, in the names of the result.
 pub(crate) fn equation(result: &CalibrationResult) -> String {
@@ -14,7 +14,7 @@ pub(crate) fn equation(result: &CalibrationResult) -> String {
 
 /// One equation for each newtonometer, as print has it.
 pub(crate) fn equations(result: &CalibrationResult) -> [String; 3] {
-    written(result, |axis| format!("f{}", lowered(&axis.to_string())), symbol, |monomial| typeset(&monomial))
+    written(result, newtonometer, symbol, |monomial| typeset(&monomial))
 }
 
 /// `f1' = f1 + df_1 + G0_11 f1 + ...`, its newtonometers, names and monomials written by the three functions.

@@ -17,6 +17,11 @@ pub(crate) fn symbol(name: &str) -> String {
     format!("{stem}{}{place}", lowered(index))
 }
 
+/// The reading of a newtonometer as print has it: `f` with a lowered number.
+pub(crate) fn newtonometer(axis: usize) -> String {
+    format!("f{}", lowered(&axis.to_string()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::symbol;

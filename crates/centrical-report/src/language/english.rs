@@ -31,7 +31,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     chi_squared: "χ² per degree of freedom",
     rank: "Rank",
     residual_error: "Reading error over the calibrated range",
-    residual_error_note: "Root mean square and, in brackets, largest magnitude over all plateaus, against the specific \
+    residual_error_note: "Over all plateaus, against the specific \
         force of the fitted geometry. The second row still holds the error of each plateau’s speed; the third is without \
         it, which along the arm leaves next to nothing, so it speaks for the axes across the arm and for rest. The last \
         row is the expanded uncertainty that the parameters leave in a compensated reading of the same force.",
@@ -111,7 +111,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     residual_axis: "residual, µg",
     normalised_axis: "normalised residual",
     correlation_title: "Correlation of the estimates",
-    correlation_caption: "Blue is positive, orange negative, and strength is saturation: strongly coloured cells \
+    correlation_caption: "Rows are named on the left, columns at the diagonal. Blue is positive, orange negative, and strength is saturation: strongly coloured cells \
         away from the diagonal are parameters that the experiment separates badly.",
     singular_title: "Singular values of the design",
     singular_axis: "singular value",
@@ -125,8 +125,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     limit: "limit",
     null_directions: "The readings do not change along",
     prediction_title: "Uncertainty of a compensated reading",
-    prediction_axis: "standard uncertainty, µg",
-    prediction_caption: "Standard uncertainty that the calibration leaves in a compensated reading, for a force along each \
+    prediction_axis: "expanded uncertainty (k = 2), µg",
+    prediction_caption: "Expanded uncertainty, k = 2, that the calibration leaves in a compensated reading, for a force along each \
         axis alone; the noise of the reading itself comes on top.",
     history_title: "Uncertainty as the session was watched",
     history_caption: "Largest standard uncertainty of each group over that after the last plateau, as it stood when each \
@@ -192,7 +192,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     results_model: "Error model of the reading f′ of axis i at the specific force f:",
     uncertainty_statement: "The reported expanded uncertainty U is the standard uncertainty multiplied by the coverage \
         factor k for a coverage probability of approximately 95 % (95.45 %): k = 2 for a normal distribution; where the \
-        effective degrees of freedom ν_eff are finite, that of Student’s distribution. It was evaluated in accordance with \
+        effective degrees of freedom νeff are finite, that of Student’s distribution. It was evaluated in accordance with \
         JCGM 100 (GUM) and EA-4/02. 1 g = 9.80665 m/s².",
     adjustment: "Before and after adjustment",
     before_adjustment: "Before adjustment, ± U",
@@ -254,8 +254,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     all_rests_on: "Effects presupposed absent, in full",
     corrected_for: "corrected for the number of mountings,",
     f_test: "F test",
-    coverage_factor: "k",
-    effective_degrees: "ν_eff",
+    coverage_and_degrees: "k (νeff)",
     unit_temperature: "Temperature of the unit",
     nominal_output: "Nominal conversion of the output",
     nominal_output_text: "Readings are f′ = (N − b)/S with the nominal scale S and the nominal bias b of the raw output N; \

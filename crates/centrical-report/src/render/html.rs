@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::document::{Block, Document, Layer, Opening, Row, Section, Table, TableKind, Tone};
+use crate::document::{Align, Block, Column, Document, Layer, Opening, Row, Section, Table, TableKind, Tone};
 use crate::figure::Figure;
 use crate::plot::Escaped;
 
@@ -98,7 +98,7 @@ fn block(html: &mut String, block: &Block) {
         Block::List(items) => list(html, items, ["<li>", "</li>"]),
         Block::Formulas(items) => list(html, items, ["<li><code>", "</code></li>"]),
         Block::Facts(facts) => {
-            let rows = facts.iter().map(|(name, value)| row(name, std::slice::from_ref(value)));
+            let rows = facts.iter().map(|(name, value)| row(name, std::slice::from_ref(value), &|_| ""));
             scrolling(html, "facts", &rows.collect::<String>())
         }
         Block::Table(table) => whole_table(html, table),
@@ -120,14 +120,21 @@ fn whole_table(html: &mut String, table: &Table) -> std::fmt::Result {
         TableKind::Parameters => "parameters",
         TableKind::Files => "hashes",
     };
-    let cells = table.columns.iter().map(|column| format!("<th scope=\"col\">{}</th>", Escaped(&column.title)));
+    // Numbers stand on the right, what stands on the left beside them is marked.
+    let side = |k: usize| {
+        let is_marked = table.kind == TableKind::Numbers && k > 0;
+        let align = table.columns.get(k).map_or(Align::Right, |column| column.align);
+        if is_marked && align == Align::Left { " class=\"left\"" } else { "" }
+    };
+    let title = |(k, column): (usize, &Column)| format!("<th scope=\"col\"{}>{}</th>", side(k), Escaped(&column.title));
+    let cells = table.columns.iter().enumerate().map(title);
     let head = format!("<thead><tr>{}</tr></thead>", cells.collect::<String>());
     let rows = table.rows.iter().map(|shown| match shown {
         Row::Group(name) => {
             let (span, name) = (table.columns.len(), Escaped(name));
             format!("<tr class=\"group\"><th colspan=\"{span}\" scope=\"rowgroup\">{name}</th></tr>")
         }
-        Row::Cells(cells) => cells.split_first().map_or(String::new(), |(name, cells)| row(name, cells)),
+        Row::Cells(cells) => cells.split_first().map_or(String::new(), |(name, cells)| row(name, cells, &side)),
     });
     scrolling(html, class, &(head + &rows.collect::<String>()))
 }
@@ -136,8 +143,8 @@ fn scrolling(html: &mut String, class: &str, rows: &str) -> std::fmt::Result {
     writeln!(html, "<div class=\"scroll\"><table class=\"{class}\">{rows}</table></div>")
 }
 
-fn row(name: &str, cells: &[String]) -> String {
-    let cells = cells.iter().map(|cell| format!("<td>{}</td>", Escaped(cell)));
+fn row(name: &str, cells: &[String], side: &dyn Fn(usize) -> &'static str) -> String {
+    let cells = (1..).zip(cells).map(|(k, cell)| format!("<td{}>{}</td>", side(k), Escaped(cell)));
     format!("<tr><th scope=\"row\">{}</th>{}</tr>", Escaped(name), cells.collect::<String>())
 }
 
