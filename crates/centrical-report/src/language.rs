@@ -1,8 +1,10 @@
 //! The languages of the documents: how each writes numbers, units and dates.
 
 mod english;
+mod english_words;
 mod messages;
 mod russian;
+mod russian_words;
 mod speeds;
 
 use centrical_session::{Date, Symbol};

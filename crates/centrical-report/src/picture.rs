@@ -1,10 +1,12 @@
 //! Pictures for documents, from PNG files.
 
-use std::io::Cursor;
 use std::path::Path;
 
 use centrical_session::{Error, Place, read_bytes};
-use png::{ColorType, Decoder, Limits, Transformations};
+use zune_core::bytestream::ZCursor;
+use zune_core::colorspace::ColorSpace;
+use zune_core::options::DecoderOptions;
+use zune_png::PngDecoder;
 
 use crate::document::Picture;
 
@@ -12,10 +14,7 @@ use crate::document::Picture;
 const LARGEST_FILE: u64 = 1 << 20;
 
 /// Largest number of pixels on a side.
-const LARGEST_SIDE: u32 = 2048;
-
-/// Memory that a decoder may take [bytes].
-const LARGEST_MEMORY: usize = 32 << 20;
+const LARGEST_SIDE: usize = 2048;
 
 /// The picture in a PNG file; what is transparent in it is laid on white.
 ///
@@ -24,30 +23,31 @@ const LARGEST_MEMORY: usize = 32 << 20;
 pub(crate) fn read_picture(file: &Path) -> Result<Picture, Error> {
     let expected = format!("a PNG picture of up to {LARGEST_SIDE} pixels a side in 1 MB at most");
     let bytes = read_bytes(file, LARGEST_FILE, &expected)?;
-    decode(Cursor::new(bytes)).map_err(|found| Error::content(file, Place::Whole, found, expected))
+    decode(&bytes).map_err(|found| Error::content(file, Place::Whole, found, expected))
 }
 
 /// The picture, or what is wrong with it.
-fn decode(input: Cursor<Vec<u8>>) -> Result<Picture, String> {
-    let mut decoder = Decoder::new_with_limits(input, Limits { bytes: LARGEST_MEMORY });
-    decoder.set_transformations(Transformations::EXPAND | Transformations::STRIP_16);
-    let mut reader = decoder.read_info().map_err(|error| error.to_string())?;
-    let (width, height) = reader.info().size();
-    if width > LARGEST_SIDE || height > LARGEST_SIDE {
-        return Err(format!("a picture of {width} x {height} pixels"));
-    }
-    let size = reader.output_buffer_size().ok_or_else(|| format!("a picture of {width} x {height} pixels"))?;
-    let mut samples = vec![0; size];
-    let frame = reader.next_frame(&mut samples).map_err(|error| error.to_string())?;
-    let samples = &samples[..frame.buffer_size()];
-    let pixels = match frame.color_type {
-        ColorType::Rgb => samples.to_vec(),
-        ColorType::Grayscale => samples.iter().flat_map(|&grey| [grey; 3]).collect(),
-        ColorType::GrayscaleAlpha => samples.chunks_exact(2).flat_map(|p| on_white([p[0]; 3], p[1])).collect(),
-        ColorType::Rgba => samples.chunks_exact(4).flat_map(|p| on_white([p[0], p[1], p[2]], p[3])).collect(),
-        ColorType::Indexed => return Err("a palette that was not expanded".to_owned()),
+fn decode(bytes: &[u8]) -> Result<Picture, String> {
+    let options = DecoderOptions::new_safe()
+        .set_strict_mode(true)
+        .set_max_width(LARGEST_SIDE)
+        .set_max_height(LARGEST_SIDE)
+        .png_set_confirm_crc(true)
+        .png_set_strip_to_8bit(true)
+        .png_set_add_alpha_channel(true);
+    let mut decoder = PngDecoder::new_with_options(ZCursor::new(bytes), options);
+    let samples = decoder.decode_raw().map_err(|error| error.to_string().trim().to_owned())?;
+    let (width, height) = decoder.dimensions().ok_or("a picture without a size")?;
+    let pixels: Vec<u8> = match decoder.colorspace() {
+        Some(ColorSpace::RGBA) => samples.chunks_exact(4).flat_map(|p| on_white([p[0], p[1], p[2]], p[3])).collect(),
+        Some(ColorSpace::LumaA) => samples.chunks_exact(2).flat_map(|p| on_white([p[0]; 3], p[1])).collect(),
+        other => return Err(format!("colours of the kind {other:?}")),
     };
-    Ok(Picture { width, height, pixels })
+    if pixels.len() != 3 * width * height {
+        return Err(format!("{} samples of {width} x {height} pixels", pixels.len()));
+    }
+    let side = |pixels: usize| u32::try_from(pixels).map_err(|error| error.to_string());
+    Ok(Picture { width: side(width)?, height: side(height)?, pixels })
 }
 
 /// A colour of some opacity laid on white.

@@ -33,13 +33,13 @@ pub(super) fn parameters(result: &CalibrationResult, shown: &[&ParameterEstimate
 }
 
 /// Symbol, value and unit in the customary unit, coverage factor, the same in SI. Effective degrees of freedom stand beside
-/// the coverage factor where they are finite, cut to a whole number (EA-4/02, E.3).
+/// the coverage factor where they are finite.
 pub(super) fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) -> Vec<String> {
     let (factor, unit) = customary(&parameter.unit, parameter.group);
     let [shown, k, si] = match (parameter.value, expanded(result, parameter)) {
         (Some(value), Some(expanded)) => {
             let k = language.fixed(expanded.factor, 2);
-            let degrees = expanded.degrees_of_freedom.map(|nu| format!("{k} ({})", language.fixed(nu.floor(), 0)));
+            let degrees = expanded.degrees_of_freedom.map(|nu| format!("{k} ({})", language.fixed(nu, 0)));
             [
                 language.plus_minus(value * factor, expanded.uncertainty * factor),
                 degrees.unwrap_or(k),

@@ -15,7 +15,7 @@ pub(crate) struct Expanded {
     /// Coverage factor `k`: 2, or that of Student's distribution of the same probability where the effective degrees of
     /// freedom are finite (GUM, G.6.4).
     pub factor: f64,
-    /// Effective degrees of freedom (Welch-Satterthwaite); `None` if they are infinite.
+    /// Effective degrees of freedom (Welch-Satterthwaite), a whole number; `None` if they are infinite.
     pub degrees_of_freedom: Option<f64>,
     /// `U = k u` [unit of the parameter].
     pub uncertainty: f64,
@@ -30,7 +30,8 @@ pub(crate) fn expanded_of_normal(standard_uncertainty: f64) -> f64 {
 pub(crate) fn expanded(result: &CalibrationResult, parameter: &ParameterEstimate) -> Option<Expanded> {
     let place = result.parameters.iter().position(|other| other.name == parameter.name);
     let degrees = |j: usize| result.budget.as_ref()?.degrees_of_freedom.get(j).copied().flatten();
-    let degrees_of_freedom = place.and_then(degrees);
+    // Cut to a whole number, which a reader finds in the published table (EA-4/02, E.3).
+    let degrees_of_freedom = place.and_then(degrees).map(|nu| nu.floor().max(1.0));
     let factor =
         degrees_of_freedom.map_or(COVERAGE_FACTOR, |nu| coverage_factor(COVERAGE_PROBABILITY, Degrees::Finite(nu)));
     let uncertainty = factor * parameter.standard_uncertainty?;
