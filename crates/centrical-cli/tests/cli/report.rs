@@ -149,7 +149,7 @@ fn russian_has_its_words_and_commas() {
     let body = &page[page.find("<main>").unwrap()..page.find("<figure").unwrap()];
     let text: String = body.split('<').filter_map(|piece| piece.split_once('>')).map(|(_, text)| text).collect();
     let has_point = |pair: &[char]| pair[0].is_ascii_digit() && pair[1] == '.' && pair[2].is_ascii_digit();
-    let letters: Vec<char> = text.replace("0.1.0", "").replace("0.0.0", "").chars().collect();
+    let letters: Vec<char> = text.replace("0.1.0", "").replace("0.0.0", "").replace("05.10.2026", "").chars().collect();
     let found = letters.windows(3).position(has_point);
     assert!(found.is_none(), "a decimal point in {:?}", found.map(|k| &letters[k.saturating_sub(20)..k + 5]));
     let dcc = fs::read_to_string(copy.out().join("certificate.xml")).unwrap();
@@ -267,8 +267,8 @@ fn coverage_factors_of_finite_degrees_of_freedom() {
     let run = copy.run(&[&arguments[..], &[laboratory.to_str().unwrap()]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
     let page = fs::read_to_string(copy.out().join("k.html")).unwrap();
-    // 0.0019816 mg times 2.28, the factor of ten degrees in EA-4/02, annex E.
-    assert!(page.contains("<td>−3.9524 ± 0.0045</td><td>mg</td><td>2.28 (10)</td>"), "k of Student's distribution");
+    // 0.0020027 mg times 2.28, the factor of ten degrees in EA-4/02, annex E.
+    assert!(page.contains("<td>−3.9524 ± 0.0046</td><td>mg</td><td>2.28 (10)</td>"), "k of Student's distribution");
     let dcc = fs::read_to_string(copy.out().join("k.xml")).unwrap();
     assert_eq!(dcc.matches("t-distribution").count(), 1);
     assert_eq!(dcc.matches("<si:coverageProbability>0.9545</si:coverageProbability>").count(), names.len());
@@ -280,23 +280,25 @@ fn a_unit_in_counts() {
     let copy = Copy::new();
     let form = copy.session().join("experiment.toml");
     let text = fs::read_to_string(&form).unwrap();
-    let counts = "output_unit = \"counts\"\ncounts = { scale = [1.0, 0.8, 1.25], bias = [0.5, 0.0, -2.0] }";
+    let counts = "output_unit = \"counts\"\ncounts = { scale = [1.0, 1.01, 0.99], bias = [0.5, 0.0, -0.25] }";
     assert!(text.contains("output_unit = \"m/s^2\""));
     fs::write(&form, text.replace("output_unit = \"m/s^2\"", counts)).unwrap();
     let laboratory = example().join("laboratory.toml");
-    copy.calibrate(&["--out", ".", "--laboratory", laboratory.to_str().unwrap()]);
+    let run = copy.calibrate(&["--out", ".", "--laboratory", laboratory.to_str().unwrap()]);
+    // 1: the scales are off by a hundredth, which the limits of the example do not take.
+    assert!(matches!(run.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&run.stderr));
     let result: serde_json::Value = serde_json::from_slice(&fs::read(copy.out().join("result.json")).unwrap()).unwrap();
-    let output = serde_json::json!({ "unit": "counts", "scale": [1.0, 0.8, 1.25], "bias": [0.5, 0.0, -2.0] });
+    let output = serde_json::json!({ "unit": "counts", "scale": [1.0, 1.01, 0.99], "bias": [0.5, 0.0, -0.25] });
     assert_eq!(result["output"], output);
     let page = fs::read_to_string(copy.out().join("report.html")).unwrap();
-    assert!(page.contains("Nominal scale S") && page.contains("counts/(m/s²)") && page.contains("<td>−2</td>"));
+    assert!(page.contains("Nominal scale S") && page.contains("counts/(m/s²)") && page.contains("<td>−0.25</td>"));
     let dcc = fs::read_to_string(copy.out().join("certificate.xml")).unwrap();
     assert!(dcc.contains("refType=\"basic_nominalValue centrical_nominalScale\""));
     assert!(dcc.contains("<si:unitXMLList>\\metre\\tothe{-1}\\second\\tothe{2}</si:unitXMLList>"));
     copy.run(&["report", "result.json", "--code", "source", "--range", "250 g"]);
     let header = fs::read_to_string(copy.out().join("source/centrical_compensate.h")).unwrap();
     assert!(header.contains("#define CENTRICAL_RANGE 2.4516625e3"), "{header}");
-    assert!(header.contains("in counts, by its nominal scale (1e0, 8e-1, 1.25e0) per m/s^2"), "{header}");
+    assert!(header.contains("in counts, by its nominal scale (1e0, 1.01e0, 9.9e-1) per m/s^2"), "{header}");
     assert!(header.contains("int centrical_compensate_raw("));
 }
 
