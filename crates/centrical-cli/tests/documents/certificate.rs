@@ -77,7 +77,7 @@ fn the_certificate_has_every_item() {
             ("b, humidity", "Relative humidity 45 ± 5 %"),
             ("b, pressure", "Air pressure 100.9 ± 0.4 kPa"),
             ("b, gravity", "Local gravity 9.81523 m/s²"),
-            ("b, drift", "Drift over a plateau, mean f1 "),
+            ("b, drift", "Drift over a plateau, mean f₁ "),
             ("b, drift", "no drift seen"),
             ("b, tilt", "300.17 ± 0.72 µrad; χ² = 0.2; ν = 1; they agree"),
             ("n, samples left out", "Samples not used spikes: 4"),
