@@ -45,6 +45,18 @@ pub(crate) fn unsigned_zero(shown: String) -> String {
     if is_zero { shown.trim_start_matches('-').to_owned() } else { shown }
 }
 
+/// A whole number in groups of three digits from the right, a narrow space that does not break between (ISO 80000-1, 7.3.1);
+/// of four digits together.
+pub(crate) fn grouped(number: u64) -> String {
+    const GROUP: usize = 3;
+    let digits = number.to_string();
+    if digits.len() <= GROUP + 1 {
+        return digits;
+    }
+    let groups = digits.as_bytes().rchunks(GROUP).rev();
+    groups.map(String::from_utf8_lossy).collect::<Vec<_>>().join("\u{202f}")
+}
+
 /// Decimal places that show `digits` significant digits of a number.
 fn places(value: f64, digits: u8) -> usize {
     let exponent = scientific(value, digits.into()).1;
@@ -104,7 +116,7 @@ pub(crate) fn superscript(number: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{significant, with_uncertainty};
+    use super::{grouped, significant, with_uncertainty};
 
     #[test]
     fn two_digits_of_the_uncertainty() {
@@ -121,6 +133,11 @@ mod tests {
         assert_eq!(shown(-0.3, 40.0), "0 ± 40");
         assert_eq!(shown(-0.04, 3.0), "0.0 ± 3.0");
         assert_eq!(shown(f64::NAN, 3.0), "NaN ± 3.0");
+    }
+
+    #[test]
+    fn long_numbers_have_groups() {
+        assert_eq!([108, 1234, 105_893].map(grouped), ["108", "1234", "105\u{202f}893"]);
     }
 
     #[test]

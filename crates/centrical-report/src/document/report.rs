@@ -13,6 +13,7 @@ use super::tables::{budget, parameters};
 use crate::evaluation::{UnitStatement, UnitVerdict, by_group, equations};
 use crate::figure::{Figure, figures, positions};
 use crate::language::Language;
+use crate::number::grouped;
 
 /// The report of a result: what every reader sees, then what some will open. `unit` is what a decision says of the unit, and
 /// `further` figures stand after its own.
@@ -219,9 +220,9 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
         messages.plateaus_used,
         result.plateaus.len(),
         messages.samples,
-        language.count(samples),
+        grouped(samples),
         messages.rejected,
-        language.count(rejected)
+        grouped(rejected)
     );
     let method =
         format!("{} ({}, {})", (words.method)(fit.method), (words.termination)(fit.termination), fit.iterations);

@@ -23,13 +23,19 @@ pub fn html(document: &Document) -> String {
     let (verdicts, text): (Vec<&Section>, Vec<_>) = first.into_iter().partition(|part| part.tone != Tone::Plain);
     if !verdicts.is_empty() {
         html.push_str("<div class=\"verdicts\">\n");
-        verdicts.into_iter().for_each(|part| section(&mut html, part));
+        for part in verdicts {
+            section(&mut html, part);
+        }
         html.push_str("</div>\n");
     }
-    text.into_iter().for_each(|part| section(&mut html, part));
+    for part in text {
+        section(&mut html, part);
+    }
     if !further.is_empty() {
         contents(&mut html, &document.contents, &further);
-        further.into_iter().enumerate().for_each(|(n, part)| folded(&mut html, n, part));
+        for (n, part) in further.into_iter().enumerate() {
+            folded(&mut html, n, part);
+        }
     }
     let _ = write!(html, "<footer>{}</footer>\n</main></body></html>\n", Escaped(&document.margins.foot));
     html
