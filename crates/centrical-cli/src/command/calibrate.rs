@@ -87,6 +87,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let text =
         if arguments.json { result.to_json()? } else { report(&result, &objections, unit.as_ref(), file.as_deref()) };
     print(&text)?;
+    if arguments.json {
+        // The result does not hold what the laboratory's limits say of the unit.
+        if let Some(unit) = &unit {
+            say(&unit_text(unit));
+        }
+    }
     Ok(Outcome::acceptable(objections.is_empty() && is_within_limits(unit.as_ref())))
 }
 

@@ -28,10 +28,10 @@ pub(super) fn conformity_table(unit: &UnitStatement, language: Language) -> Tabl
         vec![name, range, value, unit, verdict.to_owned()]
     };
     let columns = [
-        (messages.parameter, 0.28, Align::Left),
+        (messages.parameter, 0.26, Align::Left),
         (messages.limits, 0.18, Align::Right),
         (messages.value, 0.25, Align::Right),
-        (messages.unit, 0.1, Align::Left),
+        (messages.unit, 0.12, Align::Left),
         ("", 0.19, Align::Left),
     ];
     Table::numbers(columns, unit.judged.iter().map(row))
