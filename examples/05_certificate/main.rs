@@ -16,7 +16,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let session = Session::read(Path::new("examples/ta-200"))?;
     calibrate(&session, Method::Exact, &|_| ())?.write(&folder.join("result.json"))?;
 
-    let result = write_documents(&DocumentRequest {
+    let documents = write_documents(&DocumentRequest {
         result: folder.join("result.json"),
         html: Some(folder.join("report.html")),
         history: None,
@@ -24,9 +24,10 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         before: None,
         dcc: Some(folder.join("certificate.xml")),
         code: Some(folder.join("code")),
+        range: None,
         laboratory: Some("examples/ta-200/laboratory.toml".into()),
         language: Language::English,
     })?;
-    println!("{}: {} objections", folder.display(), result.objections().len());
+    println!("{}: {} objections", folder.display(), documents.result.objections().len());
     Ok(())
 }

@@ -8,12 +8,13 @@ mod c;
 mod model;
 mod octave;
 mod python;
+mod raw;
 mod statement;
 mod term;
 mod vectors;
 
 use centrical_compensate::{Compensation, NotInvertible, Term};
-use centrical_session::CalibrationResult;
+use centrical_session::{CalibrationResult, OutputSummary};
 
 use self::model::Model;
 pub use self::term::NamedTerm;
@@ -39,18 +40,20 @@ pub struct SourceFile {
 }
 
 /// The compensation of a unit as `centrical_compensate.h`, `.c`, `.m` (MATLAB and Octave) and `.py`, for specific
-/// forces up to `range` [m/s^2] on each axis. `heading` goes into the first comment of each, a line each.
+/// forces up to `range` [m/s^2] on each axis. `heading` goes into the first comment of each, a line each. With the nominal
+/// `output` of a unit in counts or volts, each also takes its raw output.
 ///
 /// # Errors
 /// [`NotInvertible`] as [`Compensation::new`].
 pub fn compensation_source(
     heading: &[String],
     terms: &[NamedTerm],
+    output: Option<&OutputSummary>,
     range: f64,
 ) -> Result<Vec<SourceFile>, NotInvertible> {
     let plain: Vec<Term> = terms.iter().map(|named| named.term).collect();
     let compensation = Compensation::new(&plain, range)?;
-    let model = Model { heading, terms, plain: &plain, compensation: &compensation };
+    let model = Model { heading, terms, output, plain: &plain, compensation: &compensation };
     Ok(vec![
         SourceFile { name: "centrical_compensate.h", text: c::header(&model) },
         SourceFile { name: "centrical_compensate.c", text: c::source(&model) },

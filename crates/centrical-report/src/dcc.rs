@@ -4,8 +4,9 @@ mod administrative;
 mod results;
 mod xml;
 
-use centrical_session::{CalibrationResult, Laboratory, Unit, UnknownUnit};
+use centrical_session::{CalibrationResult, Unit, UnknownUnit};
 
+use crate::document::Issuer;
 use crate::language::Language;
 use xml::Xml;
 
@@ -15,7 +16,7 @@ use xml::Xml;
 /// [`UnknownUnit`] when a parameter has a unit that D-SI cannot be given for.
 pub fn digital_certificate(
     result: &CalibrationResult,
-    laboratory: &Laboratory,
+    issuer: &Issuer,
     language: Language,
 ) -> Result<String, UnknownUnit> {
     let units: Vec<Unit> = result.parameters.iter().map(|p| Unit::parse(&p.unit)).collect::<Result<_, _>>()?;
@@ -28,8 +29,8 @@ pub fn digital_certificate(
         ("schemaVersion", "3.3.0"),
     ];
     xml.element_with("dcc:digitalCalibrationCertificate", &attributes, |xml| {
-        administrative::data(xml, result, laboratory, language);
-        results::list(xml, (result, &units), laboratory, language);
+        administrative::data(xml, result, issuer, language);
+        results::list(xml, (result, &units), &issuer.laboratory, language);
     });
     Ok(xml.into_text())
 }

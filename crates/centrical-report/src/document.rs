@@ -1,16 +1,22 @@
 //! What the documents say: content as data, drawn by the renderers.
 
 mod certificate;
+mod conformity;
 mod content;
 mod drift;
 mod objection;
 mod reading_error;
 mod report;
 mod rests_on;
+mod symbols;
 mod tables;
 
-pub use self::certificate::certificate;
-pub use self::content::{Align, Block, Column, Document, Fact, Margins, Opening, Row, Section, Table, TableKind, Tone};
+pub use self::certificate::{Issuer, certificate};
+pub(crate) use self::conformity::{judged_in_words, rule};
+pub use self::content::{
+    Align, Attachment, Block, Column, Document, Fact, Layer, Margins, Opening, Picture, Row, Section, Table, TableKind,
+    Tone,
+};
 pub(crate) use self::objection::{objection, rival};
 pub use self::report::report;
-pub(crate) use self::rests_on::rests_on_sentence;
+pub(crate) use self::rests_on::{counts_as_exact, rests_on_sentence};

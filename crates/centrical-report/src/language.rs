@@ -1,8 +1,10 @@
 //! The languages of the documents: how each writes numbers, units and dates.
 
 mod english;
+mod english_words;
 mod messages;
 mod russian;
+mod russian_words;
 mod speeds;
 
 use centrical_session::{Date, Symbol};
@@ -10,7 +12,7 @@ use centrical_session::{Date, Symbol};
 use self::english::ENGLISH;
 pub(crate) use self::messages::Messages;
 use self::russian::RUSSIAN;
-use crate::number::{power_of_ten, scientific, shortest, significant, superscript, with_uncertainty};
+use crate::number::{power_of_ten, scientific, shortest, significant, superscript, unsigned_zero, with_uncertainty};
 
 /// A language of the documents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -50,7 +52,7 @@ impl Language {
 
     /// A number to `places` decimal places.
     pub(crate) fn fixed(self, value: f64, places: usize) -> String {
-        self.number(&format!("{value:.places$}"))
+        self.number(&unsigned_zero(format!("{value:.places$}")))
     }
 
     /// A probability to three places, a small one to two digits and a power of ten.
@@ -63,7 +65,9 @@ impl Language {
 
     /// A number to `digits` significant digits, never in powers of ten.
     pub(crate) fn significant(self, value: f64, digits: u8) -> String {
-        self.number(&significant(value, digits, i32::MIN..i32::MAX))
+        // No digits beyond those, before the point either.
+        let rounded = format!("{value:.*e}", usize::from(digits.max(1)) - 1).parse().unwrap_or(value);
+        self.number(&unsigned_zero(significant(rounded, digits, i32::MIN..i32::MAX)))
     }
 
     /// `1.5·10⁻⁵`, with the digits that the number has.
@@ -106,6 +110,11 @@ impl Language {
         plain.split('/').map(words).collect::<Vec<_>>().join("/")
     }
 
+    /// A day as a session writes it: what is no day of ISO 8601 stays as it is.
+    pub(crate) fn written_date(self, text: &str) -> String {
+        text.parse().map_or_else(|_| text.to_owned(), |date| self.date(date))
+    }
+
     /// A day.
     pub(crate) fn date(self, date: Date) -> String {
         match self {
@@ -127,9 +136,11 @@ mod tests {
         assert_eq!(Russian.scientific(1.5e-5), "1,5·10⁻⁵");
         assert_eq!([0.155, 1e-3, 0.0].map(|p| Russian.probability(p)), ["0,155", "0,001", "0,000"]);
         assert_eq!([9.99e-4, 1.3e-45].map(|p| English.probability(p)), ["1.0·10⁻³", "1.3·10⁻⁴⁵"]);
-        assert_eq!(English.significant(1234.5, 3), "1234");
+        assert_eq!([1234.5, 10_873.0].map(|x| English.significant(x, 2)), ["1200", "11000"]);
         assert_eq!(Russian.significant(0.012_345, 3), "0,0123");
         assert_eq!((English.unit("ug/g^2"), Russian.unit("ug/g^2")), ("µg/g²".to_owned(), "мкg/g²".to_owned()));
+        assert_eq!(["2026-10-05", "October"].map(|day| Russian.written_date(day)), ["05.10.2026", "October"]);
+        assert_eq!((Russian.fixed(-0.001, 2), Russian.fixed(-0.01, 2)), ("0,00".to_owned(), "−0,01".to_owned()));
         assert_eq!(Russian.unit("urad at 10 rev/s"), "мкрад при 10 об/с");
         assert_eq!((English.unit("s^4/m^2"), Russian.unit("s^4/m^2")), ("s⁴/m²".to_owned(), "с⁴/м²".to_owned()));
     }

@@ -12,19 +12,24 @@ mod figure;
 mod files;
 mod language;
 mod number;
+mod picture;
 pub mod plot;
 mod render;
 mod terminal;
 
 pub use document::{
-    Align, Block, Column, Document, Fact, Margins, Opening, Row, Section, Table, TableKind, Tone, certificate, report,
+    Align, Attachment, Block, Column, Document, Fact, Layer, Margins, Opening, Row, Section, Table, TableKind, Tone,
+    certificate, report,
 };
+pub use evaluation::{Judged, UnitStatement, UnitVerdict};
 pub use figure::{Figure, figures, frontier_plot, positions_figure};
-pub use files::{DocumentRequest, write_all_documents, write_documents, write_history_plot, write_noise};
+pub use files::{
+    DocumentRequest, Documents, read_issuer, write_all_documents, write_documents, write_history_plot, write_noise,
+};
 pub use language::Language;
 pub use number::with_uncertainty;
 pub use render::{html, pdf};
 pub use terminal::{
     assessment_text, comparison_table, compensation_text, monte_carlo_text, noise_table, noise_warnings,
-    observation_text, plan_text, selection_table, states_text, terminal_table, verdict_text, watch_table,
+    observation_text, plan_text, selection_table, states_text, terminal_table, unit_text, verdict_text, watch_table,
 };

@@ -21,16 +21,40 @@ fn parts(scientific: String) -> (String, i32) {
     parsed.unwrap_or((scientific, 0))
 }
 
-/// A value and its standard uncertainty, both to the place of the uncertainty's second significant digit
-/// (GUM, 7.2.6).
+/// A value and its uncertainty, both to the place of the uncertainty's second significant digit (GUM, 7.2.6); a zero has
+/// no sign.
 pub fn with_uncertainty(value: f64, uncertainty: f64) -> (String, String) {
     let is_size = uncertainty.is_finite() && uncertainty > 0.0;
-    let places = if is_size { places(uncertainty, 2) } else { 6 };
-    let shown = format!("{value:.places$}");
-    // A small negative number rounds to a zero, which has no sign.
-    let is_zero = !shown.contains(|c: char| c.is_ascii_digit() && c != '0');
-    let shown = if is_zero { shown.trim_start_matches('-').to_owned() } else { shown };
-    (shown, format!("{uncertainty:.places$}"))
+    if !is_size {
+        return (unsigned_zero(format!("{value:.6}")), format!("{uncertainty:.6}"));
+    }
+    let places = places(uncertainty, 2);
+    // Above a hundred the second digit stands before the point.
+    let step = 10_f64.powi((scientific(uncertainty, 2).1 - 1).max(0));
+    let shown = |x: f64| unsigned_zero(format!("{:.places$}", (x / step).round_ties_even() * step));
+    if step > 1.0 {
+        (shown(value), shown(uncertainty))
+    } else {
+        (unsigned_zero(format!("{value:.places$}")), format!("{uncertainty:.places$}"))
+    }
+}
+
+/// A number without the sign of a zero: `-0.00` is `0.00`.
+pub(crate) fn unsigned_zero(shown: String) -> String {
+    let is_zero = shown.starts_with('-') && !shown.contains(|c: char| c.is_alphabetic() || ('1'..='9').contains(&c));
+    if is_zero { shown.trim_start_matches('-').to_owned() } else { shown }
+}
+
+/// A whole number in groups of three digits from the right, a narrow space that does not break between (ISO 80000-1, 7.3.1);
+/// of four digits together.
+pub(crate) fn grouped(number: u64) -> String {
+    const GROUP: usize = 3;
+    let digits = number.to_string();
+    if digits.len() <= GROUP + 1 {
+        return digits;
+    }
+    let groups = digits.as_bytes().rchunks(GROUP).rev();
+    groups.map(String::from_utf8_lossy).collect::<Vec<_>>().join("\u{202f}")
 }
 
 /// Decimal places that show `digits` significant digits of a number.
@@ -92,7 +116,7 @@ pub(crate) fn superscript(number: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{significant, with_uncertainty};
+    use super::{grouped, significant, with_uncertainty};
 
     #[test]
     fn two_digits_of_the_uncertainty() {
@@ -102,11 +126,18 @@ mod tests {
         };
         assert_eq!(shown(-3.952_149, 0.001_234), "-3.9521 ± 0.0012");
         assert_eq!(shown(744.294, 0.0996), "744.29 ± 0.10");
-        assert_eq!(shown(12345.6, 123.0), "12346 ± 123");
+        assert_eq!(shown(12345.6, 123.0), "12350 ± 120");
+        assert_eq!(shown(-2e5, 26.0), "-200000 ± 26");
+        assert_eq!(shown(-40.0, 1234.0), "0 ± 1200");
         assert_eq!(shown(1.0, 9.96), "1 ± 10");
         assert_eq!(shown(-0.3, 40.0), "0 ± 40");
         assert_eq!(shown(-0.04, 3.0), "0.0 ± 3.0");
         assert_eq!(shown(f64::NAN, 3.0), "NaN ± 3.0");
+    }
+
+    #[test]
+    fn long_numbers_have_groups() {
+        assert_eq!([108, 1234, 105_893].map(grouped), ["108", "1234", "105\u{202f}893"]);
     }
 
     #[test]

@@ -14,6 +14,7 @@ mod plan;
 mod prediction;
 mod rests_on;
 mod rivals;
+mod unit;
 mod watch;
 
 pub use self::assess::assessment_text;
@@ -25,4 +26,5 @@ pub use self::montecarlo::monte_carlo_text;
 pub use self::noise::{noise_table, noise_warnings};
 pub use self::observe::observation_text;
 pub use self::plan::plan_text;
+pub use self::unit::unit_text;
 pub use self::watch::{states_text, watch_table};

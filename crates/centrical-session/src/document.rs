@@ -23,9 +23,10 @@ pub use self::plan::{
 pub use self::prediction::{PredictedParameter, PredictionReport};
 pub use self::result::{
     BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, Method, ModelSummary,
-    MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, ParameterEstimate, PatternSummary,
-    PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA,
-    SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary, ValiditySummary,
+    MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary, ParameterEstimate,
+    PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn, ResultObjection, RivalSize,
+    RivalSummary, SCHEMA, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary,
+    ValiditySummary,
 };
 pub use self::steadiness::{
     DriftSummary, LeftOutSummary, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary, TiltVerdict,

@@ -1,13 +1,15 @@
 //! `laboratory.toml`: what a certificate says beyond the calibration itself (ISO/IEC 17025, 7.8.2 and 7.8.4).
 
-use std::borrow::Cow;
-use std::fmt;
-use std::path::Path;
+mod date;
+mod limit;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{self, Deserializer};
-use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+pub use self::date::{Date, NotADay};
+pub use self::limit::{Limit, LimitEnd, Limited, StatedLimit};
 use crate::document::CalibrationResult;
 use crate::error::{Error, Place, quoted};
 use crate::settings::{from_toml, read_settings};
@@ -51,6 +53,8 @@ pub struct LaboratoryTable {
     pub contact: Contact,
     /// Number of its accreditation.
     pub accreditation: Option<String>,
+    /// Picture for its certificates, a PNG file, beside the laboratory's file.
+    pub logo: Option<PathBuf>,
 }
 
 /// For whom.
@@ -146,6 +150,8 @@ pub struct Environment {
     pub humidity: Option<Condition>,
     /// Air pressure [kPa].
     pub pressure: Option<Condition>,
+    /// Temperature of the unit, where it is known [degrees Celsius].
+    pub unit_temperature: Option<Condition>,
 }
 
 /// A condition: its mean value and how far it went from it.
@@ -207,29 +213,6 @@ pub enum DecisionRule {
     Guarded,
 }
 
-/// Limits of a parameter.
-#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Limit {
-    /// Name of the parameter in the result.
-    pub parameter: String,
-    /// Lowest value, SI.
-    pub low: f64,
-    /// Highest value, SI.
-    pub high: f64,
-}
-
-/// A day.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub struct Date {
-    /// Year.
-    pub year: u16,
-    /// Month, 1 to 12.
-    pub month: u8,
-    /// Day, 1 to 31.
-    pub day: u8,
-}
-
 impl Laboratory {
     /// Reads the file.
     ///
@@ -242,16 +225,21 @@ impl Laboratory {
         Ok(laboratory)
     }
 
-    /// Checks that every limit of the decision is one of a parameter of `result`. `file` is the laboratory's.
+    /// The limits of the decision, each of one parameter of `result` or of one axis of its compensated reading. `file` is the
+    /// laboratory's.
     ///
     /// # Errors
-    /// [`Error::Table`] with the limit that is not.
-    pub fn check_limits(&self, file: &Path, result: &CalibrationResult) -> Result<(), Error> {
-        let mut limits = self.decision.iter().flat_map(|decision| &decision.limit);
-        let Some(unknown) = limits.find(|limit| result.parameter(&limit.parameter).is_none()) else { return Ok(()) };
-        let place = Place::Key { table: "[[decision.limit]]".to_owned(), key: "parameter".to_owned() };
-        let known = result.parameters.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
-        Err(Error::content(file, place, quoted(unknown.parameter.as_bytes()), format!("one of {known}")))
+    /// [`Error::Table`] with the limit that names no such parameter or group, or is no quantity of it.
+    pub fn limits(&self, file: &Path, result: &CalibrationResult) -> Result<Vec<StatedLimit>, Error> {
+        let limits = self.decision.iter().flat_map(|decision| &decision.limit);
+        let stated: Result<Vec<_>, _> = limits.enumerate().map(|(n, limit)| limit.stated(file, n, result)).collect();
+        Ok(stated?.concat())
+    }
+
+    /// The picture that stands on a certificate; its path is that from the folder of `file`, the laboratory's.
+    pub fn logo(&self, file: &Path) -> Option<PathBuf> {
+        let folder = file.parent().unwrap_or(Path::new(""));
+        self.laboratory.logo.as_ref().map(|logo| folder.join(logo))
     }
 
     fn check(&self, file: &Path) -> Result<(), Error> {
@@ -288,18 +276,7 @@ impl Laboratory {
             return refuse("[environment]", key, found, &expected);
         }
         let limits = self.decision.iter().flat_map(|decision| &decision.limit);
-        match limits
-            .into_iter()
-            .find(|limit| !(limit.low.is_finite() && limit.high.is_finite() && limit.low < limit.high))
-        {
-            Some(Limit { parameter, low, high }) => refuse(
-                "[[decision.limit]]",
-                parameter,
-                format!("low {low}, high {high}"),
-                "finite numbers, low below high",
-            ),
-            None => Ok(()),
-        }
+        limits.enumerate().try_for_each(|(n, limit)| limit.check(file, n))
     }
 
     /// The person who authorises the certificate.
@@ -315,6 +292,12 @@ impl Environment {
             ("temperature", Some(&self.temperature), (-273.15, 1e3), "degrees Celsius from -273.15 to 1000"),
             ("humidity", self.humidity.as_ref(), (0.0, 100.0), "% of relative humidity from 0 to 100"),
             ("pressure", self.pressure.as_ref(), (0.0, 1e3), "kPa from 0 to 1000"),
+            (
+                "unit_temperature",
+                self.unit_temperature.as_ref(),
+                (-273.15, 1e3),
+                "degrees Celsius from -273.15 to 1000",
+            ),
         ];
         for (key, condition, (low, high), meaning) in conditions {
             let Some(Condition { value, range }) = condition else { continue };
@@ -325,33 +308,6 @@ impl Environment {
             }
         }
         None
-    }
-}
-
-impl fmt::Display for Date {
-    /// ISO 8601.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:04}-{:02}-{:02}", self.year, self.month, self.day)
-    }
-}
-
-impl JsonSchema for Date {
-    fn schema_name() -> Cow<'static, str> {
-        "Date".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "description": "A day such as 2026-10-05.", "type": "string", "format": "date" })
-    }
-}
-
-impl<'de> Deserialize<'de> for Date {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let stamp = toml::value::Datetime::deserialize(deserializer)?;
-        match (stamp.date, stamp.time) {
-            (Some(date), None) => Ok(Self { year: date.year, month: date.month, day: date.day }),
-            _ => Err(de::Error::custom(format!("{stamp} is no day, expected one such as 2026-10-05"))),
-        }
     }
 }
 
@@ -379,7 +335,7 @@ mod tests {
     /// Each change of the example is refused with the place, what was found and what was expected.
     #[test]
     fn mistakes_are_named() {
-        let cases: [(&str, &str, &[&str]); 10] = [
+        let cases: [(&str, &str, &[&str]); 14] = [
             ("[customer]", "[costumer]", &["line", "costumer"]),
             ("post_code", "postcode", &["line", "postcode"]),
             ("country = \"RU\"", "country = \"Russia\"", &["address.country", "Russia", "ISO 3166-1"]),
@@ -387,9 +343,13 @@ mod tests {
             ("ended = 2026-10-07", "ended = 2026-10-07T10:00:00", &["line", "no day"]),
             ("issued = 2026-10-09", "issued = 2026-10-06", &["[certificate], issued", "2026-10-06", "2026-10-07"]),
             ("authorises = true", "authorises = false", &["[[person]]", "nobody"]),
-            ("low = -0.15", "low = 0.2", &["df_1", "low 0.2", "low below high"]),
-            ("low = -0.15", "low = nan", &["df_1", "low NaN", "finite"]),
-            ("high = 0.15", "high = inf", &["df_1", "high inf", "finite"]),
+            ("low = -0.15", "low = 0.2", &["[[decision.limit]] 1, low", "0.2", "below high"]),
+            ("low = -0.15", "low = nan", &["[[decision.limit]] 1, low", "NaN", "finite"]),
+            ("high = 0.15", "high = inf", &["[[decision.limit]] 1, high", "inf", "finite"]),
+            ("high = 0.15", "within = 0.15", &["[[decision.limit]] 1, within", "low", "within alone"]),
+            ("parameter = \"df_1\"", "group = \"biases\"", &["[[decision.limit]] 1, group", "biases", "bias, "]),
+            ("parameter = \"df_1\"", "reading = \"raw\"", &["[[decision.limit]] 1, reading", "raw", "compensated"]),
+            ("parameter = \"df_1\"", "group = \"bias\"\nreading = \"compensated\"", &["group and reading", "one of"]),
         ];
         for (from, to, parts) in cases {
             assert!(EXAMPLE.contains(from), "{from}");

@@ -36,19 +36,19 @@ pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use centrical::stability::Estimator;
 pub use centrical_table::{
     ClaimedFolder, ColumnName, TableFormat, abandon_files, claim_folder, create_folder, harmless, harmless_line,
-    refuse_inputs, write_whole,
+    read_bytes, refuse_inputs, write_whole,
 };
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
     CriterionName, DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry,
     HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method, ModelSummary, MountingPrediction,
     MountingSummary, NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary,
-    ObservedParameter, OutlyingPlateau, PairReport, ParameterEstimate, PatternSummary, PlanReport, PlannedMounting,
-    PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport, PriorSummary, Program,
-    ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary,
-    SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport, SpeedDifference, SpeedFinding,
-    SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, TiltVerdict, ValiditySummary,
-    WatchState, WatchedPlateau, read_history,
+    ObservedParameter, OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate, PatternSummary, PlanReport,
+    PlannedMounting, PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport,
+    PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn, ResultObjection,
+    RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport, SpeedDifference,
+    SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, TiltVerdict,
+    ValiditySummary, WatchState, WatchedPlateau, read_history,
 };
 pub use error::{Error, NoErrorModel, Place};
 pub use experiment::{
@@ -65,7 +65,7 @@ pub use job::{
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
-    LaboratoryTable, Limit, MethodTable, Person, Standard,
+    LaboratoryTable, Limit, LimitEnd, Limited, MethodTable, NotADay, Person, Standard, StatedLimit,
 };
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
 pub use record::{

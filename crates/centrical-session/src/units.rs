@@ -5,6 +5,8 @@ use std::f64::consts::TAU;
 
 use centrical::{Group, STANDARD_GRAVITY};
 
+use crate::quantity::{Dimension, NotThatQuantity, Quantity};
+
 /// One micro-g in m/s^2.
 pub const MICRO_G: f64 = 1e-6 * STANDARD_GRAVITY;
 
@@ -64,6 +66,40 @@ pub(crate) fn writable(unit: &str, group: Group) -> Vec<(&str, f64)> {
     std::iter::once((unit, 1.0)).chain(fitting(unit, group).map(|known| (known.name, known.size))).collect()
 }
 
+/// A quantity in the SI unit `unit` of a parameter in the group `group`: written as any quantity of its dimension, or in
+/// a unit in which people are shown it.
+pub(crate) fn in_parameter_unit(quantity: &Quantity, unit: &str, group: Group) -> Result<f64, NotThatQuantity> {
+    match unit {
+        "rad" => quantity.si(Dimension::Angle),
+        "m" => quantity.si(Dimension::Length),
+        "m/s^2" => quantity.si(Dimension::Acceleration),
+        "1" if group == Group::Misalignment => {
+            quantity.si(Dimension::Ratio).or_else(|not| quantity.si(Dimension::Angle).map_err(|_| not))
+        }
+        "1" => quantity.si(Dimension::Ratio),
+        _ => in_derived_unit(quantity, unit, group),
+    }
+}
+
+/// A coefficient in its SI unit or a unit in which people are shown it.
+fn in_derived_unit(quantity: &Quantity, unit: &str, group: Group) -> Result<f64, NotThatQuantity> {
+    let known = writable(unit, group);
+    let factor = |written: &str| match written {
+        "" => Some(1.0),
+        _ => known.iter().find(|(name, _)| *name == written).map(|(_, factor)| *factor),
+    };
+    let value = match quantity {
+        Quantity::Number(number) => Some(*number),
+        Quantity::Text(text) => {
+            let (number, written) = text.trim().split_once(char::is_whitespace).unwrap_or((text.trim(), ""));
+            number.parse::<f64>().ok().and_then(|number| Some(number * factor(written.trim())?))
+        }
+    };
+    let units: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+    let expected = || format!("a number in {unit} or with a unit (units: {})", units.join(", "));
+    value.ok_or_else(|| NotThatQuantity { found: quantity.to_string(), expected: expected() })
+}
+
 fn fitting(unit: &str, group: Group) -> impl Iterator<Item = &'static Customary> {
     CUSTOMARY.iter().filter(move |known| known.si == unit && known.group.is_none_or(|of| of == group))
 }
@@ -91,7 +127,7 @@ const fn symbol(
 }
 
 /// The parts of units; those of SI first, in the order of the powers of [`Unit`].
-const SYMBOLS: [Symbol; 13] = [
+const SYMBOLS: [Symbol; 15] = [
     symbol("m", "m", "м", Some("\\metre")),
     symbol("s", "s", "с", Some("\\second")),
     symbol("rad", "rad", "рад", Some("\\radian")),
@@ -105,6 +141,8 @@ const SYMBOLS: [Symbol; 13] = [
     symbol("kPa", "kPa", "кПа", None),
     symbol("rev", "rev", "об", None),
     symbol("at", "at", "при", None),
+    symbol("counts", "counts", "ед. кода", None),
+    symbol("V", "V", "В", Some("\\volt")),
 ];
 
 impl Symbol {

@@ -54,7 +54,7 @@ mod unpacking;
 mod write;
 
 pub use column::{ColumnName, Field, Rule, TableLines, UnitsFound};
-pub use document::{open_regular, read_document};
+pub use document::{open_regular, read_bytes, read_document};
 pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, harmless, harmless_line};
 pub use reader::{Extent, TableReader, estimate_rows, text_form};

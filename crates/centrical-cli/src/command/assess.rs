@@ -14,8 +14,8 @@ use crate::progress;
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
-    /// Coverage probability of the expanded uncertainties
-    #[arg(long, default_value_t = 0.95, value_parser = probability)]
+    /// Coverage probability of the expanded uncertainties, by default that of all documents (k = 2 for a normal distribution)
+    #[arg(long, default_value_t = 0.9545, value_parser = probability)]
     coverage: f64,
     /// Fit without outlying plateaus, at this family-wise error, and show the difference
     #[arg(long, value_name = "ERROR", num_args = 0..=1, default_missing_value = "0.05", value_parser = probability)]

@@ -2,13 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical_report::{states_text, terminal_table, verdict_text, write_all_documents};
+use centrical_report::{
+    UnitStatement, read_issuer, states_text, terminal_table, unit_text, verdict_text, write_all_documents,
+};
 use centrical_session::{
     CalibrationResult, Error, Method, Place, PlateauName, ResultObjection, Session, calibrate_without, claim_folder,
     refuse_inputs,
 };
 
-use crate::command::report::Documents;
+use crate::command::report::{Documents, is_within_limits};
 use crate::outcome::Outcome;
 use crate::output::{print, say};
 use crate::progress;
@@ -75,14 +77,23 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if let Some(file) = &file {
         result.write(file)?;
     }
+    let issuer = laboratory.map(|file| read_issuer(file, &result)).transpose()?;
     if let Some(folder) = out {
-        write_all_documents(&result, laboratory, arguments.documents.language.into(), folder)?;
+        write_all_documents(&result, issuer.as_ref(), arguments.documents.language.into(), folder)?;
     }
     drop(claim);
     let objections = result.objections();
-    let text = if arguments.json { result.to_json()? } else { report(&result, &objections, file.as_deref()) };
+    let unit = issuer.and_then(|issuer| issuer.unit);
+    let text =
+        if arguments.json { result.to_json()? } else { report(&result, &objections, unit.as_ref(), file.as_deref()) };
     print(&text)?;
-    Ok(Outcome::acceptable(objections.is_empty()))
+    if arguments.json {
+        // The result does not hold what the laboratory's limits say of the unit.
+        if let Some(unit) = &unit {
+            say(&unit_text(unit));
+        }
+    }
+    Ok(Outcome::acceptable(objections.is_empty() && is_within_limits(unit.as_ref())))
 }
 
 /// The files that are written, but for plots.
@@ -108,8 +119,14 @@ fn refuse_another_unit(file: &Path, session: &Session) -> Result<(), Error> {
     Err(Error::content(file, Place::Whole, there, expected))
 }
 
-fn report(result: &CalibrationResult, objections: &[ResultObjection], file: Option<&Path>) -> String {
+fn report(
+    result: &CalibrationResult,
+    objections: &[ResultObjection],
+    unit: Option<&UnitStatement>,
+    file: Option<&Path>,
+) -> String {
     let mut lines = vec![terminal_table(result), verdict_text(objections)];
+    lines.extend(unit.map(unit_text));
     lines.extend(file.map(|file| format!("\nWritten to {}\n", file.display())));
     lines.concat()
 }

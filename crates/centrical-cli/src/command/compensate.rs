@@ -45,6 +45,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 }
 
 /// "200 g", or a plain number in m/s^2.
-fn acceleration(text: &str) -> Result<f64, NotThatQuantity> {
+pub fn acceleration(text: &str) -> Result<f64, NotThatQuantity> {
     Quantity::Text(text.to_owned()).si(Dimension::Acceleration)
 }

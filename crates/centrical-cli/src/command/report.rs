@@ -2,10 +2,13 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{DocumentRequest, Language, verdict_text, write_documents};
+use centrical_report::{
+    DocumentRequest, Language, UnitStatement, UnitVerdict, unit_text, verdict_text, write_documents,
+};
 use centrical_session::Error;
 use clap::ValueEnum;
 
+use crate::command::compensate::acceleration;
 use crate::outcome::Outcome;
 use crate::output::print;
 
@@ -33,6 +36,10 @@ pub struct Arguments {
     /// Write the compensation as source code with test vectors to this folder: C99, MATLAB and Octave, Python
     #[arg(long, alias = "c", value_name = "DIR")]
     code: Option<PathBuf>,
+    /// Largest specific force on each axis that the source code takes, such as "200 g"
+    /// [default: twice the largest plateau reading of the calibration, within the range of the certified inverse]
+    #[arg(long, value_name = "QUANTITY", value_parser = acceleration, requires = "code")]
+    range: Option<f64>,
     #[command(flatten)]
     documents: Documents,
 }
@@ -40,7 +47,8 @@ pub struct Arguments {
 /// Language of the documents, and the laboratory's data in them.
 #[derive(Debug, clap::Args)]
 pub struct Documents {
-    /// Laboratory file: laboratory, customer, dates, standards and persons named in the certificates
+    /// Laboratory file: laboratory, customer, dates, standards and persons named in the certificates, and limits of the
+    /// unit; a unit that is not within them ends with exit code 1
     #[arg(long, value_name = "FILE")]
     pub laboratory: Option<PathBuf>,
     /// Language of the documents
@@ -68,7 +76,7 @@ impl From<LanguageName> for Language {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let result = write_documents(&DocumentRequest {
+    let documents = write_documents(&DocumentRequest {
         result: arguments.result.clone(),
         html: arguments.html.clone(),
         history: arguments.history.clone(),
@@ -76,12 +84,23 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         before: arguments.before.clone(),
         dcc: arguments.dcc.clone(),
         code: arguments.code.clone(),
+        range: arguments.range,
         laboratory: arguments.documents.laboratory.clone(),
         language: arguments.documents.language.into(),
     })?;
+    let (result, unit) = (documents.result, documents.unit);
     let objections = result.objections();
     if !objections.is_empty() {
         print(&verdict_text(&objections))?;
     }
-    Ok(Outcome::acceptable(objections.is_empty()))
+    let is_within = is_within_limits(unit.as_ref());
+    if !is_within {
+        print(&unit.as_ref().map(unit_text).unwrap_or_default())?;
+    }
+    Ok(Outcome::acceptable(objections.is_empty() && is_within))
+}
+
+/// Whether the unit keeps the limits that were asked for; limits that were not are kept.
+pub fn is_within_limits(unit: Option<&UnitStatement>) -> bool {
+    unit.is_none_or(|unit| unit.verdict() == UnitVerdict::Within)
 }

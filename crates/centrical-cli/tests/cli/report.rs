@@ -113,7 +113,8 @@ fn the_page_is_whole_and_alone() {
     let copy = calibrated("en");
     let page = fs::read_to_string(copy.out().join("report.html")).unwrap();
     let place = |text: &str| page.find(text).unwrap_or_else(|| panic!("{text} is not in the page"));
-    assert!(place("Acceptable") < place("G0_11") && place("Acceptable") < place("Session"));
+    assert!(place("Calibration acceptable") < place("G0₁₁") && place("G0₁₁") < place("<details>"));
+    assert!(place("Unit within its limits") < place("G0₁₁"), "what is said of the unit stands apart, first too");
     let addresses = page.matches("http").count();
     assert_eq!(
         addresses,
@@ -123,7 +124,7 @@ fn the_page_is_whole_and_alone() {
     assert!(!page.contains("<script"));
     assert_eq!(page.matches("<figure").count(), 10);
     assert_eq!(page.matches("<figcaption>").count(), 10);
-    for name in ["delta_3[6]", "G2_33", "drho_22"] {
+    for name in ["δ₃[6]", "G2₃₃", "dρ₂₂"] {
         place(name);
     }
 }
@@ -132,15 +133,23 @@ fn the_page_is_whole_and_alone() {
 fn russian_has_its_words_and_commas() {
     let copy = calibrated("ru");
     let page = fs::read_to_string(copy.out().join("report.html")).unwrap();
-    for part in
-        ["lang=\"ru\"", "Пригоден", "Смещение нуля", "9,81523 м/с²", "мкg/g²", "Неопределённость по ходу сеанса"]
-    {
+    for part in [
+        "lang=\"ru\"",
+        "Калибровка принята",
+        "Прибор в пределах допусков",
+        "05.10.2026",
+        "Смещение нуля",
+        "9,81523 м/с²",
+        "мкg/g²",
+        "Неопределённость по ходу сеанса",
+    ] {
         assert!(page.contains(part), "{part}");
     }
+    assert!(!page.contains("Пригоден"), "nothing is said of the fitness of the unit");
     let body = &page[page.find("<main>").unwrap()..page.find("<figure").unwrap()];
     let text: String = body.split('<').filter_map(|piece| piece.split_once('>')).map(|(_, text)| text).collect();
     let has_point = |pair: &[char]| pair[0].is_ascii_digit() && pair[1] == '.' && pair[2].is_ascii_digit();
-    let letters: Vec<char> = text.replace("0.1.0", "").replace("0.0.0", "").chars().collect();
+    let letters: Vec<char> = text.replace("0.1.0", "").replace("0.0.0", "").replace("05.10.2026", "").chars().collect();
     let found = letters.windows(3).position(has_point);
     assert!(found.is_none(), "a decimal point in {:?}", found.map(|k| &letters[k.saturating_sub(20)..k + 5]));
     let dcc = fs::read_to_string(copy.out().join("certificate.xml")).unwrap();
@@ -163,7 +172,7 @@ fn certificates_need_the_laboratory() {
     let run = copy.run(&arguments);
     let message = String::from_utf8(run.stderr).unwrap();
     assert_eq!(run.status.code(), Some(2));
-    let expected = "laboratory.toml, [[decision.limit]], parameter: found \"df_9\", expected one of";
+    let expected = "laboratory.toml, [[decision.limit]] 3, parameter: found \"df_9\", expected one of";
     assert!(message.contains(expected), "{message}");
     assert!(!copy.out().join("c.pdf").exists() && !copy.out().join("r.html").exists());
 }
@@ -179,5 +188,148 @@ fn a_bad_result_is_called_bad() {
     let run = copy.run(&["report", "result.json", "--html", "bad.html"]);
     assert_eq!(run.status.code(), Some(1));
     let page = fs::read_to_string(copy.out().join("bad.html")).unwrap();
-    assert!(page.contains("Not acceptable") && page.contains("residuals are larger") && page.contains("1000.0"));
+    assert!(
+        page.contains("Calibration not acceptable")
+            && page.contains("Unit: no limits given")
+            && page.contains("residuals are larger")
+            && page.contains("1000.0")
+    );
+}
+
+/// The verdict on the unit is not that on the calibration: limits that are not kept end with exit code 1, stated, in every
+/// document; a limit is shown as it was written and never rounded outwards.
+#[test]
+fn a_unit_outside_its_limits() {
+    let copy = calibrated("en");
+    let text = fs::read_to_string(example().join("laboratory.toml")).unwrap();
+    let limits = "[[decision.limit]]\ngroup = \"bias\"\nwithin = \"3.0343 mg\"\n\n\
+                  [[decision.limit]]\nparameter = \"G1_11\"\nhigh = \"-16 ug/g^2\"\n\n\
+                  [[decision.limit]]\nreading = \"compensated\"\nwithin = \"10 mg\"\n";
+    let text = format!("{}{limits}", &text[..text.find("[[decision.limit]]").unwrap()]);
+    fs::write(copy.out().join("tight.toml"), text).unwrap();
+    let arguments = ["--html", "t.html", "--pdf", "t.pdf", "--dcc", "t.xml", "--laboratory", "tight.toml"];
+    let run = copy.run(&[&["report", "result.json"], &arguments[..]].concat());
+    assert_eq!(run.status.code(), Some(1), "{}", String::from_utf8_lossy(&run.stderr));
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    let line = "UNIT NOT WITHIN ITS LIMITS  df₁: −3.9524 ± 0.0040 mg; limits −3.0343 … 3.0343 mg";
+    assert!(said.contains(line) && said.contains("df₂: ") && !said.contains("G1₁₁"), "{said}");
+    // 3.0344 mg with U = 0.017 mg: outside by the guarded rule.
+    assert!(said.contains("df₃: 3.034 ± 0.017 mg"), "{said}");
+    let page = fs::read_to_string(copy.out().join("t.html")).unwrap();
+    assert!(page.contains("Calibration acceptable") && page.contains("Unit not within its limits"));
+    assert!(fs::read_to_string(copy.out().join("t.xml")).unwrap().contains("<dcc:conformity>fail</dcc:conformity>"));
+    let tight = copy.out().join("tight.toml");
+    let run = copy.calibrate(&["--laboratory", tight.to_str().unwrap()]);
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    assert!(run.status.code() == Some(1) && said.contains("ACCEPTABLE  no check") && said.contains(line), "{said}");
+    // A quantity of another dimension is refused by place.
+    let wrong = fs::read_to_string(&tight).unwrap().replace("3.0343 mg", "3 urad");
+    fs::write(&tight, wrong).unwrap();
+    let run = copy.run(&["report", "result.json", "--html", "u.html", "--laboratory", "tight.toml"]);
+    let message = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert!(
+        run.status.code() == Some(2) && message.contains("[[decision.limit]] 1, within: found \"3 urad\""),
+        "{message}"
+    );
+}
+
+/// chi^2 far below its expectation stands in the report and not on the terminal alone; the worst of the mountings is shown by
+/// its own probability and by that of the worst of twelve.
+#[test]
+fn chances_are_said_as_they_are() {
+    let copy = calibrated("en");
+    let page = fs::read_to_string(copy.out().join("report.html")).unwrap();
+    assert!(page.contains("p = 0.050 (F test); corrected for the number of mountings, 12: 0.604"));
+    assert!(!page.contains("Residuals are smaller"));
+    let file = copy.out().join("result.json");
+    let mut result: serde_json::Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    result["fit"]["chi_squared"] = 100.0.into();
+    result["validity"]["probability"] = 1.0.into();
+    fs::write(&file, result.to_string()).unwrap();
+    assert_eq!(copy.run(&["report", "result.json", "--html", "small.html"]).status.code(), Some(0));
+    let page = fs::read_to_string(copy.out().join("small.html")).unwrap();
+    assert!(page.contains("Residuals are smaller than the stated uncertainties allow"));
+}
+
+/// Finite degrees of freedom give a larger coverage factor, which stands beside the result.
+#[test]
+fn coverage_factors_of_finite_degrees_of_freedom() {
+    let copy = calibrated("en");
+    let file = copy.out().join("result.json");
+    let mut result: serde_json::Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    let names: Vec<String> =
+        result["parameters"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap().to_owned()).collect();
+    let bias = names.iter().position(|name| name == "df_1").unwrap();
+    result["budget"]["degrees_of_freedom"][bias] = 10.7.into();
+    fs::write(&file, result.to_string()).unwrap();
+    let laboratory = example().join("laboratory.toml");
+    let arguments = ["report", "result.json", "--html", "k.html", "--dcc", "k.xml", "--laboratory"];
+    let run = copy.run(&[&arguments[..], &[laboratory.to_str().unwrap()]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let page = fs::read_to_string(copy.out().join("k.html")).unwrap();
+    // 0.0020027 mg times 2.28, the factor of ten degrees in EA-4/02, annex E.
+    assert!(page.contains("<td>−3.9524 ± 0.0046</td><td>mg</td><td>2.28 (10)</td>"), "k of Student's distribution");
+    let dcc = fs::read_to_string(copy.out().join("k.xml")).unwrap();
+    assert_eq!(dcc.matches("t-distribution").count(), 1);
+    assert_eq!(dcc.matches("<si:coverageProbability>0.9545</si:coverageProbability>").count(), names.len());
+}
+
+/// A unit in counts: its nominal scale and bias stand in the result, in every document and in the code, which takes raw output.
+#[test]
+fn a_unit_in_counts() {
+    let copy = Copy::new();
+    let form = copy.session().join("experiment.toml");
+    let text = fs::read_to_string(&form).unwrap();
+    let counts = "output_unit = \"counts\"\ncounts = { scale = [1.0, 1.01, 0.99], bias = [0.5, 0.0, -0.25] }";
+    assert!(text.contains("output_unit = \"m/s^2\""));
+    fs::write(&form, text.replace("output_unit = \"m/s^2\"", counts)).unwrap();
+    let laboratory = example().join("laboratory.toml");
+    let run = copy.calibrate(&["--out", ".", "--laboratory", laboratory.to_str().unwrap()]);
+    // 1: the scales are off by a hundredth, which the limits of the example do not take.
+    assert!(matches!(run.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&run.stderr));
+    let result: serde_json::Value = serde_json::from_slice(&fs::read(copy.out().join("result.json")).unwrap()).unwrap();
+    let output = serde_json::json!({ "unit": "counts", "scale": [1.0, 1.01, 0.99], "bias": [0.5, 0.0, -0.25] });
+    assert_eq!(result["output"], output);
+    let page = fs::read_to_string(copy.out().join("report.html")).unwrap();
+    assert!(page.contains("Nominal scale S") && page.contains("counts/(m/s²)") && page.contains("<td>−0.25</td>"));
+    let dcc = fs::read_to_string(copy.out().join("certificate.xml")).unwrap();
+    assert!(dcc.contains("refType=\"basic_nominalValue centrical_nominalScale\""));
+    assert!(dcc.contains("<si:unitXMLList>\\metre\\tothe{-1}\\second\\tothe{2}</si:unitXMLList>"));
+    copy.run(&["report", "result.json", "--code", "source", "--range", "250 g"]);
+    let header = fs::read_to_string(copy.out().join("source/centrical_compensate.h")).unwrap();
+    assert!(header.contains("#define CENTRICAL_RANGE 2.4516625e3"), "{header}");
+    assert!(header.contains("in counts, by its nominal scale (1e0, 1.01e0, 9.9e-1) per m/s^2"), "{header}");
+    assert!(header.contains("int centrical_compensate_raw("));
+}
+
+/// A picture that is none, or too large, is refused by name before anything is written.
+#[test]
+fn a_logo_is_checked() {
+    let copy = calibrated("en");
+    let text = fs::read_to_string(example().join("laboratory.toml")).unwrap();
+    let text = text.replace("accreditation = ", "logo = \"logo.png\"\naccreditation = ");
+    fs::write(copy.out().join("laboratory.toml"), text).unwrap();
+    let report = || copy.run(&["report", "result.json", "--pdf", "l.pdf", "--laboratory", "laboratory.toml"]);
+    let refused = |what: &str| {
+        let run = report();
+        let message = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(run.status.code() == Some(2) && message.contains("logo.png"), "{what}: {message}");
+        assert!(message.contains("expected a PNG picture of up to 2048 pixels a side"), "{what}: {message}");
+        assert!(!copy.out().join("l.pdf").exists(), "{what}");
+    };
+    refused("no file");
+    fs::write(copy.out().join("logo.png"), "<svg/>").unwrap();
+    refused("no PNG");
+    fs::write(copy.out().join("logo.png"), vec![0; (1 << 20) + 1]).unwrap();
+    refused("too large");
+    let pixel = include_bytes!("pixel.png");
+    fs::write(copy.out().join("logo.png"), &pixel[..pixel.len() - 20]).unwrap();
+    refused("cut short");
+    fs::write(copy.out().join("logo.png"), pixel).unwrap();
+    assert_eq!(report().status.code(), Some(0));
+    assert!(copy.out().join("l.pdf").exists());
+    // An output must not take the place of the picture.
+    let run = copy.run(&["report", "result.json", "--html", "logo.png", "--laboratory", "laboratory.toml"]);
+    assert_eq!(run.status.code(), Some(2));
+    assert_eq!(fs::read(copy.out().join("logo.png")).unwrap(), pixel);
 }

@@ -34,7 +34,7 @@ fn calibrated(truth: &str, seed: &str) -> Calibrated {
             assert!(matches!(made.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&made.stderr));
             let page = fs::read_to_string(copy.out().join("report.html")).unwrap();
             let (_, section) = page.split_once(title).expect("the page has the section");
-            section.split_once("</section>").unwrap().0.to_owned()
+            section.split_once("</details>").unwrap().0.to_owned()
         });
     Calibrated { result: CalibrationResult::read(&copy.out().join("result.json")).unwrap(), said, sections }
 }

@@ -24,6 +24,7 @@ fn documents(language: &str, alter: impl Fn(String) -> String) -> TempDir {
     let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
     command.arg("calibrate").arg(example("")).arg("--out").arg(folder.path()).args(["--language", language]);
     let run = command.arg("--laboratory").arg(laboratory).output().unwrap();
-    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    // 1 where the altered limits are not kept.
+    assert!(matches!(run.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&run.stderr));
     folder
 }

@@ -11,12 +11,12 @@ use crate::documents;
 /// Figures of the example's page in their order, with how many drawings each has: a panel for each position, a panel
 /// for each newtonometer, a strip for each record.
 const FIGURES: [(&str, usize); 10] = [
-    ("positions", 6),
     ("before", 3),
     ("after", 3),
+    ("prediction", 1),
+    ("positions", 6),
     ("residuals", 1),
     ("normalised", 1),
-    ("prediction", 1),
     ("correlation", 1),
     ("singular-values", 1),
     ("convergence", 1),
@@ -58,7 +58,13 @@ fn the_page_in_a_browser() {
     for language in ["en", "ru"] {
         let folder = documents(language, |text| text);
         let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
-        for (width, scheme) in [(1280, Scheme::Light), (1280, Scheme::Dark), (400, Scheme::Light), (400, Scheme::Dark)]
+        // Closed, as it comes, and with every section opened.
+        for (width, scheme) in [(1280, Scheme::Light), (390, Scheme::Dark)] {
+            let (found, console) = look(&page, width, scheme);
+            is_sound(&found, &console, scheme, &format!("{language}, {width} px, {scheme:?}, closed"));
+        }
+        let page = page.replace("<details>", "<details open>");
+        for (width, scheme) in [(1280, Scheme::Light), (1280, Scheme::Dark), (390, Scheme::Light), (390, Scheme::Dark)]
         {
             let what = format!("{language}, {width} px, {scheme:?}");
             let (found, console) = look(&page, width, scheme);
@@ -85,7 +91,7 @@ fn the_probe_finds_what_is_wrong() {
     let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
     let spoiled = |from: &str, to: &str| {
         assert!(page.contains(from), "{from}");
-        look(&page.replace(from, to), 400, Scheme::Light)
+        look(&page.replace(from, to).replace("<details>", "<details open>"), 400, Scheme::Light)
     };
     let (found, _) = spoiled("<footer>", "<div style=\"width:700px\">wide</div><footer>");
     assert!(!list(&found, "outside").is_empty() && found["width"] != found["client"]);
@@ -112,13 +118,19 @@ fn the_page_on_paper() {
         let pdf = folder.path().join("page.pdf");
         print(&page, scheme, &pdf);
         let text = crate::certificate::text_of(&pdf);
-        for title in
-            ["Acceptable", "G2_33", "Position 6", "Newtonometer 3", "Residuals by plateau", "Mounting 12", "SHA-256"]
-        {
+        for title in [
+            "Calibration acceptable",
+            "G2₃₃",
+            "Position 6",
+            "Newtonometer 3",
+            "Residuals by plateau",
+            "Mounting 12",
+            "SHA-256",
+        ] {
             assert!(text.contains(title), "{scheme:?}: {title}");
         }
         let pages = text.matches('\u{c}').count();
-        assert!((6..=14).contains(&pages), "{pages} pages");
+        assert!((6..=16).contains(&pages), "{pages} pages");
         let shades = shades(&pdf, folder.path());
         assert!(shades.iter().all(|mean| *mean > 0.8), "{scheme:?}: mean shades of the pages {shades:?}");
     }

@@ -43,7 +43,7 @@ const ALTERATIONS: [(&str, &str); 18] = [
     ("<dcc:conformity>pass", "<dcc:conformity>good"),
     ("<dcc:usedMethods>", "<dcc:usedMethods><dcc:usedMethod/>"),
     ("<si:coverageFactor>2<", "<si:coverageFactor>two<"),
-    ("<si:coverageProbability>0.95<", "<si:coverageProbability>95<"),
+    ("<si:coverageProbability>0.9545<", "<si:coverageProbability>95.45<"),
     ("<si:unit>\\kelvin</si:unit>", ""),
     ("<si:valueExpandedMU>", "<si:valueExpandedMU>-"),
     ("<si:coverageFactorXMLList>", "<si:coverageFactorXMLList>none "),

@@ -1,18 +1,21 @@
 //! C99: one header, one source, in double and single precision.
 
 use super::model::Model;
+use super::raw;
 use super::statement::Language;
 use super::vectors;
 
 /// The header.
 pub(super) fn header(model: &Model) -> String {
-    model.fill(include_str!("compensate.h.in"), &DOUBLE)
+    let raw = model.of_raw(raw::C_HEADER, &DOUBLE);
+    model.fill(include_str!("compensate.h.in"), &DOUBLE).replace("@raw@", &raw)
 }
 
 /// The source: the same text once for each precision, then the test vectors.
 pub(super) fn source(model: &Model) -> String {
     let body = |c: &C| {
         let text = model.fill(include_str!("compensate_body.c.in"), c);
+        let text = text.replace("@raw@", &model.of_raw(raw::C_SOURCE, c));
         text.replace("@real@", c.real).replace("@name@", c.name).replace("@literal@", c.literal)
     };
     let row = |reading: &str, f: &str| format!("    {{{{{reading}}}, {{{f}}}}},");
@@ -20,6 +23,7 @@ pub(super) fn source(model: &Model) -> String {
         .fill(include_str!("compensate.c.in"), &DOUBLE)
         .replace("@double@", &body(&DOUBLE))
         .replace("@single@", &body(&SINGLE))
+        .replace("@raw_test@", &model.of_raw(raw::C_TEST, &DOUBLE))
         .replace("@vectors@", &vectors::rows(model, &DOUBLE, row))
         .replace("@outside@", &vectors::outside(model, &DOUBLE))
 }

@@ -1,6 +1,7 @@
 //! What the files are made from.
 
 use centrical_compensate::{Compensation, Term};
+use centrical_session::OutputSummary;
 
 use super::statement::{self, Language};
 use super::term::{NamedTerm, harmless};
@@ -9,6 +10,7 @@ use super::term::{NamedTerm, harmless};
 pub(super) struct Model<'a> {
     pub heading: &'a [String],
     pub terms: &'a [NamedTerm],
+    pub output: Option<&'a OutputSummary>,
     pub plain: &'a [Term],
     pub compensation: &'a Compensation<'a>,
 }
@@ -30,6 +32,16 @@ impl Model<'_> {
             .replace("@bias@", &row(&linear.bias));
         let inverse = linear.inverse.iter().enumerate();
         inverse.fold(filled, |text, (i, numbers)| text.replace(&format!("@inverse_{}@", i + 1), &row(numbers)))
+    }
+
+    /// A template for a unit with raw output of its own, filled; nothing for another.
+    pub fn of_raw(&self, template: &str, language: &dyn Language) -> String {
+        let Some(OutputSummary { unit, scale, bias }) = self.output else { return String::new() };
+        let row = |numbers: &[f64; 3]| numbers.map(|x| language.number(x)).join(", ");
+        template
+            .replace("@raw_unit@", &harmless(unit))
+            .replace("@raw_scale@", &row(scale))
+            .replace("@raw_bias@", &row(bias))
     }
 
     /// Range of the compensation [m/s^2].

@@ -1,6 +1,7 @@
 //! MATLAB and Octave: one function file, many readings at a time.
 
 use super::model::Model;
+use super::raw;
 use super::statement::Language;
 use super::vectors;
 
@@ -9,6 +10,9 @@ pub(super) fn function(model: &Model) -> String {
     let row = |reading: &str, f: &str| format!("    {reading}, {f}");
     model
         .fill(include_str!("compensate.m.in"), &Octave)
+        .replace("@raw_help@", &model.of_raw(raw::OCTAVE_HELP, &Octave))
+        .replace("@raw@", &model.of_raw(raw::OCTAVE_SOURCE, &Octave))
+        .replace("@raw_test@", &model.of_raw(raw::OCTAVE_TEST, &Octave))
         .replace("@vectors@", &vectors::rows(model, &Octave, row))
         .replace("@outside@", &vectors::outside(model, &Octave))
 }

@@ -1,6 +1,7 @@
-//! Python 3: one module without dependencies.
+//! Python 3: one module without dependencies; arrays of readings where NumPy is there.
 
 use super::model::Model;
+use super::raw;
 use super::statement::Language;
 use super::vectors;
 
@@ -9,6 +10,8 @@ pub(super) fn module(model: &Model) -> String {
     let row = |reading: &str, f: &str| format!("    (({reading}), ({f})),");
     model
         .fill(include_str!("compensate.py.in"), &Python)
+        .replace("@raw@", &model.of_raw(raw::PYTHON_SOURCE, &Python))
+        .replace("@raw_test@", &model.of_raw(raw::PYTHON_TEST, &Python))
         .replace("@vectors@", &vectors::rows(model, &Python, row))
         .replace("@outside@", &vectors::outside(model, &Python))
 }
@@ -33,14 +36,14 @@ impl Language for Python {
     }
 
     fn sign(&self, j: usize) -> String {
-        format!("(-1.0 if f[{j}] < 0.0 else 1.0)")
+        format!("(1.0 - 2.0 * (f[{j}] < 0.0))")
     }
 
     fn add_to_error(&self, i: usize, value: &str, remark: &str) -> String {
-        format!("    error[{i}] += {value}  # {remark}")
+        format!("    error[{i}] = error[{i}] + {value}  # {remark}")
     }
 
     fn add_to_gain(&self, i: usize, j: usize, value: &str) -> String {
-        format!("    gain[{i}][{j}] += {value}")
+        format!("    gain[{i}][{j}] = gain[{i}][{j}] + {value}")
     }
 }

@@ -1,13 +1,14 @@
 //! Administrative data: software, dates, item, laboratory, persons, customer, statements.
 
-use centrical_session::{Address, CalibrationResult, Contact, DecisionRule, Laboratory};
+use centrical_session::{Address, CalibrationResult, Contact, Laboratory};
 
 use super::xml::Xml;
-use crate::document::objection;
-use crate::evaluation::conformity;
+use crate::document::{Issuer, counts_as_exact, objection, rule};
+use crate::evaluation::{UnitStatement, UnitVerdict};
 use crate::language::Language;
 
-pub(super) fn data(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
+pub(super) fn data(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, language: Language) {
+    let laboratory = &issuer.laboratory;
     xml.element("dcc:administrativeData", |xml| {
         xml.element("dcc:dccSoftware", |xml| software(xml, result, language));
         core_data(xml, laboratory, language);
@@ -20,7 +21,7 @@ pub(super) fn data(xml: &mut Xml, result: &CalibrationResult, laboratory: &Labor
         persons(xml, laboratory, language);
         let of = &laboratory.customer;
         contact(xml, "dcc:customer", (&of.name, &of.address, &of.contact), language);
-        statements(xml, result, laboratory, language);
+        statements(xml, result, issuer.unit.as_ref(), language);
     });
 }
 
@@ -112,7 +113,7 @@ fn persons(xml: &mut Xml, laboratory: &Laboratory, language: Language) {
     });
 }
 
-fn statements(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
+fn statements(xml: &mut Xml, result: &CalibrationResult, unit: Option<&UnitStatement>, language: Language) {
     let messages = language.messages();
     xml.element("dcc:statements", |xml| {
         let statement = |xml: &mut Xml, reference: &str, text: &str| {
@@ -129,20 +130,26 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
         statement(xml, "7.8.2.1 l", messages.item_only);
         statement(xml, "7.8.2.1", messages.reproduction);
         statement(xml, "7.8.4.1 c", messages.traceability_text);
-        if let Some(decision) = &laboratory.decision {
-            let rule = match decision.rule {
-                DecisionRule::Simple => messages.rule_simple,
-                DecisionRule::Guarded => messages.rule_guarded,
-            };
-            let judged: Vec<_> = conformity(result, decision).iter().map(|judged| judged.conforms).collect();
-            let fails = judged.contains(&Some(false));
+        if let Some(unit) = unit {
             xml.element_with("dcc:statement", &[("refType", "basic_conformity")], |xml| {
-                xml.leaf("dcc:norm", &decision.specification);
-                xml.content("dcc:declaration", &format!("{}: {rule}", messages.decision_rule), language);
-                if fails || !judged.contains(&None) {
-                    xml.leaf("dcc:conformity", if fails { "fail" } else { "pass" });
+                xml.leaf("dcc:norm", &unit.specification);
+                xml.content(
+                    "dcc:declaration",
+                    &format!("{}: {}", messages.decision_rule, rule(unit.rule, language)),
+                    language,
+                );
+                match unit.verdict() {
+                    UnitVerdict::Within => xml.leaf("dcc:conformity", "pass"),
+                    UnitVerdict::Outside => xml.leaf("dcc:conformity", "fail"),
+                    UnitVerdict::NotStated => {}
                 }
             });
+        }
+        for (name, text) in
+            [(messages.counts_as_exact, counts_as_exact(result, language)), (messages.presupposed, String::new())]
+        {
+            let text = if text.is_empty() { name.to_owned() } else { format!("{name}: {text}") };
+            statement(xml, "7.8.4.1 a", &text);
         }
     });
 }

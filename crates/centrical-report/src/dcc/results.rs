@@ -1,17 +1,16 @@
 //! Measurement results: method, software, standards, influence conditions, parameters with their covariance, reading
 //! errors.
 
-use centrical_session::{CalibrationResult, Condition, Laboratory, ParameterEstimate, Unit};
+use centrical_session::{CalibrationResult, Condition, Laboratory, OutputSummary, ParameterEstimate, Symbol, Unit};
 use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::administrative::{identification, software};
 use super::xml::Xml;
-use crate::evaluation::{Expanded, ReadingError, equation, expanded, expanded_of_normal, reading_errors};
+use crate::evaluation::{
+    COVERAGE_PROBABILITY, Expanded, ReadingError, equation, expanded, expanded_of_normal, reading_errors,
+};
 use crate::language::Language;
-
-/// Probability that the expanded uncertainties cover.
-const COVERAGE_PROBABILITY: f64 = 0.95;
 
 /// The results, the parameters with their `units`.
 pub(super) fn list(
@@ -29,6 +28,7 @@ pub(super) fn list(
             equipment(xml, laboratory, language);
             influences(xml, result, laboratory, language);
             xml.element("dcc:results", |xml| {
+                nominal(xml, result, language);
                 parameters(xml, result, units, language);
                 covariance(xml, result, units, language);
                 errors(xml, result, language);
@@ -85,6 +85,7 @@ fn influences(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
         ("basic_temperature", messages.temperature, Some(celsius(environment.temperature))),
         ("basic_humidityRelative", messages.humidity, environment.humidity.map(|c| (c, 0.0, 0.01, "\\one"))),
         ("basic_pressure", messages.pressure, environment.pressure.map(|c| (c, 0.0, 1e3, "\\pascal"))),
+        ("centrical_unitTemperature", messages.unit_temperature, environment.unit_temperature.map(celsius)),
     ];
     xml.element("dcc:influenceConditions", |xml| {
         for (kind, name, condition) in conditions {
@@ -100,12 +101,13 @@ fn influences(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
             });
         }
         influence(xml, ("centrical_gravity", messages.gravity), language, |xml| {
-            xml.element("dcc:quantity", |xml| {
+            xml.element_with("dcc:quantity", &[("refType", "centrical_gravity")], |xml| {
                 real(xml, result.model.gravity, &Unit::ACCELERATION.d_si(), None);
             });
         });
         influence(xml, ("centrical_speedUncertainty", messages.speed_uncertainty), language, |xml| {
-            xml.element("dcc:quantity", |xml| real(xml, result.model.speed_uncertainty, "\\one", None));
+            let kind = [("refType", "centrical_speedUncertainty")];
+            xml.element_with("dcc:quantity", &kind, |xml| real(xml, result.model.speed_uncertainty, "\\one", None));
         });
     });
 }
@@ -127,8 +129,11 @@ fn real(xml: &mut Xml, value: f64, unit: &str, expanded: Option<Expanded>) {
                 xml.element("si:expandedMU", |xml| {
                     xml.leaf("si:valueExpandedMU", &number(expanded.uncertainty));
                     xml.leaf("si:coverageFactor", &expanded.factor.to_string());
-                    xml.leaf("si:coverageProbability", &COVERAGE_PROBABILITY.to_string());
-                    xml.leaf("si:distribution", if expanded.is_normal() { "normal" } else { "t-distribution" });
+                    xml.leaf("si:coverageProbability", &coverage_probability());
+                    xml.leaf(
+                        "si:distribution",
+                        if expanded.degrees_of_freedom.is_none() { "normal" } else { "t-distribution" },
+                    );
                 });
             });
         }
@@ -143,9 +148,52 @@ fn parameters(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], languag
         xml.element("dcc:data", |xml| {
             xml.element("dcc:list", |xml| {
                 for (parameter, unit) in result.parameters.iter().zip(units) {
-                    xml.element("dcc:quantity", |xml| one_parameter(xml, result, (parameter, *unit), language));
+                    let kind = format!("basic_measuredValue centrical_{}", camel_case(parameter.group.name()));
+                    xml.element_with("dcc:quantity", &[("refType", &kind)], |xml| {
+                        one_parameter(xml, result, (parameter, *unit), language);
+                    });
                 }
             });
+        });
+    });
+}
+
+/// `cross-coupling` as `crossCoupling`, which a refType may be.
+fn camel_case(words: &str) -> String {
+    let mut parts = words.split(|c: char| !c.is_ascii_alphanumeric());
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |name, part| {
+        let (head, tail) = part.split_at(part.len().min(1));
+        format!("{name}{}{tail}", head.to_ascii_uppercase())
+    })
+}
+
+/// The nominal scale and bias of a unit that does not put out an acceleration.
+fn nominal(xml: &mut Xml, result: &CalibrationResult, language: Language) {
+    let messages = language.messages();
+    let Some(OutputSummary { unit, scale, bias }) = &result.output else { return };
+    // Counts are a number; what has no symbol in D-SI is named in words alone.
+    let raw = if unit == "counts" { Some("") } else { Symbol::of(unit).and_then(|symbol| symbol.d_si) };
+    let Some(raw) = raw else { return };
+    let per_force = format!("{raw}\\metre\\tothe{{-1}}\\second\\tothe{{2}}");
+    let raw = if raw.is_empty() { "\\one" } else { raw };
+    xml.element_with("dcc:result", &[("refType", "centrical_nominalOutput")], |xml| {
+        xml.content("dcc:name", messages.nominal_output, language);
+        xml.content("dcc:description", messages.nominal_output_text, language);
+        xml.element("dcc:data", |xml| {
+            let rows = [
+                ("centrical_nominalScale", messages.nominal_scale, scale, per_force.as_str()),
+                ("centrical_nominalBias", messages.nominal_bias, bias, raw),
+            ];
+            for (kind, name, numbers, unit) in rows {
+                xml.element_with("dcc:quantity", &[("refType", &format!("basic_nominalValue {kind}"))], |xml| {
+                    xml.content("dcc:name", name, language);
+                    xml.element("si:realListXMLList", |xml| {
+                        xml.leaf("si:valueXMLList", &numbers.map(number).join(" "));
+                        xml.leaf("si:unitXMLList", unit);
+                    });
+                });
+            }
         });
     });
 }
@@ -177,7 +225,7 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], languag
     xml.element_with("dcc:result", &[("refType", "centrical_covariance")], |xml| {
         xml.content("dcc:name", language.messages().covariance, language);
         xml.element("dcc:data", |xml| {
-            xml.element("dcc:quantity", |xml| {
+            xml.element_with("dcc:quantity", &[("refType", "centrical_parameterVector")], |xml| {
                 xml.element("si:realListXMLList", |xml| {
                     xml.leaf("si:labelXMLList", &joined(&|j| all[j].name.clone()));
                     xml.leaf("si:valueXMLList", &joined(&|j| number(all[j].value.unwrap_or(f64::NAN))));
@@ -197,7 +245,7 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], languag
                                 }
                             });
                             xml.leaf("si:coverageFactorXMLList", &ellipsoid_factor(shown.len()));
-                            xml.leaf("si:coverageProbabilityXMLList", &COVERAGE_PROBABILITY.to_string());
+                            xml.leaf("si:coverageProbabilityXMLList", &coverage_probability());
                             xml.leaf("si:distributionXMLList", "normal");
                         });
                     });
@@ -207,7 +255,12 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], languag
     });
 }
 
-/// `k` of the ellipsoid that holds a normal vector of `dimension` with probability 0.95: the root of the quantile of
+/// The probability that all expanded uncertainties cover.
+fn coverage_probability() -> String {
+    format!("{COVERAGE_PROBABILITY:.4}")
+}
+
+/// `k` of the ellipsoid that holds a normal vector of `dimension` with that probability: the root of the quantile of
 /// chi^2 (JCGM 102, 6.5).
 fn ellipsoid_factor(dimension: usize) -> String {
     let quantile = ChiSquared::new(dimension as f64).map_or(f64::NAN, |law| law.inverse_cdf(COVERAGE_PROBABILITY));
@@ -224,8 +277,8 @@ fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
             for axis in 0..3 {
                 xml.element("dcc:list", |xml| {
                     xml.content("dcc:name", &format!("{} {}", messages.axis, axis + 1), language);
-                    let mut column = |name: &str, of: fn(&ReadingError) -> Vector3<f64>| {
-                        xml.element("dcc:quantity", |xml| {
+                    let mut column = |kind: &str, name: &str, of: fn(&ReadingError) -> Vector3<f64>| {
+                        xml.element_with("dcc:quantity", &[("refType", kind)], |xml| {
                             xml.content("dcc:name", name, language);
                             xml.element("si:realListXMLList", |xml| {
                                 let values: Vec<String> = errors.iter().map(|error| number(of(error)[axis])).collect();
@@ -234,10 +287,12 @@ fn errors(xml: &mut Xml, result: &CalibrationResult, language: Language) {
                             });
                         });
                     };
-                    column(messages.specific_force, |e| e.force);
-                    column(messages.before, |e| e.before);
-                    column(messages.after, |e| e.after);
-                    column(messages.compensation_uncertainty, |e| e.prediction.map(expanded_of_normal));
+                    column("basic_referenceValue centrical_specificForce", messages.specific_force, |e| e.force);
+                    column("basic_measurementError centrical_asReceived", messages.before, |e| e.before);
+                    column("basic_measurementError centrical_compensated", messages.after, |e| e.after);
+                    column("centrical_expandedUncertainty", messages.compensation_uncertainty, |e| {
+                        e.prediction.map(expanded_of_normal)
+                    });
                 });
             }
         });

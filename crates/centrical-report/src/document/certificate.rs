@@ -1,29 +1,41 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
-use centrical_session::{
-    Address, CalibrationResult, Condition, Contact, Decision, DecisionRule, Laboratory, customary,
-};
+use centrical_session::{Address, CalibrationResult, Condition, Contact, Laboratory, customary};
 
-use super::content::{Align, Block, Document, Margins, Opening, Section, Table, Tone};
+use super::conformity::{conformity_table, rule};
+use super::content::{Align, Block, Document, Margins, Opening, Picture, Row, Section, Table};
 use super::drift::drift_facts;
 use super::objection::objection;
 use super::reading_error::error_table;
-use super::rests_on::rests_on_sentence;
-use crate::evaluation::{by_group, conformity, equations, expanded};
+use super::rests_on::{counts_as_exact, rests_on_sentence};
+use super::symbols::nominal_output;
+use super::tables::cells;
+use crate::evaluation::{UnitStatement, by_group, equations, expanded, symbol};
 use crate::language::Language;
 
 /// Effects that a certificate names: more than these tell a reader no more.
 const PRESUPPOSED: usize = 3;
 
+/// Who issues a certificate, and what they say of the unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Issuer {
+    /// The laboratory's file.
+    pub laboratory: Laboratory,
+    /// What its decision says of the unit, where one was asked for.
+    pub unit: Option<UnitStatement>,
+    /// Its mark.
+    pub logo: Option<Picture>,
+}
+
 /// The certificate, with the results `before` an adjustment beside those after it if the unit was adjusted.
 pub fn certificate(
     result: &CalibrationResult,
     before: Option<&CalibrationResult>,
-    laboratory: &Laboratory,
+    issuer: &Issuer,
     language: Language,
 ) -> Document {
+    let laboratory = &issuer.laboratory;
     let (messages, number) = (language.messages(), &laboratory.certificate.number);
-    let decision = laboratory.decision.as_ref();
     let sections = [
         warning(result, language),
         parties(laboratory, language),
@@ -35,10 +47,9 @@ pub fn certificate(
         traceability(laboratory, language),
         results(result, language),
         adjustment(result, before, laboratory, language),
-        decision.map(|decision| conformity_statement(result, decision, language)).unwrap_or_default(),
+        issuer.unit.as_ref().map(|unit| conformity_statement(unit, language)).unwrap_or_default(),
         authorisation(laboratory, language),
     ];
-    let plain = |blocks| Section { tone: Tone::Plain, blocks };
     Document {
         language,
         title: format!("{} {number}", messages.certificate),
@@ -47,13 +58,16 @@ pub fn certificate(
             title: messages.certificate.to_owned(),
             lines: Vec::new(),
             date: String::new(),
+            picture: issuer.logo.clone(),
         },
-        sections: sections.into_iter().filter(|blocks| !blocks.is_empty()).map(plain).collect(),
+        contents: String::new(),
+        sections: sections.into_iter().filter(|blocks| !blocks.is_empty()).map(Section::plain).collect(),
         margins: Margins {
             head: [laboratory.laboratory.name.clone(), format!("{} {number}", messages.certificate_number)],
             foot: messages.item_only.to_owned(),
             page: [messages.page, messages.of],
         },
+        attachment: None,
     }
 }
 
@@ -147,6 +161,7 @@ fn conditions(result: &CalibrationResult, laboratory: &Laboratory, language: Lan
         (messages.temperature, shown(environment.temperature, "°C")),
         (messages.humidity, environment.humidity.map(|c| shown(c, "%")).unwrap_or_default()),
         (messages.pressure, environment.pressure.map(|c| shown(c, &language.unit("kPa"))).unwrap_or_default()),
+        (messages.unit_temperature, environment.unit_temperature.map(|c| shown(c, "°C")).unwrap_or_default()),
         (messages.gravity, gravity),
         (messages.speed_uncertainty, language.scientific(result.model.speed_uncertainty)),
     ]);
@@ -186,39 +201,36 @@ fn traceability(laboratory: &Laboratory, language: Language) -> Vec<Block> {
     ]
 }
 
-/// 7.8.2.1 m and 7.8.4.1 a.
+/// 7.8.2.1 m and 7.8.4.1 a; EA-4/02, 6.3.
 fn results(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let messages = language.messages();
     let terms: Vec<_> = result.model.error_model.iter().filter_map(|term| result.parameter(&term.name)).collect();
-    let rows = by_group(&terms).into_iter().map(|parameter| {
-        let (factor, unit) = customary(&parameter.unit, parameter.group);
-        let [shown, si] = match (parameter.value, expanded(result, parameter)) {
-            (Some(value), Some(expanded)) => {
-                let expanded = expanded.uncertainty;
-                let shown = language.plus_minus(value * factor, expanded * factor);
-                [shown, language.plus_minus_scientific(value, expanded)]
-            }
-            _ => [messages.not_determined.to_owned(), String::new()],
-        };
-        let group = (messages.words.group)(parameter.group).to_owned();
-        vec![parameter.name.clone(), group, shown, language.unit(unit), si, language.unit(&parameter.unit)]
-    });
     let columns = [
-        ("", 0.08, Align::Left),
-        ("", 0.25, Align::Left),
-        (messages.value, 0.23, Align::Right),
-        ("", 0.09, Align::Left),
-        (messages.value_si, 0.26, Align::Right),
-        ("", 0.09, Align::Left),
+        ("", 0.1, Align::Left),
+        (messages.value, 0.26, Align::Right),
+        ("", 0.12, Align::Left),
+        (messages.coverage_and_degrees, 0.12, Align::Right),
+        (messages.value_si, 0.3, Align::Right),
+        ("", 0.1, Align::Left),
     ];
-    let model = [Block::heading(messages.results, 8), Block::paragraph(messages.results_model)];
-    let values = [
-        Block::Table(Table::numbers(columns, rows)),
-        Block::paragraph(messages.uncertainty_statement),
-        Block::paragraph(&presupposed(result, language)),
-        Block::paragraph(messages.covariance_note),
-    ];
-    model.into_iter().chain(equations(result).map(Block::Paragraph)).chain(values).collect()
+    let mut table = Table::numbers(columns, []);
+    let mut group = None;
+    for parameter in by_group(&terms) {
+        if group != Some(parameter.group) {
+            group = Some(parameter.group);
+            table.rows.push(Row::Group((messages.words.group)(parameter.group).to_owned()));
+        }
+        table.rows.push(Row::Cells(cells(result, parameter, language)));
+    }
+    let mut blocks = vec![Block::heading(messages.results, 14), Block::paragraph(messages.results_model)];
+    blocks.extend(equations(result).map(Block::Paragraph));
+    blocks.push(Block::Table(table));
+    blocks.push(Block::paragraph(messages.uncertainty_statement));
+    blocks.push(Block::facts([(messages.counts_as_exact, counts_as_exact(result, language))]));
+    blocks.push(Block::paragraph(&presupposed(result, language)));
+    blocks.extend(nominal_output(result, language));
+    blocks.push(Block::paragraph(messages.covariance_note));
+    blocks
 }
 
 /// 7.8.4.1 d.
@@ -247,13 +259,12 @@ fn presupposed(result: &CalibrationResult, language: Language) -> String {
     let messages = language.messages();
     let worst: Vec<String> =
         result.rests_on.iter().take(PRESUPPOSED).map(|effect| rests_on_sentence(effect, language)).collect();
-    let exact = if result.stated_sources().is_empty() { messages.presupposed_exact } else { "" };
     let effects = if worst.is_empty() {
         String::new()
     } else {
         format!(" {}: {}.", messages.rests_on_sentence, worst.join("; "))
     };
-    format!("{}{exact}{effects}", messages.presupposed)
+    format!("{}{effects}", messages.presupposed)
 }
 
 /// The parameters of the instrument before its adjustment and after.
@@ -268,7 +279,7 @@ fn results_before(result: &CalibrationResult, before: &CalibrationResult, langua
     let rows = by_group(&terms).into_iter().map(|after| {
         let (factor, unit) = customary(&after.unit, after.group);
         let [was, is] = [before, result].map(|result| shown(result, &after.name, factor));
-        vec![after.name.clone(), was, is, language.unit(unit)]
+        vec![symbol(&after.name), was, is, language.unit(unit)]
     });
     let columns = [
         (messages.parameter, 0.16, Align::Left),
@@ -280,38 +291,14 @@ fn results_before(result: &CalibrationResult, before: &CalibrationResult, langua
 }
 
 /// 7.8.4.1 e and 7.8.6.
-fn conformity_statement(result: &CalibrationResult, decision: &Decision, language: Language) -> Vec<Block> {
+fn conformity_statement(unit: &UnitStatement, language: Language) -> Vec<Block> {
     let messages = language.messages();
-    let rule = match decision.rule {
-        DecisionRule::Simple => messages.rule_simple,
-        DecisionRule::Guarded => messages.rule_guarded,
-    };
-    let rows = conformity(result, decision).into_iter().map(|judged| {
-        let limit = judged.limit;
-        let parameter = result.parameter(&limit.parameter);
-        let (factor, unit) = parameter.map_or((1.0, ""), |p| customary(&p.unit, p.group));
-        let [low, high] = [limit.low, limit.high].map(|end| language.significant(end * factor, 4));
-        let value = judged.value.map_or_else(
-            || messages.not_determined.to_owned(),
-            |(value, expanded)| language.plus_minus(value * factor, expanded * factor),
-        );
-        let verdict = match judged.conforms {
-            Some(true) => messages.conforms,
-            Some(false) => messages.does_not_conform,
-            None => messages.conformity_not_stated,
-        };
-        let range = format!("{low} … {high}");
-        vec![limit.parameter.clone(), range, value, language.unit(unit), verdict.to_owned()]
-    });
-    let columns = [
-        (messages.parameter, 0.16, Align::Left),
-        (messages.limits, 0.24, Align::Right),
-        (messages.value, 0.26, Align::Right),
-        (messages.unit, 0.12, Align::Left),
-        ("", 0.22, Align::Left),
+    let facts = [
+        (messages.specification, unit.specification.clone()),
+        (messages.decision_rule, rule(unit.rule, language).to_owned()),
     ];
-    let facts = [(messages.specification, decision.specification.clone()), (messages.decision_rule, rule.to_owned())];
-    vec![Block::heading(messages.conformity, 9), Block::facts(facts), Block::Table(Table::numbers(columns, rows))]
+    let table = Block::Table(conformity_table(unit, language));
+    vec![Block::heading(messages.conformity, 9), Block::facts(facts), table]
 }
 
 /// 7.8.2.1 d, l, o.
@@ -321,6 +308,8 @@ fn authorisation(laboratory: &Laboratory, language: Language) -> Vec<Block> {
         name: person.name.clone(),
         role: person.role.clone(),
         word: messages.signature.to_owned(),
+        date: messages.signed_on.to_owned(),
+        mark: messages.mark_place.to_owned(),
     });
     let others = laboratory.person.iter().filter(|person| !person.authorises);
     let others = others.map(|person| format!("{}, {}", person.name, person.role)).collect::<Vec<_>>().join("; ");
@@ -330,5 +319,5 @@ fn authorisation(laboratory: &Laboratory, language: Language) -> Vec<Block> {
         Block::paragraph(messages.reproduction),
         Block::Paragraph(format!("— {} —", messages.end)),
     ];
-    std::iter::once(Block::heading(messages.authorised, 12)).chain(signature).chain(end).collect()
+    std::iter::once(Block::heading(messages.authorised, 16)).chain(signature).chain(end).collect()
 }

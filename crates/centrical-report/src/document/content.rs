@@ -12,10 +12,25 @@ pub struct Document {
     pub title: String,
     /// What stands before the first section.
     pub opening: Opening,
+    /// Title of the list of sections that a reader opens; empty in a document of one layer.
+    pub contents: String,
     /// The sections in their order.
     pub sections: Vec<Section>,
     /// What stands around the text.
     pub margins: Margins,
+    /// A file that the document carries, where its form can.
+    pub attachment: Option<Attachment>,
+}
+
+/// A file inside a document.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Attachment {
+    /// Its name.
+    pub name: &'static str,
+    /// Its media type.
+    pub media_type: &'static str,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
 }
 
 /// What a document opens with.
@@ -29,6 +44,19 @@ pub struct Opening {
     pub lines: Vec<String>,
     /// Date at the end of the last line; may be empty.
     pub date: String,
+    /// Picture beside the title, such as a laboratory's mark.
+    pub picture: Option<Picture>,
+}
+
+/// A picture of opaque pixels.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Picture {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Red, green and blue of each pixel, sRGB, row by row from above.
+    pub pixels: Vec<u8>,
 }
 
 /// What stands around the text, on every page where there are pages.
@@ -47,15 +75,28 @@ pub struct Margins {
 pub struct Section {
     /// What it means for the reader.
     pub tone: Tone,
+    /// Where it stands in a document of two layers.
+    pub layer: Layer,
     /// Its blocks in their order.
     pub blocks: Vec<Block>,
+}
+
+/// Where a section stands in a document of two layers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layer {
+    /// What every reader sees.
+    First,
+    /// What a reader opens, listed in the contents; open on paper.
+    Further,
 }
 
 /// What a section means for the reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tone {
-    /// A statement.
+    /// A part of the text.
     Plain,
+    /// A statement that favours neither side.
+    Neutral,
     /// A favourable verdict.
     Good,
     /// An unfavourable verdict.
@@ -91,6 +132,10 @@ pub enum Block {
         role: String,
         /// What the line is for.
         word: String,
+        /// What the shorter line beside it is for.
+        date: String,
+        /// What the free place under it is for.
+        mark: String,
     },
 }
 
@@ -146,6 +191,18 @@ pub enum Row {
     Group(String),
     /// A name, and the cells beside it.
     Cells(Vec<String>),
+}
+
+impl Section {
+    /// A part of the text that every reader sees.
+    pub(super) fn plain(blocks: Vec<Block>) -> Self {
+        Self { tone: Tone::Plain, layer: Layer::First, blocks }
+    }
+
+    /// A part of the text that a reader opens.
+    pub(super) fn further(blocks: Vec<Block>) -> Self {
+        Self { layer: Layer::Further, ..Self::plain(blocks) }
+    }
 }
 
 impl Block {

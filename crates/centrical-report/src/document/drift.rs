@@ -4,7 +4,7 @@ use centrical_session::{
     CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, SessionDriftVerdict, TiltSummary, TiltVerdict,
 };
 
-use crate::evaluation::not_used;
+use crate::evaluation::{newtonometer, not_used};
 use crate::language::Language;
 use crate::number::MINUTE;
 
@@ -99,7 +99,7 @@ fn left_out(facts: &mut Vec<Fact>, result: &CalibrationResult, language: Languag
 
 /// What is said of a newtonometer.
 fn axis(axis: usize, said: &str) -> String {
-    format!("f{axis} {said}")
+    format!("{} {said}", newtonometer(axis))
 }
 
 fn with_unit(said: impl Iterator<Item = String>, unit: &str, language: Language) -> String {

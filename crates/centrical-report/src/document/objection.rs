@@ -91,12 +91,11 @@ pub(super) fn pattern(pattern: &PatternSummary, language: Language) -> String {
         Follows::Mounting { mounting } => format!(" {mounting}"),
         Follows::Speed | Follows::Load | Follows::Time => String::new(),
     };
-    let [amplitude, uncertainty] =
-        [pattern.amplitude, pattern.standard_uncertainty].map(|a| language.significant(a / MICRO_G, 2));
+    let amplitude = language.plus_minus(pattern.amplitude / MICRO_G, pattern.standard_uncertainty / MICRO_G);
     let chance = language.probability(pattern.probability);
     let follows = (messages.words.follows)(&pattern.follows);
     format!(
-        "{} {}, {follows}{place}: {amplitude} ± {uncertainty} {}, {} {chance}",
+        "{} {}, {follows}{place}: {amplitude} {}, {} {chance}",
         messages.axis,
         pattern.axis,
         language.unit("ug"),

@@ -1,41 +1,78 @@
-//! The errors of the readings as a table.
+//! The errors of the readings as tables.
 
 use centrical_session::{CalibrationResult, MICRO_G};
 use nalgebra::Vector3;
 
-use super::content::{Align, Table};
+use super::content::{Align, Row, Table};
 use crate::evaluation::{ReadingError, expanded_of_normal, reading_errors};
 use crate::language::Language;
 
-/// Before, after, after less the speed's error, and the expanded uncertainty of compensation: for each axis root mean
-/// square and, in brackets, largest magnitude. None if the unit cannot be compensated.
+/// What is shown of an error: along each axis root mean square and largest magnitude.
+type Size = [(f64, f64); 3];
+
+/// Before, after without the plateau's speed error, and the expanded uncertainty of compensation: the root mean square of
+/// each axis. None if the unit cannot be compensated.
+pub(super) fn headline_table(result: &CalibrationResult, language: Language) -> Option<Table> {
+    let [before, _, speed_free, uncertainty] = sizes(result, language)?;
+    let rows = [before, speed_free, uncertainty].map(|(name, size)| cells(name, size.map(|(rms, _)| rms), language));
+    Some(table(rows.map(Row::Cells).into(), language))
+}
+
+/// Before, after, after without the plateau's speed error, and the expanded uncertainty of compensation: root mean squares,
+/// then largest magnitudes. None if the unit cannot be compensated.
 pub(super) fn error_table(result: &CalibrationResult, language: Language) -> Option<Table> {
     let messages = language.messages();
-    let errors = &reading_errors(result)?;
-    let shown = |(rms, largest): (f64, f64)| {
-        let (factor, unit) = if rms < 1e3 * MICRO_G { (1.0 / MICRO_G, "ug") } else { (1e-3 / MICRO_G, "mg") };
-        let [rms, largest] = [rms, largest].map(|value| language.significant(value * factor, 3));
-        format!("{rms} ({largest}) {}", language.unit(unit))
+    let sizes = sizes(result, language)?;
+    let part = |heading: &str, of: fn((f64, f64)) -> f64| {
+        let rows = sizes.map(|(name, size)| Row::Cells(cells(name, size.map(of), language)));
+        std::iter::once(Row::Group(heading.to_owned())).chain(rows).collect::<Vec<_>>()
     };
-    let rows = [
-        (messages.before, size(errors, |e| e.before).map(shown)),
-        (messages.after, size(errors, |e| e.after).map(shown)),
-        (messages.after_speed_free, size(errors, |e| e.speed_free).map(shown)),
-        (messages.compensation_uncertainty, size(errors, |e| e.prediction.map(expanded_of_normal)).map(shown)),
-    ];
-    let rows = rows.map(|(name, cells)| std::iter::once(name.to_owned()).chain(cells).collect());
+    let rows = [part(messages.root_mean_square, |(rms, _)| rms), part(messages.largest, |(_, largest)| largest)];
+    Some(table(rows.concat(), language))
+}
+
+fn table(rows: Vec<Row>, language: Language) -> Table {
+    let messages = language.messages();
     let [axis_1, axis_2, axis_3] = [1, 2, 3].map(|axis| format!("{} {axis}", messages.axis));
     let columns = [
-        ("", 0.34, Align::Left),
-        (&axis_1, 0.22, Align::Right),
-        (&axis_2, 0.22, Align::Right),
-        (&axis_3, 0.22, Align::Right),
+        ("", 0.43, Align::Left),
+        (messages.unit, 0.12, Align::Left),
+        (&axis_1, 0.15, Align::Right),
+        (&axis_2, 0.15, Align::Right),
+        (&axis_3, 0.15, Align::Right),
     ];
-    Some(Table::numbers(columns, rows))
+    Table { rows, ..Table::numbers(columns, []) }
+}
+
+/// A row in one unit: that in which its largest number is below a thousand.
+fn cells(name: &str, values: [f64; 3], language: Language) -> Vec<String> {
+    let largest = values.into_iter().fold(0.0, f64::max);
+    let (size, unit) = if largest < 1e3 * MICRO_G { (MICRO_G, "ug") } else { (1e3 * MICRO_G, "mg") };
+    // To three digits of the largest, so that the numbers of a row end at one place.
+    let places = if largest / size >= 100.0 {
+        0
+    } else if largest / size >= 10.0 {
+        1
+    } else {
+        2
+    };
+    let numbers = values.map(|value| language.fixed(value / size, places));
+    [name.to_owned(), language.unit(unit)].into_iter().chain(numbers).collect()
+}
+
+fn sizes(result: &CalibrationResult, language: Language) -> Option<[(&'static str, Size); 4]> {
+    let messages = language.messages();
+    let errors = &reading_errors(result)?;
+    Some([
+        (messages.before, size(errors, |e| e.before)),
+        (messages.after, size(errors, |e| e.after)),
+        (messages.after_speed_free, size(errors, |e| e.speed_free)),
+        (messages.compensation_uncertainty, size(errors, |e| e.prediction.map(expanded_of_normal))),
+    ])
 }
 
 /// Root mean square and largest magnitude along each axis.
-fn size(errors: &[ReadingError], of: impl Fn(&ReadingError) -> Vector3<f64>) -> [(f64, f64); 3] {
+fn size(errors: &[ReadingError], of: impl Fn(&ReadingError) -> Vector3<f64>) -> Size {
     let count = errors.len().max(1) as f64;
     [0, 1, 2].map(|axis| {
         let values = || errors.iter().map(|error| of(error)[axis]);

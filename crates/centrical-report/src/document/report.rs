@@ -2,53 +2,81 @@
 
 use centrical_session::{CalibrationResult, ValiditySummary};
 
+use super::conformity::{judged_in_words, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Section, Table, TableKind, Tone};
 use super::drift::drift_facts;
 use super::objection::{objection, pattern, rival};
-use super::reading_error::error_table;
-use super::rests_on::rests_on;
+use super::reading_error::{error_table, headline_table};
+use super::rests_on::{all_rests_on, rests_on};
+use super::symbols::{nominal_output, symbols};
 use super::tables::{budget, parameters};
-use crate::evaluation::by_group;
+use crate::evaluation::{UnitStatement, UnitVerdict, by_group, equations};
 use crate::figure::{Figure, figures, positions};
 use crate::language::Language;
+use crate::number::grouped;
 
-/// The report of a result, with `further` figures after its own.
-pub fn report(result: &CalibrationResult, further: &[Figure], language: Language) -> Document {
+/// The report of a result: what every reader sees, then what some will open. `unit` is what a decision says of the unit, and
+/// `further` figures stand after its own.
+pub fn report(
+    result: &CalibrationResult,
+    unit: Option<&UnitStatement>,
+    further: &[Figure],
+    language: Language,
+) -> Document {
     let (messages, session, program) = (language.messages(), &result.session, &result.program);
     let serial = if session.unit_serial.is_empty() { messages.not_given } else { &session.unit_serial };
     let title = format!("{}: {}", messages.calibration_report, session.unit_model);
-    let further_sections = [
-        conduct(result, language),
-        drift(result, language),
-        parameter_tables(result, language),
-        uncertainty_budget(result, language),
+    let (drawn, rest): (Vec<_>, Vec<_>) = figures(result, language).into_iter().partition(is_of_first_layer);
+    let first = [
+        headline(result, language),
+        error_model(result, language),
+        instrument_parameters(result, language),
+        plots(messages.first_plots, drawn, language),
         rests_on(result, language),
+    ];
+    let opened = [
+        conduct(result, language),
+        checks(result, language),
+        drift(result, language),
+        reading_errors(result, language),
+        geometry_parameters(result, language),
+        uncertainty_budget(result, language),
+        all_rests_on(result, language),
         mounting_positions(result, language),
-        plots(result, further, language),
+        plots(messages.further_plots, rest.into_iter().chain(further.iter().cloned()).collect(), language),
         inputs(result, language),
     ];
-    let plain = |blocks| Section { tone: Tone::Plain, blocks };
-    let further_sections = further_sections.into_iter().filter(|blocks| !blocks.is_empty()).map(plain);
+    let is_not_empty = |blocks: &Vec<Block>| !blocks.is_empty();
+    let first = first.into_iter().filter(is_not_empty).map(Section::plain);
+    let opened = opened.into_iter().filter(is_not_empty).map(Section::further);
     Document {
         language,
         opening: Opening {
             kind: messages.calibration_report.to_owned(),
             title: session.unit_model.clone(),
             lines: vec![format!("{} {serial}", messages.serial), session.title.clone()],
-            date: session.date.clone(),
+            date: language.written_date(&session.date),
+            picture: None,
         },
-        sections: std::iter::once(verdict(result, language)).chain(further_sections).collect(),
+        contents: messages.contents.to_owned(),
+        sections: verdicts(result, unit, language).into_iter().chain(first).chain(opened).collect(),
         margins: Margins {
-            head: [title.clone(), session.date.clone()],
+            head: [title.clone(), language.written_date(&session.date)],
             foot: format!("{} {}, {}", program.name, program.version, result.schema),
             page: [messages.page, messages.of],
         },
+        attachment: None,
         title,
     }
 }
 
-/// The verdict with its reasons, and what the instrument is worth after compensation.
-fn verdict(result: &CalibrationResult, language: Language) -> Section {
+/// What the unit does, what compensation leaves, and how well it is known.
+fn is_of_first_layer(figure: &Figure) -> bool {
+    ["before", "after", "prediction"].contains(&figure.name)
+}
+
+/// The verdict on the calibration and, apart, what is said of the unit.
+fn verdicts(result: &CalibrationResult, unit: Option<&UnitStatement>, language: Language) -> [Section; 2] {
     let messages = language.messages();
     let objections = result.objections();
     let mut blocks = if objections.is_empty() {
@@ -58,28 +86,92 @@ fn verdict(result: &CalibrationResult, language: Language) -> Section {
         let heading = Block::heading(messages.not_acceptable, 4);
         vec![heading, Block::paragraph(messages.verdict_bad), Block::List(reasons)]
     };
+    if result.chi_squared_is_small() {
+        blocks.push(Block::paragraph(messages.chi_squared_small));
+    }
     let (fit, seen) = (&result.fit, &result.observability);
     let mut facts = Vec::new();
     if fit.degrees_of_freedom > 0 {
         let dof = fit.degrees_of_freedom as f64;
         let expected = language.fixed((2.0 / dof).sqrt(), 3);
         let ratio = language.fixed(fit.chi_squared / dof, 3);
-        let chi_squared = format!("{ratio} (1 ± {expected}; ν = {})", fit.degrees_of_freedom);
-        facts.push((messages.chi_squared.to_owned(), chi_squared));
-        facts.extend(result.validity.iter().flat_map(|validity| checks(validity, language)));
+        facts.push((messages.chi_squared, format!("{ratio} (1 ± {expected}; ν = {})", fit.degrees_of_freedom)));
+        let chance = result.validity.as_ref().map(|validity| language.probability(validity.probability));
+        facts.push((messages.chi_squared_chance, chance.unwrap_or_default()));
     }
-    facts.push((messages.rank.to_owned(), format!("{} / {}", seen.rank, seen.columns)));
-    blocks.push(Block::Facts(facts));
-    if let Some(errors) = error_table(result, language) {
-        blocks.push(Block::Subheading(messages.residual_error.to_owned()));
-        blocks.push(Block::Table(errors));
-        blocks.push(Block::Note(messages.residual_error_note.to_owned()));
+    facts.push((messages.rank, format!("{} / {}", seen.rank, seen.columns)));
+    blocks.push(Block::facts(facts));
+    let tone = if objections.is_empty() { Tone::Good } else { Tone::Bad };
+    [Section { tone, ..Section::plain(blocks) }, of_unit(unit, language)]
+}
+
+/// What is said of the unit, which is not what is said of its calibration.
+fn of_unit(unit: Option<&UnitStatement>, language: Language) -> Section {
+    let messages = language.messages();
+    let Some(unit) = unit else {
+        let blocks = vec![Block::heading(messages.unit_not_asked, 4), Block::paragraph(messages.unit_not_asked_text)];
+        return Section { tone: Tone::Neutral, ..Section::plain(blocks) };
+    };
+    let (tone, heading, text) = match unit.verdict() {
+        UnitVerdict::Within => (Tone::Good, messages.unit_within, messages.unit_within_text),
+        UnitVerdict::Outside => (Tone::Bad, messages.unit_outside, messages.unit_outside_text),
+        UnitVerdict::NotStated => (Tone::Neutral, messages.unit_not_stated, messages.unit_not_stated_text),
+    };
+    let mut blocks = vec![Block::heading(heading, 4), Block::paragraph(text)];
+    let broken = unit.judged.iter().filter(|judged| judged.conforms == Some(false));
+    let broken: Vec<String> = broken.map(|judged| judged_in_words(judged, language)).collect();
+    if !broken.is_empty() {
+        blocks.push(Block::List(broken));
     }
-    Section { tone: if objections.is_empty() { Tone::Good } else { Tone::Bad }, blocks }
+    blocks.push(Block::facts([
+        (messages.specification, unit.specification.clone()),
+        // What the rule asks for stands in the certificate.
+        (messages.decision_rule, rule(unit.rule, language).split(':').next().unwrap_or_default().to_owned()),
+        (messages.limits_judged, unit.judged.len().to_string()),
+    ]));
+    Section { tone, ..Section::plain(blocks) }
+}
+
+/// What the instrument is worth before and after compensation.
+fn headline(result: &CalibrationResult, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let Some(table) = headline_table(result, language) else { return Vec::new() };
+    vec![Block::heading(messages.headline, 4), Block::Table(table), Block::Note(messages.headline_note.to_owned())]
+}
+
+/// The equations of the readings, and every symbol of them in words.
+fn error_model(result: &CalibrationResult, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let mut blocks = vec![
+        Block::heading(messages.error_model, 4),
+        Block::paragraph(messages.error_model_note),
+        Block::Formulas(equations(result).into()),
+        Block::Facts(symbols(result, language)),
+    ];
+    blocks.extend(nominal_output(result, language));
+    blocks
+}
+
+/// Errors of the readings in full.
+fn reading_errors(result: &CalibrationResult, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let Some(errors) = error_table(result, language) else { return Vec::new() };
+    vec![
+        Block::heading(messages.residual_error, 4),
+        Block::Table(errors),
+        Block::Note(messages.residual_error_note.to_owned()),
+    ]
 }
 
 /// What the residuals say of the model and of the weights.
-fn checks(validity: &ValiditySummary, language: Language) -> Vec<(String, String)> {
+fn checks(result: &CalibrationResult, language: Language) -> Vec<Block> {
+    let Some(validity) = result.validity.as_ref().filter(|_| result.fit.degrees_of_freedom > 0) else {
+        return Vec::new();
+    };
+    vec![Block::heading(language.messages().checks, 4), Block::Facts(check_facts(validity, language))]
+}
+
+fn check_facts(validity: &ValiditySummary, language: Language) -> Vec<(String, String)> {
     let messages = language.messages();
     let listed = |items: Vec<String>| if items.is_empty() { messages.none.to_owned() } else { items.join("; ") };
     let outlying = validity.outlying.iter().map(|p| format!("{}:{}", p.mounting, p.index + 1)).collect();
@@ -95,10 +187,14 @@ fn checks(validity: &ValiditySummary, language: Language) -> Vec<(String, String
         facts.push((format!("{} ({})", messages.rivals_tested, validity.rivals_tested), listed(shown)));
     }
     if let Some(worst) = validity.mountings.iter().min_by(|a, b| a.probability.total_cmp(&b.probability)) {
-        let chance = (validity.mountings.len() as f64 * worst.probability).min(1.0);
+        let count = validity.mountings.len();
+        let corrected = language.probability((count as f64 * worst.probability).min(1.0));
         let chi_squared = language.fixed(worst.chi_squared, 1);
-        let (nu, p) = (worst.degrees_of_freedom, language.probability(chance));
-        let shown = format!("{}: χ² = {chi_squared}; ν = {nu}; p = {p}", worst.mounting);
+        let (nu, p) = (worst.degrees_of_freedom, language.probability(worst.probability));
+        let shown = format!(
+            "{}: χ² = {chi_squared}; ν = {nu}; p = {p} ({}); {} {count}: {corrected}",
+            worst.mounting, messages.f_test, messages.corrected_for
+        );
         facts.push((messages.worst_mounting.to_owned(), shown));
     }
     facts
@@ -119,12 +215,14 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let samples: u64 = result.plateaus.iter().map(|p| p.samples).sum();
     let rejected: u64 = result.plateaus.iter().map(|p| p.rejected).sum();
     let data = format!(
-        "{}: {mountings}; {}: {}; {}: {samples}; {}: {rejected}",
+        "{}: {mountings}; {}: {}; {}: {}; {}: {}",
         messages.mountings_used,
         messages.plateaus_used,
         result.plateaus.len(),
         messages.samples,
-        messages.rejected
+        grouped(samples),
+        messages.rejected,
+        grouped(rejected)
     );
     let method =
         format!("{} ({}, {})", (words.method)(fit.method), (words.termination)(fit.termination), fit.iterations);
@@ -163,18 +261,32 @@ fn drift(result: &CalibrationResult, language: Language) -> Vec<Block> {
     vec![Block::heading(messages.steadiness, 4), note, Block::facts(facts)]
 }
 
-fn parameter_tables(result: &CalibrationResult, language: Language) -> Vec<Block> {
+/// The coefficients of the error model.
+fn instrument_parameters(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let messages = language.messages();
-    let mut blocks = vec![Block::heading(messages.parameters, 4), Block::Note(messages.parameters_note.to_owned())];
-    let of_instrument = |name: &str| result.model.error_model.iter().any(|term| term.name == name);
-    for (title, is_shown) in [(messages.instrument, true), (messages.mounting, false)] {
-        let shown: Vec<_> = result.parameters.iter().filter(|p| of_instrument(&p.name) == is_shown).collect();
-        let shown = by_group(&shown);
-        if !shown.is_empty() {
-            blocks.push(Block::Subheading(title.to_owned()));
-            blocks.push(Block::Table(parameters(result, &shown, language)));
-        }
+    let note = Block::Note(messages.parameters_note.to_owned());
+    let blocks = vec![Block::heading(messages.parameters_of_instrument, 4), note];
+    with_parameters(blocks, result, true, language)
+}
+
+/// The unknowns of the experiment beside them.
+fn geometry_parameters(result: &CalibrationResult, language: Language) -> Vec<Block> {
+    with_parameters(vec![Block::heading(language.messages().mounting, 4)], result, false, language)
+}
+
+fn with_parameters(
+    mut blocks: Vec<Block>,
+    result: &CalibrationResult,
+    of_instrument: bool,
+    language: Language,
+) -> Vec<Block> {
+    let is_of_instrument = |name: &str| result.model.error_model.iter().any(|term| term.name == name);
+    let shown = result.parameters.iter().filter(|p| is_of_instrument(&p.name) == of_instrument);
+    let shown = by_group(&shown.collect::<Vec<_>>());
+    if shown.is_empty() {
+        return Vec::new();
     }
+    blocks.push(Block::Table(parameters(result, &shown, language)));
     blocks
 }
 
@@ -197,11 +309,14 @@ fn mounting_positions(result: &CalibrationResult, language: Language) -> Vec<Blo
     figure.map(|figure| vec![heading(), Block::Figure(figure)]).unwrap_or_default()
 }
 
-/// The figures, each with the combinations that it shows as undetermined.
-fn plots(result: &CalibrationResult, further: &[Figure], language: Language) -> Vec<Block> {
+/// Figures, each with the combinations that it shows as undetermined.
+fn plots(heading: &str, figures: Vec<Figure>, language: Language) -> Vec<Block> {
     let messages = language.messages();
-    let mut blocks = vec![Block::heading(messages.plots, 4)];
-    for figure in figures(result, language) {
+    if figures.is_empty() {
+        return Vec::new();
+    }
+    let mut blocks = vec![Block::heading(heading, 4)];
+    for figure in figures {
         let combinations = figure.combinations.clone();
         blocks.push(Block::Figure(figure));
         if !combinations.is_empty() {
@@ -209,7 +324,6 @@ fn plots(result: &CalibrationResult, further: &[Figure], language: Language) -> 
             blocks.push(Block::Formulas(combinations));
         }
     }
-    blocks.extend(further.iter().cloned().map(Block::Figure));
     blocks
 }
 

@@ -4,16 +4,48 @@ use centrical_session::{CalibrationResult, MICRO_G, RestsOn, customary};
 
 use super::content::{Align, Block, Table};
 use super::objection::cause;
+use crate::evaluation::{exact, symbol};
 use crate::language::Language;
 
-/// Rows of the table in a report.
+/// Effects that the first layer of a report names: more than these tell a hurried reader no more.
+const WORST: usize = 3;
+
+/// Rows of the table in full.
 const ROWS: usize = 12;
 
-/// The table for a report, the worst effect first.
+/// What counts as exact, what is presupposed, and the worst effects whose absence is.
 pub(super) fn rests_on(result: &CalibrationResult, language: Language) -> Vec<Block> {
-    if result.rests_on.is_empty() {
+    let messages = language.messages();
+    let mut blocks = vec![
+        Block::heading(messages.rests_on, 4),
+        Block::facts([(messages.counts_as_exact, counts_as_exact(result, language))]),
+        Block::paragraph(messages.presupposed),
+    ];
+    if !result.rests_on.is_empty() {
+        blocks.push(Block::Subheading(messages.effects_absent.to_owned()));
+        blocks.push(Block::Table(table(result, WORST, language)));
+        blocks.push(Block::Note(messages.rests_on_note.to_owned()));
+    }
+    blocks
+}
+
+/// The table in full, the worst effect first; nothing where the first layer has it all.
+pub(super) fn all_rests_on(result: &CalibrationResult, language: Language) -> Vec<Block> {
+    if result.rests_on.len() <= WORST {
         return Vec::new();
     }
+    vec![Block::heading(language.messages().all_rests_on, 4), Block::Table(table(result, ROWS, language))]
+}
+
+/// The quantities that count as exact.
+pub(crate) fn counts_as_exact(result: &CalibrationResult, language: Language) -> String {
+    let messages = language.messages();
+    let names: Vec<String> =
+        exact(result).into_iter().map(|source| (messages.words.source)(source).to_lowercase()).collect();
+    if names.is_empty() { messages.nothing_exact.to_owned() } else { names.join(", ") }
+}
+
+fn table(result: &CalibrationResult, rows: usize, language: Language) -> Table {
     let messages = language.messages();
     let columns = [
         (messages.rests_on_effect, 0.4, Align::Left),
@@ -22,15 +54,12 @@ pub(super) fn rests_on(result: &CalibrationResult, language: Language) -> Vec<Bl
         (messages.rests_on_reading, 0.16, Align::Right),
     ];
     let row = |effect: &RestsOn| {
-        let moved = format!("{}: {}\u{a0}u", effect.parameter, language.significant(effect.standard_uncertainties, 2));
+        let shift = language.significant(effect.standard_uncertainties, 2);
+        let moved = format!("{}: {shift}\u{a0}u", symbol(&effect.parameter));
         let reading = format!("{} {}", language.significant(effect.reading / MICRO_G, 2), language.unit("ug"));
         vec![cause(&effect.name, language), size(effect, language), moved, reading]
     };
-    vec![
-        Block::heading(messages.rests_on, 4),
-        Block::paragraph(messages.rests_on_note),
-        Block::Table(Table::numbers(columns, result.rests_on.iter().take(ROWS).map(row))),
-    ]
+    Table::numbers(columns, result.rests_on.iter().take(rows).map(row))
 }
 
 /// One effect in a sentence: the size below which it would not show, and what that size does.
@@ -45,7 +74,7 @@ pub(crate) fn rests_on_sentence(effect: &RestsOn, language: Language) -> String 
     format!(
         "{}: {unseen} {} {} {uncertainties} {} {reading} {}",
         cause(&effect.name, language),
-        effect.parameter,
+        symbol(&effect.parameter),
         messages.by,
         messages.uncertainties_and_reading,
         language.unit("ug")

@@ -3,7 +3,7 @@
 use centrical_session::{BudgetSource, CalibrationResult, ParameterEstimate, customary};
 
 use super::content::{Align, Column, Row, Table, TableKind};
-use crate::evaluation::expanded;
+use crate::evaluation::{expanded, symbol};
 use crate::language::Language;
 
 /// What a source leaves is not shown below this part of the combined uncertainty.
@@ -13,11 +13,12 @@ const NEGLIGIBLE: f64 = 1e-3;
 pub(super) fn parameters(result: &CalibrationResult, shown: &[&ParameterEstimate], language: Language) -> Table {
     let messages = language.messages();
     let columns = [
-        (messages.parameter, 0.14, Align::Left),
-        (messages.value, 0.28, Align::Right),
-        (messages.unit, 0.14, Align::Left),
-        (messages.value_si, 0.32, Align::Right),
+        (messages.parameter, 0.12, Align::Left),
+        (messages.value, 0.24, Align::Right),
         (messages.unit, 0.12, Align::Left),
+        (messages.coverage_and_degrees, 0.16, Align::Right),
+        (messages.value_si, 0.26, Align::Right),
+        (messages.unit, 0.1, Align::Left),
     ];
     let mut table = Table { kind: TableKind::Parameters, ..Table::numbers(columns, []) };
     let mut group = None;
@@ -31,16 +32,23 @@ pub(super) fn parameters(result: &CalibrationResult, shown: &[&ParameterEstimate
     table
 }
 
-fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) -> Vec<String> {
+/// Symbol, value and unit in the customary unit, coverage factor, the same in SI. Effective degrees of freedom stand beside
+/// the coverage factor where they are finite.
+pub(super) fn cells(result: &CalibrationResult, parameter: &ParameterEstimate, language: Language) -> Vec<String> {
     let (factor, unit) = customary(&parameter.unit, parameter.group);
-    let [shown, si] = match (parameter.value, expanded(result, parameter)) {
-        (Some(value), Some(expanded)) => [
-            language.plus_minus(value * factor, expanded.uncertainty * factor),
-            language.plus_minus_scientific(value, expanded.uncertainty),
-        ],
-        _ => [language.messages().not_determined.to_owned(), String::new()],
+    let [shown, k, si] = match (parameter.value, expanded(result, parameter)) {
+        (Some(value), Some(expanded)) => {
+            let k = language.fixed(expanded.factor, 2);
+            let degrees = expanded.degrees_of_freedom.map(|nu| format!("{k} ({})", language.fixed(nu, 0)));
+            [
+                language.plus_minus(value * factor, expanded.uncertainty * factor),
+                degrees.unwrap_or(k),
+                language.plus_minus_scientific(value, expanded.uncertainty),
+            ]
+        }
+        _ => [language.messages().not_determined.to_owned(), String::new(), String::new()],
     };
-    vec![parameter.name.clone(), shown, language.unit(unit), si, language.unit(&parameter.unit)]
+    vec![symbol(&parameter.name), shown, language.unit(unit), k, si, language.unit(&parameter.unit)]
 }
 
 /// Standard uncertainty by source; `None` if no budget was made.
@@ -65,11 +73,11 @@ pub(super) fn budget(result: &CalibrationResult, language: Language) -> Option<T
             let value = source.standard_uncertainty.get(j).copied().flatten();
             if value.is_some_and(|value| value < negligible) { "–".to_owned() } else { shown(value) }
         };
-        let mut cells = vec![parameter.name.clone(), language.unit(unit)];
+        let mut cells = vec![symbol(&parameter.name), language.unit(unit)];
         cells.extend(budget.sources.iter().map(of_source));
         if combined.is_some() {
             let degrees = budget.degrees_of_freedom.get(j).copied().flatten();
-            cells.extend([shown(combined), degrees.map_or("∞".to_owned(), |nu| language.fixed(nu, 0))]);
+            cells.extend([shown(combined), degrees.map_or("∞".to_owned(), |nu| language.fixed(nu.floor(), 0))]);
         } else {
             cells.extend([messages.not_determined.to_owned(), String::new()]);
         }

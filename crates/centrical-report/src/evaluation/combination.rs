@@ -2,15 +2,29 @@
 
 use std::fmt::Write;
 
-/// `dR_2[A] + dR_1[B] - drho_22`.
-pub(crate) fn combination(direction: &serde_json::Map<String, serde_json::Value>) -> String {
+use super::symbol::symbol;
+
+/// A combination as results have it: parameter to component.
+type Direction = serde_json::Map<String, serde_json::Value>;
+
+/// `dR_2[A] + dR_1[B] - drho_22`, in the names of the result.
+pub(crate) fn combination(direction: &Direction) -> String {
+    written(direction, "-", ToOwned::to_owned)
+}
+
+/// The same as print has it.
+pub(crate) fn printed_combination(direction: &Direction) -> String {
+    written(direction, "\u{2212}", symbol)
+}
+
+fn written(direction: &Direction, minus: &str, name: impl Fn(&str) -> String) -> String {
     let mut text = String::new();
-    for (name, component) in direction {
+    for (parameter, component) in direction {
         let component = component.as_f64().unwrap_or(0.0);
-        let sign = if component < 0.0 { "-" } else { "+" };
-        match (text.is_empty(), sign) {
-            (true, "+") => {}
-            (true, _) => text.push('-'),
+        let sign = if component < 0.0 { minus } else { "+" };
+        match (text.is_empty(), component < 0.0) {
+            (true, false) => {}
+            (true, true) => text.push_str(minus),
             (false, _) => {
                 let _ = write!(text, " {sign} ");
             }
@@ -19,7 +33,7 @@ pub(crate) fn combination(direction: &serde_json::Map<String, serde_json::Value>
         if size != 1.0 {
             let _ = if size.fract() == 0.0 { write!(text, "{size} ") } else { write!(text, "{size:.4e} ") };
         }
-        text.push_str(name);
+        text.push_str(&name(parameter));
     }
     text
 }

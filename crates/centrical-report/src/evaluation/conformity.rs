@@ -1,34 +1,108 @@
 //! Statements of conformity: values against limits by the decision rule.
 
-use centrical_session::{CalibrationResult, Decision, DecisionRule, Limit};
+use centrical_session::{CalibrationResult, Decision, DecisionRule, Limited, StatedLimit};
 
 use super::expanded::expanded;
+use super::reading_error::reading_errors;
 
-/// A limit and whether its parameter keeps it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Judged<'d> {
-    /// The limit.
-    pub limit: &'d Limit,
-    /// Estimate and expanded uncertainty, SI; `None` if the data do not determine it.
+/// What a decision says of the unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UnitStatement {
+    /// The specification: document and clause.
+    pub specification: String,
+    /// How the uncertainty is taken into account.
+    pub rule: DecisionRule,
+    /// The limits, judged.
+    pub judged: Vec<Judged>,
+}
+
+/// Limits and whether their quantity keeps them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// The limits.
+    pub limit: StatedLimit,
+    /// Estimate and expanded uncertainty, SI; `None` if the data do not determine it. Of a compensated reading: the error on
+    /// the plateau that comes nearest to the limits, and its expanded uncertainty.
     pub value: Option<(f64, f64)>,
+    /// That plateau, `mounting:plateau` counted from 1; `None` of a parameter.
+    pub plateau: Option<String>,
     /// Whether it conforms; nothing can be stated of what the data do not determine, or from a result that is not
     /// acceptable.
     pub conforms: Option<bool>,
 }
 
-/// Every limit of a decision, judged.
-pub(crate) fn conformity<'d>(result: &CalibrationResult, decision: &'d Decision) -> Vec<Judged<'d>> {
-    let is_acceptable = result.objections().is_empty();
-    let judge = |limit: &'d Limit| {
-        let value = result.parameter(&limit.parameter).and_then(|p| Some((p.value?, expanded(result, p)?.uncertainty)));
-        let conforms = value.filter(|_| is_acceptable).map(|(value, expanded)| {
-            let guard = match decision.rule {
-                DecisionRule::Simple => 0.0,
-                DecisionRule::Guarded => expanded,
+/// What is said of the unit as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UnitVerdict {
+    /// Every limit is kept.
+    Within,
+    /// A limit is not kept.
+    Outside,
+    /// No limit is known not to be kept, but not all of them are known to be.
+    NotStated,
+}
+
+impl UnitStatement {
+    /// The `limits` of a decision, judged.
+    pub fn new(result: &CalibrationResult, decision: &Decision, limits: Vec<StatedLimit>) -> Self {
+        let is_acceptable = result.objections().is_empty();
+        let judge = |limit: StatedLimit| {
+            let (value, plateau) = match &limit.of {
+                Limited::Parameter(name) => (parameter(result, name), None),
+                Limited::CompensatedReading(axis) => worst_reading(result, *axis, &limit, decision.rule).unzip(),
             };
-            (limit.low + guard..=limit.high - guard).contains(&value)
-        });
-        Judged { limit, value, conforms }
+            let conforms = value.filter(|_| is_acceptable).map(|value| margin(value, &limit, decision.rule) >= 0.0);
+            Judged { limit, value, plateau, conforms }
+        };
+        Self {
+            specification: decision.specification.clone(),
+            rule: decision.rule,
+            judged: limits.into_iter().map(judge).collect(),
+        }
+    }
+
+    /// What is said of the unit as a whole.
+    pub fn verdict(&self) -> UnitVerdict {
+        if self.judged.iter().any(|judged| judged.conforms == Some(false)) {
+            UnitVerdict::Outside
+        } else if self.judged.iter().any(|judged| judged.conforms.is_none()) {
+            UnitVerdict::NotStated
+        } else {
+            UnitVerdict::Within
+        }
+    }
+}
+
+fn parameter(result: &CalibrationResult, name: &str) -> Option<(f64, f64)> {
+    result.parameter(name).and_then(|p| Some((p.value?, expanded(result, p)?.uncertainty)))
+}
+
+/// Distance of a value from the nearest end of what the rule accepts; below zero if it is not accepted.
+fn margin((value, expanded): (f64, f64), limit: &StatedLimit, rule: DecisionRule) -> f64 {
+    let guard = match rule {
+        DecisionRule::Simple => 0.0,
+        DecisionRule::Guarded => expanded,
     };
-    decision.limit.iter().map(judge).collect()
+    let above = limit.low.as_ref().map_or(f64::INFINITY, |low| value - guard - low.si);
+    let below = limit.high.as_ref().map_or(f64::INFINITY, |high| high.si - value - guard);
+    above.min(below)
+}
+
+/// Error of the compensated reading of newtonometer `axis` (1, 2, 3) on the plateau where its margin is smallest, without
+/// what the plateau's own speed explains, and where that is. Its expanded uncertainty holds the noise of the mean and what
+/// the parameters leave in a compensated reading of that force.
+fn worst_reading(
+    result: &CalibrationResult,
+    axis: usize,
+    limit: &StatedLimit,
+    rule: DecisionRule,
+) -> Option<((f64, f64), String)> {
+    let errors = reading_errors(result)?;
+    let points = errors.iter().zip(&result.plateaus).map(|(error, plateau)| {
+        let j = axis - 1;
+        let u = error.uncertainty[j].hypot(error.prediction[j]);
+        let value = (error.speed_free[j], super::expanded::expanded_of_normal(u));
+        (value, format!("{}:{}", plateau.mounting, plateau.index + 1))
+    });
+    points.min_by(|(a, _), (b, _)| margin(*a, limit, rule).total_cmp(&margin(*b, limit, rule)))
 }

@@ -4,59 +4,42 @@ use std::fmt::Write;
 
 use centrical_session::{CalibrationResult, TermSummary};
 
-/// `f1' = f1 + df_1 + G0_11 f1 + ...` for the three newtonometers, separated by semicolons.
+use super::symbol::{newtonometer, symbol};
+use super::typeset::typeset;
+
+/// The equations of the three newtonometers, separated by semicolons, in the names of the result.
 pub(crate) fn equation(result: &CalibrationResult) -> String {
-    equations(result).join("; ")
+    written(result, |axis| format!("f{axis}"), ToOwned::to_owned, |monomial| monomial).join("; ")
 }
 
-/// One equation for each newtonometer.
+/// One equation for each newtonometer, as print has it.
 pub(crate) fn equations(result: &CalibrationResult) -> [String; 3] {
+    written(result, newtonometer, symbol, |monomial| typeset(&monomial))
+}
+
+/// `f1' = f1 + df_1 + G0_11 f1 + ...`, its newtonometers, names and monomials written by the three functions.
+fn written(
+    result: &CalibrationResult,
+    newtonometer: impl Fn(usize) -> String,
+    name: impl Fn(&str) -> String,
+    product: impl Fn(String) -> String,
+) -> [String; 3] {
     [1, 2, 3].map(|axis| {
-        let mut text = format!("f{axis}\u{2032} = f{axis}");
+        let f = newtonometer(axis);
+        let mut text = format!("{f}\u{2032} = {f}");
         for term in result.model.error_model.iter().filter(|term| term.axis == axis) {
-            let monomial = monomial(term);
+            let (name, monomial) = (name(&term.name), monomial(term));
             let _ = if monomial == "1" {
-                write!(text, " + {}", term.name)
+                write!(text, " + {name}")
             } else {
-                write!(text, " + {}·{}", term.name, typeset(&monomial))
+                write!(text, " + {name}·{}", product(monomial))
             };
         }
         text
     })
 }
 
-/// The same monomial as print has it: `f1^2*f3` with a raised 2 and a centred point.
-fn typeset(monomial: &str) -> String {
-    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let mut is_power = false;
-    let mut text = String::with_capacity(monomial.len());
-    for symbol in monomial.chars() {
-        match (symbol, symbol.to_digit(10)) {
-            ('^', _) => {}
-            ('*', _) => text.push('·'),
-            (_, Some(digit)) if is_power => text.push(RAISED[digit as usize]),
-            _ => text.push(symbol),
-        }
-        is_power = symbol == '^' || is_power && symbol.is_ascii_digit();
-    }
-    text
-}
-
 /// `f1^2*f3`, `f2*|f2|` or `1`, as sessions write it; a question mark if it takes the sign of an axis that does not exist.
 pub(crate) fn monomial(term: &TermSummary) -> String {
     term.monomial().map_or_else(|_| "?".to_owned(), |monomial| monomial.to_string())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::typeset;
-
-    #[test]
-    fn products_and_powers_are_typeset() {
-        for (written, printed) in
-            [("f1", "f1"), ("f1^2", "f1²"), ("f1*f2", "f1·f2"), ("f2*|f2|", "f2·|f2|"), ("f1^2*f3^12", "f1²·f3¹²")]
-        {
-            assert_eq!(typeset(written), printed);
-        }
-    }
 }

@@ -1,4 +1,4 @@
-//! Expanded uncertainties, as certificates state them.
+//! Expanded uncertainties, as all documents state them: for one probability, with the coverage factor that belongs to it.
 
 use centrical::uncertainty::{Degrees, coverage_factor};
 use centrical_session::{CalibrationResult, ParameterEstimate};
@@ -6,8 +6,8 @@ use centrical_session::{CalibrationResult, ParameterEstimate};
 /// Coverage factor where the degrees of freedom are infinite.
 const COVERAGE_FACTOR: f64 = 2.0;
 
-/// Probability that it covers in a normal distribution.
-const COVERAGE_PROBABILITY: f64 = 0.954_499_736_103_642;
+/// Probability that expanded uncertainties cover: that of two standard uncertainties in a normal distribution (EA-4/02, 5.1).
+pub(crate) const COVERAGE_PROBABILITY: f64 = 0.954_499_736_103_642;
 
 /// An expanded uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,15 +15,10 @@ pub(crate) struct Expanded {
     /// Coverage factor `k`: 2, or that of Student's distribution of the same probability where the effective degrees of
     /// freedom are finite (GUM, G.6.4).
     pub factor: f64,
+    /// Effective degrees of freedom (Welch-Satterthwaite), a whole number; `None` if they are infinite.
+    pub degrees_of_freedom: Option<f64>,
     /// `U = k u` [unit of the parameter].
     pub uncertainty: f64,
-}
-
-impl Expanded {
-    /// Whether the coverage factor is that of the normal distribution.
-    pub fn is_normal(&self) -> bool {
-        self.factor == COVERAGE_FACTOR
-    }
 }
 
 /// `U = 2 u` of a quantity of infinite degrees of freedom.
@@ -35,8 +30,27 @@ pub(crate) fn expanded_of_normal(standard_uncertainty: f64) -> f64 {
 pub(crate) fn expanded(result: &CalibrationResult, parameter: &ParameterEstimate) -> Option<Expanded> {
     let place = result.parameters.iter().position(|other| other.name == parameter.name);
     let degrees = |j: usize| result.budget.as_ref()?.degrees_of_freedom.get(j).copied().flatten();
-    let factor = place
-        .and_then(degrees)
-        .map_or(COVERAGE_FACTOR, |nu| coverage_factor(COVERAGE_PROBABILITY, Degrees::Finite(nu)));
-    Some(Expanded { factor, uncertainty: factor * parameter.standard_uncertainty? })
+    // Cut to a whole number, which a reader finds in the published table (EA-4/02, E.3).
+    let degrees_of_freedom = place.and_then(degrees).map(|nu| nu.floor().max(1.0));
+    let factor =
+        degrees_of_freedom.map_or(COVERAGE_FACTOR, |nu| coverage_factor(COVERAGE_PROBABILITY, Degrees::Finite(nu)));
+    let uncertainty = factor * parameter.standard_uncertainty?;
+    Some(Expanded { factor, degrees_of_freedom, uncertainty })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// EA-4/02 M:2022, table in annex E: k for a coverage probability of 95.45 %.
+    #[test]
+    fn factors_of_the_published_table() {
+        let table = [(1.0, 13.97), (2.0, 4.53), (5.0, 2.65), (8.0, 2.37), (10.0, 2.28), (20.0, 2.13), (50.0, 2.05)];
+        for (nu, k) in table {
+            let found = coverage_factor(COVERAGE_PROBABILITY, Degrees::Finite(nu));
+            assert!((found - k).abs() <= 0.005 + 1e-9, "{nu}: {found}");
+        }
+        let normal = coverage_factor(COVERAGE_PROBABILITY, Degrees::Infinite);
+        assert!((normal - COVERAGE_FACTOR).abs() < 1e-9, "{normal}");
+    }
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use centrical_session::CalibrationResult;
 
 use super::drawing::Figure;
+use crate::evaluation::symbol;
 use crate::language::Language;
 use crate::plot::{Escaped, Px};
 
@@ -13,6 +14,8 @@ const WIDTH: f64 = 760.0;
 const LEFT: f64 = 84.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 34.0;
+/// Room right of the map for the name of its last column.
+const RIGHT: f64 = 84.0;
 
 /// Two hues that every eye tells apart; strength is opacity, so the map lives on light and dark grounds.
 const STYLE: &str = "\
@@ -39,8 +42,8 @@ fn correlation(result: &CalibrationResult, i: usize, j: usize) -> Option<f64> {
 
 fn draw(result: &CalibrationResult, shown: &[usize], language: Language) -> String {
     let title = Escaped(language.messages().correlation_title);
-    let cell = (WIDTH - LEFT - 24.0) / shown.len() as f64;
-    let (side, height) = (cell * shown.len() as f64, TOP + WIDTH - LEFT - 24.0 + BOTTOM);
+    let cell = (WIDTH - LEFT - RIGHT) / shown.len() as f64;
+    let (side, height) = (cell * shown.len() as f64, TOP + WIDTH - LEFT - RIGHT + BOTTOM);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"map\" role=\"img\" viewBox=\"0 0 {WIDTH} {}\" \
          aria-label=\"{title}\"><style>{STYLE}</style><rect class=\"ground\" width=\"{WIDTH}\" height=\"{}\"/>\
@@ -51,18 +54,21 @@ fn draw(result: &CalibrationResult, shown: &[usize], language: Language) -> Stri
     // Names as high as their rows, as many as fit.
     let every = (9.0 / cell).ceil().max(1.0);
     for (row, &i) in shown.iter().enumerate() {
-        let name = &result.parameters[i].name;
+        let name = &symbol(&result.parameters[i].name);
         let y = TOP + cell * row as f64;
         if (row as f64) % every == 0.0 {
             let size = cell.clamp(8.0, 13.0);
-            let _ = write!(
-                svg,
-                "<text style=\"font-size:{}px\" text-anchor=\"end\" x=\"{}\" y=\"{}\">{}</text>",
-                Px(size),
-                Px(LEFT - 6.0),
-                Px(y + 0.5 * cell + 0.36 * size),
-                Escaped(name)
-            );
+            let baseline = Px(y + 0.5 * cell + 0.36 * size);
+            // On the left the name of the row; at the diagonal that of the column below it, where the map leaves room.
+            for (x, anchor) in [(LEFT - 6.0, "end"), (LEFT + cell * (row + 1) as f64 + 4.0, "start")] {
+                let _ = write!(
+                    svg,
+                    "<text style=\"font-size:{}px\" text-anchor=\"{anchor}\" x=\"{}\" y=\"{baseline}\">{}</text>",
+                    Px(size),
+                    Px(x),
+                    Escaped(name)
+                );
+            }
         }
         for (column, &j) in shown.iter().enumerate().take(row + 1) {
             let Some(r) = correlation(result, i, j) else { continue };
@@ -74,7 +80,7 @@ fn draw(result: &CalibrationResult, shown: &[usize], language: Language) -> Stri
                 Px(LEFT + cell * column as f64),
                 Px(y),
                 Escaped(name),
-                Escaped(&result.parameters[j].name),
+                Escaped(&symbol(&result.parameters[j].name)),
                 language.fixed(r, 3),
                 w = Px(cell)
             );

@@ -5,7 +5,7 @@ use centrical_session::{CalibrationResult, MICRO_G, PlateauSummary};
 use nalgebra::{Matrix3, Vector3};
 
 use super::drawing::{Figure, drawn, of_plot};
-use crate::evaluation::{ReadingError, combination, expanded_of_normal, reading_errors};
+use crate::evaluation::{ReadingError, expanded_of_normal, printed_combination, reading_errors};
 use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
 
@@ -124,7 +124,7 @@ pub(super) fn singular_values(result: &CalibrationResult, language: Language) ->
         plot = plot.with(Series::markers(messages.lost, lost.iter().map(floor).collect()));
     }
     let figure = of_plot("singular-values", caption, plot, language);
-    Some(Figure { combinations: seen.null_directions.iter().map(combination).collect(), ..figure })
+    Some(Figure { combinations: seen.null_directions.iter().map(printed_combination).collect(), ..figure })
 }
 
 /// The worst-known parameter of each group against its final uncertainty.

@@ -1,18 +1,14 @@
 //! English.
 
-use centrical::{
-    Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
-};
-use centrical_session::{Follows, Method};
-
+use super::english_words as words;
 use super::messages::{Messages, Words};
 use super::speeds;
 
 /// English.
 pub(crate) const ENGLISH: Messages = Messages {
     calibration_report: "Calibration report",
-    acceptable: "Acceptable",
-    not_acceptable: "Not acceptable",
+    acceptable: "Calibration acceptable",
+    not_acceptable: "Calibration not acceptable",
     verdict_good: "The result can be used as it stands: the fit converged, the residuals agree with the stated \
         uncertainties, and every parameter of the instrument is determined.",
     verdict_bad: "The result must not be used as it stands:",
@@ -31,7 +27,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     chi_squared: "χ² per degree of freedom",
     rank: "Rank",
     residual_error: "Reading error over the calibrated range",
-    residual_error_note: "Root mean square and, in brackets, largest magnitude over all plateaus, against the specific \
+    residual_error_note: "Over all plateaus, against the specific \
         force of the fitted geometry. The second row still holds the error of each plateau’s speed; the third is without \
         it, which along the arm leaves next to nothing, so it speaks for the axes across the arm and for rest. The last \
         row is the expanded uncertainty that the parameters leave in a compensated reading of the same force.",
@@ -43,10 +39,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     newtonometer: "Newtonometer",
     number_sign: "No.",
     parameters: "Parameters",
-    parameters_note: "Value ± expanded uncertainty U = k·u with coverage factor k = 2, which for a normal \
-        distribution is a level of confidence of about 95 %; where the effective degrees of freedom are finite, k is that of Student’s \
-        distribution. 1 g = 9.80665 m/s².",
-    instrument: "Instrument",
+    parameters_note: "Value ± expanded uncertainty U = k·u for a coverage probability of 95.45 %: k = 2 for a normal \
+        distribution; where the effective degrees of freedom are finite, that of Student’s distribution. 1 g = 9.80665 m/s².",
     mounting: "Geometry of the experiment",
     parameter: "Parameter",
     value: "Value ± U",
@@ -94,7 +88,6 @@ pub(crate) const ENGLISH: Messages = Messages {
         rotation axis up.",
     position: "Position",
     pair: "pair",
-    plots: "Plots",
     force_axis: "specific force along the loaded axis, g",
     error_before_axis: "reading error, mg",
     error_after_axis: "reading error, µg",
@@ -114,7 +107,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     residual_axis: "residual, µg",
     normalised_axis: "normalised residual",
     correlation_title: "Correlation of the estimates",
-    correlation_caption: "Blue is positive, orange negative, and strength is saturation: strongly coloured cells \
+    correlation_caption: "Rows are named on the left, columns at the diagonal. Blue is positive, orange negative, and strength is saturation: strongly coloured cells \
         away from the diagonal are parameters that the experiment separates badly.",
     singular_title: "Singular values of the design",
     singular_axis: "singular value",
@@ -128,8 +121,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     limit: "limit",
     null_directions: "The readings do not change along",
     prediction_title: "Uncertainty of a compensated reading",
-    prediction_axis: "standard uncertainty, µg",
-    prediction_caption: "Standard uncertainty that the calibration leaves in a compensated reading, for a force along each \
+    prediction_axis: "expanded uncertainty (k = 2), µg",
+    prediction_caption: "Expanded uncertainty, k = 2, that the calibration leaves in a compensated reading, for a force along each \
         axis alone; the noise of the reading itself comes on top.",
     history_title: "Uncertainty as the session was watched",
     history_caption: "Largest standard uncertainty of each group over that after the last plateau, as it stood when each \
@@ -193,10 +186,10 @@ pub(crate) const ENGLISH: Messages = Messages {
     traceable_to: "Traceable to",
     results: "Results",
     results_model: "Error model of the reading f′ of axis i at the specific force f:",
-    uncertainty_statement: "The expanded uncertainty U is the standard uncertainty multiplied by the coverage \
-        factor k = 2, which for a normal distribution corresponds to a coverage probability of approximately 95 %. \
-        Where the effective degrees of freedom are finite, k is that of Student’s distribution for the same \
-        probability. It was evaluated in accordance with JCGM 100 (GUM). 1 g = 9.80665 m/s².",
+    uncertainty_statement: "The reported expanded uncertainty U is the standard uncertainty multiplied by the coverage \
+        factor k for a coverage probability of approximately 95 % (95.45 %): k = 2 for a normal distribution; where the \
+        effective degrees of freedom νeff are finite, that of Student’s distribution. It was evaluated in accordance with \
+        JCGM 100 (GUM) and EA-4/02. 1 g = 9.80665 m/s².",
     adjustment: "Before and after adjustment",
     before_adjustment: "Before adjustment, ± U",
     after_adjustment: "After adjustment, ± U",
@@ -227,15 +220,57 @@ pub(crate) const ENGLISH: Messages = Messages {
     uncertainty: "Expanded uncertainty",
     covariance: "Covariance matrix of the parameters",
     specific_force: "Specific force",
+    unit_within: "Unit within its limits",
+    unit_outside: "Unit not within its limits",
+    unit_not_stated: "Unit: conformity not stated",
+    unit_not_asked: "Unit: no limits given",
+    unit_within_text: "Every limit below is kept by the decision rule.",
+    unit_outside_text: "By the decision rule these limits are not kept:",
+    unit_not_stated_text: "Nothing is stated from a calibration that is not acceptable, or of a parameter that the data do not \
+        determine.",
+    unit_not_asked_text: "The verdict on the left is on the calibration alone. Whether the unit meets a specification is \
+        stated where the laboratory’s file gives limits.",
+    limits_judged: "Limits judged",
+    headline: "Reading error, root mean square",
+    headline_note: "Over all plateaus of the calibrated range, against the specific force of the fitted geometry. The \
+        compensated error is without what each plateau’s own speed explains, which along the arm is nearly \
+        all of it; U is what the parameters leave in a compensated reading.",
+    root_mean_square: "Root mean square",
+    largest: "Largest magnitude",
+    error_model: "Error model of the unit",
+    error_model_note: "f′ is a reading in m/s², f the specific force along the sensitive axes:",
+    parameters_of_instrument: "Parameters of the instrument",
+    first_plots: "What the unit does and what is left",
+    further_plots: "Further plots",
+    checks: "Checks of the fit",
+    contents: "Further, to be opened",
+    effects_absent: "Effects whose absence is presupposed",
+    counts_as_exact: "Counts as exact",
+    nothing_exact: "nothing of what enters the model",
+    all_rests_on: "Effects presupposed absent, in full",
+    corrected_for: "corrected for the number of mountings,",
+    f_test: "F test",
+    coverage_and_degrees: "k (νeff)",
+    unit_temperature: "Temperature of the unit",
+    nominal_output: "Nominal conversion of the output",
+    nominal_output_text: "Readings are f′ = (N − b)/S with the nominal scale S and the nominal bias b of the raw output N; \
+        these are conventions, without uncertainty, and the parameters are corrections to them.",
+    nominal_scale: "Nominal scale S",
+    nominal_bias: "Nominal bias b",
+    compensated_reading: "compensated reading, axis",
+    at_plateau: "plateau",
+    signed_on: "date",
+    mark_place: "place for mark or seal",
     words: Words {
-        group,
-        source,
-        method,
-        termination,
-        pair_relation,
-        reference,
-        rival,
-        follows,
+        group: words::group,
+        meaning: words::meaning,
+        source: words::source,
+        method: words::method,
+        termination: words::termination,
+        pair_relation: words::pair_relation,
+        reference: words::reference,
+        rival: words::rival,
+        follows: words::follows,
         speed_finding: speeds::in_english,
         speeds_measured: speeds::measured_in_english,
     },
@@ -268,144 +303,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     uncertainties_and_reading: "standard uncertainties and a compensated reading by",
     presupposed: "The stated uncertainties presuppose a rigid arm, a constant temperature of the unit, and speeds whose errors \
         are independent from plateau to plateau.",
-    presupposed_exact: " Gravity, radii, attitudes and the places of the proof masses count as exact.",
     chi_squared_small: "Residuals are smaller than the stated uncertainties allow: these are too large.",
     lost_parameters: "parameters of the instrument are not determined",
     speeds: "Speeds of the plateaus",
 };
-
-fn group(group: Group) -> &'static str {
-    match group {
-        Group::Bias => "Bias",
-        Group::Scale => "Scale error",
-        Group::Misalignment => "Misalignment",
-        Group::Quadratic => "Quadratic",
-        Group::Cubic => "Cubic",
-        Group::CrossCoupling => "Cross-coupling",
-        Group::Asymmetry => "Asymmetry of the scale",
-        Group::HigherOrder => "Higher order",
-        Group::Tilt => "Tilt of the rotation axis",
-        Group::Turn => "Turn of the unit",
-        Group::Shift => "Shift of the unit",
-        Group::ProofMass => "Place of a proof mass",
-        Group::ElasticTurn => "Elastic turn",
-        Group::ArmStretch => "Stretch of the arm",
-        Group::RadiusScale => "Scale of the radii",
-        Group::SpeedScale => "Scale of the speed",
-        Group::ArmTurn => "Elastic turn of the arm's end",
-        Group::SpinTurn => "Turn of the unit while spinning",
-        Group::Seat => "Place of a seat",
-        Group::MountingShift => "Shift of one mounting",
-        Group::MountingTurn => "Turn of one mounting",
-        Group::MountingTilt => "Tilt of the axis in one mounting",
-        Group::Disturbance => "Disturbance of the readings",
-    }
-}
-
-fn source(source: Source) -> &'static str {
-    match source {
-        Source::Noise => "Noise",
-        Source::PlateauSpeed => "Speed of each plateau",
-        Source::Priors => "Priors",
-        Source::Gravity => "Gravity",
-        Source::Latitude => "Latitude",
-        Source::Radius => "Radius",
-        Source::RadiusDifference => "Difference of radii",
-        Source::SpeedScale => "Scale of the speed",
-        Source::RestAngle => "Angle at rest",
-        Source::ProofMasses => "Proof masses",
-        Source::Attitude => "Attitudes",
-        Source::Resolution => "Resolution",
-        Source::Effects => "Effects left out",
-    }
-}
-
-fn method(method: Method) -> &'static str {
-    match method {
-        Method::Exact => "exact, Gauss-Newton",
-        Method::Recursive => "exact, recursive filter",
-        Method::Linear => "linear [K5.3]",
-    }
-}
-
-fn termination(termination: Termination) -> &'static str {
-    match termination {
-        Termination::Linear => "linear",
-        Termination::Converged => "converged",
-        Termination::Stalled => "stalled",
-        Termination::IterationLimit => "iteration limit",
-    }
-}
-
-fn pair_relation(pair_relation: PairRelation) -> &'static str {
-    match pair_relation {
-        PairRelation::Common => "common",
-        PairRelation::Opposite => "opposite",
-        PairRelation::Free => "free",
-    }
-}
-
-fn reference(reference: ReferencePoint) -> &'static str {
-    match reference {
-        ReferencePoint::FirstProofMass => "proof mass 1",
-        ReferencePoint::OwnAxes => "no displacement along own axes",
-    }
-}
-
-fn follows(follows: &Follows) -> &'static str {
-    match follows {
-        Follows::Position { .. } => "step in position",
-        Follows::SpeedInPosition { .. } => "square of the speed in position",
-        Follows::SpeedOnSeat { .. } => "square of the speed at radius",
-        Follows::Speed => "square of the speed",
-        Follows::Load => "load",
-        Follows::Mounting { .. } => "step in mounting",
-        Follows::Time => "drift over the session",
-    }
-}
-
-fn rival(rival: Rival) -> &'static str {
-    match rival {
-        Rival::Terms(Extra::CrossProducts) => "products of two components of the force",
-        Rival::Terms(Extra::OddQuadratic) => "odd square of the force",
-        Rival::Terms(Extra::Asymmetry) => "scale that differs with the sign of the force",
-        Rival::Terms(Extra::FourthPower) => "fourth power of the force",
-        Rival::Terms(Extra::FifthPower) => "fifth power of the force",
-        Rival::Terms(Extra::Jump) => "jump of the bias at zero force",
-        Rival::Effect(extension) => match extension {
-            Extension::ElasticTurn(Law::Speed) => {
-                "elastic turn of the unit by position, growing with the square of the speed"
-            }
-            Extension::ElasticTurn(Law::Load) => "elastic turn of the unit by position, growing with the load",
-            Extension::ArmStretch(Law::Speed) => "stretch of the arm with the square of the speed",
-            Extension::ArmStretch(Law::Load) => "stretch of the arm with the load",
-            Extension::SeatStretch(Law::Speed) => "stretch of the arm by seat with the square of the speed",
-            Extension::SeatStretch(Law::Load) => "stretch of the arm by seat with the load",
-            Extension::RadiusScale => "common scale of the radii",
-            Extension::SpeedScale => "common scale of the speeds",
-            Extension::ArmTurn(Law::Speed) => "turn of the arm's end with the square of the speed",
-            Extension::ArmTurn(Law::Load) => "turn of the arm's end with the load: an arm that is not rigid",
-            Extension::SeatRadius => "radius of a seat",
-            Extension::SeatLateral => "lateral place of a seat",
-            Extension::PositionShift => "shift of its own in each position: another relation of the pairs",
-            Extension::MountingShift => "shift of its own in each mounting",
-            Extension::MountingTurn => "turn of its own in each mounting",
-            Extension::MountingTilt => "tilt of the axis that differs by mounting",
-            Extension::SpinTurn => "turn of the unit between rest and spinning",
-            Extension::Disturbance(Course::Spinning) => {
-                "step between rest and spinning: an aliased line or rectified vibration"
-            }
-            Extension::Disturbance(Course::SquaredSpeed) => {
-                "disturbance with the square of the speed: rectified vibration"
-            }
-            Extension::Disturbance(Course::Yield) => "proof mass that yields to its force",
-            Extension::Disturbance(Course::Time) => "bias that changes over the session",
-            Extension::Disturbance(Course::TimeScale) => "scale that changes over the session",
-            Extension::Disturbance(Course::Rise) => "difference after a rise and after a fall of the speed",
-            Extension::Disturbance(Course::Memory) => "memory of earlier forces",
-            Extension::OneMounting(Difference::Shift, _) => "shift of the unit in one mounting",
-            Extension::OneMounting(Difference::Turn, _) => "turn of the unit in one mounting",
-            Extension::OneMounting(Difference::Unit, _) => "another unit in one mounting",
-        },
-    }
-}

@@ -1,18 +1,14 @@
 //! Russian.
 
-use centrical::{
-    Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
-};
-use centrical_session::{Follows, Method};
-
 use super::messages::{Messages, Words};
+use super::russian_words as words;
 use super::speeds;
 
 /// Russian.
 pub(crate) const RUSSIAN: Messages = Messages {
     calibration_report: "Отчёт о калибровке",
-    acceptable: "Пригоден",
-    not_acceptable: "Не пригоден",
+    acceptable: "Калибровка принята",
+    not_acceptable: "Калибровка не принята",
     verdict_good: "Результатом можно пользоваться: оценивание сошлось, остатки согласуются с заявленными \
         неопределённостями, все параметры прибора определены.",
     verdict_bad: "Результатом нельзя пользоваться:",
@@ -31,7 +27,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     chi_squared: "χ² на степень свободы",
     rank: "Ранг",
     residual_error: "Погрешность показаний в диапазоне калибровки",
-    residual_error_note: "Среднее квадратическое и, в скобках, наибольшее значение по всем площадкам, относительно \
+    residual_error_note: "По всем площадкам, относительно \
         удельной силы по найденной геометрии. Вторая строка ещё содержит погрешность скорости площадки; в третьей её нет, \
         отчего вдоль плеча не остаётся почти ничего: она говорит об осях поперёк плеча и о покое. Последняя строка — \
         расширенная неопределённость, которую параметры оставляют в скомпенсированных показаниях при той же силе.",
@@ -43,10 +39,8 @@ pub(crate) const RUSSIAN: Messages = Messages {
     newtonometer: "Ньютонометр",
     number_sign: "№",
     parameters: "Параметры",
-    parameters_note: "Значение ± расширенная неопределённость U = k·u с коэффициентом охвата k = 2, что для \
-        нормального распределения соответствует вероятности охвата около 95 %; при конечных эффективных степенях свободы \
-        k — коэффициент Стьюдента. 1 g = 9,80665 м/с².",
-    instrument: "Прибор",
+    parameters_note: "Значение ± расширенная неопределённость U = k·u для вероятности охвата 95,45 %: k = 2 для \
+        нормального распределения; при конечных эффективных степенях свободы — коэффициент Стьюдента. 1 g = 9,80665 м/с².",
     mounting: "Геометрия эксперимента",
     parameter: "Параметр",
     value: "Значение ± U",
@@ -94,7 +88,6 @@ pub(crate) const RUSSIAN: Messages = Messages {
         вверх.",
     position: "Положение",
     pair: "пара",
-    plots: "Графики",
     force_axis: "удельная сила по нагруженной оси, g",
     error_before_axis: "погрешность показаний, мg",
     error_after_axis: "погрешность показаний, мкg",
@@ -114,7 +107,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     residual_axis: "остаток, мкg",
     normalised_axis: "нормированный остаток",
     correlation_title: "Корреляция оценок",
-    correlation_caption: "Синий — положительная, оранжевый — отрицательная, насыщенность — сила: яркие клетки вне \
+    correlation_caption: "Строки названы слева, столбцы — у диагонали. Синий — положительная, оранжевый — отрицательная, насыщенность — сила: яркие клетки вне \
         диагонали — параметры, которые эксперимент плохо разделяет.",
     singular_title: "Сингулярные числа матрицы плана",
     singular_axis: "сингулярное число",
@@ -127,8 +120,8 @@ pub(crate) const RUSSIAN: Messages = Messages {
     limit: "порог",
     null_directions: "Показания не меняются вдоль",
     prediction_title: "Неопределённость исправленных показаний",
-    prediction_axis: "стандартная неопределённость, мкg",
-    prediction_caption: "Стандартная неопределённость, которую калибровка оставляет в исправленных показаниях при силе вдоль \
+    prediction_axis: "расширенная неопределённость (k = 2), мкg",
+    prediction_caption: "Расширенная неопределённость, k = 2, которую калибровка оставляет в исправленных показаниях при силе вдоль \
         одной оси; шум самих показаний добавляется к ней.",
     history_title: "Неопределённость по ходу сеанса",
     history_caption: "Наибольшая стандартная неопределённость каждой группы, отнесённая к её значению после последней \
@@ -193,9 +186,10 @@ pub(crate) const RUSSIAN: Messages = Messages {
     traceable_to: "Прослеживается к",
     results: "Результаты",
     results_model: "Модель погрешности показания f′ оси i при удельной силе f:",
-    uncertainty_statement: "Расширенная неопределённость U — стандартная неопределённость, умноженная на \
-        коэффициент охвата k = 2, что для нормального распределения соответствует вероятности охвата приблизительно \
-        95 %; при конечных эффективных степенях свободы k — коэффициент Стьюдента той же вероятности. Оценена в соответствии с JCGM 100 (GUM). 1 g = 9,80665 м/с².",
+    uncertainty_statement: "Расширенная неопределённость U — стандартная неопределённость, умноженная на коэффициент \
+        охвата k для вероятности охвата приблизительно 95 % (95,45 %): k = 2 для нормального распределения; при конечных \
+        эффективных степенях свободы νeff — коэффициент Стьюдента. Оценена в соответствии с JCGM 100 (GUM) и EA-4/02. \
+        1 g = 9,80665 м/с².",
     adjustment: "До и после юстировки",
     before_adjustment: "До юстировки, ± U",
     after_adjustment: "После юстировки, ± U",
@@ -225,15 +219,56 @@ pub(crate) const RUSSIAN: Messages = Messages {
     uncertainty: "Расширенная неопределённость",
     covariance: "Ковариационная матрица параметров",
     specific_force: "Удельная сила",
+    unit_within: "Прибор в пределах допусков",
+    unit_outside: "Прибор вне пределов допусков",
+    unit_not_stated: "Соответствие прибора не заявлено",
+    unit_not_asked: "Соответствие прибора не запрошено",
+    unit_within_text: "Каждый из пределов ниже выдержан по правилу принятия решения.",
+    unit_outside_text: "По правилу принятия решения не выдержаны пределы:",
+    unit_not_stated_text: "Из непринятой калибровки и о неопределённых параметрах ничего не заявляется.",
+    unit_not_asked_text: "Заключение рядом относится только к калибровке. О соответствии прибора требованиям говорится, если \
+        пределы заданы в файле лаборатории.",
+    limits_judged: "Проверено пределов",
+    headline: "Погрешность показаний, среднеквадратическая",
+    headline_note: "По всем площадкам диапазона калибровки, относительно удельной силы по найденной геометрии. \
+        Погрешность после компенсации — без того, что объясняет погрешность скорости площадки: вдоль плеча \
+        это почти вся погрешность; U — вклад параметров в скомпенсированные показания.",
+    root_mean_square: "Среднее квадратическое",
+    largest: "Наибольшее по модулю",
+    error_model: "Модель погрешностей прибора",
+    error_model_note: "f′ — показание в м/с², f — удельная сила вдоль осей чувствительности:",
+    parameters_of_instrument: "Параметры прибора",
+    first_plots: "Погрешность прибора и остаток после компенсации",
+    further_plots: "Остальные графики",
+    checks: "Проверки оценивания",
+    contents: "Далее, раскрывается по нажатию",
+    effects_absent: "Эффекты, отсутствие которых предполагается",
+    counts_as_exact: "Считается точным",
+    nothing_exact: "ничего из входящего в модель",
+    all_rests_on: "Полный список предполагаемых отсутствующими эффектов",
+    corrected_for: "с поправкой на число установок,",
+    f_test: "критерий Фишера",
+    coverage_and_degrees: "k (νeff)",
+    unit_temperature: "Температура прибора",
+    nominal_output: "Номинальное преобразование выхода",
+    nominal_output_text: "Показания f′ = (N − b)/S, где S — номинальный масштаб, b — номинальное смещение выхода N; это \
+        условные числа без неопределённости, параметры — поправки к ним.",
+    nominal_scale: "Номинальный масштаб S",
+    nominal_bias: "Номинальное смещение b",
+    compensated_reading: "скомпенсированное показание, ось",
+    at_plateau: "площадка",
+    signed_on: "дата",
+    mark_place: "место печати",
     words: Words {
-        group,
-        source,
-        method,
-        termination,
-        pair_relation,
-        reference,
-        rival,
-        follows,
+        group: words::group,
+        meaning: words::meaning,
+        source: words::source,
+        method: words::method,
+        termination: words::termination,
+        pair_relation: words::pair_relation,
+        reference: words::reference,
+        rival: words::rival,
+        follows: words::follows,
         speed_finding: speeds::in_russian,
         speeds_measured: speeds::measured_in_russian,
     },
@@ -266,142 +301,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     uncertainties_and_reading: "стандартных неопределённостей, а скорректированное показание — на",
     presupposed: "Указанные неопределённости предполагают жёсткое плечо, постоянную температуру прибора и независимость \
         погрешностей скорости на разных площадках.",
-    presupposed_exact: " Ускорение силы тяжести, радиусы, ориентация и положения чувствительных масс считаются точными.",
     chi_squared_small: "Невязки меньше, чем допускают заявленные неопределённости: последние завышены.",
     lost_parameters: "не определены параметры прибора",
     speeds: "Скорости на площадках",
 };
-
-fn group(group: Group) -> &'static str {
-    match group {
-        Group::Bias => "Смещение нуля",
-        Group::Scale => "Погрешность масштаба",
-        Group::Misalignment => "Перекос оси",
-        Group::Quadratic => "Квадратичный член",
-        Group::Cubic => "Кубичный член",
-        Group::CrossCoupling => "Перекрёстная связь",
-        Group::Asymmetry => "Асимметрия масштаба",
-        Group::HigherOrder => "Член высшего порядка",
-        Group::Tilt => "Наклон оси вращения",
-        Group::Turn => "Поворот прибора",
-        Group::Shift => "Смещение прибора",
-        Group::ProofMass => "Положение чувствительной массы",
-        Group::ElasticTurn => "Упругий поворот",
-        Group::ArmStretch => "Растяжение плеча",
-        Group::RadiusScale => "Масштаб радиусов",
-        Group::SpeedScale => "Масштаб скорости",
-        Group::ArmTurn => "Упругий поворот конца плеча",
-        Group::SpinTurn => "Поворот прибора при вращении",
-        Group::Seat => "Положение посадочного места",
-        Group::MountingShift => "Смещение в одной установке",
-        Group::MountingTurn => "Поворот в одной установке",
-        Group::MountingTilt => "Наклон оси в одной установке",
-        Group::Disturbance => "Возмущение показаний",
-    }
-}
-
-fn source(source: Source) -> &'static str {
-    match source {
-        Source::Noise => "Шум",
-        Source::PlateauSpeed => "Скорость каждой площадки",
-        Source::Priors => "Априорные данные",
-        Source::Gravity => "Ускорение силы тяжести",
-        Source::Latitude => "Широта",
-        Source::Radius => "Радиус",
-        Source::RadiusDifference => "Разность радиусов",
-        Source::SpeedScale => "Масштаб скорости",
-        Source::RestAngle => "Угол в покое",
-        Source::ProofMasses => "Чувствительные массы",
-        Source::Attitude => "Ориентация",
-        Source::Resolution => "Разрешение",
-        Source::Effects => "Неучтённые эффекты",
-    }
-}
-
-fn method(method: Method) -> &'static str {
-    match method {
-        Method::Exact => "точная модель, метод Гаусса — Ньютона",
-        Method::Recursive => "точная модель, рекуррентный фильтр",
-        Method::Linear => "линейная модель [K5.3]",
-    }
-}
-
-fn termination(termination: Termination) -> &'static str {
-    match termination {
-        Termination::Linear => "линейная модель",
-        Termination::Converged => "сошлось",
-        Termination::Stalled => "остановилось",
-        Termination::IterationLimit => "предел итераций",
-    }
-}
-
-fn pair_relation(pair_relation: PairRelation) -> &'static str {
-    match pair_relation {
-        PairRelation::Common => "общая",
-        PairRelation::Opposite => "противоположная",
-        PairRelation::Free => "независимая",
-    }
-}
-
-fn reference(reference: ReferencePoint) -> &'static str {
-    match reference {
-        ReferencePoint::FirstProofMass => "чувствительная масса 1",
-        ReferencePoint::OwnAxes => "без смещений вдоль собственных осей",
-    }
-}
-
-fn follows(follows: &Follows) -> &'static str {
-    match follows {
-        Follows::Position { .. } => "скачок в положении",
-        Follows::SpeedInPosition { .. } => "квадрат скорости в положении",
-        Follows::SpeedOnSeat { .. } => "квадрат скорости на радиусе",
-        Follows::Speed => "квадрат скорости",
-        Follows::Load => "нагрузка",
-        Follows::Mounting { .. } => "скачок в установке",
-        Follows::Time => "уход",
-    }
-}
-
-fn rival(rival: Rival) -> &'static str {
-    match rival {
-        Rival::Terms(Extra::CrossProducts) => "произведения двух составляющих силы",
-        Rival::Terms(Extra::OddQuadratic) => "нечётный квадрат силы",
-        Rival::Terms(Extra::Asymmetry) => "масштаб, зависящий от знака силы",
-        Rival::Terms(Extra::FourthPower) => "четвёртая степень силы",
-        Rival::Terms(Extra::FifthPower) => "пятая степень силы",
-        Rival::Terms(Extra::Jump) => "скачок нуля при смене знака силы",
-        Rival::Effect(extension) => match extension {
-            Extension::ElasticTurn(Law::Speed) => {
-                "упругий поворот прибора по положениям, растущий с квадратом скорости"
-            }
-            Extension::ElasticTurn(Law::Load) => "упругий поворот прибора по положениям, растущий с нагрузкой",
-            Extension::ArmStretch(Law::Speed) => "растяжение плеча с квадратом скорости",
-            Extension::ArmStretch(Law::Load) => "растяжение плеча с нагрузкой",
-            Extension::SeatStretch(Law::Speed) => "растяжение плеча по местам с квадратом скорости",
-            Extension::SeatStretch(Law::Load) => "растяжение плеча по местам с нагрузкой",
-            Extension::RadiusScale => "общий масштаб радиусов",
-            Extension::SpeedScale => "общий масштаб скоростей",
-            Extension::ArmTurn(Law::Speed) => "поворот конца плеча с квадратом скорости",
-            Extension::ArmTurn(Law::Load) => "поворот конца плеча с нагрузкой: нежёсткое плечо",
-            Extension::SeatRadius => "радиус посадочного места",
-            Extension::SeatLateral => "боковое положение посадочного места",
-            Extension::PositionShift => "собственное смещение в каждом положении: иное соотношение пар",
-            Extension::MountingShift => "собственное смещение в каждой установке",
-            Extension::MountingTurn => "собственный поворот в каждой установке",
-            Extension::MountingTilt => "наклон оси, различный по установкам",
-            Extension::SpinTurn => "поворот прибора между покоем и вращением",
-            Extension::Disturbance(Course::Spinning) => {
-                "ступень между покоем и вращением: наложение частот или выпрямленная вибрация"
-            }
-            Extension::Disturbance(Course::SquaredSpeed) => "возмущение с квадратом скорости: выпрямленная вибрация",
-            Extension::Disturbance(Course::Yield) => "чувствительная масса, податливая силе",
-            Extension::Disturbance(Course::Time) => "изменение нуля за время эксперимента",
-            Extension::Disturbance(Course::TimeScale) => "изменение масштаба за время эксперимента",
-            Extension::Disturbance(Course::Rise) => "различие после роста и после спада скорости",
-            Extension::Disturbance(Course::Memory) => "память о прежних силах",
-            Extension::OneMounting(Difference::Shift, _) => "смещение прибора в одной установке",
-            Extension::OneMounting(Difference::Turn, _) => "поворот прибора в одной установке",
-            Extension::OneMounting(Difference::Unit, _) => "другой прибор в одной установке",
-        },
-    }
-}

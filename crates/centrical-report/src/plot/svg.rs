@@ -39,11 +39,14 @@ pub(super) struct Value(pub(super) f64);
 impl Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = self.0.abs();
+        if self.0 < 0.0 {
+            f.write_str("\u{2212}")?;
+        }
         if size == 0.0 || (1e-3..1e5).contains(&size) {
             let decimals = [1e4, 1e3, 1e2, 1e1, 1e0, 1e-1, 1e-2].iter().take_while(|power| size < **power).count();
-            write!(f, "{:.decimals$}", self.0)
+            write!(f, "{size:.decimals$}")
         } else {
-            write!(f, "{:.4e}", self.0)
+            write!(f, "{size:.4e}")
         }
     }
 }

@@ -1,5 +1,7 @@
 //! A PDF file of running text and tables on A4, with embedded fonts for Latin, Greek and Cyrillic.
 
+mod archive;
+mod colour;
 mod font;
 mod layout;
 mod write;
@@ -10,7 +12,8 @@ use crate::document::{Block, Document};
 /// The file of a document. The same document gives the same bytes.
 pub fn pdf(document: &Document) -> Vec<u8> {
     let mut layout = Layout::new();
-    layout.title(&document.opening.title);
+    let room = document.opening.picture.as_ref().map(|picture| layout.picture(picture.width, picture.height));
+    layout.title(&document.opening.title, room.unwrap_or(0.0));
     for line in &document.opening.lines {
         layout.paragraph(line);
     }
@@ -34,6 +37,6 @@ fn block(layout: &mut Layout, block: &Block) {
         Block::Table(table) => layout.table(table),
         // Drawings are SVG, which a PDF does not take as it is.
         Block::Figure(figure) => layout.paragraph(&figure.caption),
-        Block::Signature { name, role, word } => layout.signature(name, role, word),
+        Block::Signature { name, role, word, date, mark } => layout.signature([name, role, word, date, mark]),
     }
 }

@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use centrical::uncertainty::Level;
 use centrical_session::{
     CalibrationResult, ParameterEstimate, ResultObjection, RivalSummary, TermSummary, ValiditySummary, customary,
     harmless_line,
@@ -249,7 +248,7 @@ fn validity(text: &mut String, result: &CalibrationResult) {
         "VALID chi^2 as large or larger comes by chance with a probability of {:.3}",
         validity.probability
     );
-    if Level::Real.is_passed_by(1.0 - validity.probability) {
+    if result.chi_squared_is_small() {
         let _ = writeln!(text, "      {}", Language::English.messages().chi_squared_small);
     }
     let fitted = result.plateaus.iter().filter(|plateau| !plateau.held_out).count();

@@ -3,13 +3,13 @@
 use std::fs;
 use std::path::Path;
 
-use centrical_report::{Block, Document, Language, Row, certificate, report};
-use centrical_session::{CalibrationResult, Laboratory, Method, Session, calibrate};
+use centrical_report::{Block, Document, Language, Row, certificate, read_issuer, report};
+use centrical_session::{CalibrationResult, Method, Session, calibrate};
 
 const EXAMPLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/ta-200");
 
 /// Names of standards, of files and of methods that Russian texts cite.
-const CITED: &str = "JCGM GUM ILAC result.json SHA-256 K5.3 centrical";
+const CITED: &str = "JCGM GUM EA ILAC eff result.json SHA-256 K5.3 centrical";
 
 /// The example calibrated with terms and an unknown that the source's model does not have.
 fn extended() -> CalibrationResult {
@@ -35,7 +35,12 @@ fn extended() -> CalibrationResult {
 
 /// Everything that a document says outside its drawings.
 fn text(document: &Document) -> String {
-    let mut all = vec![document.title.clone(), document.opening.title.clone(), document.margins.foot.clone()];
+    let mut all = vec![
+        document.title.clone(),
+        document.opening.title.clone(),
+        document.margins.foot.clone(),
+        document.contents.clone(),
+    ];
     for block in document.sections.iter().flat_map(|section| &section.blocks) {
         match block {
             Block::Heading(text, _) | Block::Subheading(text) | Block::Paragraph(text) | Block::Note(text) => {
@@ -53,7 +58,9 @@ fn text(document: &Document) -> String {
                 }));
             }
             Block::Figure(figure) => all.extend([figure.title.clone(), figure.caption.clone()]),
-            Block::Signature { name, role, word } => all.extend([name.clone(), role.clone(), word.clone()]),
+            Block::Signature { name, role, word, date, mark } => {
+                all.extend([name, role, word, date, mark].map(Clone::clone));
+            }
         }
     }
     all.join("\n")
@@ -68,15 +75,17 @@ fn latin_words(text: &str) -> impl Iterator<Item = &str> {
 fn russian_documents_have_no_english_words() {
     let result = extended();
     let file = Path::new(EXAMPLE).join("laboratory.toml");
-    let laboratory = Laboratory::read(&file).unwrap();
+    let issuer = read_issuer(&file, &result).unwrap();
     let names: Vec<&str> = result.parameters.iter().map(|p| p.name.as_str()).collect();
     assert!(names.contains(&"K_1[f1*f2]") && names.contains(&"radius_scale"), "{names:?}");
     let session = &result.session;
     let inputs: Vec<&str> = result.inputs.iter().flat_map(|input| [&*input.path, &*input.sha256]).collect();
     let own = [&*session.title, &session.unit_model, &session.text, &fs::read_to_string(&file).unwrap()].join(" ");
     let allowed = format!("{} {} {own} {CITED} {}", names.join(" "), inputs.join(" "), result.schema);
-    let documents =
-        [certificate(&result, Some(&result), &laboratory, Language::Russian), report(&result, &[], Language::Russian)];
+    let documents = [
+        certificate(&result, Some(&result), &issuer, Language::Russian),
+        report(&result, issuer.unit.as_ref(), &[], Language::Russian),
+    ];
     for document in documents {
         let text = text(&document);
         assert!(text.contains("Перекрёстная связь") && text.contains("Асимметрия масштаба"));
@@ -84,7 +93,7 @@ fn russian_documents_have_no_english_words() {
             assert!(latin_words(&allowed).any(|known| known == word), "{word}");
         }
     }
-    let report = text(&report(&result, &[], Language::Russian));
+    let report = text(&report(&result, None, &[], Language::Russian));
     for words in [
         "рекуррентный фильтр",
         "скорости в рад/с прочитаны в об/мин",

@@ -11,6 +11,7 @@ use std::process::{Command, Stdio};
 
 use centrical_compensate::{Compensation, Monomial, Term, reading};
 use centrical_report::codegen::{NamedTerm, compensation_source};
+use centrical_session::OutputSummary;
 use tempfile::TempDir;
 
 use crate::random::Random;
@@ -53,9 +54,14 @@ fn models() -> [(&'static str, Vec<NamedTerm>); 3] {
 
 /// A folder with the generated files, whose heading tries to break out of its comment.
 fn generate(terms: &[NamedTerm]) -> TempDir {
+    generate_for(terms, None)
+}
+
+/// The same for a unit with raw output of its own.
+fn generate_for(terms: &[NamedTerm], output: Option<&OutputSummary>) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let heading = ["TA-200 */ No. 0001 /* ??/\\".to_owned(), "line\nof \"\"\" a session @vectors@".to_owned()];
-    for file in compensation_source(&heading, terms, RANGE).unwrap() {
+    for file in compensation_source(&heading, terms, output, RANGE).unwrap() {
         fs::write(folder.path().join(file.name), file.text).unwrap();
     }
     folder
@@ -249,6 +255,89 @@ fn python() {
         agrees(&answers, &readings, &plain, 1e-12, &format!("Python, {name}"));
         run(Command::new("python3").args(["-B", "centrical_compensate.py"]).current_dir(&folder), "");
     }
+}
+
+/// The nominal output of a unit in counts, its axes apart from each other.
+fn counts() -> OutputSummary {
+    OutputSummary { unit: "counts".to_owned(), scale: [105_123.0, -98_000.5, 1.1e5], bias: [12.5, -340.0, 7.0] }
+}
+
+/// The program of `PYTHON_MAIN` by arrays, and from raw output.
+const NUMPY_MAIN: &str = r#"
+import sys
+import numpy
+from centrical_compensate import RAW_BIAS, RAW_SCALE, compensate_array, compensate_raw, compensate_raw_array, self_test
+
+self_test()
+readings = numpy.loadtxt(sys.stdin)
+raw = readings * RAW_SCALE + RAW_BIAS
+for f, of_raw in zip(compensate_array(readings), compensate_raw_array(raw)):
+    assert numpy.allclose(f, of_raw, rtol=1e-9, atol=1e-9, equal_nan=True) or numpy.isnan(f).any() or numpy.isnan(of_raw).any()
+    print("outside" if numpy.isnan(f).any() else " ".join(map(repr, map(float, f))))
+assert numpy.allclose(compensate_raw(raw[1]), compensate_array(readings)[1], rtol=1e-9)
+assert compensate_array(readings[:0]).shape == (0, 3)
+try:
+    compensate_array(readings.T)
+except ValueError:
+    sys.exit(0)
+sys.exit(1)
+"#;
+
+/// Arrays give what single readings give, and raw output what its readings give.
+#[test]
+fn numpy() {
+    let has_numpy = || Command::new("python3").args(["-c", "import numpy"]).output().is_ok_and(|o| o.status.success());
+    let is_there = has_numpy();
+    assert!(is_there || std::env::var_os("CENTRICAL_ALL_TOOLS").is_none(), "NumPy is not installed");
+    if !is_there {
+        eprintln!("NumPy is not installed: the code generated for it is not checked");
+        return;
+    }
+    for (name, terms) in models() {
+        let folder = generate_for(&terms, Some(&counts()));
+        let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
+        let readings = readings(&plain);
+        fs::write(folder.path().join("main.py"), NUMPY_MAIN).unwrap();
+        let answers = run(Command::new("python3").args(["-B", "main.py"]).current_dir(&folder), &as_text(&readings));
+        agrees(&answers, &readings, &plain, 1e-12, &format!("NumPy, {name}"));
+    }
+}
+
+/// Every language takes the raw output of a unit in counts: its own test vectors, as raw output, pass; with another scale
+/// they do not.
+#[test]
+fn raw_output_by_every_language() {
+    let folder = generate_for(&kozlov(), Some(&counts()));
+    fs::write(folder.path().join("main.c"), C_MAIN).unwrap();
+    let check = |is_sound: bool| {
+        let succeeds = |command: &mut Command| command.current_dir(&folder).output().unwrap().status.success();
+        if has("python3") {
+            assert_eq!(succeeds(Command::new("python3").args(["-B", "centrical_compensate.py"])), is_sound, "Python");
+        }
+        if has("octave-cli") {
+            let arguments = ["--no-init-file", "--eval", "centrical_compensate()"];
+            assert_eq!(succeeds(Command::new("octave-cli").args(arguments)), is_sound, "Octave");
+        }
+        if has("gcc") {
+            let strict = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-o", "program"];
+            assert!(succeeds(Command::new("gcc").args(strict).args(["main.c", "centrical_compensate.c"])));
+            let mut program = Command::new(folder.path().join("program"));
+            assert_eq!(succeeds(program.stdin(Stdio::null())), is_sound, "C");
+        }
+    };
+    check(true);
+    // The first place where each applies the bias of axis 1: the constants, not the test.
+    for (name, from, to) in [
+        ("centrical_compensate.py", "(raw[i] - RAW_BIAS[i])", "(raw[i] - 1.01 * RAW_BIAS[i])"),
+        ("centrical_compensate.m", "bsxfun(@minus, reading, [1.25e1,", "bsxfun(@minus, reading, [1.26e1,"),
+        ("centrical_compensate.c", "raw_bias[3] = {1.25e1,", "raw_bias[3] = {1.26e1,"),
+    ] {
+        let file = folder.path().join(name);
+        let text = fs::read_to_string(&file).unwrap();
+        assert!(text.contains(from), "{name}");
+        fs::write(&file, text.replacen(from, to, 1)).unwrap();
+    }
+    check(false);
 }
 
 /// The test vectors have power: a coefficient that is off by the tolerance is found by each language.

@@ -14,8 +14,8 @@ pub use self::budget_and_checks::{
 pub use self::rivals::{RestsOn, RivalSize, RivalSummary};
 pub use self::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
-    ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, StabilityCurve,
-    TermSummary,
+    OutputSummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary,
+    StabilityCurve, TermSummary,
 };
 pub use self::speeds::{SpeedDifference, SpeedFinding, SpeedsSummary};
 pub use self::verdict::ResultObjection;

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use centrical::{Group, MeasurementModel, Parameter, PriorError};
+use centrical::{MeasurementModel, Parameter, PriorError};
 
 use super::form::PriorValue;
 use super::toml_path::TomlPath;
 use crate::error::Error;
-use crate::quantity::{Dimension, Quantity};
-use crate::units::writable;
+use crate::quantity::Quantity;
+use crate::units::in_parameter_unit;
 
 /// How far a standard uncertainty may be from the typical magnitude of its parameter, either way.
 const FIRMEST: f64 = 1e12;
@@ -89,39 +89,8 @@ fn in_si(at: &TomlPath, model: &MeasurementModel, name: &str, quantity: &Quantit
 
 /// A quantity in the unit of a parameter.
 pub(crate) fn in_unit_of(at: &TomlPath, key: &str, quantity: &Quantity, parameter: &Parameter) -> Result<f64, Error> {
-    let dimension = match parameter.unit.as_str() {
-        "rad" => Dimension::Angle,
-        "m" => Dimension::Length,
-        "m/s^2" => Dimension::Acceleration,
-        "1" if parameter.group == Group::Misalignment => {
-            return at
-                .finite(key, quantity, Dimension::Ratio)
-                .or_else(|error| at.finite(key, quantity, Dimension::Angle).map_err(|_| error));
-        }
-        "1" => Dimension::Ratio,
-        _ => return in_derived_unit(at, key, quantity, parameter),
-    };
-    at.finite(key, quantity, dimension)
-}
-
-/// A coefficient in its SI unit or a unit in which people are shown it.
-fn in_derived_unit(at: &TomlPath, key: &str, quantity: &Quantity, parameter: &Parameter) -> Result<f64, Error> {
-    let unit = &parameter.unit;
-    let known = writable(unit, parameter.group);
-    let units: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-    let factor = |written: &str| match written {
-        "" => Some(1.0),
-        _ => known.iter().find(|(name, _)| *name == written).map(|(_, factor)| *factor),
-    };
-    let value = match quantity {
-        Quantity::Number(number) => Some(*number),
-        Quantity::Text(text) => {
-            let (number, written) = text.trim().split_once(char::is_whitespace).unwrap_or((text.trim(), ""));
-            number.parse::<f64>().ok().and_then(|number| Some(number * factor(written.trim())?))
-        }
-    };
-    let expected = || format!("a number in {unit} or with a unit (units: {})", units.join(", "));
-    value.ok_or_else(|| at.unexpected(key, quantity.to_string(), expected()))
+    in_parameter_unit(quantity, &parameter.unit, parameter.group)
+        .map_err(|not| at.unexpected(key, not.found, not.expected))
 }
 
 fn refusal(at: &TomlPath, name: &str, error: PriorError) -> Error {

@@ -49,9 +49,11 @@ impl Font {
         Self { face: Face::parse(weight.data(), 0).ok() }
     }
 
-    /// Glyph of a character; 0, the empty box, if the font has none.
+    /// Glyph of a character; that of a question mark if the font has none, since an archive takes no empty box (ISO 19005-2,
+    /// 6.2.11.8).
     pub fn glyph(&self, c: char) -> u16 {
-        self.face.as_ref().and_then(|face| face.glyph_index(c)).map_or(0, |glyph| glyph.0)
+        let glyph = |c| self.face.as_ref().and_then(|face| face.glyph_index(c)).map(|glyph| glyph.0);
+        glyph(c).or_else(|| glyph('?')).unwrap_or(0)
     }
 
     /// Width of a glyph in thousandths of the font's size.
@@ -74,12 +76,14 @@ mod tests {
     /// What numbers, units and the two languages need; a sign without a glyph would turn a minus into nothing.
     #[test]
     fn no_sign_is_missing() {
-        let signs = "\u{2212}±·×°′²³⁴⁶⁰¹⁵⁷⁸⁹⁻µχνΩρσδα№–—…’“”«»%ёЁ";
+        let question = Font::new(Weight::Regular).glyph('?');
+        let signs = "\u{2212}\u{202f}₀₁₂₃₄₅₆₇₈₉±·×°′²³⁴⁶⁰¹⁵⁷⁸⁹⁻µχνΩρσδα№–—…’“”«»%ёЁ";
         let letters = ('!'..='~').chain('А'..='я');
         for weight in Weight::ALL {
             let font = Font::new(weight);
             for c in signs.chars().chain(letters.clone()) {
                 assert_ne!(font.glyph(c), 0, "{c} in {weight:?}");
+                assert!(font.glyph(c) != question || c == '?', "{c} in {weight:?}");
                 assert!(font.advance(font.glyph(c)) > 0.0, "{c}");
             }
         }

@@ -14,11 +14,16 @@ pub(super) const BOTTOM: f32 = 66.0;
 /// Width of the text.
 pub(super) const WIDTH: f32 = PAGE.0 - 2.0 * LEFT;
 
+/// Name of the picture in the resources of a page.
+pub(super) const PICTURE: &[u8] = b"P0";
+
 const SIZE: f32 = 9.5;
 /// Distance of baselines over the size.
 const LEADING: f32 = 1.38;
 /// Lines of a row on one page, below the head of its table.
 const MOST_LINES: usize = 48;
+/// Height up to which a table stays whole: a third of a page.
+const WHOLE: f32 = (PAGE.1 - TOP - BOTTOM) / 3.0;
 /// Free space between columns.
 const GUTTER: f32 = 8.0;
 
@@ -37,9 +42,23 @@ impl Layout {
         layout
     }
 
-    /// The document's title.
-    pub fn title(&mut self, text: &str) {
+    /// A picture at the head of the page, on the right, of the pixels' proportions; returns its height.
+    pub fn picture(&mut self, width: u32, height: u32) -> f32 {
+        const MOST: (f32, f32) = (130.0, 48.0);
+        #[allow(clippy::cast_precision_loss, reason = "thousands of pixels at most")]
+        let (columns, rows) = (width.max(1) as f32, height.max(1) as f32);
+        let scale = (MOST.0 / columns).min(MOST.1 / rows);
+        let (width, height) = (scale * columns, scale * rows);
+        let (x, y) = (LEFT + WIDTH - width, self.y - height);
+        self.page().save_state().transform([width, 0.0, 0.0, height, x, y]).x_object(Name(PICTURE)).restore_state();
+        height
+    }
+
+    /// The document's title, in no less than `height`.
+    pub fn title(&mut self, text: &str, height: f32) {
+        let end = self.y - height;
         self.lines(text, Weight::Bold, 20.0, LEFT, WIDTH);
+        self.y = self.y.min(end);
         self.space(4.0);
     }
 
@@ -66,37 +85,72 @@ impl Layout {
         self.space(3.0);
     }
 
-    /// A table; its head is repeated on every page.
+    /// A table. One that is not long stays whole; of another the head, and the name of a group that goes on, are repeated on
+    /// every page.
     pub fn table(&mut self, table: &Table) {
         let columns = &table.columns;
         let head: Vec<String> = columns.iter().map(|column| column.title.clone()).collect();
-        self.keep(self.height_of(columns, &head, Weight::Bold) + 2.0 * SIZE * LEADING);
+        let height_of_head = self.height_of(columns, &head, Weight::Bold);
+        let heights: Vec<f32> = table.rows.iter().map(|row| self.height_of_row(columns, row)).collect();
+        let whole = height_of_head + heights.iter().sum::<f32>();
+        self.keep(if whole < WHOLE { whole } else { height_of_head + 2.0 * SIZE * LEADING });
         self.head(columns, &head);
-        for row in &table.rows {
-            let (cells, weight) = match row {
-                Row::Group(name) => (std::slice::from_ref(name), Weight::Bold),
-                Row::Cells(cells) => (&cells[..], Weight::Regular),
-            };
-            if self.y - self.height_of(columns, cells, weight) < BOTTOM {
+        let mut group = None;
+        for (n, (row, height)) in table.rows.iter().zip(&heights).enumerate() {
+            // The name of a group stays with its first row.
+            let is_group = matches!(row, Row::Group(_));
+            let needed = height + if is_group { heights.get(n + 1).copied().unwrap_or(0.0) } else { 0.0 };
+            if self.y - needed < BOTTOM {
                 self.break_page();
                 self.head(columns, &head);
+                if let Some(name) = group.filter(|_| !is_group) {
+                    self.group(name);
+                }
             }
-            self.row(columns, cells, weight);
-            self.rule(0.25);
+            match row {
+                Row::Group(name) => {
+                    group = Some(name);
+                    self.group(name);
+                }
+                Row::Cells(cells) => {
+                    self.row(columns, cells, Weight::Regular);
+                    self.rule(0.25);
+                }
+            }
         }
         self.space(6.0);
     }
 
-    /// A line for a signature, with who signs beside it.
-    pub fn signature(&mut self, name: &str, role: &str, word: &str) {
-        self.keep(54.0);
+    /// The name of a group of rows, across the table.
+    fn group(&mut self, name: &str) {
+        self.row(&across(), &[name.to_owned()], Weight::Bold);
+        self.rule(0.25);
+    }
+
+    fn height_of_row(&self, columns: &[Column], row: &Row) -> f32 {
+        match row {
+            Row::Group(name) => self.height_of(&across(), std::slice::from_ref(name), Weight::Bold),
+            Row::Cells(cells) => self.height_of(columns, cells, Weight::Regular),
+        }
+    }
+
+    /// A line for a signature with who signs beside it, a line for the date, and under them free room for a mark.
+    pub fn signature(&mut self, [name, role, word, date, mark]: [&str; 5]) {
+        const SMALL: f32 = 8.0;
+        const ROOM: f32 = 62.0;
+        self.keep(64.0 + ROOM);
         self.space(26.0);
         let y = self.y;
-        self.page().set_line_width(0.5).move_to(LEFT, y).line_to(LEFT + 170.0, y).stroke();
-        self.text(word, Weight::Regular, 8.0, LEFT, y - 10.0);
+        let date_line = (LEFT + WIDTH - 90.0, LEFT + WIDTH);
+        for (from, to) in [(LEFT, LEFT + 170.0), date_line] {
+            self.page().set_line_width(0.5).move_to(from, y).line_to(to, y).stroke();
+        }
+        self.text(word, Weight::Regular, SMALL, LEFT, y - 10.0);
+        self.text(date, Weight::Regular, SMALL, date_line.0, y - 10.0);
         self.text(name, Weight::Bold, SIZE, LEFT + 190.0, y);
         self.text(role, Weight::Regular, SIZE, LEFT + 190.0, y - 12.0);
-        self.space(22.0);
+        self.text(mark, Weight::Regular, SMALL, LEFT, y - 26.0);
+        self.space(26.0 + ROOM);
     }
 
     /// Free space, none at the head of a page.
@@ -203,6 +257,11 @@ impl Layout {
         self.pages.push(Content::new());
         self.y = PAGE.1 - TOP;
     }
+}
+
+/// One column across the text.
+fn across() -> [Column; 1] {
+    [Column { title: String::new(), share: 1.0, align: Align::Left }]
 }
 
 /// Pieces of a word that fit, in order: the whole of it if it does.

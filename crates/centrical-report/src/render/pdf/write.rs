@@ -7,9 +7,10 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
+use super::archive::{Archive, PRODUCER, identifier};
 use super::font::{Font, Weight};
-use super::layout::{BOTTOM, LEFT, Layout, PAGE, TOP, WIDTH, encoded, show};
-use crate::document::{Document, Margins};
+use super::layout::{BOTTOM, LEFT, Layout, PAGE, PICTURE, TOP, WIDTH, encoded, show};
+use crate::document::{Document, Margins, Picture};
 
 /// Level of zlib: the best that is still quick.
 const COMPRESSION: u8 = 8;
@@ -29,16 +30,25 @@ pub(super) fn write(mut layout: Layout, document: &Document) -> Vec<u8> {
         Ref::new(next)
     };
     let (catalog, tree, info) = (new(), new(), new());
+    let (title, attachment) = (harmless_line(&document.title).into_owned(), document.attachment.as_ref());
     let mut pdf = Pdf::new();
-    pdf.catalog(catalog).pages(tree).lang(TextStr(document.language.code()));
-    pdf.document_info(info).title(TextStr(&harmless_line(&document.title))).producer(TextStr("centrical"));
+    let archive = Archive::new(&mut pdf, &title, attachment, COMPRESSION, &mut new);
+    let mut entries = pdf.catalog(catalog);
+    entries.pages(tree).lang(TextStr(document.language.code()));
+    archive.enter(&mut entries, attachment);
+    entries.finish();
+    pdf.document_info(info).title(TextStr(&title)).producer(TextStr(PRODUCER));
+    let picture = document.opening.picture.as_ref().map(|picture| draw(&mut pdf, picture, new()));
     let fonts: Vec<(Weight, Ref)> = Weight::ALL
         .into_iter()
         .zip(&layout.fonts)
         .map(|(weight, font)| (weight, embed(&mut pdf, weight, font, &mut new)))
         .collect();
-    let pages: Vec<Ref> =
-        layout.pages.into_iter().map(|page| one_page(&mut pdf, page, tree, &fonts, &mut new)).collect();
+    let contents: Vec<Vec<u8>> = layout.pages.into_iter().map(|page| page.finish().into_vec()).collect();
+    let carried = attachment.map_or(&[][..], |attachment| &attachment.bytes);
+    pdf.set_file_id(identifier(contents.iter().map(Vec::as_slice).chain([title.as_bytes(), carried])));
+    let resources = Resources { fonts, picture };
+    let pages: Vec<Ref> = contents.iter().map(|page| one_page(&mut pdf, page, tree, &resources, &mut new)).collect();
     pdf.pages(tree).count(i32::try_from(pages.len()).unwrap_or(i32::MAX)).kids(pages);
     pdf.finish()
 }
@@ -60,19 +70,39 @@ fn furnish(page: &mut Content, font: &Font, margins: &Margins, number: &str) {
     }
 }
 
-fn one_page(pdf: &mut Pdf, content: Content, tree: Ref, fonts: &[(Weight, Ref)], new: &mut impl FnMut() -> Ref) -> Ref {
+/// What pages show.
+struct Resources {
+    fonts: Vec<(Weight, Ref)>,
+    picture: Option<Ref>,
+}
+
+fn one_page(pdf: &mut Pdf, content: &[u8], tree: Ref, shown: &Resources, new: &mut impl FnMut() -> Ref) -> Ref {
     let (id, stream) = (new(), new());
     let mut page = pdf.page(id);
     page.media_box(Rect::new(0.0, 0.0, PAGE.0, PAGE.1)).parent(tree).contents(stream);
     let mut resources = page.resources();
     let mut dictionary = resources.fonts();
-    for (weight, font) in fonts {
+    for (weight, font) in &shown.fonts {
         dictionary.pair(Name(weight.resource()), *font);
     }
     dictionary.finish();
+    if let Some(picture) = shown.picture {
+        resources.x_objects().pair(Name(PICTURE), picture);
+    }
     resources.finish();
     page.finish();
-    pdf.stream(stream, &compress_to_vec_zlib(&content.finish(), COMPRESSION)).filter(Filter::FlateDecode);
+    pdf.stream(stream, &compress_to_vec_zlib(content, COMPRESSION)).filter(Filter::FlateDecode);
+    id
+}
+
+/// The pixels of a picture.
+fn draw(pdf: &mut Pdf, picture: &Picture, id: Ref) -> Ref {
+    let packed = compress_to_vec_zlib(&picture.pixels, COMPRESSION);
+    let side = |pixels: u32| i32::try_from(pixels).unwrap_or(i32::MAX);
+    let mut image = pdf.image_xobject(id, &packed);
+    image.filter(Filter::FlateDecode);
+    image.width(side(picture.width)).height(side(picture.height)).bits_per_component(8);
+    image.color_space().device_rgb();
     id
 }
 

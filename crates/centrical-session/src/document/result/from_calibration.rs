@@ -8,11 +8,12 @@ use super::budget_and_checks::{BudgetSummary, ValiditySummary};
 use super::rivals::RestsOn;
 use super::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
-    ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary, TermSummary,
+    OutputSummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary,
+    TermSummary,
 };
 use super::speeds::SpeedsSummary;
 use crate::document::steadiness::{DriftSummary, TiltSummary};
-use crate::experiment::Session;
+use crate::experiment::{OutputUnit, Session};
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
 
 impl CalibrationResult {
@@ -39,6 +40,7 @@ impl CalibrationResult {
             inputs: reduced.inputs.clone(),
             session: SessionSummary::new(session),
             model: ModelSummary::new(model),
+            output: OutputSummary::of(session),
             parameters: (0..count)
                 .map(|j| ParameterEstimate::new(model, fit, j, covariance(j, j).map(f64::sqrt)))
                 .collect(),
@@ -75,6 +77,20 @@ impl SessionSummary {
             unit_serial: session.unit_serial.clone(),
             text: session.text.clone(),
         }
+    }
+}
+
+impl OutputSummary {
+    /// That of a session, none if its unit puts out an acceleration.
+    fn of(session: &Session) -> Option<Self> {
+        let columns = &session.columns.f;
+        // The reciprocal of a reciprocal is the number to 15 digits.
+        let written = |scale: f64| format!("{scale:.14e}").parse().unwrap_or(scale);
+        (session.output_unit != OutputUnit::Acceleration).then(|| Self {
+            unit: columns[0].unit.clone(),
+            scale: [0, 1, 2].map(|axis| written(1.0 / columns[axis].scale.factor)),
+            bias: [0, 1, 2].map(|axis| columns[axis].scale.offset),
+        })
     }
 }
 

@@ -37,6 +37,9 @@ pub struct CalibrationResult {
     pub session: SessionSummary,
     /// The model that was fitted.
     pub model: ModelSummary,
+    /// How the raw output of the unit was taken to m/s^2, for a unit that does not put out an acceleration.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub output: Option<OutputSummary>,
     /// The unknowns in the order of the covariance.
     pub parameters: Vec<ParameterEstimate>,
     /// Covariance of the estimates, SI; null where a parameter is not estimable. The combined one of the budget where the
@@ -102,6 +105,17 @@ pub struct SessionSummary {
     /// Free text of the session.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub text: String,
+}
+
+/// The nominal scale and bias by which raw output was taken to readings: `f' = (raw - bias) / scale`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OutputSummary {
+    /// Unit of the raw output, as the session names it: `counts`, `V`.
+    pub unit: String,
+    /// Nominal scale of each newtonometer [raw unit per m/s^2].
+    pub scale: [f64; 3],
+    /// Raw output of each at no specific force [raw unit].
+    pub bias: [f64; 3],
 }
 
 /// The model that was fitted.

@@ -1,6 +1,6 @@
 //! Whether a result can be accepted as it stands, and why not.
 
-use centrical::uncertainty::{Findings, Objection, objections};
+use centrical::uncertainty::{Findings, Level, Objection, objections};
 
 use super::budget_and_checks::PatternSummary;
 use super::rivals::RivalSummary;
@@ -31,5 +31,11 @@ impl CalibrationResult {
             speeds: speeds.map(|finding| (finding.clone(), finding.probability())).collect(),
             not_determined: terms.filter(is_lost).cloned().collect(),
         })
+    }
+
+    /// Whether chi^2 is smaller than chance allows: the stated uncertainties are too large then.
+    pub fn chi_squared_is_small(&self) -> bool {
+        let checked = self.validity.as_ref().filter(|_| self.fit.degrees_of_freedom > 0);
+        checked.is_some_and(|validity| Level::Real.is_passed_by(1.0 - validity.probability))
     }
 }

@@ -1,0 +1,156 @@
+//! English: words for what is one of several.
+
+use centrical::{
+    Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
+};
+use centrical_session::{Follows, Method};
+
+pub(super) fn group(group: Group) -> &'static str {
+    match group {
+        Group::Bias => "Bias",
+        Group::Scale => "Scale error",
+        Group::Misalignment => "Misalignment",
+        Group::Quadratic => "Quadratic",
+        Group::Cubic => "Cubic",
+        Group::CrossCoupling => "Cross-coupling",
+        Group::Asymmetry => "Asymmetry of the scale",
+        Group::HigherOrder => "Higher order",
+        Group::Tilt => "Tilt of the rotation axis",
+        Group::Turn => "Turn of the unit",
+        Group::Shift => "Shift of the unit",
+        Group::ProofMass => "Place of a proof mass",
+        Group::ElasticTurn => "Elastic turn",
+        Group::ArmStretch => "Stretch of the arm",
+        Group::RadiusScale => "Scale of the radii",
+        Group::SpeedScale => "Scale of the speed",
+        Group::ArmTurn => "Elastic turn of the arm's end",
+        Group::SpinTurn => "Turn of the unit while spinning",
+        Group::Seat => "Place of a seat",
+        Group::MountingShift => "Shift of one mounting",
+        Group::MountingTurn => "Turn of one mounting",
+        Group::MountingTilt => "Tilt of the axis in one mounting",
+        Group::Disturbance => "Disturbance of the readings",
+    }
+}
+
+pub(super) fn meaning(of: Group) -> &'static str {
+    match of {
+        Group::Bias => "bias: reading at no specific force",
+        Group::Scale => "scale error: relative error of the slope along the own axis",
+        Group::Misalignment => "misalignment: part of a force along another axis that is read, an angle",
+        Group::Quadratic => "quadratic coefficient: reading for the square of the force along axis j",
+        Group::Cubic => "cubic coefficient along the own axis",
+        Group::CrossCoupling => "cross-coupling: reading for the product of two forces",
+        Group::Asymmetry => "asymmetry: scale that differs with the sign of the force",
+        Group::HigherOrder => "coefficient of a higher power",
+        _ => group(of),
+    }
+}
+
+pub(super) fn source(source: Source) -> &'static str {
+    match source {
+        Source::Noise => "Noise",
+        Source::PlateauSpeed => "Speed of each plateau",
+        Source::Priors => "Priors",
+        Source::Gravity => "Gravity",
+        Source::Latitude => "Latitude",
+        Source::Radius => "Radius",
+        Source::RadiusDifference => "Difference of radii",
+        Source::SpeedScale => "Scale of the speed",
+        Source::RestAngle => "Angle at rest",
+        Source::ProofMasses => "Proof masses",
+        Source::Attitude => "Attitudes",
+        Source::Resolution => "Resolution",
+        Source::Effects => "Effects left out",
+    }
+}
+
+pub(super) fn method(method: Method) -> &'static str {
+    match method {
+        Method::Exact => "exact, Gauss-Newton",
+        Method::Recursive => "exact, recursive filter",
+        Method::Linear => "linear [K5.3]",
+    }
+}
+
+pub(super) fn termination(termination: Termination) -> &'static str {
+    match termination {
+        Termination::Linear => "linear",
+        Termination::Converged => "converged",
+        Termination::Stalled => "stalled",
+        Termination::IterationLimit => "iteration limit",
+    }
+}
+
+pub(super) fn pair_relation(pair_relation: PairRelation) -> &'static str {
+    match pair_relation {
+        PairRelation::Common => "common",
+        PairRelation::Opposite => "opposite",
+        PairRelation::Free => "free",
+    }
+}
+
+pub(super) fn reference(reference: ReferencePoint) -> &'static str {
+    match reference {
+        ReferencePoint::FirstProofMass => "proof mass 1",
+        ReferencePoint::OwnAxes => "no displacement along own axes",
+    }
+}
+
+pub(super) fn follows(follows: &Follows) -> &'static str {
+    match follows {
+        Follows::Position { .. } => "step in position",
+        Follows::SpeedInPosition { .. } => "square of the speed in position",
+        Follows::SpeedOnSeat { .. } => "square of the speed at radius",
+        Follows::Speed => "square of the speed",
+        Follows::Load => "load",
+        Follows::Mounting { .. } => "step in mounting",
+        Follows::Time => "drift over the session",
+    }
+}
+
+pub(super) fn rival(rival: Rival) -> &'static str {
+    match rival {
+        Rival::Terms(Extra::CrossProducts) => "products of two components of the force",
+        Rival::Terms(Extra::OddQuadratic) => "odd square of the force",
+        Rival::Terms(Extra::Asymmetry) => "scale that differs with the sign of the force",
+        Rival::Terms(Extra::FourthPower) => "fourth power of the force",
+        Rival::Terms(Extra::FifthPower) => "fifth power of the force",
+        Rival::Terms(Extra::Jump) => "jump of the bias at zero force",
+        Rival::Effect(extension) => match extension {
+            Extension::ElasticTurn(Law::Speed) => {
+                "elastic turn of the unit by position, growing with the square of the speed"
+            }
+            Extension::ElasticTurn(Law::Load) => "elastic turn of the unit by position, growing with the load",
+            Extension::ArmStretch(Law::Speed) => "stretch of the arm with the square of the speed",
+            Extension::ArmStretch(Law::Load) => "stretch of the arm with the load",
+            Extension::SeatStretch(Law::Speed) => "stretch of the arm by seat with the square of the speed",
+            Extension::SeatStretch(Law::Load) => "stretch of the arm by seat with the load",
+            Extension::RadiusScale => "common scale of the radii",
+            Extension::SpeedScale => "common scale of the speeds",
+            Extension::ArmTurn(Law::Speed) => "turn of the arm's end with the square of the speed",
+            Extension::ArmTurn(Law::Load) => "turn of the arm's end with the load: an arm that is not rigid",
+            Extension::SeatRadius => "radius of a seat",
+            Extension::SeatLateral => "lateral place of a seat",
+            Extension::PositionShift => "shift of its own in each position: another relation of the pairs",
+            Extension::MountingShift => "shift of its own in each mounting",
+            Extension::MountingTurn => "turn of its own in each mounting",
+            Extension::MountingTilt => "tilt of the axis that differs by mounting",
+            Extension::SpinTurn => "turn of the unit between rest and spinning",
+            Extension::Disturbance(Course::Spinning) => {
+                "step between rest and spinning: an aliased line or rectified vibration"
+            }
+            Extension::Disturbance(Course::SquaredSpeed) => {
+                "disturbance with the square of the speed: rectified vibration"
+            }
+            Extension::Disturbance(Course::Yield) => "proof mass that yields to its force",
+            Extension::Disturbance(Course::Time) => "bias that changes over the session",
+            Extension::Disturbance(Course::TimeScale) => "scale that changes over the session",
+            Extension::Disturbance(Course::Rise) => "difference after a rise and after a fall of the speed",
+            Extension::Disturbance(Course::Memory) => "memory of earlier forces",
+            Extension::OneMounting(Difference::Shift, _) => "shift of the unit in one mounting",
+            Extension::OneMounting(Difference::Turn, _) => "turn of the unit in one mounting",
+            Extension::OneMounting(Difference::Unit, _) => "another unit in one mounting",
+        },
+    }
+}

@@ -1,0 +1,154 @@
+//! Russian: words for what is one of several.
+
+use centrical::{
+    Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
+};
+use centrical_session::{Follows, Method};
+
+pub(super) fn group(group: Group) -> &'static str {
+    match group {
+        Group::Bias => "Смещение нуля",
+        Group::Scale => "Погрешность масштаба",
+        Group::Misalignment => "Перекос оси",
+        Group::Quadratic => "Квадратичный член",
+        Group::Cubic => "Кубичный член",
+        Group::CrossCoupling => "Перекрёстная связь",
+        Group::Asymmetry => "Асимметрия масштаба",
+        Group::HigherOrder => "Член высшего порядка",
+        Group::Tilt => "Наклон оси вращения",
+        Group::Turn => "Поворот прибора",
+        Group::Shift => "Смещение прибора",
+        Group::ProofMass => "Положение чувствительной массы",
+        Group::ElasticTurn => "Упругий поворот",
+        Group::ArmStretch => "Растяжение плеча",
+        Group::RadiusScale => "Масштаб радиусов",
+        Group::SpeedScale => "Масштаб скорости",
+        Group::ArmTurn => "Упругий поворот конца плеча",
+        Group::SpinTurn => "Поворот прибора при вращении",
+        Group::Seat => "Положение посадочного места",
+        Group::MountingShift => "Смещение в одной установке",
+        Group::MountingTurn => "Поворот в одной установке",
+        Group::MountingTilt => "Наклон оси в одной установке",
+        Group::Disturbance => "Возмущение показаний",
+    }
+}
+
+pub(super) fn meaning(of: Group) -> &'static str {
+    match of {
+        Group::Bias => "смещение нуля: показание без удельной силы",
+        Group::Scale => "погрешность масштаба: относительная погрешность наклона по собственной оси",
+        Group::Misalignment => "перекос: доля силы вдоль другой оси, попадающая в показание, угол",
+        Group::Quadratic => "квадратичный коэффициент: показание от квадрата силы вдоль оси j",
+        Group::Cubic => "кубичный коэффициент по собственной оси",
+        Group::CrossCoupling => "перекрёстная связь: показание от произведения двух сил",
+        Group::Asymmetry => "асимметрия: масштаб, зависящий от знака силы",
+        Group::HigherOrder => "коэффициент при высшей степени",
+        _ => group(of),
+    }
+}
+
+pub(super) fn source(source: Source) -> &'static str {
+    match source {
+        Source::Noise => "Шум",
+        Source::PlateauSpeed => "Скорость каждой площадки",
+        Source::Priors => "Априорные данные",
+        Source::Gravity => "Ускорение силы тяжести",
+        Source::Latitude => "Широта",
+        Source::Radius => "Радиус",
+        Source::RadiusDifference => "Разность радиусов",
+        Source::SpeedScale => "Масштаб скорости",
+        Source::RestAngle => "Угол в покое",
+        Source::ProofMasses => "Чувствительные массы",
+        Source::Attitude => "Ориентация",
+        Source::Resolution => "Разрешение",
+        Source::Effects => "Неучтённые эффекты",
+    }
+}
+
+pub(super) fn method(method: Method) -> &'static str {
+    match method {
+        Method::Exact => "точная модель, метод Гаусса — Ньютона",
+        Method::Recursive => "точная модель, рекуррентный фильтр",
+        Method::Linear => "линейная модель [K5.3]",
+    }
+}
+
+pub(super) fn termination(termination: Termination) -> &'static str {
+    match termination {
+        Termination::Linear => "линейная модель",
+        Termination::Converged => "сошлось",
+        Termination::Stalled => "остановилось",
+        Termination::IterationLimit => "предел итераций",
+    }
+}
+
+pub(super) fn pair_relation(pair_relation: PairRelation) -> &'static str {
+    match pair_relation {
+        PairRelation::Common => "общая",
+        PairRelation::Opposite => "противоположная",
+        PairRelation::Free => "независимая",
+    }
+}
+
+pub(super) fn reference(reference: ReferencePoint) -> &'static str {
+    match reference {
+        ReferencePoint::FirstProofMass => "чувствительная масса 1",
+        ReferencePoint::OwnAxes => "без смещений вдоль собственных осей",
+    }
+}
+
+pub(super) fn follows(follows: &Follows) -> &'static str {
+    match follows {
+        Follows::Position { .. } => "скачок в положении",
+        Follows::SpeedInPosition { .. } => "квадрат скорости в положении",
+        Follows::SpeedOnSeat { .. } => "квадрат скорости на радиусе",
+        Follows::Speed => "квадрат скорости",
+        Follows::Load => "нагрузка",
+        Follows::Mounting { .. } => "скачок в установке",
+        Follows::Time => "уход",
+    }
+}
+
+pub(super) fn rival(rival: Rival) -> &'static str {
+    match rival {
+        Rival::Terms(Extra::CrossProducts) => "произведения двух составляющих силы",
+        Rival::Terms(Extra::OddQuadratic) => "нечётный квадрат силы",
+        Rival::Terms(Extra::Asymmetry) => "масштаб, зависящий от знака силы",
+        Rival::Terms(Extra::FourthPower) => "четвёртая степень силы",
+        Rival::Terms(Extra::FifthPower) => "пятая степень силы",
+        Rival::Terms(Extra::Jump) => "скачок нуля при смене знака силы",
+        Rival::Effect(extension) => match extension {
+            Extension::ElasticTurn(Law::Speed) => {
+                "упругий поворот прибора по положениям, растущий с квадратом скорости"
+            }
+            Extension::ElasticTurn(Law::Load) => "упругий поворот прибора по положениям, растущий с нагрузкой",
+            Extension::ArmStretch(Law::Speed) => "растяжение плеча с квадратом скорости",
+            Extension::ArmStretch(Law::Load) => "растяжение плеча с нагрузкой",
+            Extension::SeatStretch(Law::Speed) => "растяжение плеча по местам с квадратом скорости",
+            Extension::SeatStretch(Law::Load) => "растяжение плеча по местам с нагрузкой",
+            Extension::RadiusScale => "общий масштаб радиусов",
+            Extension::SpeedScale => "общий масштаб скоростей",
+            Extension::ArmTurn(Law::Speed) => "поворот конца плеча с квадратом скорости",
+            Extension::ArmTurn(Law::Load) => "поворот конца плеча с нагрузкой: нежёсткое плечо",
+            Extension::SeatRadius => "радиус посадочного места",
+            Extension::SeatLateral => "боковое положение посадочного места",
+            Extension::PositionShift => "собственное смещение в каждом положении: иное соотношение пар",
+            Extension::MountingShift => "собственное смещение в каждой установке",
+            Extension::MountingTurn => "собственный поворот в каждой установке",
+            Extension::MountingTilt => "наклон оси, различный по установкам",
+            Extension::SpinTurn => "поворот прибора между покоем и вращением",
+            Extension::Disturbance(Course::Spinning) => {
+                "ступень между покоем и вращением: наложение частот или выпрямленная вибрация"
+            }
+            Extension::Disturbance(Course::SquaredSpeed) => "возмущение с квадратом скорости: выпрямленная вибрация",
+            Extension::Disturbance(Course::Yield) => "чувствительная масса, податливая силе",
+            Extension::Disturbance(Course::Time) => "изменение нуля за время эксперимента",
+            Extension::Disturbance(Course::TimeScale) => "изменение масштаба за время эксперимента",
+            Extension::Disturbance(Course::Rise) => "различие после роста и после спада скорости",
+            Extension::Disturbance(Course::Memory) => "память о прежних силах",
+            Extension::OneMounting(Difference::Shift, _) => "смещение прибора в одной установке",
+            Extension::OneMounting(Difference::Turn, _) => "поворот прибора в одной установке",
+            Extension::OneMounting(Difference::Unit, _) => "другой прибор в одной установке",
+        },
+    }
+}
