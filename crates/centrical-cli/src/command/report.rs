@@ -1,17 +1,20 @@
 //! `centrical report RESULT`: the documents that a laboratory hands over, from a result.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use centrical_report::{DocumentRequest, Language, verdict_text, write_documents};
-use centrical_session::Error;
+use centrical_session::{DocumentKind, DocumentsReport, Error};
 use clap::ValueEnum;
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::printing::Printing;
 
 /// Write the documents of a calibration from its result.json.
 #[derive(Debug, clap::Args)]
-#[command(arg_required_else_help = true)]
+#[command(
+    arg_required_else_help = true,
+    after_help = "Example: centrical report results/result.json --html report.html --code compensation"
+)]
 pub struct Arguments {
     /// The result.json of a calibration
     result: PathBuf,
@@ -35,6 +38,8 @@ pub struct Arguments {
     code: Option<PathBuf>,
     #[command(flatten)]
     documents: Documents,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// Language of the documents, and the laboratory's data in them.
@@ -80,8 +85,19 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         language: arguments.documents.language.into(),
     })?;
     let objections = result.objections();
-    if !objections.is_empty() {
-        print(&verdict_text(&objections))?;
-    }
+    let text = || if objections.is_empty() { String::new() } else { verdict_text(&objections) };
+    let json = || DocumentsReport::of(&arguments.result, &result, &written(arguments)).to_json();
+    arguments.printing.show(text, json)?;
     Ok(Outcome::acceptable(objections.is_empty()))
+}
+
+/// The documents that were asked for.
+fn written(arguments: &Arguments) -> Vec<(DocumentKind, &Path)> {
+    let documents = [
+        (DocumentKind::Report, &arguments.html),
+        (DocumentKind::Certificate, &arguments.pdf),
+        (DocumentKind::DigitalCertificate, &arguments.dcc),
+        (DocumentKind::Code, &arguments.code),
+    ];
+    documents.into_iter().filter_map(|(kind, path)| Some((kind, path.as_deref()?))).collect()
 }
