@@ -4,23 +4,25 @@
 
 mod command;
 mod format;
+mod help;
 mod interruption;
 mod outcome;
 mod output;
+mod printing;
 mod progress;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
 
 use centrical_session::Error;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use outcome::Outcome;
 use output::{say, written};
 
 /// Calibrate newtonometer (accelerometer) triads on a precision centrifuge.
 #[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(name = "centrical", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -46,11 +48,14 @@ enum Command {
     Plan(command::plan::Arguments),
     Watch(command::watch::Arguments),
     Schema(command::schema::Arguments),
+    Completions(command::completions::Arguments),
+    Man(command::man::Arguments),
 }
 
 fn main() -> ExitCode {
     interruption::prepare();
-    let outcome = match Arguments::try_parse() {
+    let matches = help::grouped(Arguments::command()).try_get_matches();
+    let outcome = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => run(arguments.command),
         Err(text) if text.use_stderr() => {
             // If standard error does not take it there is nobody to tell.
@@ -86,5 +91,7 @@ fn run(command: Command) -> Result<Outcome, Error> {
         Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Watch(arguments) => command::watch::run(&arguments),
         Command::Schema(arguments) => command::schema::run(&arguments),
+        Command::Completions(arguments) => command::completions::run(&arguments, &mut Arguments::command()),
+        Command::Man(arguments) => command::man::run(&arguments, Arguments::command()),
     }
 }

@@ -1,13 +1,15 @@
 //! A bar for a person who waits; nothing when the output is not a terminal.
 
 use centrical_session::Session;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::printing::Printing;
 
 /// A bar over the records of a session, each read twice, on standard error. indicatif hides it when that is not a
 /// terminal.
-pub fn reading(session: &Session) -> ProgressBar {
+pub fn reading(session: &Session, printing: Printing) -> ProgressBar {
     const TEMPLATE: &str = "reading {bar:30} {percent}% of two passes, {bytes_per_sec}, {eta} left";
-    let bar = ProgressBar::new(2 * session.record_bytes());
+    let bar = bar(2 * session.record_bytes(), printing);
     if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
         bar.set_style(style);
     }
@@ -15,8 +17,8 @@ pub fn reading(session: &Session) -> ProgressBar {
 }
 
 /// A bar over `count` mountings on standard error. indicatif hides it when that is not a terminal.
-pub fn mountings(doing: &str, count: usize) -> ProgressBar {
-    let bar = ProgressBar::new(count as u64);
+pub fn mountings(doing: &str, count: usize, printing: Printing) -> ProgressBar {
+    let bar = bar(count as u64, printing);
     if let Ok(style) = ProgressStyle::with_template("{msg} {bar:30} {pos}/{len} mountings, {eta} left") {
         bar.set_style(style);
         bar.set_message(doing.to_owned());
@@ -25,10 +27,16 @@ pub fn mountings(doing: &str, count: usize) -> ProgressBar {
 }
 
 /// A bar over `count` calibrations on standard error.
-pub fn calibrations(count: usize) -> ProgressBar {
-    let bar = ProgressBar::new(count as u64);
+pub fn calibrations(count: usize, printing: Printing) -> ProgressBar {
+    let bar = bar(count as u64, printing);
     if let Ok(style) = ProgressStyle::with_template("calibrating {bar:30} {pos}/{len}, {eta} left") {
         bar.set_style(style);
     }
     bar
+}
+
+/// A bar on standard error, or none for a quiet command.
+fn bar(length: u64, printing: Printing) -> ProgressBar {
+    let target = if printing.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    ProgressBar::with_draw_target(Some(length), target)
 }

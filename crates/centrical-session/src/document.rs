@@ -1,16 +1,40 @@
 //! The documents that the program writes, one schema a file.
 
+mod assessment;
+mod comparison;
+mod compensation;
+mod documents;
+mod draft;
 mod json;
+mod models;
+mod montecarlo;
 mod noise;
 mod observability;
 mod plan;
 mod prediction;
+mod reduction;
 mod result;
+mod simulation;
 mod steadiness;
 mod truth;
 mod watch;
 mod words;
 
+pub(crate) use self::assessment::Assessed;
+pub use self::assessment::{
+    ASSESSMENT_SCHEMA, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport, CompensatedUncertainty,
+    ImprovementSummary, LeftOutPlateau, WithoutOutliers,
+};
+pub use self::comparison::{
+    COMPARISON_SCHEMA, ComparedResultSummary, ComparisonReport, DifferenceSummary, PairComparison,
+};
+pub(crate) use self::compensation::CompensatedFiles;
+pub use self::compensation::{COMPENSATION_SCHEMA, CompensationReport, FirstReading, ReadingsBeyond};
+pub use self::documents::{DOCUMENTS_SCHEMA, DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
+pub use self::draft::{DRAFT_SCHEMA, DraftReport, LineToFillIn};
+pub use self::models::{CandidateSummary, MODELS_SCHEMA, ModelsReport, NestedTestSummary, TermSupport};
+pub(crate) use self::montecarlo::Repeated;
+pub use self::montecarlo::{MONTE_CARLO_SCHEMA, MonteCarloReport, RepeatedFit, RepeatedParameter, SquareSummary};
 pub use self::noise::{NOISE_SCHEMA, NoiseAnalysis, ReadingNoise};
 pub use self::observability::{
     CombinationReport, ConditionReport, GroupReport, LostCombination, OBSERVABILITY_SCHEMA, ObservabilityReport,
@@ -21,6 +45,7 @@ pub use self::plan::{
     CriterionName, FrontierRow, GoalReport, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport,
 };
 pub use self::prediction::{PredictedParameter, PredictionReport};
+pub use self::reduction::{REDUCTION_SCHEMA, ReducedPlateauSummary, ReductionReport};
 pub use self::result::{
     BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary, FitSummary, Follows, Method, ModelSummary,
     MountingPrediction, MountingSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary, ParameterEstimate,
@@ -28,6 +53,7 @@ pub use self::result::{
     RivalSummary, SCHEMA, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary,
     ValiditySummary,
 };
+pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};
 pub use self::steadiness::{
     DriftSummary, LeftOutSummary, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary, TiltVerdict,
 };

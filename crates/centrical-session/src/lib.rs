@@ -39,6 +39,15 @@ pub use centrical_table::{
     read_bytes, refuse_inputs, write_whole,
 };
 pub use document::{
+    ASSESSMENT_SCHEMA, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport, COMPARISON_SCHEMA,
+    COMPENSATION_SCHEMA, CandidateSummary, ComparedResultSummary, ComparisonReport, CompensatedUncertainty,
+    CompensationReport, DOCUMENTS_SCHEMA, DRAFT_SCHEMA, DifferenceSummary, DocumentKind, DocumentsReport, DraftReport,
+    FirstReading, ImprovementSummary, LeftOutPlateau, LineToFillIn, MODELS_SCHEMA, MONTE_CARLO_SCHEMA, ModelsReport,
+    MonteCarloReport, NestedTestSummary, ObjectionName, PairComparison, REDUCTION_SCHEMA, ReadingsBeyond,
+    ReducedPlateauSummary, ReductionReport, RepeatedFit, RepeatedParameter, SIMULATION_SCHEMA, SimulationReport,
+    SquareSummary, TermSupport, WithoutOutliers, WrittenDocument,
+};
+pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
     CriterionName, DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry,
     HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method, ModelSummary, MountingPrediction,

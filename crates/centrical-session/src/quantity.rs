@@ -52,6 +52,19 @@ pub struct NotThatQuantity {
 }
 
 impl Dimension {
+    /// `value` [SI] as a number in `unit`: the one with the fewest digits that is read as the same `f64`. Where the factor of
+    /// the unit skips that `f64`, the nearest number, which is read to within one part in 2^52. `None` if `unit` is no unit
+    /// of this dimension.
+    pub(crate) fn written(self, value: f64, unit: &str) -> Option<String> {
+        let factor = self.factor(unit)?;
+        // Without the sign of a negative zero.
+        let (nearest, value) = (value / factor + 0.0, value + 0.0);
+        let rounded = (0..17).filter_map(|digits| format!("{nearest:.digits$e}").parse::<f64>().ok());
+        let neighbours = [nearest, nearest.next_down(), nearest.next_up()];
+        let number = rounded.chain(neighbours).find(|number| number * factor == value).unwrap_or(nearest);
+        Some(format!("{number} {unit}"))
+    }
+
     /// Factor that takes a number in `unit` to SI; `None` if `unit` is no unit of this dimension.
     pub fn factor(self, unit: &str) -> Option<f64> {
         self.units().iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor)
@@ -127,7 +140,7 @@ impl Dimension {
             Self::Angle => "an angle such as \"180 deg\" or a number in rad",
             Self::Speed => "a speed such as \"133.7 rpm\" or a number in rad/s",
             Self::Acceleration => "an acceleration such as \"9.81523 m/s^2\" or a number in m/s^2",
-            Self::Time => "a time such as \"10 ms\" or a number in s",
+            Self::Time => "a time such as \"10 ms\" or \"1 h 30 min\", or a number in s",
             Self::NoiseDensity => "a density such as \"20 ug/sqrt(Hz)\" or a number in m/s^2/sqrt(Hz)",
             Self::Frequency => "a frequency such as \"1 kHz\" or a number in Hz",
             Self::Ratio => "a ratio such as \"10 ppm\" or a plain number",
@@ -161,14 +174,38 @@ impl Quantity {
     }
 }
 
-/// `"133.7 rpm"` in SI, or nothing.
+/// `"133.7 rpm"` or `"1 h 30 min"` in SI, or nothing.
 fn parse(text: &str, dimension: Dimension) -> Option<f64> {
     let text = text.trim();
     let (number, length) = fast_float2::parse_partial::<f64, _>(text).ok()?;
     match text[length..].trim_start() {
         "" => Some(number),
-        unit => Some(number * dimension.factor(unit)?),
+        unit => match dimension.factor(unit) {
+            Some(factor) => Some(number * factor),
+            None if dimension == Dimension::Time => parse_duration(text),
+            None => None,
+        },
     }
+}
+
+/// `"1 h 30 min 5 s"`: numbers with units that become smaller, whole and from zero on but for the last one, which may have a
+/// fraction. A number of anything but the largest unit is less than one of the unit before it.
+fn parse_duration(text: &str) -> Option<f64> {
+    let mut words = text.split_whitespace();
+    let mut sum = 0.0;
+    let mut above = f64::INFINITY;
+    let mut was_whole = true;
+    while let Some(number) = words.next() {
+        let is_plain = number.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+        let number: f64 = number.parse().ok().filter(|_| is_plain)?;
+        let factor = Dimension::Time.factor(words.next()?)?;
+        let part = number * factor;
+        if !was_whole || factor >= above || part >= above {
+            return None;
+        }
+        (was_whole, above, sum) = (number.fract() == 0.0, factor, sum + part);
+    }
+    Some(sum)
 }
 
 impl fmt::Display for Quantity {
@@ -193,7 +230,7 @@ impl JsonSchema for Quantity {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "description": "A number in SI, or a string with a unit such as \"133.7 rpm\".",
+            "description": "A number in SI, or a string with a unit such as \"133.7 rpm\"; a duration also as \"1 h 30 min\".",
             "anyOf": [{ "type": "number" }, { "type": "string" }],
         })
     }

@@ -6,11 +6,12 @@ use centrical_report::assessment_text;
 use centrical_session::{AssessmentRequest, Error, STANDARD_GRAVITY, Session, assess};
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::printing::Printing;
 use crate::progress;
 
 /// Uncertainty budget, validity, residual patterns and prediction of a session's calibration.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical assess examples/ta-200 --coverage 0.99 --without-outliers")]
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
@@ -29,6 +30,8 @@ pub struct Arguments {
     /// Range of the specific force of the prediction, in g [default: the highest of the session]
     #[arg(long, value_name = "G")]
     range: Option<f64>,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// A probability in (0, 1).
@@ -45,10 +48,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         scale_by_residuals: arguments.scale_by_residuals,
         range: arguments.range.map(|g| g * STANDARD_GRAVITY),
     };
-    let bar = progress::reading(&session);
+    let bar = progress::reading(&session, arguments.printing);
     let assessment = assess(&session, &request, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
-    let text = assessment_text(&assessment, arguments.coverage, arguments.correlations);
-    print(&text)?;
+    let text = || assessment_text(&assessment, arguments.coverage, arguments.correlations);
+    arguments.printing.show(text, || assessment.report(arguments.coverage).to_json())?;
     Ok(Outcome::Done)
 }

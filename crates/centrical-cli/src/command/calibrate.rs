@@ -12,21 +12,22 @@ use centrical_session::{
 
 use crate::command::report::{Documents, is_within_limits};
 use crate::outcome::Outcome;
-use crate::output::{print, say};
+use crate::output::say;
+use crate::printing::Printing;
 use crate::progress;
 
 /// Calibrate a unit from a session folder: plateau means, fit, result.json.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical calibrate examples/ta-200 --out results")]
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
     /// Folder for result.json, the report and its plots, created if absent [default: result.json alone, in the current
-    /// folder]
-    #[arg(long, value_name = "DIR")]
+    /// folder; with --json no file]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Print result.json instead of the table; a file is written only if --out is given
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    printing: Printing,
     #[command(flatten)]
     documents: Documents,
     /// The linear fit of [K5.3] alone, with its second-order error
@@ -55,13 +56,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         FitMethod::Batch => Method::Exact,
         FitMethod::Recursive => Method::Recursive,
     };
-    if method == Method::Recursive {
+    if method == Method::Recursive && !arguments.printing.quiet {
         let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
         say(&states_text(&session.model()?, &order));
     }
     let out = arguments.out.as_deref();
     let claim = out.map(claim_folder).transpose()?;
-    let file = match (out, arguments.json) {
+    let file = match (out, arguments.printing.json) {
         (Some(folder), _) => Some(folder.join("result.json")),
         (None, false) => Some(PathBuf::from("result.json")),
         (None, true) => None,
@@ -71,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if out.is_none() {
         file.as_deref().map_or(Ok(()), |file| refuse_another_unit(file, &session))?;
     }
-    let bar = progress::reading(&session);
+    let bar = progress::reading(&session, arguments.printing);
     let result = calibrate_without(&session, &arguments.hold_out, method, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
     if let Some(file) = &file {
@@ -84,10 +85,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     drop(claim);
     let objections = result.objections();
     let unit = issuer.and_then(|issuer| issuer.unit);
-    let text =
-        if arguments.json { result.to_json()? } else { report(&result, &objections, unit.as_ref(), file.as_deref()) };
-    print(&text)?;
-    if arguments.json {
+    let text = || report(&result, &objections, unit.as_ref(), file.as_deref());
+    arguments.printing.show(text, || result.to_json())?;
+    if arguments.printing.json {
         // The result does not hold what the laboratory's limits say of the unit.
         if let Some(unit) = &unit {
             say(&unit_text(unit));

@@ -6,10 +6,11 @@ use centrical_report::comparison_table;
 use centrical_session::{CalibrationResult, Error, compare_results};
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::printing::Printing;
 
 /// Compare two calibrations of one unit: differences over their uncertainties, drift, and a joint test.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical compare 2025/result.json 2026/result.json --years 1")]
 pub struct Arguments {
     /// The result.json of the first calibration
     first: PathBuf,
@@ -18,13 +19,16 @@ pub struct Arguments {
     /// Years between the two, for the drift per year
     #[arg(long)]
     years: Option<f64>,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// Runs the command. Exit code 1 when the two do not agree, or are not of one unit.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let (first, second) = (CalibrationResult::read(&arguments.first)?, CalibrationResult::read(&arguments.second)?);
     let compared = compare_results(&first, &second);
-    let text = comparison_table(&first, &compared, arguments.years);
-    print(&text)?;
+    let results = [(arguments.first.as_path(), &first), (arguments.second.as_path(), &second)];
+    let text = || comparison_table(&first, &compared, arguments.years);
+    arguments.printing.show(text, || compared.report(results, arguments.years).to_json())?;
     Ok(Outcome::acceptable(compared.agree))
 }

@@ -6,17 +6,20 @@ use centrical_report::compensation_text;
 use centrical_session::{CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate};
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::printing::Printing;
 
 /// Convert a record of readings to specific force with a calibration result.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: centrical compensate results/result.json flight.csv --out forces.parquet --range '120 g'"
+)]
 pub struct Arguments {
     /// The result of a calibration: result.json
     result: PathBuf,
     /// The record: CSV or Parquet with t, f1, f2, f3 in s and m/s^2, unless --session says otherwise
     record: PathBuf,
     /// Output file: Parquet if its name ends in .parquet, CSV otherwise
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// The session whose experiment.toml names the record's columns and units
     #[arg(long, value_name = "SESSION")]
@@ -28,19 +31,23 @@ pub struct Arguments {
     /// Refuse a record with readings beyond those of the calibration, by more than a hundredth; nothing is written then
     #[arg(long)]
     within_calibration: bool,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let (compensated, certificate) = compensate(&CompensationRequest {
+    let request = CompensationRequest {
         result: arguments.result.clone(),
         record: arguments.record.clone(),
         out: arguments.out.clone(),
         session: arguments.session.clone(),
         range: arguments.range,
         within_calibration: arguments.within_calibration,
-    })?;
-    print(&compensation_text(&compensated, &certificate, &arguments.out))?;
+    };
+    let (compensated, certificate) = compensate(&request)?;
+    let text = || compensation_text(&compensated, &certificate, &arguments.out);
+    arguments.printing.show(text, || compensated.report(&request, &certificate).to_json())?;
     Ok(Outcome::acceptable(compensated.outside == 0))
 }
 

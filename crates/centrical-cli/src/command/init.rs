@@ -7,6 +7,7 @@ use clap::ValueEnum;
 
 use crate::outcome::Outcome;
 use crate::output::print;
+use crate::printing::Printing;
 
 /// Draft experiment.toml from records and telemetry: what the files show, what is likely, and what only a person knows.
 #[derive(Debug, clap::Args)]
@@ -16,11 +17,13 @@ pub struct Arguments {
     #[arg(required = true, value_name = "FILE|FOLDER")]
     inputs: Vec<PathBuf>,
     /// The experiment file to write; a file that exists is not overwritten. Without it the draft is printed
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Positions to write out where the readings do not show them
     #[arg(long, value_name = "PRESET")]
     positions: Option<Positions>,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// Positions written out.
@@ -46,12 +49,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let six_positions = arguments.positions == Some(Positions::Six);
     let draft = init(&InitRequest { inputs: arguments.inputs.clone(), folder, six_positions })?;
+    if let Some(file) = &arguments.out {
+        write_whole(file, draft.text.as_bytes())?;
+    }
     match &arguments.out {
-        Some(file) => {
-            write_whole(file, draft.text.as_bytes())?;
-            print(&summary(file, &draft))?;
-        }
-        None => print(&draft.text)?,
+        // Without a file the draft itself is what was asked for.
+        None if !arguments.printing.json => print(&draft.text)?,
+        file => arguments.printing.show(
+            || file.as_deref().map_or_else(String::new, |file| summary(file, &draft)),
+            || draft.report(file.as_deref()).to_json(),
+        )?,
     }
     Ok(Outcome::Done)
 }

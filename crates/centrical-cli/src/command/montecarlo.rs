@@ -7,11 +7,12 @@ use centrical_session::{Error, MonteCarloCase, MonteCarloRequest, Session, read_
 
 use super::assess::probability;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::printing::Printing;
 use crate::progress;
 
 /// Repeat the calibration on simulated noise and type B errors, and check the stated uncertainties.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical montecarlo examples/ta-200 --runs 1000 --seed 7")]
 pub struct Arguments {
     /// The session folder, or its experiment.toml; one without records and plateau table is a plan
     session: PathBuf,
@@ -34,6 +35,8 @@ pub struct Arguments {
     /// session's estimates
     #[arg(long)]
     typical: bool,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// Runs the command.
@@ -42,7 +45,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let file = if arguments.session.is_dir() { &inside } else { &arguments.session };
     let mut case = match read_plan(file)? {
         Some(plan) => MonteCarloCase::planned(plan, arguments.noise)?,
-        None => measured(&Session::read(file)?)?,
+        None => measured(&Session::read(file)?, arguments.printing)?,
     };
     if arguments.typical {
         case = case.of_typical_unit();
@@ -53,16 +56,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         coverage: arguments.coverage,
         linear: arguments.linear,
     };
-    let bar = progress::calibrations(arguments.runs);
+    let bar = progress::calibrations(arguments.runs, arguments.printing);
     let monte_carlo = case.run(&request, &|count| bar.inc(count as u64))?;
     bar.finish_and_clear();
-    let text = monte_carlo_text(&case, &monte_carlo, arguments.coverage);
-    print(&text)?;
+    let text = || monte_carlo_text(&case, &monte_carlo, arguments.coverage);
+    arguments.printing.show(text, || case.report(&request, &monte_carlo).to_json())?;
     Ok(Outcome::Done)
 }
 
-fn measured(session: &Session) -> Result<MonteCarloCase, Error> {
-    let bar = progress::reading(session);
+fn measured(session: &Session, printing: Printing) -> Result<MonteCarloCase, Error> {
+    let bar = progress::reading(session, printing);
     let case = MonteCarloCase::measured(session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
     Ok(case)

@@ -8,10 +8,11 @@ use centrical_session::{
 };
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::printing::Printing;
 
 /// Analyse the noise of a record: deviations of the Allan family with intervals, spectrum, noise terms.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical noise examples/ta-200 --plateau 2:1 --out noise")]
 pub struct Arguments {
     /// A record in any supported format, or a session, of which one plateau is analysed
     file: PathBuf,
@@ -43,11 +44,10 @@ pub struct Arguments {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "overlapping-allan,overlapping-hadamard", value_parser = estimators)]
     estimators: Vec<Estimators>,
     /// Folder for noise.json and the plots, created if absent
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Print the analysis as JSON instead of tables
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// One estimator or all.
@@ -71,16 +71,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         write_noise(&analysis, folder)?;
     }
     let warnings = noise_warnings(&analysis);
-    let text = if arguments.json {
-        analysis.to_json()
-    } else {
+    let text = || {
         let plateau = plateau.map(|name| format!("Plateau {}:{} of ", name.mounting, name.plateau));
         let mut lines = vec![plateau.unwrap_or_default(), noise_table(&analysis), "\n".to_owned()];
         lines.extend(warnings.iter().map(|warning| format!("NOT ACCEPTABLE  {warning}\n")));
         lines.extend(arguments.out.iter().map(|folder| format!("Written to {}\n", folder.display())));
         lines.concat()
     };
-    print(&text)?;
+    arguments.printing.show(text, || Ok(analysis.to_json()))?;
     Ok(Outcome::acceptable(warnings.is_empty()))
 }
 

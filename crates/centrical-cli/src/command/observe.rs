@@ -6,27 +6,26 @@ use centrical_report::observation_text;
 use centrical_session::{Error, ObservabilityReport, subject};
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::printing::Printing;
 
 /// Analyse observability: rank, undetermined combinations, causes, remedies; before or after the experiment.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical observe examples/plans/best.toml --combination 'dR_2[A] + drho_22'")]
 pub struct Arguments {
     /// The session folder, its experiment.toml, or a plan: the same form without records, or a preset
     #[arg(value_name = "SESSION|PLAN")]
     subject: PathBuf,
-    /// Print the report as JSON instead of text
-    #[arg(long)]
-    json: bool,
     /// A linear combination of parameters to examine, such as "dR_2[A] + drho_22"; may be repeated
     #[arg(long, value_name = "SUM", allow_hyphen_values = true)]
     combination: Vec<String>,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// Runs the command. Not acceptable: a parameter of the instrument is undetermined, or the rank depends on rounding.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let subject = subject(&arguments.subject, &|_| ())?;
     let report = ObservabilityReport::of(&subject, &arguments.combination)?;
-    let text = if arguments.json { report.to_json()? } else { observation_text(&report) };
-    print(&text)?;
+    arguments.printing.show(|| observation_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_acceptable()))
 }

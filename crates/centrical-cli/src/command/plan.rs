@@ -7,16 +7,17 @@ use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, wri
 
 use super::assess::probability;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::printing::Printing;
 
 /// Find the schedule with the smallest uncertainty in the time available, or the shortest one that meets target
 /// uncertainties.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical plan examples/plans/best.toml --out schedule.toml")]
 pub struct Arguments {
     /// Plan file: an experiment.toml with [candidates], [cost] and [target] in place of mountings
     plan: PathBuf,
     /// Write the schedule as a plan file for observe, montecarlo and simulate
-    #[arg(long, value_name = "TOML")]
+    #[arg(short, long, value_name = "TOML")]
     out: Option<PathBuf>,
     /// Plan for other times too, and show uncertainty against time beside a uniform plan and [K5.5]
     #[arg(long)]
@@ -33,9 +34,8 @@ pub struct Arguments {
     /// Coverage probability of the expanded uncertainties
     #[arg(long, default_value_t = 0.95, value_parser = probability)]
     coverage: f64,
-    /// Print the plan as JSON instead of text
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// Runs the command. Not acceptable: a parameter of the instrument is not determined, or a goal is missed.
@@ -54,8 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if let Some(file) = &arguments.svg {
         write_whole(file, frontier_plot(&report).as_bytes())?;
     }
-    let text = if arguments.json { report.to_json()? } else { plan_text(&report) };
-    print(&text)?;
+    arguments.printing.show(|| plan_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_acceptable()))
 }
 

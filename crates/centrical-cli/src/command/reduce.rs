@@ -2,38 +2,39 @@
 
 use std::path::PathBuf;
 
-use centrical_session::{Error, Session, reduce_without_inputs, write_reduced};
+use centrical_session::{Error, ReductionReport, Session, reduce_without_inputs, write_reduced};
 
 use crate::format::Format;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::printing::Printing;
 use crate::progress;
 
 /// Reduce a session's records to plateau means: a session of a few kilobytes, calibrated to the same numbers.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical reduce examples/ta-200 --out reduced")]
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
     /// Folder for experiment.toml and the table of plateaus, created if absent
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
     /// Format of the table of plateaus: plateaus.csv or plateaus.parquet
     #[arg(long, value_enum, default_value_t)]
     format: Format,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
-    let bar = progress::reading(&session);
+    let bar = progress::reading(&session, arguments.printing);
     let reduced = reduce_without_inputs(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
     write_reduced(&session, &reduced, arguments.format.into(), &arguments.out)?;
     let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();
-    print(&format!(
-        "{} plateaus of {samples} samples written to {}\n",
-        reduced.plateaus.len(),
-        arguments.out.display()
-    ))?;
+    let count = reduced.plateaus.len();
+    let text = || format!("{count} plateaus of {samples} samples written to {}\n", arguments.out.display());
+    arguments.printing.show(text, || ReductionReport::of(&session, &reduced, &arguments.out).to_json())?;
     Ok(Outcome::Done)
 }

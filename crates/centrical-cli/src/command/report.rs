@@ -1,20 +1,23 @@
 //! `centrical report RESULT`: the documents that a laboratory hands over, from a result.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use centrical_report::{
     DocumentRequest, Language, UnitStatement, UnitVerdict, unit_text, verdict_text, write_documents,
 };
-use centrical_session::Error;
+use centrical_session::{DocumentKind, DocumentsReport, Error};
 use clap::ValueEnum;
 
 use crate::command::compensate::acceleration;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::printing::Printing;
 
 /// Write the documents of a calibration from its result.json.
 #[derive(Debug, clap::Args)]
-#[command(arg_required_else_help = true)]
+#[command(
+    arg_required_else_help = true,
+    after_help = "Example: centrical report results/result.json --html report.html --code compensation"
+)]
 pub struct Arguments {
     /// The result.json of a calibration
     result: PathBuf,
@@ -42,6 +45,8 @@ pub struct Arguments {
     range: Option<f64>,
     #[command(flatten)]
     documents: Documents,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// Language of the documents, and the laboratory's data in them.
@@ -90,17 +95,29 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     })?;
     let (result, unit) = (documents.result, documents.unit);
     let objections = result.objections();
-    if !objections.is_empty() {
-        print(&verdict_text(&objections))?;
-    }
     let is_within = is_within_limits(unit.as_ref());
-    if !is_within {
-        print(&unit.as_ref().map(unit_text).unwrap_or_default())?;
-    }
+    let text = || {
+        let objections = if objections.is_empty() { String::new() } else { verdict_text(&objections) };
+        let outside = unit.as_ref().filter(|_| !is_within).map(unit_text).unwrap_or_default();
+        objections + &outside
+    };
+    let json = || DocumentsReport::of(&arguments.result, &result, &written(arguments)).to_json();
+    arguments.printing.show(text, json)?;
     Ok(Outcome::acceptable(objections.is_empty() && is_within))
 }
 
 /// Whether the unit keeps the limits that were asked for; limits that were not are kept.
 pub fn is_within_limits(unit: Option<&UnitStatement>) -> bool {
     unit.is_none_or(|unit| unit.verdict() == UnitVerdict::Within)
+}
+
+/// The documents that were asked for.
+fn written(arguments: &Arguments) -> Vec<(DocumentKind, &Path)> {
+    let documents = [
+        (DocumentKind::Report, &arguments.html),
+        (DocumentKind::Certificate, &arguments.pdf),
+        (DocumentKind::DigitalCertificate, &arguments.dcc),
+        (DocumentKind::Code, &arguments.code),
+    ];
+    documents.into_iter().filter_map(|(kind, path)| Some((kind, path.as_deref()?))).collect()
 }

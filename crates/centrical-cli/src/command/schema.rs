@@ -17,8 +17,14 @@ pub struct Arguments {
     /// The file that the schema describes
     form: FormName,
     /// Write the schema to a file
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Changes nothing: the schema is JSON
+    #[arg(short, long)]
+    json: bool,
+    /// Changes nothing: no more than the schema is printed
+    #[arg(short, long)]
+    quiet: bool,
 }
 
 /// Files that people write.

@@ -2,14 +2,16 @@
 
 use std::path::PathBuf;
 
-use centrical_session::{Error, Session, Truth, simulate_session};
+use centrical_session::{Error, Session, SimulationReport, Truth, simulate_session};
 
 use crate::format::Format;
 use crate::outcome::Outcome;
+use crate::printing::Printing;
 use crate::progress;
 
 /// Simulate a session: records, telemetry and experiment.toml, with truth.json beside them.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical simulate schedule.toml --truth truth.toml --seed 1 --out session")]
 pub struct Arguments {
     /// The plan: an experiment.toml, or the folder that holds it; its mountings need not name records
     plan: PathBuf,
@@ -20,19 +22,22 @@ pub struct Arguments {
     #[arg(long, value_name = "N")]
     seed: u64,
     /// Folder for the session, created if absent
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
     /// Format of records and telemetry
     #[arg(long, value_enum, default_value_t)]
     format: Format,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let plan = Session::read(&arguments.plan)?;
     let truth = Truth::read(&arguments.truth, &plan, arguments.seed)?;
-    let bar = progress::mountings("simulating", plan.experiment.mountings.len());
+    let bar = progress::mountings("simulating", plan.experiment.mountings.len(), arguments.printing);
     simulate_session(&plan, &truth, arguments.seed, arguments.format.into(), &arguments.out, &|_| bar.inc(1))?;
     bar.finish_and_clear();
+    arguments.printing.show(String::new, || SimulationReport::of(&plan, arguments.seed, &arguments.out).to_json())?;
     Ok(Outcome::Done)
 }

@@ -16,11 +16,12 @@ use crate::output::{print, print_as_it_is, say};
 /// Monitor a session folder while the laboratory is still adding records: after each plateau the uncertainties and the
 /// benefit of the next; the calibration when the schedule is complete. After Ctrl-C it resumes when started again.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical watch examples/ta-200 --out watched --target bias=0.01")]
 pub struct Arguments {
     /// The session folder, or its experiment.toml
     session: PathBuf,
     /// Folder for watch.json (its state), watch-history.jsonl (a line per plateau), its plot and result.json
-    #[arg(long, value_name = "DIR", default_value = ".")]
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// A target standard uncertainty in the unit of the table, e.g. --target bias=0.01; may be repeated
     #[arg(long, value_name = "GROUP=VALUE", value_parser = target)]
@@ -37,12 +38,15 @@ pub struct Arguments {
     /// Seconds between two readings of the folder
     #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = seconds)]
     interval: f64,
-    /// Seconds without change after which a record counts as finished
+    /// Seconds without change after which a record counts as finished; this is not the --quiet of other commands, and has no -q
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
     quiet: f64,
     /// Process what is present and exit
     #[arg(long)]
     once: bool,
+    /// Print a line of JSON per plateau instead of the table, as in watch-history.jsonl, and nothing else
+    #[arg(short, long)]
+    json: bool,
 }
 
 /// Runs the command.
@@ -67,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     say(&states_text(&model, &order));
     let mut shown = Ok(());
     let end = following.run(asked_to_end(), &mut |event| {
-        let outcome = show(&event, &arguments.target);
+        let outcome = if arguments.json { show_line(&event) } else { show(&event, &arguments.target) };
         if shown.is_ok() {
             shown = outcome;
         }
@@ -85,7 +89,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             let file = arguments.out.join("result.json");
             let written = format!("\nThe schedule is complete. Written to {}\n", file.display());
             let text = terminal_table(&result) + &verdict_text(&objections) + &written;
-            print(&text)?;
+            if !arguments.json {
+                print(&text)?;
+            }
             Ok(Outcome::acceptable(objections.is_empty()))
         }
     }
@@ -104,6 +110,21 @@ fn show(event: &WatchEvent, targets: &[(String, f64)]) -> Result<(), Error> {
                 print_as_it_is("\x1b[2J\x1b[H")?;
             }
             print(&format!("{}\n", watch_table(progress, targets, is_cleared)))
+        }
+    }
+}
+
+/// The line of a plateau in the history.
+fn show_line(event: &WatchEvent) -> Result<(), Error> {
+    match event {
+        WatchEvent::Waiting(note) => {
+            say(&format!("{note}\n"));
+            Ok(())
+        }
+        WatchEvent::Plateau(progress) => {
+            let last = progress.plateaus.last();
+            let entry = last.map(|last| last.entry(progress.plateaus.len(), progress.model, &progress.now));
+            entry.map_or(Ok(()), |entry| print(&entry.line()?))
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::number::short;
 
 /// The whole assessment, expanded uncertainties for a probability of `coverage`; the correlations if they are wanted.
 pub fn assessment_text(assessment: &Assessment, coverage: f64, correlations: bool) -> String {
-    let Assessment { model, fit, cleaned, budget, validity, patterns, prediction } = assessment;
+    let Assessment { model, fit, cleaned, budget, validity, patterns, prediction, .. } = assessment;
     let mut text =
         cleaned.as_ref().map_or(String::new(), |(after, left_out)| outliers_text(model, [fit, after], left_out));
     text.push_str(&budget_table(model.parameters(), budget, coverage));

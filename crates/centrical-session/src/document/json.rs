@@ -17,3 +17,8 @@ pub(super) fn line(name: &'static str, value: &impl Serialize) -> Result<String,
 fn ended(document: &'static str, text: serde_json::Result<String>) -> Result<String, Error> {
     text.map(|text| text + "\n").map_err(|source| Error::Json { document, source })
 }
+
+/// A number, or nothing in place of one that does not exist.
+pub(super) fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

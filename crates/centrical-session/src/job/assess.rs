@@ -5,6 +5,7 @@ use centrical::{Calibration, Data, Fit, FitError, MeasurementModel, Observation,
 use nalgebra::{DMatrix, Vector3};
 
 use super::calibrate::Problem;
+use crate::document::{Assessed, AssessmentReport};
 use crate::error::Error;
 use crate::experiment::Session;
 
@@ -25,6 +26,10 @@ pub struct AssessmentRequest {
 /// How far a calibration can be trusted.
 #[derive(Debug)]
 pub struct Assessment {
+    /// Title of the session.
+    pub title: String,
+    /// Whether the noise and the speed of the plateaus are scaled by the residuals.
+    pub scaled_by_residuals: bool,
     /// The model.
     pub model: MeasurementModel,
     /// The fit of all plateaus.
@@ -53,10 +58,26 @@ pub fn assess(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Assessment, Error> {
     let problem = Problem::of(session, progress)?;
-    of_problem(problem, request).map_err(|source| Error::Fit { file: session.file.clone(), source })
+    of_problem(problem, &session.title, request).map_err(|source| Error::Fit { file: session.file.clone(), source })
 }
 
-fn of_problem(problem: Problem, request: &AssessmentRequest) -> Result<Assessment, FitError> {
+impl Assessment {
+    /// The assessment as a document, expanded uncertainties for a probability of `coverage`.
+    pub fn report(&self, coverage: f64) -> AssessmentReport {
+        let assessed = Assessed {
+            model: &self.model,
+            fit: &self.fit,
+            cleaned: self.cleaned.as_ref().map(|(fit, left_out)| (fit, left_out.as_slice())),
+            budget: &self.budget,
+            validity: &self.validity,
+            patterns: &self.patterns,
+            prediction: self.prediction.as_ref(),
+        };
+        AssessmentReport::of(&assessed, &self.title, coverage, self.scaled_by_residuals)
+    }
+}
+
+fn of_problem(problem: Problem, title: &str, request: &AssessmentRequest) -> Result<Assessment, FitError> {
     let Problem { model, reduced } = problem;
     let all = Data::new(&model, reduced.observations())?;
     let whole = Calibration::exact(&all)?;
@@ -73,7 +94,8 @@ fn of_problem(problem: Problem, request: &AssessmentRequest) -> Result<Assessmen
     let cleaned = cleaned.as_ref().zip(without.as_ref());
     let cleaned = cleaned.map(|(cleaned, without)| (without.fit().clone(), cleaned.left_out.clone()));
     let fit = whole.into_fit();
-    Ok(Assessment { model, fit, cleaned, budget, validity, patterns, prediction })
+    let (title, scaled_by_residuals) = (title.to_owned(), request.scale_by_residuals);
+    Ok(Assessment { title, scaled_by_residuals, model, fit, cleaned, budget, validity, patterns, prediction })
 }
 
 /// Highest nominal specific force of the plateaus [m/s^2].

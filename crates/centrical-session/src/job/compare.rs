@@ -1,8 +1,10 @@
 //! Two calibrations of one unit.
 
+use std::path::Path;
+
 use centrical::uncertainty::{Comparison, compare};
 
-use crate::document::{CalibrationResult, TermSummary};
+use crate::document::{CalibrationResult, ComparisonReport, PairComparison, TermSummary};
 
 /// Two calibrations compared.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +33,26 @@ pub fn compare_results(first: &CalibrationResult, second: &CalibrationResult) ->
     let different_units = (units[0] != units[1]).then_some(units);
     let agree = different_units.is_none() && comparison.agrees();
     ComparedResults { comparison, different_units, terms_of_one, agree }
+}
+
+impl ComparedResults {
+    /// The comparison as a document: the files and the results that were compared; `years` lie between them, where known.
+    pub fn report(
+        &self,
+        [(first_file, first), (second_file, second)]: [(&Path, &CalibrationResult); 2],
+        years: Option<f64>,
+    ) -> ComparisonReport {
+        let years = years.filter(|years| *years != 0.0);
+        let [only_in_first, only_in_second] = self.terms_of_one.clone();
+        let pair = PairComparison {
+            same_unit: self.different_units.is_none(),
+            only_in_first,
+            only_in_second,
+            agree: self.agree,
+            ..PairComparison::of([first, second], &self.comparison, years)
+        };
+        ComparisonReport::new(&[(first_file, first), (second_file, second)], vec![pair])
+    }
 }
 
 /// Names of the coefficients of terms that `of` has and `other` has not.

@@ -7,7 +7,7 @@ use centrical_compensate::{Certificate, Compensation};
 use centrical_table::{Rows, StampTexts, refuse_inputs};
 use rayon::prelude::*;
 
-use crate::document::CalibrationResult;
+use crate::document::{CalibrationResult, CompensatedFiles, CompensationReport, FirstReading, ReadingsBeyond};
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::{Columns, RecordReader, stretch};
@@ -183,6 +183,19 @@ fn compensate_rows(
 }
 
 impl Compensated {
+    /// What became of the record of `request`, as a document.
+    pub fn report(&self, request: &CompensationRequest, certificate: &Certificate) -> CompensationReport {
+        let CompensationRequest { result, record, out, .. } = request;
+        let first = |first: Option<FirstOutside>| first.map(|f| FirstReading { t: f.t, reading: f.reading });
+        CompensationReport {
+            decimals: self.decimals,
+            readings: self.readings,
+            outside_range: ReadingsBeyond { count: self.outside, first: first(self.first_outside) },
+            beyond_calibration: ReadingsBeyond { count: self.beyond, first: first(self.first_beyond) },
+            ..CompensationReport::new(CompensatedFiles { result, record, out }, certificate.range, certificate.margin)
+        }
+    }
+
     /// What became of these readings and of later ones.
     fn add(&mut self, later: &Self) {
         self.readings += later.readings;

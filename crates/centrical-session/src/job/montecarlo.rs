@@ -8,6 +8,7 @@ use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, STAN
 use nalgebra::Vector3;
 
 use super::calibrate::Problem;
+use crate::document::{MonteCarloReport, Repeated, RepeatedFit};
 use crate::error::Error;
 use crate::experiment::{Plan, Session};
 
@@ -87,6 +88,18 @@ impl MonteCarloCase {
         Data::new(&self.model, self.observations.clone())
             .and_then(|data| monte_carlo(&data, &self.truth, &settings, done))
             .map_err(|source| Error::Fit { file: self.file.clone(), source })
+    }
+
+    /// What the runs of `request` show, as a document.
+    pub fn report(&self, request: &MonteCarloRequest, monte_carlo: &MonteCarlo) -> MonteCarloReport {
+        let repeated = Repeated {
+            parameters: self.model.parameters(),
+            truth: &self.truth,
+            seed: request.seed,
+            fit: if request.linear { RepeatedFit::Linear } else { RepeatedFit::Exact },
+            coverage: request.coverage,
+        };
+        MonteCarloReport::of(&repeated, monte_carlo)
     }
 }
 

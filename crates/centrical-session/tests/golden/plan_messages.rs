@@ -101,7 +101,7 @@ fn extensions_and_priors() {
             (
                 "duration = \"5 min\"",
                 "duration = \"5 m\"",
-                "[[mounting]] 1, plateaus 1 duration: found \"5 m\", expected a time such as \"10 ms\" or a number in s (units: s, ms, us, ns, min, h)",
+                "[[mounting]] 1, plateaus 1 duration: found \"5 m\", expected a time such as \"10 ms\" or \"1 h 30 min\", or a number in s (units: s, ms, us, ns, min, h)",
             ),
         ],
     );

@@ -77,6 +77,16 @@ impl HistoryEstimate {
     }
 }
 
+impl HistoryEntry {
+    /// The entry as its line of the history.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn line(&self) -> Result<String, Error> {
+        json::line("watch-history.jsonl", self)
+    }
+}
+
 /// Adds a line to the history.
 ///
 /// # Errors

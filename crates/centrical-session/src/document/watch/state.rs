@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use centrical::Observation;
+use centrical::fit::Progress;
+use centrical::{MeasurementModel, Observation};
 use centrical_table::write_stream;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::history::InnovationSummary;
+use super::history::{HistoryEntry, HistoryEstimate, InnovationSummary};
 use crate::document::json;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
@@ -131,6 +132,19 @@ impl WatchState {
 }
 
 impl WatchedPlateau {
+    /// The entry of the history after this plateau, the number `plateau` of those that have come: what is known `now`.
+    pub fn entry(&self, plateau: usize, model: &MeasurementModel, now: &Progress) -> HistoryEntry {
+        HistoryEntry {
+            plateau,
+            set_point: self.set_point,
+            innovation: self.innovation,
+            alarm: self.alarm,
+            held_out: self.held_out,
+            rank: now.rank,
+            estimates: HistoryEstimate::all(model, now),
+        }
+    }
+
     /// A plateau that has come.
     pub fn new(observation: &Observation, innovation: InnovationSummary, alarm: bool, held_out: bool) -> Self {
         let row = |i: usize| [0, 1, 2].map(|j| observation.covariance[(i, j)]);

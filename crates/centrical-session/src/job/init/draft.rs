@@ -1,6 +1,9 @@
 //! A text with marks: what was found, what is guessed, and what is to be filled in.
 
 use std::fmt::Write;
+use std::path::Path;
+
+use crate::document::{DraftReport, LineToFillIn};
 
 /// A drafted file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -28,6 +31,16 @@ pub struct FillIn {
 pub(super) const UNKNOWN: &str = "\"?\"";
 
 impl Draft {
+    /// The draft as a document, written to `file` if to any.
+    pub fn report(&self, file: Option<&Path>) -> DraftReport {
+        let line = |FillIn { line, key, reason }: &FillIn| LineToFillIn {
+            line: *line,
+            key: key.clone(),
+            reason: reason.clone(),
+        };
+        DraftReport::new(file, &self.text, self.guesses, self.fill_in.iter().map(line).collect())
+    }
+
     pub(super) fn line(&mut self, line: &str) {
         self.text.push_str(line);
         self.text.push('\n');

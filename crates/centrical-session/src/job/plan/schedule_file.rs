@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::document::{PlanReport, PlannedMounting, PlannedPlateau};
 use crate::error::Error;
+use crate::quantity::Dimension::{self, Angle, Speed, Time};
 use crate::settings::{editable, read_settings};
 
 impl PlanReport {
@@ -43,11 +44,18 @@ impl PlanReport {
 impl PlannedMounting {
     fn text(&self) -> String {
         let plateau = |p: &PlannedPlateau| {
-            let angle = if p.speed == 0.0 { format!(", angle = {:?}", p.angle) } else { String::new() };
-            format!("  {{ speed = {:?}{angle}, duration = {:?} }},\n", p.speed, p.duration)
+            let angle =
+                if p.speed == 0.0 { format!(", angle = {}", text(p.angle, Angle, "deg")) } else { String::new() };
+            let (speed, duration) = (text(p.speed, Speed, "rpm"), text(p.duration, Time, "s"));
+            format!("  {{ speed = {speed}{angle}, duration = {duration} }},\n")
         };
         let plateaus: String = self.plateaus.iter().map(plateau).collect();
         let (position, radius) = (&self.position, self.radius);
         format!("\n[[mounting]]\nposition = {position:?}\narm = [{radius:?}, 0, 0]\nplateaus = [\n{plateaus}]\n")
     }
+}
+
+/// A quantity [SI] as TOML text, read as the same number: [`Dimension::written`].
+fn text(value: f64, dimension: Dimension, unit: &str) -> String {
+    dimension.written(value, unit).map_or_else(|| format!("{value:?}"), |text| format!("{text:?}"))
 }

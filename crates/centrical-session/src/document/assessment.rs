@@ -1,0 +1,264 @@
+//! How far a calibration can be trusted, as a document: schema `centrical-assessment/1`.
+
+use centrical::uncertainty::{
+    Budget, CurvePoint, Degrees, Improvement, Pattern, PlateauCheck, Validity, coverage_factor,
+};
+use centrical::{Experiment, Fit, Group, MeasurementModel, Source, Termination};
+use serde::Serialize;
+
+use super::json;
+use super::result::{BudgetSummary, Program, ValiditySummary};
+use crate::error::Error;
+
+/// Name of the schema's present version.
+pub const ASSESSMENT_SCHEMA: &str = "centrical-assessment/1";
+
+/// Budget, checks and prediction of a calibration.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AssessmentReport {
+    /// [`ASSESSMENT_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// Title of the session.
+    pub title: String,
+    /// Probability that the expanded uncertainties are to cover.
+    pub coverage: f64,
+    /// Whether the uncertainties by noise, speeds and priors are scaled by the residuals.
+    pub scaled_by_residuals: bool,
+    /// The fit of all plateaus.
+    pub fit: AssessedFit,
+    /// What was left out and the fit of the others, on which all else rests then; null if that was not asked for.
+    pub without_outliers: Option<WithoutOutliers>,
+    /// The unknowns in order.
+    pub parameters: Vec<AssessedParameter>,
+    /// Combined covariance of the unknowns in their order, SI; null where one is not determined.
+    pub covariance: Vec<Vec<Option<f64>>>,
+    /// The uncertainties by their sources.
+    pub budget: BudgetSummary,
+    /// What each source costs the parameters of the instrument, the costliest first.
+    pub improvements: Vec<ImprovementSummary>,
+    /// The checks of the fit; `rivals` are those of `calibrate`, and are not looked for here.
+    pub validity: ValiditySummary,
+    /// The plateaus against their prediction from all others, in order.
+    pub plateaus: Vec<AssessedPlateau>,
+    /// Uncertainty of a compensated reading along each instrument axis; null while a coefficient is not determined.
+    pub prediction: Option<[Vec<CompensatedUncertainty>; 3]>,
+}
+
+/// How a fit went.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AssessedFit {
+    /// How it ended.
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub termination: Termination,
+    /// Weighted sum of squared residuals.
+    pub chi_squared: f64,
+    /// Readings less rank.
+    pub degrees_of_freedom: usize,
+}
+
+/// A fit without outlying plateaus.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WithoutOutliers {
+    /// The plateaus left out, the most outlying first.
+    pub left_out: Vec<LeftOutPlateau>,
+    /// The fit of the others.
+    pub fit: AssessedFit,
+}
+
+/// A plateau that was left out.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LeftOutPlateau {
+    /// Mounting, counted from 1.
+    pub mounting: usize,
+    /// Plateau of the mounting's schedule, counted from 0.
+    pub index: usize,
+    /// Probability of a plateau so far out by chance, when it was left out.
+    pub probability: f64,
+}
+
+/// An unknown with its uncertainty, SI.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AssessedParameter {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// bias, scale, misalignment, ...
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub group: Group,
+    /// Estimate; null where it is not determined, as all that follows.
+    pub value: Option<f64>,
+    /// Combined standard uncertainty.
+    pub standard_uncertainty: Option<f64>,
+    /// Effective degrees of freedom (Welch-Satterthwaite); null also where they are infinite.
+    pub degrees_of_freedom: Option<f64>,
+    /// Coverage factor.
+    pub coverage_factor: Option<f64>,
+    /// Expanded uncertainty.
+    pub expanded_uncertainty: Option<f64>,
+}
+
+/// What a perfect source would bring.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ImprovementSummary {
+    /// The source.
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub source: Source,
+    /// Its mean share of the variance of the parameters of the instrument, 0 to 1.
+    pub share: f64,
+    /// Mean factor on their combined uncertainties without it.
+    pub mean_factor: f64,
+    /// The parameter that gains most.
+    pub parameter: String,
+    /// Factor on the combined uncertainty of that parameter.
+    pub factor: f64,
+}
+
+/// A plateau against its prediction from all others.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct AssessedPlateau {
+    /// Mounting, counted from 1.
+    pub mounting: usize,
+    /// Plateau of the mounting's schedule, counted from 0.
+    pub index: usize,
+    /// Residuals over their standard deviations, by newtonometer.
+    pub standardised: [f64; 3],
+    /// Part of its readings that the fit follows, 0 to 1.
+    pub leverage: f64,
+    /// Probability of so large a difference by chance, for this plateau alone.
+    pub probability: f64,
+}
+
+/// Standard uncertainty of a compensated reading, calibration alone.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CompensatedUncertainty {
+    /// Specific force along the axis [m/s^2].
+    pub force: f64,
+    /// Standard uncertainties of the three components [m/s^2].
+    pub components: [f64; 3],
+    /// Standard uncertainty along the force [m/s^2].
+    pub along: f64,
+}
+
+/// What an assessment found, in the terms of the numerics.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Assessed<'a> {
+    pub model: &'a MeasurementModel,
+    /// The fit of all plateaus.
+    pub fit: &'a Fit,
+    /// The fit without outlying plateaus, and these with their probabilities.
+    pub cleaned: Option<(&'a Fit, &'a [(usize, f64)])>,
+    pub budget: &'a Budget,
+    pub validity: &'a Validity,
+    pub patterns: &'a [Pattern],
+    pub prediction: Option<&'a [Vec<CurvePoint>; 3]>,
+}
+
+impl AssessmentReport {
+    /// The assessment of a session of that title, expanded uncertainties for a probability of `coverage`.
+    pub(crate) fn of(assessed: &Assessed, title: &str, coverage: f64, scaled_by_residuals: bool) -> Self {
+        let Assessed { model, fit, cleaned, budget, validity, patterns, prediction } = *assessed;
+        let (experiment, parameters) = (model.experiment(), model.parameters());
+        let count = parameters.len();
+        let used = cleaned.map_or(fit, |(without, _)| without);
+        let own: Vec<usize> = (0..count).filter(|&j| parameters[j].is_of_instrument()).collect();
+        let improvement = |i: &Improvement| ImprovementSummary {
+            source: i.source,
+            share: i.share,
+            mean_factor: i.mean_factor,
+            parameter: parameters[i.most].name.clone(),
+            factor: i.most_factor,
+        };
+        let row = |i: usize| (0..count).map(|j| budget.covariance(i, j)).collect();
+        Self {
+            schema: ASSESSMENT_SCHEMA,
+            program: Program::this(),
+            title: title.to_owned(),
+            coverage,
+            scaled_by_residuals,
+            fit: AssessedFit::of(fit),
+            without_outliers: cleaned.map(|(fit, left_out)| WithoutOutliers::of(experiment, fit, left_out)),
+            parameters: (0..count).map(|j| AssessedParameter::of(model, used, budget, coverage, j)).collect(),
+            covariance: (0..count).map(row).collect(),
+            budget: BudgetSummary::new(budget, count),
+            improvements: budget.improvements(&own).iter().map(improvement).collect(),
+            validity: ValiditySummary::new(experiment, validity, patterns),
+            plateaus: validity.plateaus.iter().map(|check| AssessedPlateau::of(experiment, check)).collect(),
+            prediction: prediction.map(|curves| curves.each_ref().map(|curve| curve.iter().map(Into::into).collect())),
+        }
+    }
+
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(ASSESSMENT_SCHEMA, self)
+    }
+}
+
+impl AssessedFit {
+    fn of(fit: &Fit) -> Self {
+        Self { termination: fit.termination, chi_squared: fit.chi_squared, degrees_of_freedom: fit.degrees_of_freedom }
+    }
+}
+
+impl WithoutOutliers {
+    fn of(experiment: &Experiment, fit: &Fit, left_out: &[(usize, f64)]) -> Self {
+        let plateau = |&(set_point, probability): &(usize, f64)| {
+            let (mounting, index) = place(experiment, set_point);
+            LeftOutPlateau { mounting, index, probability }
+        };
+        Self { left_out: left_out.iter().map(plateau).collect(), fit: AssessedFit::of(fit) }
+    }
+}
+
+impl AssessedParameter {
+    fn of(model: &MeasurementModel, fit: &Fit, budget: &Budget, coverage: f64, j: usize) -> Self {
+        let parameter = &model.parameters()[j];
+        let degrees = budget.degrees_of_freedom(j);
+        let factor = degrees.map(|degrees| coverage_factor(coverage, degrees));
+        let standard_uncertainty = budget.standard_uncertainty(j);
+        Self {
+            name: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            group: parameter.group,
+            value: fit.value(j),
+            standard_uncertainty,
+            degrees_of_freedom: degrees.and_then(|degrees| match degrees {
+                Degrees::Finite(nu) => Some(nu),
+                Degrees::Infinite => None,
+            }),
+            coverage_factor: factor,
+            expanded_uncertainty: standard_uncertainty.zip(factor).map(|(u, k)| k * u),
+        }
+    }
+}
+
+impl AssessedPlateau {
+    fn of(experiment: &Experiment, check: &PlateauCheck) -> Self {
+        let (mounting, index) = place(experiment, check.set_point);
+        Self {
+            mounting,
+            index,
+            standardised: check.standardised.into(),
+            leverage: check.leverage,
+            probability: check.prediction.probability,
+        }
+    }
+}
+
+impl From<&CurvePoint> for CompensatedUncertainty {
+    fn from(&CurvePoint { force, components, along }: &CurvePoint) -> Self {
+        Self { force, components, along }
+    }
+}
+
+/// Mounting, counted from 1, and plateau in it, counted from 0.
+fn place(experiment: &Experiment, set_point: usize) -> (usize, usize) {
+    let mounting = experiment.set_points[set_point].mounting;
+    let before = experiment.set_points[..set_point].iter();
+    (mounting + 1, before.filter(|other| other.mounting == mounting).count())
+}

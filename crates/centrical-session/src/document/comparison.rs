@@ -1,0 +1,164 @@
+//! Calibrations of one unit compared, as a document: schema `centrical-comparison/1`.
+
+use std::path::Path;
+
+use centrical::Group;
+use centrical::uncertainty::{Comparison, Difference};
+use serde::Serialize;
+
+use super::json;
+use super::result::{CalibrationResult, Program};
+use crate::error::Error;
+
+/// Name of the schema's present version.
+pub const COMPARISON_SCHEMA: &str = "centrical-comparison/1";
+
+/// Results compared two by two.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComparisonReport {
+    /// [`COMPARISON_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// The results, in the order in which they were given.
+    pub results: Vec<ComparedResultSummary>,
+    /// The pairs that were compared.
+    pub comparisons: Vec<PairComparison>,
+    /// Whether every pair is of one unit and agrees.
+    pub agree: bool,
+}
+
+/// A result that is compared.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ComparedResultSummary {
+    /// Its file, as it was given.
+    pub file: String,
+    /// Title of the session.
+    pub title: String,
+    /// Date of the session, as it was written.
+    pub date: String,
+    /// Model of the unit.
+    pub unit_model: String,
+    /// Serial number of the unit.
+    pub unit_serial: String,
+}
+
+/// Two results, the second less the first.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PairComparison {
+    /// The first result, counted from 0.
+    pub first: usize,
+    /// The second result, counted from 0.
+    pub second: usize,
+    /// Whether the two results are of one unit.
+    pub same_unit: bool,
+    /// Coefficients of terms that only the first error model has.
+    pub only_in_first: Vec<String>,
+    /// Coefficients of terms that only the second error model has.
+    pub only_in_second: Vec<String>,
+    /// Years between the two, if they were given.
+    pub years: Option<f64>,
+    /// The coefficients that both determine.
+    pub differences: Vec<DifferenceSummary>,
+    /// `d^T (C_1 + C_2)^-1 d` of all of them together; null where the sum is no covariance.
+    pub chi_squared: Option<f64>,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: usize,
+    /// Probability of so large a chi^2 if nothing has changed.
+    pub probability: Option<f64>,
+    /// Whether the two are of one unit and agree.
+    pub agree: bool,
+}
+
+/// One coefficient in both, SI.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DifferenceSummary {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// bias, scale, misalignment, ...
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub group: Group,
+    /// Value in the first result.
+    pub first: Option<f64>,
+    /// Value in the second result.
+    pub second: Option<f64>,
+    /// Second less first.
+    pub difference: f64,
+    /// Standard uncertainty of the difference.
+    pub standard_uncertainty: f64,
+    /// Difference over its expanded uncertainty, `k = 2` (ISO/IEC 17043).
+    pub e_n: f64,
+    /// Probability that any of the coefficients differs by so many uncertainties if nothing has changed (Bonferroni).
+    pub probability: f64,
+    /// Whether this coefficient alone shows that the two disagree.
+    pub disagrees: bool,
+    /// Drift per year, if the years between the two were given.
+    pub per_year: Option<f64>,
+}
+
+impl ComparisonReport {
+    /// Results by their files, and the pairs that were compared.
+    pub(crate) fn new(results: &[(&Path, &CalibrationResult)], comparisons: Vec<PairComparison>) -> Self {
+        let summary = |(file, result): &(&Path, &CalibrationResult)| ComparedResultSummary {
+            file: file.display().to_string(),
+            title: result.session.title.clone(),
+            date: result.session.date.clone(),
+            unit_model: result.session.unit_model.clone(),
+            unit_serial: result.session.unit_serial.clone(),
+        };
+        let agree = comparisons.iter().all(|pair| pair.agree);
+        Self {
+            schema: COMPARISON_SCHEMA,
+            program: Program::this(),
+            results: results.iter().map(summary).collect(),
+            comparisons,
+            agree,
+        }
+    }
+
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(COMPARISON_SCHEMA, self)
+    }
+}
+
+impl PairComparison {
+    /// The first two results with their `comparison`; whether they are of one unit and whether they agree is for the caller.
+    pub(crate) fn of([first, second]: [&CalibrationResult; 2], comparison: &Comparison, years: Option<f64>) -> Self {
+        let value = |result: &CalibrationResult, name: &str| result.parameter(name).and_then(|p| p.value);
+        let summary = |d: &Difference| {
+            let parameter = first.parameter(&d.name);
+            DifferenceSummary {
+                name: d.name.clone(),
+                unit: parameter.map_or_else(String::new, |p| p.unit.clone()),
+                group: parameter.map_or(Group::Bias, |p| p.group),
+                first: value(first, &d.name),
+                second: value(second, &d.name),
+                difference: d.difference,
+                standard_uncertainty: d.standard_uncertainty,
+                e_n: d.e_n,
+                probability: d.probability,
+                disagrees: d.is_real(),
+                per_year: years.map(|years| d.difference / years),
+            }
+        };
+        Self {
+            first: 0,
+            second: 1,
+            same_unit: true,
+            only_in_first: Vec::new(),
+            only_in_second: Vec::new(),
+            years,
+            differences: comparison.differences.iter().map(summary).collect(),
+            chi_squared: comparison.chi_squared,
+            degrees_of_freedom: comparison.differences.len(),
+            probability: comparison.probability,
+            agree: comparison.agrees(),
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! What became of a compensated record, as a document: schema `centrical-compensation/1`.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::json;
+use super::result::Program;
+use crate::error::Error;
+
+/// Name of the schema's present version.
+pub const COMPENSATION_SCHEMA: &str = "centrical-compensation/1";
+
+/// A compensated record.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CompensationReport {
+    /// [`COMPENSATION_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// The result of the calibration, as it was given.
+    pub result: String,
+    /// The record, as it was given.
+    pub record: String,
+    /// The file with the specific forces.
+    pub out: String,
+    /// Decimals of the specific forces in m/s^2; null where they are written to the last bit.
+    pub decimals: Option<u32>,
+    /// Readings.
+    pub readings: u64,
+    /// Largest specific force on each axis [m/s^2]; the inverse is unique up to there.
+    pub range: f64,
+    /// The largest range for which the inverse is unique [m/s^2]; null where it is unique anywhere.
+    pub largest_range: Option<f64>,
+    /// Readings beyond the range, which are written as nan.
+    pub outside_range: ReadingsBeyond,
+    /// Readings beyond those of the calibration, where the error model is extrapolated.
+    pub beyond_calibration: ReadingsBeyond,
+}
+
+/// Readings beyond a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ReadingsBeyond {
+    /// Their number.
+    pub count: u64,
+    /// The first; null where there is none.
+    pub first: Option<FirstReading>,
+}
+
+/// The first reading beyond a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FirstReading {
+    /// Its time [s].
+    pub t: f64,
+    /// The reading [m/s^2].
+    pub reading: [f64; 3],
+}
+
+/// The files of a compensation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CompensatedFiles<'a> {
+    pub result: &'a Path,
+    pub record: &'a Path,
+    pub out: &'a Path,
+}
+
+impl CompensationReport {
+    /// A record that is compensated over `range` [m/s^2], which could be `margin` times as large.
+    pub(crate) fn new(files: CompensatedFiles, range: f64, margin: f64) -> Self {
+        let name = |file: &Path| file.display().to_string();
+        Self {
+            schema: COMPENSATION_SCHEMA,
+            program: Program::this(),
+            result: name(files.result),
+            record: name(files.record),
+            out: name(files.out),
+            decimals: None,
+            readings: 0,
+            range,
+            largest_range: json::finite(margin * range),
+            outside_range: ReadingsBeyond { count: 0, first: None },
+            beyond_calibration: ReadingsBeyond { count: 0, first: None },
+        }
+    }
+
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(COMPENSATION_SCHEMA, self)
+    }
+}

@@ -1,0 +1,157 @@
+//! The calibration repeated on drawn readings, as a document: schema `centrical-montecarlo/1`.
+
+use centrical::uncertainty::{MonteCarlo, ParameterStatistics, WeightedSquare};
+use centrical::{Group, Parameters};
+use serde::Serialize;
+
+use super::json;
+use super::result::Program;
+use crate::error::Error;
+
+/// Name of the schema's present version.
+pub const MONTE_CARLO_SCHEMA: &str = "centrical-montecarlo/1";
+
+/// Distance of Kolmogorov's test over `1/sqrt(runs)` that chance exceeds once in twenty.
+const ONCE_IN_TWENTY: f64 = 1.36;
+
+/// What the runs show beside what was stated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MonteCarloReport {
+    /// [`MONTE_CARLO_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Which fit is repeated.
+    pub fit: RepeatedFit,
+    /// Runs that converged: all figures are of these.
+    pub runs: usize,
+    /// Runs that did not converge.
+    pub failures: usize,
+    /// Probability that the intervals are to cover.
+    pub coverage: f64,
+    /// The unknowns in order.
+    pub parameters: Vec<RepeatedParameter>,
+    /// `e^T C^-1 e` of the determined unknowns with the covariance stated in each run.
+    pub weighted_square: SquareSummary,
+    /// chi^2 of the fits.
+    pub chi_squared: SquareSummary,
+}
+
+/// The fit that is repeated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RepeatedFit {
+    /// Gauss-Newton on the exact model.
+    Exact,
+    /// The linear fit of [K5.3] alone.
+    Linear,
+}
+
+/// One unknown over all runs, SI. All figures are null where the data do not determine it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RepeatedParameter {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// bias, scale, misalignment, ...
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub group: Group,
+    /// The true value that was drawn for.
+    pub truth: f64,
+    /// Combined standard uncertainty of the budget.
+    pub stated: Option<f64>,
+    /// Standard deviation of the error about its mean.
+    pub standard_deviation: Option<f64>,
+    /// Mean error of the estimate.
+    pub bias: Option<f64>,
+    /// Part of the runs whose interval covers the truth.
+    pub covered: Option<f64>,
+    /// Whether lost combinations of unknowns leave doubt in it that is not in `stated`.
+    pub leans_on_lost: bool,
+}
+
+/// A quadratic form over all runs, beside the chi^2 distribution that it should have.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SquareSummary {
+    /// Degrees of freedom: the expected mean.
+    pub degrees_of_freedom: usize,
+    /// Mean over the runs; null without a run.
+    pub mean: Option<f64>,
+    /// Standard deviation over the runs; null with fewer than two.
+    pub standard_deviation: Option<f64>,
+    /// The standard deviation that is expected, `sqrt(2 nu)`.
+    pub expected_standard_deviation: f64,
+    /// Largest distance from the chi^2 distribution (Kolmogorov); null without a run.
+    pub distance: Option<f64>,
+    /// The distance that chance exceeds once in twenty; null without a run.
+    pub distance_once_in_twenty: Option<f64>,
+}
+
+/// What was repeated, and how.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Repeated<'a> {
+    pub parameters: &'a Parameters,
+    pub truth: &'a [f64],
+    pub seed: u64,
+    pub fit: RepeatedFit,
+    pub coverage: f64,
+}
+
+impl MonteCarloReport {
+    pub(crate) fn of(repeated: &Repeated, monte_carlo: &MonteCarlo) -> Self {
+        let Repeated { parameters, truth, seed, fit, coverage } = *repeated;
+        let runs = monte_carlo.runs;
+        let parameter = |j: usize| {
+            let statistics = monte_carlo.parameters[j].filter(|_| runs > 0);
+            let number = |value: fn(&ParameterStatistics) -> f64| statistics.as_ref().map(value).and_then(json::finite);
+            RepeatedParameter {
+                name: parameters[j].name.clone(),
+                unit: parameters[j].unit.clone(),
+                group: parameters[j].group,
+                truth: truth[j],
+                stated: monte_carlo.parameters[j].map(|s| s.stated),
+                standard_deviation: number(|s| s.standard_deviation).filter(|_| runs > 1),
+                bias: number(|s| s.bias),
+                covered: number(|s| s.coverage),
+                leans_on_lost: monte_carlo.parameters[j].is_some_and(|s| s.is_affected_by_null_space),
+            }
+        };
+        Self {
+            schema: MONTE_CARLO_SCHEMA,
+            program: Program::this(),
+            seed,
+            fit,
+            runs,
+            failures: monte_carlo.failures,
+            coverage,
+            parameters: (0..parameters.len()).map(parameter).collect(),
+            weighted_square: SquareSummary::of(&monte_carlo.weighted_square, runs),
+            chi_squared: SquareSummary::of(&monte_carlo.chi_squared, runs),
+        }
+    }
+
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(MONTE_CARLO_SCHEMA, self)
+    }
+}
+
+impl SquareSummary {
+    fn of(square: &WeightedSquare, runs: usize) -> Self {
+        let is_any = runs > 0;
+        Self {
+            degrees_of_freedom: square.degrees_of_freedom,
+            mean: json::finite(square.mean),
+            standard_deviation: json::finite(square.standard_deviation),
+            expected_standard_deviation: (2.0 * square.degrees_of_freedom as f64).sqrt(),
+            distance: is_any.then(|| square.distance_from_chi_squared()),
+            distance_once_in_twenty: is_any.then(|| ONCE_IN_TWENTY / (runs as f64).sqrt()),
+        }
+    }
+}

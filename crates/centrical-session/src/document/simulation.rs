@@ -1,0 +1,55 @@
+//! A simulated session, as a document: schema `centrical-simulation/1`.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::json;
+use super::result::Program;
+use crate::error::Error;
+use crate::experiment::Session;
+
+/// Name of the schema's present version.
+pub const SIMULATION_SCHEMA: &str = "centrical-simulation/1";
+
+/// A session that was simulated. The truth is in its `truth.json`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SimulationReport {
+    /// [`SIMULATION_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// Title of the plan.
+    pub title: String,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Folder of the session, as it was given.
+    pub folder: String,
+    /// Mountings.
+    pub mountings: usize,
+    /// Plateaus of all mountings.
+    pub plateaus: usize,
+}
+
+impl SimulationReport {
+    /// The session that `plan` describes, simulated into `folder`.
+    pub fn of(plan: &Session, seed: u64, folder: &Path) -> Self {
+        Self {
+            schema: SIMULATION_SCHEMA,
+            program: Program::this(),
+            title: plan.title.clone(),
+            seed,
+            folder: folder.display().to_string(),
+            mountings: plan.experiment.mountings.len(),
+            plateaus: plan.experiment.set_points.len(),
+        }
+    }
+
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(SIMULATION_SCHEMA, self)
+    }
+}
