@@ -1,5 +1,6 @@
 //! The figures of a report: each a drawing, and a sentence that says what to see in it.
 
+mod comparison;
 mod correlation;
 mod drawing;
 mod fit;
@@ -14,6 +15,7 @@ use centrical::Position;
 use centrical_session::CalibrationResult;
 use nalgebra::Matrix3;
 
+pub use self::comparison::comparison_plot;
 pub use self::drawing::Figure;
 pub use self::frontier::frontier_plot;
 pub use self::history::history_figure;

@@ -22,7 +22,7 @@ pub use document::{
     certificate, report,
 };
 pub use evaluation::{Judged, UnitStatement, UnitVerdict};
-pub use figure::{Figure, figures, frontier_plot, positions_figure};
+pub use figure::{Figure, comparison_plot, figures, frontier_plot, positions_figure};
 pub use files::{
     DocumentRequest, Documents, read_issuer, write_all_documents, write_documents, write_history_plot, write_noise,
 };
@@ -30,6 +30,6 @@ pub use language::Language;
 pub use number::with_uncertainty;
 pub use render::{html, pdf};
 pub use terminal::{
-    assessment_text, comparison_table, compensation_text, monte_carlo_text, noise_table, noise_warnings,
+    assessment_text, comparison_text, compensation_text, monte_carlo_text, noise_table, noise_warnings,
     observation_text, plan_text, selection_table, states_text, terminal_table, unit_text, verdict_text, watch_table,
 };

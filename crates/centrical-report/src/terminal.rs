@@ -19,7 +19,7 @@ mod watch;
 
 pub use self::assess::assessment_text;
 pub use self::calibrate::{terminal_table, verdict_text};
-pub use self::compare::comparison_table;
+pub use self::compare::comparison_text;
 pub use self::compensate::compensation_text;
 pub use self::models::selection_table;
 pub use self::montecarlo::monte_carlo_text;

@@ -18,7 +18,7 @@ mod watch;
 
 pub use self::assess::{Assessment, AssessmentRequest, assess};
 pub use self::calibrate::{Problem, calibrate, calibrate_without};
-pub use self::compare::{ComparedResults, compare_results};
+pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
 pub use self::init::{Draft, FillIn, InitRequest, init};
 pub use self::models::select_model;

@@ -65,7 +65,7 @@ pub use experiment::{
     Session, SpeedSource, Speeds, read_plateaus, write_plateaus,
 };
 pub use job::{
-    Assessment, AssessmentRequest, ComparedResults, Compensated, CompensationRequest, Draft, FillIn, FirstOutside,
+    Assessment, AssessmentRequest, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn, FirstOutside,
     Following, InitRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series,
     SettingsForm, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess,
     calibrate, calibrate_without, compare_results, compensate, compensate_record, init, noise_of, plan, read_plan,

@@ -1,34 +1,46 @@
-//! `centrical compare A.json B.json`: two calibrations of one unit.
+//! `centrical compare RESULT RESULT...`: calibrations of one unit, two by two.
 
 use std::path::PathBuf;
 
-use centrical_report::comparison_table;
-use centrical_session::{CalibrationResult, Error, compare_results};
+use centrical_report::{comparison_plot, comparison_text};
+use centrical_session::{CalibrationResult, ComparisonRequest, Error, compare_results, refuse_inputs, write_whole};
 
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 
-/// Compare two calibrations of one unit: differences over their uncertainties, drift, and a joint test.
+/// Compare calibrations of one unit: differences over their uncertainties, drift, and a joint test.
+///
+/// Each result is compared with the one before it, and the last of more than two with the first.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: centrical compare 2025/result.json 2026/result.json --years 1")]
+#[command(after_help = "Example: centrical compare 2024/result.json 2025/result.json 2026/result.json --svg drift.svg")]
 pub struct Arguments {
-    /// The result.json of the first calibration
-    first: PathBuf,
-    /// The result.json of the second
-    second: PathBuf,
-    /// Years between the two, for the drift per year
-    #[arg(long)]
+    /// Results of calibrations, in the order of time
+    #[arg(num_args = 2.., required = true, value_name = "RESULT")]
+    results: Vec<PathBuf>,
+    /// Years between two results, for the drift per year [default: by the dates of their sessions]
+    #[arg(long, allow_hyphen_values = true)]
     years: Option<f64>,
+    /// Compare results of other units than the first; they do not agree, whatever their numbers
+    #[arg(long)]
+    other_units: bool,
+    /// Write a plot of the differences over their expanded uncertainties
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
     #[command(flatten)]
     printing: Printing,
 }
 
-/// Runs the command. Exit code 1 when the two do not agree, or are not of one unit.
+/// Runs the command. Exit code 1 when two results do not agree, or are not of one unit.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let (first, second) = (CalibrationResult::read(&arguments.first)?, CalibrationResult::read(&arguments.second)?);
-    let compared = compare_results(&first, &second);
-    let results = [(arguments.first.as_path(), &first), (arguments.second.as_path(), &second)];
-    let text = || comparison_table(&first, &compared, arguments.years);
-    arguments.printing.show(text, || compared.report(results, arguments.years).to_json())?;
-    Ok(Outcome::acceptable(compared.agree))
+    let results = arguments.results.iter().map(|file| CalibrationResult::read(file));
+    let results = results.collect::<Result<Vec<_>, Error>>()?;
+    let named: Vec<_> = arguments.results.iter().map(PathBuf::as_path).zip(&results).collect();
+    let request = ComparisonRequest { years: arguments.years, other_units: arguments.other_units };
+    let report = compare_results(&named, request)?;
+    if let Some(file) = &arguments.svg {
+        refuse_inputs(std::slice::from_ref(file), &arguments.results)?;
+        write_whole(file, comparison_plot(&report).as_bytes())?;
+    }
+    arguments.printing.show(|| comparison_text(&report), || report.to_json())?;
+    Ok(Outcome::acceptable(report.agree))
 }

@@ -1,5 +1,6 @@
 //! `centrical init FILES... --out experiment.toml`: an experiment file from what the files show.
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{Draft, Error, InitRequest, Place, init, write_whole};
@@ -72,8 +73,8 @@ fn summary(file: &Path, draft: &Draft) -> String {
         draft.fill_in.len()
     );
     for entry in &draft.fill_in {
-        text.push_str(&format!("  line {}: {}: {}\n", entry.line, entry.key, entry.reason));
+        let _ = writeln!(text, "  line {}: {}: {}", entry.line, entry.key, entry.reason);
     }
-    text.push_str(&format!("Then: centrical calibrate {}\n", file.display()));
+    let _ = writeln!(text, "Then: centrical calibrate {}", file.display());
     text
 }

@@ -230,7 +230,7 @@ fn compare_names_other_units_and_models() {
         let mut other = result(&copy);
         change(&mut other);
         fs::write(copy.out().join("other.json"), other.to_string()).unwrap();
-        let run = copy.run(&["compare", "result.json", "other.json"]);
+        let run = copy.run(&["compare", "result.json", "other.json", "--other-units"]);
         (run.status.code(), String::from_utf8(run.stdout).unwrap())
     };
     let (code, said) = compared(&|other| other["session"]["unit_serial"] = "0002".into());
@@ -238,6 +238,12 @@ fn compare_names_other_units_and_models() {
     assert!(
         said.contains("DIFFERENT UNITS  the first result is of TA-200, serial 0001, the second of TA-200, serial 0002")
     );
+    let refused = copy.run(&["compare", "result.json", "other.json"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let message = String::from_utf8(refused.stderr).unwrap();
+    let expected =
+        "other.json: found a result of TA-200, serial 0002, expected a result of TA-200, serial 0001, or --other-units";
+    assert!(message.contains(expected), "{message}");
     let (code, said) = compared(&|other| other["model"]["error_model"][0]["powers"] = serde_json::json!([0, 2, 0]));
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("only the first has df_1") && said.contains("only the second has df_1"), "{said}");
@@ -245,4 +251,32 @@ fn compare_names_other_units_and_models() {
     let (code, said) = compared(&|other| other["model"]["error_model"] = serde_json::json!([]));
     assert_eq!(code, Some(1), "{said}");
     assert!(said.contains("NOTHING TO COMPARE"), "{said}");
+}
+
+/// Three results: each against the one before, the last against the first; the years come from the dates.
+#[test]
+fn compare_takes_any_number_of_results() {
+    let copy = Copy::new();
+    text(&copy.calibrate(&[]));
+    for (name, date) in [("2027.json", "2027-10-05"), ("2029.json", "2029-10-05")] {
+        let mut later = result(&copy);
+        later["session"]["date"] = date.into();
+        fs::write(copy.out().join(name), later.to_string()).unwrap();
+    }
+    let arguments = ["compare", "result.json", "2027.json", "2029.json", "--svg", "plot.svg"];
+    let said = text(&copy.run(&arguments));
+    for heading in [
+        "RESULT 2 LESS RESULT 1, 1.00 years",
+        "RESULT 3 LESS RESULT 2, 2.00 years",
+        "RESULT 3 LESS RESULT 1, 3.00 years",
+    ] {
+        assert!(said.contains(heading), "{said}");
+    }
+    assert!(said.contains("2  2027.json: TA-200, serial 0001  2027-10-05"), "{said}");
+    assert!(fs::read_to_string(copy.out().join("plot.svg")).unwrap().contains("<svg"));
+    let json: Value =
+        serde_json::from_slice(&copy.run(&["compare", "result.json", "2027.json", "--json"]).stdout).unwrap();
+    assert_eq!(json["schema"], "centrical-comparison/1");
+    assert_eq!(json["comparisons"].as_array().unwrap().len(), 1);
+    assert_eq!(json["agree"], true);
 }

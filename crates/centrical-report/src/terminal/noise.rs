@@ -29,7 +29,7 @@ pub fn noise_table(analysis: &NoiseAnalysis) -> String {
 
 fn heading(text: &mut String, reading: &ReadingNoise) {
     let ReadingNoise { name, noise: Analysis { samples, interval, spikes, repeated, gaps, .. }, .. } = reading;
-    let _ = write!(text, "\n{}  {samples} readings every {interval:.6} s", name);
+    let _ = write!(text, "\n{name}  {samples} readings every {interval:.6} s");
     if gaps.missing > 0 {
         let _ = write!(text, "; missing: {}, the longest run {}", gaps.missing, gaps.longest);
     }
@@ -143,7 +143,7 @@ pub fn noise_warnings(analysis: &NoiseAnalysis) -> Vec<String> {
             reading.name, reading.unit
         ))
     };
-    analysis.readings.iter().flat_map(|reading| ramps(reading).or_else(|| warning(reading))).collect()
+    analysis.readings.iter().filter_map(|reading| ramps(reading).or_else(|| warning(reading))).collect()
 }
 
 /// A number to `digits` significant digits; with an exponent only where it would be long without.

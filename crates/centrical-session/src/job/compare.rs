@@ -1,58 +1,69 @@
-//! Two calibrations of one unit.
+//! Calibrations of one unit, two by two.
 
 use std::path::Path;
 
-use centrical::uncertainty::{Comparison, compare};
+use centrical::uncertainty::compare;
 
 use crate::document::{CalibrationResult, ComparisonReport, PairComparison, TermSummary};
+use crate::error::{Error, Place};
+use crate::laboratory::Date;
 
-/// Two calibrations compared.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ComparedResults {
-    /// The differences, and the joint test.
-    pub comparison: Comparison,
-    /// Model and serial number of the two units, if they are not the same unit.
-    pub different_units: Option<[String; 2]>,
-    /// Coefficients of terms that only the first error model has, and only the second. What they would have explained is in the
-    /// other coefficients.
-    pub terms_of_one: [Vec<String>; 2],
-    /// Whether the two are of one unit and agree.
-    pub agree: bool,
+/// How results are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ComparisonRequest {
+    /// Years between two results; by the dates of their sessions if absent.
+    pub years: Option<f64>,
+    /// Whether results of other units than the first are compared with it.
+    pub other_units: bool,
 }
 
-/// Compares the coefficients that both calibrations determine, of the terms that both error models have.
-pub fn compare_results(first: &CalibrationResult, second: &CalibrationResult) -> ComparedResults {
-    let terms_of_one = [terms_missing(first, second), terms_missing(second, first)];
+/// Compares each result with the one before it, and the last of more than two with the first: the coefficients that both
+/// determine, of the terms that both error models have.
+///
+/// # Errors
+/// [`Error`] when a result is of another unit than the first and the request does not allow it.
+pub fn compare_results(
+    results: &[(&Path, &CalibrationResult)],
+    request: ComparisonRequest,
+) -> Result<ComparisonReport, Error> {
+    if !request.other_units
+        && let Some((file, other)) = results.iter().find(|(_, result)| unit(result) != unit(results[0].1))
+    {
+        let expected = format!("a result of {}, or --other-units", unit(results[0].1));
+        return Err(Error::content(file, Place::Whole, format!("a result of {}", unit(other)), expected));
+    }
+    let consecutive = (1..results.len()).map(|n| [n - 1, n]);
+    let ends = (results.len() > 2).then(|| [0, results.len() - 1]);
+    let pairs = consecutive.chain(ends).map(|pair| pair_of(results, pair, request.years));
+    Ok(ComparisonReport::new(results, pairs.collect()))
+}
+
+fn pair_of(results: &[(&Path, &CalibrationResult)], pair: [usize; 2], years: Option<f64>) -> PairComparison {
+    let [first, second] = pair.map(|n| results[n].1);
+    let [only_in_first, only_in_second] = [terms_missing(first, second), terms_missing(second, first)];
     let mut second_unit = second.of_unit();
     // A coefficient of the same name may belong to another term.
-    for name in second_unit.names.iter_mut().filter(|name| terms_of_one[1].contains(name)) {
+    for name in second_unit.names.iter_mut().filter(|name| only_in_second.contains(name)) {
         name.clear();
     }
     let comparison = compare(&first.of_unit(), &second_unit);
-    let units = [first, second].map(unit);
-    let different_units = (units[0] != units[1]).then_some(units);
-    let agree = different_units.is_none() && comparison.agrees();
-    ComparedResults { comparison, different_units, terms_of_one, agree }
+    let same_unit = unit(first) == unit(second);
+    let years = years.or_else(|| years_between(first, second)).filter(|years| *years != 0.0);
+    PairComparison {
+        first: pair[0],
+        second: pair[1],
+        same_unit,
+        only_in_first,
+        only_in_second,
+        agree: same_unit && comparison.agrees(),
+        ..PairComparison::of([first, second], &comparison, years)
+    }
 }
 
-impl ComparedResults {
-    /// The comparison as a document: the files and the results that were compared; `years` lie between them, where known.
-    pub fn report(
-        &self,
-        [(first_file, first), (second_file, second)]: [(&Path, &CalibrationResult); 2],
-        years: Option<f64>,
-    ) -> ComparisonReport {
-        let years = years.filter(|years| *years != 0.0);
-        let [only_in_first, only_in_second] = self.terms_of_one.clone();
-        let pair = PairComparison {
-            same_unit: self.different_units.is_none(),
-            only_in_first,
-            only_in_second,
-            agree: self.agree,
-            ..PairComparison::of([first, second], &self.comparison, years)
-        };
-        ComparisonReport::new(&[(first_file, first), (second_file, second)], vec![pair])
-    }
+/// Years between the dates of two sessions, if both are days.
+fn years_between(first: &CalibrationResult, second: &CalibrationResult) -> Option<f64> {
+    let [first, second] = [first, second].map(|result| result.session.date.parse::<Date>().ok());
+    Some((second?.days() - first?.days()) / 365.25)
 }
 
 /// Names of the coefficients of terms that `of` has and `other` has not.

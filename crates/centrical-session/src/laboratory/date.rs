@@ -19,6 +19,19 @@ pub struct Date {
     pub day: u8,
 }
 
+impl Date {
+    /// Days since 1 March of the year 0 of the Gregorian calendar, for differences.
+    pub(crate) fn days(self) -> f64 {
+        // Years begin in March, so that a leap day is the last of its year.
+        let (year, month) = match self.month {
+            1 | 2 => (i64::from(self.year) - 1, i64::from(self.month) + 9),
+            _ => (i64::from(self.year), i64::from(self.month) - 3),
+        };
+        let leaps = year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400);
+        (365 * year + leaps + (153 * month + 2) / 5 + i64::from(self.day) - 1) as f64
+    }
+}
+
 impl fmt::Display for Date {
     /// ISO 8601.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -55,7 +55,7 @@ pub(super) fn draft(mountings: &[SeenMounting], request: &InitRequest) -> Draft 
         match &ids[m] {
             Some(id) => draft.found(&format!("position = \"{id}\""), "the attitude that the readings show"),
             None => {
-                draft.fill_in(&format!("[[mounting]] {}", m + 1), "position = \"?\"", "which of the positions above")
+                draft.fill_in(&format!("[[mounting]] {}", m + 1), "position = \"?\"", "which of the positions above");
             }
         }
         arm(&mut draft, m, findings.radii[m]);
@@ -237,7 +237,7 @@ fn columns(draft: &mut Draft, mountings: &[SeenMounting], unit: &OutputUnit) {
     match &records[0].time {
         Some(label) => draft.found(&format!("time = {}", written(label, "s")), "time"),
         None => {
-            draft.fill_in("[columns] time", "time = { rate = \"?\" }", "such as \"1 kHz\": the records have no time")
+            draft.fill_in("[columns] time", "time = { rate = \"?\" }", "such as \"1 kHz\": the records have no time");
         }
     }
     let readings: Vec<&Label> = if records.len() == 3 {
@@ -266,15 +266,11 @@ fn of_telemetry(draft: &mut Draft, telemetry: &FileColumns, of_records: Option<&
     }
     if let Some(speed) = &telemetry.speed {
         let line = format!("speed = {}", column(&speed.column));
-        match speed.unit {
-            Some(unit) => {
-                draft.found(&line, "speed");
-                draft.found(&format!("speed_unit = \"{unit}\""), "the unit beside its name");
-            }
-            None => {
-                draft.found(&line, "speed");
-                draft.guess("speed_unit = \"rad/s\"", "the file names no unit; \"rpm\" and \"deg/s\" are others");
-            }
+        draft.found(&line, "speed");
+        if let Some(unit) = speed.unit {
+            draft.found(&format!("speed_unit = \"{unit}\""), "the unit beside its name");
+        } else {
+            draft.guess("speed_unit = \"rad/s\"", "the file names no unit; \"rpm\" and \"deg/s\" are others");
         }
     }
 }

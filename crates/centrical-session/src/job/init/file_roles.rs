@@ -90,7 +90,7 @@ fn collect(path: &Path, depth: usize, is_named: bool, paths: &mut Vec<PathBuf>) 
 fn columns_of(path: PathBuf) -> Result<Option<FileColumns>, Error> {
     match text_form(&path)? {
         Some(form) => Ok(Some(of_text(path, form)).filter(|file| file.speed.is_some() || !file.readings.is_empty())),
-        None => Ok(of_binary(path)),
+        None => Ok(of_binary(&path)),
     }
 }
 
@@ -168,7 +168,7 @@ fn what(name: &str, unit: Option<&str>) -> What {
 }
 
 /// A table that is not text is asked for the usual names.
-fn of_binary(path: PathBuf) -> Option<FileColumns> {
+fn of_binary(path: &Path) -> Option<FileColumns> {
     let label = |name: &str| Label { column: ColumnName::Name(name.to_owned()), unit: None };
     let has = |names: &[&str]| {
         let field = |name: &&str| Field {
@@ -176,10 +176,10 @@ fn of_binary(path: PathBuf) -> Option<FileColumns> {
             expected: "a number".to_owned(),
             rule: Rule::Any,
         };
-        TableReader::open(&path, Extent::Whole, &names.iter().map(field).collect::<Vec<_>>(), "a table").is_ok()
+        TableReader::open(path, Extent::Whole, &names.iter().map(field).collect::<Vec<_>>(), "a table").is_ok()
     };
     let none =
-        FileColumns { path: path.clone(), form: None, time: Some(label("t")), readings: Vec::new(), speed: None };
+        FileColumns { path: path.to_owned(), form: None, time: Some(label("t")), readings: Vec::new(), speed: None };
     if has(&["t", "f1", "f2", "f3"]) {
         let speed = has(&["t", "omega"]).then(|| label("omega"));
         return Some(FileColumns { readings: ["f1", "f2", "f3"].map(label).to_vec(), speed, ..none });
