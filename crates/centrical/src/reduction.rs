@@ -30,24 +30,24 @@
 mod average;
 mod colour;
 mod error;
-mod levels;
 mod locate;
 mod mistake;
 mod plateau;
 mod record;
 mod speed;
+mod steady;
 mod survey;
 mod triangle;
 
 pub use average::{Averaging, PlateauFit, ReducedMounting, average};
 pub use colour::{NoiseModel, plateau_means};
 pub use error::{ReductionError, Stretch};
-pub use levels::{Level, Staircase, levels, staircase};
 pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate};
 pub use mistake::Mistake;
 pub use plateau::{LeftOut, PlateauMean, ScheduledPlateau};
 pub use record::{Record, RecordSlice};
 pub use speed::{MeasuredSpeed, measured_speeds};
+pub use steady::{Staircase, SteadyStretch, staircase, steady_stretches};
 pub use survey::{Condensed, Extremes, Survey};
 
 /// Finds and averages the scheduled plateaus of one mounting.

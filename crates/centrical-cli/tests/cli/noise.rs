@@ -117,6 +117,6 @@ fn a_record_with_ramps_is_named() {
     let record = copy.session().join("records/m01.csv");
     let output = copy.run(&["noise", record.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(text(&output).contains("f1: the record stands at 9 levels from"), "{}", text(&output));
-    assert!(text(&output).contains("choose one level with --from and --to, or a plateau"), "{}", text(&output));
+    assert!(text(&output).contains("f1: the record stands still 9 times, from"), "{}", text(&output));
+    assert!(text(&output).contains("choose one stretch with --from and --to, or a plateau"), "{}", text(&output));
 }

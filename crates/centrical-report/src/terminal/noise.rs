@@ -135,11 +135,11 @@ pub fn noise_warnings(analysis: &NoiseAnalysis) -> Vec<String> {
         Err(error) => Some(format!("{}: no noise terms: {error}", reading.name)),
     };
     let ramps = |reading: &ReadingNoise| {
-        let Staircase { levels, lowest, highest } = reading.staircase?;
-        let [low, high] = [lowest, highest].map(|level| significant(level, 4));
+        let Staircase { stretches, lowest, highest } = reading.staircase?;
+        let [low, high] = [lowest, highest].map(|value| significant(value, 4));
         Some(format!(
-            "{}: the record stands at {levels} levels from {low} to {high} {} with ramps between them, and these are no noise; choose one \
-             level with --from and --to, or a plateau of a session with --plateau",
+            "{}: the record stands still {stretches} times, from {low} to {high} {}, and the ramps between are no noise; choose one \
+             stretch with --from and --to, or a plateau of a session with --plateau",
             reading.name, reading.unit
         ))
     };

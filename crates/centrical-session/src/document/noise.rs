@@ -32,7 +32,7 @@ pub struct ReadingNoise {
     pub name: String,
     /// Its unit: m/s^2 for accelerations, as in the file otherwise.
     pub unit: String,
-    /// Whether the record moves from level to level, as a record with ramps does.
+    /// Whether the record moves from one steady stretch to another, as a record with ramps does.
     pub staircase: Option<Staircase>,
     /// Its noise.
     pub noise: Analysis,
@@ -76,7 +76,7 @@ fn of_reading(reading: &ReadingNoise, confidence: f64) -> Value {
         "samples": noise.samples,
         "spikes": noise.spikes,
         "repeated": noise.repeated,
-        "staircase": reading.staircase.map(|s| json!({"levels": s.levels, "lowest": s.lowest, "highest": s.highest})),
+        "staircase": reading.staircase.map(|s| json!({"stretches": s.stretches, "lowest": s.lowest, "highest": s.highest})),
         "gaps": {"runs": noise.gaps.runs, "missing": noise.gaps.missing, "longest": noise.gaps.longest},
         "deviations": noise.deviations.iter().map(|(estimator, family)| of_family(*estimator, family)).collect::<Vec<_>>(),
         "spectrum": noise.spectrum.as_ref().map_or_else(refused, |spectrum| of_spectrum(spectrum, confidence)),

@@ -11,7 +11,6 @@ mod coverage;
 mod fit;
 mod frame;
 mod invariance;
-mod levels;
 mod measurement;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod mistakes;
@@ -29,6 +28,7 @@ mod simulate;
 mod simulated_noise;
 mod speeds;
 mod stated;
+mod steady;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod stream;
 #[allow(clippy::cast_possible_truncation, reason = "seeds")]

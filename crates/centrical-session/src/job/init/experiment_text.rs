@@ -365,8 +365,8 @@ fn files(draft: &mut Draft, mounting: &SeenMounting, folder: &Path) {
 /// The schedule; what no file shows is to be filled in.
 fn plateaus(draft: &mut Draft, mounting: &SeenMounting, schedule: &[Set], table: &str) {
     draft.line("plateaus = [");
-    for (index, (set, level)) in schedule.iter().zip(&mounting.levels).enumerate() {
-        let seconds = level.window[1] - level.window[0];
+    for (index, (set, plateau)) in schedule.iter().zip(&mounting.plateaus).enumerate() {
+        let seconds = plateau.window[1] - plateau.window[0];
         let key = format!("{table} plateau {}", index + 1);
         match set {
             Set::Rest => draft.fill_in(
@@ -381,7 +381,7 @@ fn plateaus(draft: &mut Draft, mounting: &SeenMounting, schedule: &[Set], table:
             Set::Unknown => draft.fill_in(
                 &key,
                 "  { speed = \"?\" },",
-                &format!("a level of the readings for {seconds:.0} s; no file has the speed"),
+                &format!("a plateau of the readings for {seconds:.0} s; no file has the speed"),
             ),
         }
     }

@@ -13,20 +13,21 @@ pub(super) enum Set {
     Rest,
     /// A speed as text, such as `133.8 rpm`.
     Speed(String),
-    /// A level of the readings, of which no file has the speed.
+    /// A plateau of the readings, of which no file has the speed.
     Unknown,
 }
 
 /// The schedules of the mountings. People set round numbers: the speed is the one with the fewest digits that all
 /// observations of it allow.
 pub(super) fn schedules(mountings: &[SeenMounting]) -> Vec<Vec<Set>> {
-    let speeds: Vec<[f64; 2]> = mountings.iter().flat_map(|m| &m.levels).filter_map(|level| level.speed).collect();
-    let set = |level: &super::sighting::SeenLevel| match (level.is_rest(), level.speed) {
+    let speeds: Vec<[f64; 2]> =
+        mountings.iter().flat_map(|m| &m.plateaus).filter_map(|plateau| plateau.speed).collect();
+    let set = |plateau: &super::sighting::SeenPlateau| match (plateau.is_rest(), plateau.speed) {
         (Some(true), _) => Set::Rest,
         (_, Some([omega, _])) => Set::Speed(rounded(omega, &alike(omega, &speeds))),
         (_, None) => Set::Unknown,
     };
-    mountings.iter().map(|mounting| mounting.levels.iter().map(set).collect()).collect()
+    mountings.iter().map(|mounting| mounting.plateaus.iter().map(set).collect()).collect()
 }
 
 /// The observations of the same set speed: within a thousandth.

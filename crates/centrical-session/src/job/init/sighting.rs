@@ -1,8 +1,8 @@
-//! What the files of one mounting show: levels, and the readings there.
+//! What the files of one mounting show: plateaus, and the readings there.
 
 use std::path::PathBuf;
 
-use centrical::reduction::{Level, levels};
+use centrical::reduction::{SteadyStretch, steady_stretches};
 use centrical_table::ColumnName;
 
 use super::file_roles::{FileColumns, Group, Label};
@@ -11,24 +11,24 @@ use crate::error::Error;
 use crate::quantity::Dimension;
 use crate::record::{Column, Columns, RecordReader, Scale, read_telemetry};
 
-/// The part of a level over which readings are averaged: its middle, which clocks that differ by seconds share.
+/// The part of a plateau over which readings are averaged: its middle, which clocks that differ by seconds share.
 const MIDDLE: [f64; 2] = [0.35, 0.65];
 
-/// Samples of a reading are thinned to this step [s] where levels are sought in them.
+/// Samples of a reading are thinned to this step [s] where plateaus are sought in them.
 const STEP: f64 = 0.05;
 
 /// The files of a mounting and what they show.
 #[derive(Debug)]
 pub(super) struct SeenMounting {
     pub group: Group,
-    pub levels: Vec<SeenLevel>,
+    pub plateaus: Vec<SeenPlateau>,
     /// Samples per second.
     pub rate: Option<f64>,
 }
 
-/// A level, and what is known of it.
+/// A plateau, and what is known of it.
 #[derive(Debug, Clone)]
-pub(super) struct SeenLevel {
+pub(super) struct SeenPlateau {
     pub window: [f64; 2],
     /// By the telemetry [rad/s], with its standard uncertainty.
     pub speed: Option<[f64; 2]>,
@@ -39,26 +39,27 @@ pub(super) struct SeenLevel {
 /// Reads the files of a mounting.
 pub(super) fn sight(group: Group) -> Result<SeenMounting, Error> {
     let mut seen = Seen::default();
-    let mut levels = Vec::new();
+    let mut plateaus = Vec::new();
     if let Some(telemetry) = &group.telemetry {
         let trace = read_telemetry(&telemetry.path, &columns_of(telemetry))?;
-        let seen_levels = self::levels(&trace.t, &trace.omega);
-        let speed = |level: &Level| Some([level.value, level.standard_uncertainty]);
-        levels = seen_levels.iter().map(|l| SeenLevel { window: l.window, speed: speed(l), readings: None }).collect();
-        seen.read(&group, &levels, false)?;
+        let stretches = steady_stretches(&trace.t, &trace.omega);
+        let speed = |stretch: &SteadyStretch| Some([stretch.value, stretch.standard_uncertainty]);
+        plateaus =
+            stretches.iter().map(|l| SeenPlateau { window: l.window, speed: speed(l), readings: None }).collect();
+        seen.read(&group, &plateaus, false)?;
     } else {
         seen.read(&group, &[], true)?;
         let magnitude: Vec<f64> = seen.thinned.iter().map(|(_, f)| *f).collect();
         let times: Vec<f64> = seen.thinned.iter().map(|(t, _)| *t).collect();
-        let bare = |l: &Level| SeenLevel { window: l.window, speed: None, readings: None };
-        levels.extend(self::levels(&times, &magnitude).iter().map(bare));
+        let bare = |l: &SteadyStretch| SeenPlateau { window: l.window, speed: None, readings: None };
+        plateaus.extend(steady_stretches(&times, &magnitude).iter().map(bare));
         seen = Seen::default();
-        seen.read(&group, &levels, false)?;
+        seen.read(&group, &plateaus, false)?;
     }
-    for (level, (sum, count)) in levels.iter_mut().zip(&seen.sums) {
-        level.readings = (*count > 0).then(|| sum.map(|sum| sum / *count as f64));
+    for (plateau, (sum, count)) in plateaus.iter_mut().zip(&seen.sums) {
+        plateau.readings = (*count > 0).then(|| sum.map(|sum| sum / *count as f64));
     }
-    Ok(SeenMounting { group, levels, rate: seen.rate() })
+    Ok(SeenMounting { group, plateaus, rate: seen.rate() })
 }
 
 /// What a pass over a record collects.
@@ -73,14 +74,14 @@ struct Seen {
 }
 
 impl Seen {
-    /// Sums the readings in the middle of every level, or keeps thinned magnitudes.
-    fn read(&mut self, group: &Group, levels: &[SeenLevel], is_thinned: bool) -> Result<(), Error> {
-        self.sums = vec![([0.0; 3], 0); levels.len()];
-        let middle = |level: &SeenLevel| {
-            let [start, end] = level.window;
+    /// Sums the readings in the middle of every plateau, or keeps thinned magnitudes.
+    fn read(&mut self, group: &Group, plateaus: &[SeenPlateau], is_thinned: bool) -> Result<(), Error> {
+        self.sums = vec![([0.0; 3], 0); plateaus.len()];
+        let middle = |plateau: &SeenPlateau| {
+            let [start, end] = plateau.window;
             MIDDLE.map(|part| start + part * (end - start))
         };
-        let middles: Vec<[f64; 2]> = levels.iter().map(middle).collect();
+        let middles: Vec<[f64; 2]> = plateaus.iter().map(middle).collect();
         let columns = columns_of_records(&group.records);
         let files: Vec<&std::path::Path> = group.records.iter().map(|file| file.path.as_path()).collect();
         let mut reader = RecordReader::open_all(&files, centrical_table::Extent::Whole, &columns)?;
@@ -104,10 +105,10 @@ impl Seen {
         if is_thinned && self.thinned.last().is_none_or(|(last, _)| t - last >= STEP) {
             self.thinned.push((t, f.iter().map(|f| f * f).sum::<f64>().sqrt()));
         }
-        // The levels follow each other in time.
-        let level = middles.partition_point(|middle| middle[1] < t);
-        if middles.get(level).is_some_and(|middle| middle[0] <= t) {
-            let (sum, count) = &mut self.sums[level];
+        // The plateaus follow each other in time.
+        let plateau = middles.partition_point(|middle| middle[1] < t);
+        if middles.get(plateau).is_some_and(|middle| middle[0] <= t) {
+            let (sum, count) = &mut self.sums[plateau];
             sum.iter_mut().zip(f).for_each(|(sum, f)| *sum += f);
             *count += 1;
         }
@@ -160,17 +161,17 @@ impl SeenMounting {
         self.group.records.iter().map(|file| &file.path)
     }
 
-    /// Mean readings at rest and at the fastest level, where both are seen.
+    /// Mean readings at rest and at the fastest plateau, where both are seen.
     pub(super) fn extremes(&self) -> Option<Extremes> {
-        let rest = self.levels.iter().find(|level| level.is_rest() == Some(true))?.readings?;
-        let speed = |level: &&SeenLevel| level.speed.map_or(0.0, |[omega, _]| omega.abs());
-        let fastest = self.levels.iter().max_by(|a, b| speed(a).total_cmp(&speed(b)))?;
+        let rest = self.plateaus.iter().find(|plateau| plateau.is_rest() == Some(true))?.readings?;
+        let speed = |plateau: &&SeenPlateau| plateau.speed.map_or(0.0, |[omega, _]| omega.abs());
+        let fastest = self.plateaus.iter().max_by(|a, b| speed(a).total_cmp(&speed(b)))?;
         let omega = speed(&fastest);
         (omega > 0.0).then_some(Extremes { rest, fast: fastest.readings?, omega })
     }
 }
 
-impl SeenLevel {
+impl SeenPlateau {
     /// Whether the arm is at rest, by the telemetry.
     pub(super) fn is_rest(&self) -> Option<bool> {
         /// A creep that no schedule asks for [rad/s].

@@ -1,12 +1,12 @@
-//! Levels of a signal, without its schedule.
+//! Steady stretches of a signal, without its schedule.
 
-use centrical::reduction::{levels, staircase};
+use centrical::reduction::{staircase, steady_stretches};
 
 use crate::common::Random;
 
-/// A staircase with ramps, settling and noise: as many levels as it has, each where it is, within five standard uncertainties.
+/// A staircase with ramps, settling and noise: as many stretches as it has, each where it is, within five standard uncertainties.
 #[test]
-fn levels_of_a_noisy_staircase() {
+fn stretches_of_a_noisy_staircase() {
     for seed in 0..20 {
         let mut random = Random::new(seed);
         let set = [0.0, 14.0, 19.8, 28.0, 62.65, 0.0];
@@ -26,24 +26,24 @@ fn levels_of_a_noisy_staircase() {
                 now += 1.0 / rate;
             }
         }
-        let found = levels(&t, &y);
-        assert_eq!(staircase(&t, &y).map(|s| s.levels), Some(set.len()));
+        let found = steady_stretches(&t, &y);
+        assert_eq!(staircase(&t, &y).map(|s| s.stretches), Some(set.len()));
         assert_eq!(found.len(), set.len(), "seed {seed}: {found:?}");
-        for (level, set) in found.iter().zip(set) {
-            assert!(level.window[1] - level.window[0] > 8.0, "{level:?}");
-            let sigma = level.standard_uncertainty.max(noise / 20.0);
-            assert!((level.value - set).abs() < 5.0 * sigma, "seed {seed}: {level:?} is not {set}");
+        for (stretch, set) in found.iter().zip(set) {
+            assert!(stretch.window[1] - stretch.window[0] > 8.0, "{stretch:?}");
+            let sigma = stretch.standard_uncertainty.max(noise / 20.0);
+            assert!((stretch.value - set).abs() < 5.0 * sigma, "seed {seed}: {stretch:?} is not {set}");
         }
     }
 }
 
 /// Nothing stands still in a ramp, and nothing is found in nothing.
 #[test]
-fn no_levels() {
+fn no_stretches() {
     let t: Vec<f64> = (0..2000).map(|n| f64::from(n) * 0.05).collect();
-    assert!(levels(&t, &t).is_empty());
-    assert!(levels(&[], &[]).is_empty());
-    assert!(levels(&t[..3], &[1.0; 3]).is_empty());
+    assert!(steady_stretches(&t, &t).is_empty());
+    assert!(steady_stretches(&[], &[]).is_empty());
+    assert!(steady_stretches(&t[..3], &[1.0; 3]).is_empty());
 }
 
 /// White noise, a random walk, a drift and a sine about zero are no staircases.

@@ -1,10 +1,10 @@
-//! Levels of a signal that stands still, ramps to another level, and stands still again: what a schedule looks like to
+//! Steady stretches of a signal: it stands still, ramps to another value, and stands still again. So a schedule looks to
 //! someone who does not have it.
 //!
-//! Means of half-second blocks stand still from one to the next where they differ by no more than their noise, or by less
-//! than 2e-3 of the largest level in a second, which no ramp is slow enough for. The noise of a sample is that of
-//! neighbours, `1.4826 median |y_k+1 - y_k| / sqrt(2)`. The level is the median over the later three quarters of a
-//! stretch: the beginning may still settle.
+//! Means over half a second stand still from one to the next where they differ by no more than their noise, or by less
+//! than 2e-3 of the largest mean in a second, which no ramp is slow enough for. The noise of a sample is that of
+//! neighbours, `1.4826 median |y_k+1 - y_k| / sqrt(2)`. The value of a stretch is the median over its later three
+//! quarters: the beginning may still settle.
 
 use crate::statistics::median;
 
@@ -14,44 +14,44 @@ const BLOCK: f64 = 0.5;
 /// Fewest samples of a block.
 const SAMPLES: usize = 5;
 
-/// Slowest ramp, as a part of the largest level [1/s].
+/// Slowest ramp, as a part of the largest mean [1/s].
 const RAMP: f64 = 2e-3;
 
-/// Shortest level [s].
+/// Shortest stretch [s].
 const SHORTEST: f64 = 2.0;
 
 /// A stretch in which the signal stands still.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Level {
+pub struct SteadyStretch {
     /// First and last time [s].
     pub window: [f64; 2],
-    /// The level, in the unit of the signal.
+    /// Where the signal stands, in its unit.
     pub value: f64,
     /// Its standard uncertainty, from the scatter of the blocks.
     pub standard_uncertainty: f64,
 }
 
-/// A signal that moves from level to level.
+/// A signal that moves from one steady stretch to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Staircase {
-    /// Number of levels.
-    pub levels: usize,
-    /// The lowest, in the unit of the signal.
+    /// Number of steady stretches.
+    pub stretches: usize,
+    /// The lowest value of them, in the unit of the signal.
     pub lowest: f64,
     /// The highest.
     pub highest: f64,
 }
 
-/// Whether a signal moves from level to level: it stands still for half of the time, at levels that differ by more than a
-/// hundred times the noise of a sample and a twentieth of the largest. Drift and noise of any colour do not.
+/// Whether a signal moves from one steady stretch to another: it stands still for half of the time, at values that differ by
+/// more than a hundred times the noise of a sample and a twentieth of the largest. Drift and noise of any colour do not.
 pub fn staircase(t: &[f64], y: &[f64]) -> Option<Staircase> {
-    let levels = levels(t, y);
-    let still: f64 = levels.iter().map(|level| level.window[1] - level.window[0]).sum();
-    let values = levels.iter().map(|level| level.value);
+    let stretches = steady_stretches(t, y);
+    let still: f64 = stretches.iter().map(|stretch| stretch.window[1] - stretch.window[0]).sum();
+    let values = stretches.iter().map(|stretch| stretch.value);
     let [lowest, highest] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
     let is_apart = highest - lowest > (100.0 * noise(y)).max(0.05 * lowest.abs().max(highest.abs()));
     let is_still = 2.0 * still >= t.last()? - t.first()?;
-    (is_apart && is_still).then_some(Staircase { levels: levels.len(), lowest, highest })
+    (is_apart && is_still).then_some(Staircase { stretches: stretches.len(), lowest, highest })
 }
 
 /// Mean of consecutive samples.
@@ -61,8 +61,8 @@ struct Block {
     samples: usize,
 }
 
-/// The levels of a signal `y` over the times `t` [s], which do not decrease; as many as there are of both.
-pub fn levels(t: &[f64], y: &[f64]) -> Vec<Level> {
+/// The steady stretches of a signal `y` over the times `t` [s], which do not decrease; as many samples as there are of both.
+pub fn steady_stretches(t: &[f64], y: &[f64]) -> Vec<SteadyStretch> {
     let blocks = blocks(t, y);
     let noise = noise(y);
     let largest = blocks.iter().map(|block| block.mean.abs()).fold(0.0, f64::max);
@@ -72,19 +72,19 @@ pub fn levels(t: &[f64], y: &[f64]) -> Vec<Level> {
         (pair[1].mean - pair[0].mean).abs() <= white.max(RAMP * largest * time)
     };
     let still: Vec<bool> = blocks.windows(2).map(is_still).collect();
-    let mut levels = Vec::new();
+    let mut stretches = Vec::new();
     let mut first = 0;
     for end in 1..=blocks.len() {
         if end == blocks.len() || !still[end - 1] {
-            levels.extend(level(&blocks[first..end]));
+            stretches.extend(stretch(&blocks[first..end]));
             first = end;
         }
     }
-    levels
+    stretches
 }
 
-/// The level of blocks that stand still, if they do so for long enough.
-fn level(blocks: &[Block]) -> Option<Level> {
+/// The stretch of blocks that stand still, if they do so for long enough.
+fn stretch(blocks: &[Block]) -> Option<SteadyStretch> {
     let window = [blocks.first()?.window[0], blocks.last()?.window[1]];
     if window[1] - window[0] < SHORTEST {
         return None;
@@ -98,7 +98,7 @@ fn level(blocks: &[Block]) -> Option<Level> {
     let value = median(&mut means.clone());
     let scatter = 1.4826 * median(&mut means.iter().map(|mean| (mean - value).abs()).collect::<Vec<_>>());
     // The median of normal values is 1.25 times as uncertain as their mean.
-    Some(Level { window, value, standard_uncertainty: 1.25 * scatter / (means.len() as f64).sqrt() })
+    Some(SteadyStretch { window, value, standard_uncertainty: 1.25 * scatter / (means.len() as f64).sqrt() })
 }
 
 fn blocks(t: &[f64], y: &[f64]) -> Vec<Block> {
