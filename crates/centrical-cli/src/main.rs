@@ -28,8 +28,9 @@ struct Arguments {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the result is not acceptable (the reason is printed); \
-                          2 bad input or usage.";
+const EXIT_CODES: &str = "\
+Exit codes: 0 done; 1 done, but the result is not acceptable (the reason is
+printed, but for --quiet); 2 bad input or usage.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -93,5 +94,92 @@ fn run(command: Command) -> Result<Outcome, Error> {
         Command::Schema(arguments) => command::schema::run(&arguments),
         Command::Completions(arguments) => command::completions::run(&arguments, &mut Arguments::command()),
         Command::Man(arguments) => command::man::run(&arguments, Arguments::command()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// Commands without JSON: what they make is read by a shell and by `man`.
+    const WITHOUT_JSON: [&str; 2] = ["completions", "man"];
+    /// Commands without `-q`: `watch` has another `--quiet`, `completions` prints no more than was asked for.
+    const WITHOUT_QUIET: [&str; 2] = ["completions", "watch"];
+
+    fn commands() -> Vec<clap::Command> {
+        Arguments::command().get_subcommands().cloned().collect()
+    }
+
+    /// The words of the example in a command's help, as a shell splits them.
+    fn example(command: &clap::Command) -> Vec<String> {
+        let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+        let line = help.strip_prefix("Example: ").unwrap_or_else(|| panic!("{}: no example", command.get_name()));
+        let line = line.split(" > ").next().unwrap_or_default();
+        let outside = |(n, part): (usize, &str)| match n % 2 {
+            0 => part.split_whitespace().map(str::to_owned).collect(),
+            _ => vec![part.to_owned()],
+        };
+        line.split('\'').enumerate().flat_map(outside).collect()
+    }
+
+    #[test]
+    fn the_description_of_the_program_is_sound() {
+        help::grouped(Arguments::command()).debug_assert();
+    }
+
+    #[test]
+    fn every_command_stands_in_exactly_one_group() {
+        let mut grouped: Vec<&str> = help::GROUPS.iter().flat_map(|(_, names)| names.iter().copied()).collect();
+        let mut known: Vec<String> = commands().iter().map(|command| command.get_name().to_owned()).collect();
+        grouped.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(grouped, known);
+        let help = help::grouped(Arguments::command()).render_help().to_string();
+        for name in known {
+            assert_eq!(help.matches(&format!("\n  {name} ")).count(), 1, "{name}: {help}");
+        }
+        let widest = help.lines().map(|line| line.chars().count()).max();
+        assert!(widest <= Some(80), "{widest:?} columns: {help}");
+    }
+
+    /// The frequent options have one short form each, everywhere, and no other option takes it.
+    #[test]
+    fn every_command_has_json_quiet_and_their_short_forms() {
+        for command in commands() {
+            let name = command.get_name();
+            let takes = |long: &str, short: char| {
+                let mut with = command.get_arguments().filter(|a| a.get_long() == Some(long));
+                with.any(|a| a.get_short() == Some(short))
+            };
+            assert_eq!(takes("json", 'j'), !WITHOUT_JSON.contains(&name), "{name} --json");
+            assert_eq!(takes("quiet", 'q'), !WITHOUT_QUIET.contains(&name), "{name} --quiet");
+            for argument in command.get_arguments() {
+                let expected = match argument.get_long() {
+                    Some("out") => Some('o'),
+                    Some("json") => Some('j'),
+                    Some("quiet") if name != "watch" => Some('q'),
+                    _ => None,
+                };
+                assert_eq!(argument.get_short(), expected, "{name} {:?}", argument.get_long());
+            }
+        }
+    }
+
+    /// Every example is one that the program takes, of its own command, on files of the repository where it names them.
+    #[test]
+    fn every_command_has_an_example_that_is_taken() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        for command in commands() {
+            let words = example(&command);
+            assert_eq!(words[..2], ["centrical", command.get_name()]);
+            if let Err(error) = Arguments::try_parse_from(&words) {
+                panic!("{words:?}: {error}");
+            }
+            for file in words.iter().filter(|word| word.starts_with("examples/")) {
+                assert!(root.join(file).exists(), "{file}");
+            }
+        }
     }
 }

@@ -258,3 +258,68 @@ impl Visitor<'_> for QuantityVisitor {
         Ok(Quantity::Text(text.to_owned()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn read(text: &str, dimension: Dimension) -> Option<f64> {
+        Quantity::Text(text.to_owned()).si(dimension).ok()
+    }
+
+    proptest! {
+        /// Hours, minutes and seconds are whole numbers, and their sum is exact.
+        #[test]
+        fn a_duration_is_read_as_it_is_printed(hours in 0_u32..10_000, minutes in 0_u32..60, seconds in 0_u32..60) {
+            let whole = f64::from(3600 * hours + 60 * minutes);
+            prop_assert_eq!(read(&format!("{hours} h {minutes:02} min"), Dimension::Time), Some(whole));
+            let text = format!("{hours} h {minutes} min {seconds} s");
+            prop_assert_eq!(read(&text, Dimension::Time), Some(whole + f64::from(seconds)));
+            prop_assert_eq!(read(&format!("{minutes} min {seconds} s"), Dimension::Time), Some(f64::from(60 * minutes + seconds)));
+        }
+
+        /// What a person wrote with up to six decimals is written back letter by letter.
+        #[test]
+        fn a_number_in_a_unit_is_written_as_it_was_read(millionths in -10_000_000_000_i64..10_000_000_000) {
+            for (dimension, unit) in [(Dimension::Speed, "rpm"), (Dimension::Angle, "deg"), (Dimension::Time, "s")] {
+                let text = format!("{} {unit}", millionths as f64 / 1e6);
+                let value = read(&text, dimension).unwrap();
+                prop_assert_eq!(dimension.written(value, unit), Some(text));
+            }
+        }
+
+        /// Two roundings of one part in 2^53, the quotient and its product with the factor; a third one is that of the test.
+        #[test]
+        fn any_number_is_read_back_to_two_roundings(value in prop::num::f64::NORMAL.prop_filter("a speed", |v| (1e-9..1e9).contains(&v.abs()))) {
+            for (dimension, unit) in [(Dimension::Speed, "rpm"), (Dimension::Angle, "deg"), (Dimension::Time, "s")] {
+                let back = read(&dimension.written(value, unit).unwrap(), dimension).unwrap();
+                prop_assert!((back / value - 1.0).abs() <= 1.5 * f64::EPSILON, "{} for {}", back, value);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_duration_is_refused() {
+        for text in [
+            "1 h 90 min",
+            "1.5 h 3 min",
+            "30 min 1 h",
+            "1 h 1 h",
+            "-1 h 30 min",
+            "1 h -30 min",
+            "1 h 30",
+            "1 h min",
+            "h",
+            "1 h 3 m",
+            "1 h 1e1 min",
+            "1 h nan s",
+        ] {
+            assert_eq!(read(text, Dimension::Time), None, "{text}");
+        }
+        assert_eq!(read("1 min 30 s", Dimension::Angle), None);
+        assert_eq!(read("1 min 0.25 s", Dimension::Time), Some(60.25));
+        assert_eq!(read("-1.5 h", Dimension::Time), Some(-5400.0));
+    }
+}

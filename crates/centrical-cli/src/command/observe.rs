@@ -10,7 +10,9 @@ use crate::printing::Printing;
 
 /// Analyse observability: rank, undetermined combinations, causes, remedies; before or after the experiment.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: centrical observe examples/plans/best.toml --combination 'dR_2[A] + drho_22'")]
+#[command(
+    after_help = "Example: centrical observe examples/plans/four-positions.toml --combination 'dR_2[A] + drho_22'"
+)]
 pub struct Arguments {
     /// The session folder, its experiment.toml, or a plan: the same form without records, or a preset
     #[arg(value_name = "SESSION|PLAN")]

@@ -3,6 +3,7 @@
 mod calibrate;
 mod compensate;
 mod init;
+mod json;
 #[cfg(unix)]
 mod killed;
 mod noise;
@@ -19,3 +20,4 @@ mod speeds;
 mod steadiness;
 mod trust;
 mod watch;
+mod way_in;

@@ -29,7 +29,7 @@ fn json(copy: &Copy, arguments: &[&str]) -> Value {
 #[test]
 fn a_plan_for_a_time() {
     let copy = Copy::new();
-    let plan = small(&copy, "time = \"8 h\"", "time = \"6 h\"");
+    let plan = small(&copy, "time = \"8 h\"", "time = \"6 h 00 min\"");
     let arguments = ["plan", &plan, "--json", "--frontier", "--svg", "frontier.svg", "--out", "schedule.toml"];
     let report = json(&copy, &arguments);
     let number = |key: &str| report[key].as_f64().unwrap();
@@ -57,6 +57,7 @@ fn a_plan_for_a_time() {
     }
 
     let schedule = fs::read(copy.out().join("schedule.toml")).unwrap();
+    assert_are_the_speeds(&report, std::str::from_utf8(&schedule).unwrap());
     assert_eq!(json(&copy, &arguments), report);
     assert!(schedule == fs::read(copy.out().join("schedule.toml")).unwrap());
     let text = String::from_utf8(copy.run(&["plan", &plan]).stdout).unwrap();
@@ -170,4 +171,26 @@ fn a_plan_is_simulated_as_it_says() {
     }
     let calibrated = copy.run(&["calibrate", "session", "--json"]);
     assert_eq!(calibrated.status.code(), Some(0), "{}", String::from_utf8_lossy(&calibrated.stderr));
+}
+
+/// The schedule has the speeds of the plan in rpm, its angles in degrees and its durations in seconds.
+fn assert_are_the_speeds(report: &Value, schedule: &str) {
+    let quantity = |line: &str, key: &str, unit: &str| -> Option<f64> {
+        let (_, text) = line.split_once(&format!("{key} = \""))?;
+        text.split_once(&format!(" {unit}\""))?.0.parse().ok()
+    };
+    let lines: Vec<&str> = schedule.lines().filter(|line| line.starts_with("  { speed")).collect();
+    let mountings = report["mountings"].as_array().unwrap();
+    let planned: Vec<&Value> = mountings.iter().flat_map(|m| m["plateaus"].as_array().unwrap()).collect();
+    assert_eq!(lines.len(), planned.len());
+    for (line, planned) in lines.into_iter().zip(planned) {
+        let number = |key: &str| planned[key].as_f64().unwrap();
+        let speed = quantity(line, "speed", "rpm").unwrap() * (std::f64::consts::TAU / 60.0);
+        // Two roundings of one part in 2^53 at most.
+        assert!((speed - number("speed")).abs() <= f64::EPSILON * number("speed"), "{line}: {planned}");
+        if number("speed") == 0.0 {
+            assert_eq!(quantity(line, "angle", "deg").unwrap().to_radians(), number("angle"), "{line}");
+        }
+        assert_eq!(quantity(line, "duration", "s"), Some(number("duration")), "{line}");
+    }
 }
