@@ -148,7 +148,7 @@ impl SquareSummary {
         Self {
             degrees_of_freedom: square.degrees_of_freedom,
             mean: json::finite(square.mean),
-            standard_deviation: json::finite(square.standard_deviation),
+            standard_deviation: json::finite(square.standard_deviation).filter(|_| runs > 1),
             expected_standard_deviation: (2.0 * square.degrees_of_freedom as f64).sqrt(),
             distance: is_any.then(|| square.distance_from_chi_squared()),
             distance_once_in_twenty: is_any.then(|| ONCE_IN_TWENTY / (runs as f64).sqrt()),
