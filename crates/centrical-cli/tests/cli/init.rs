@@ -53,7 +53,7 @@ fn a_filled_draft_calibrates_to_the_same_numbers() {
     let refused = copy.calibrate(&[]);
     let message = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert_eq!(refused.status.code(), Some(2));
-    assert!(message.contains("[site], gravity: found \"?\""), "{message}");
+    assert!(message.contains("found \"?\", expected"), "{message}");
 
     copy.edit("experiment.toml", |mut text| {
         for (question, answer) in FILLED {

@@ -10,6 +10,7 @@ mod draft;
 mod experiment_text;
 mod file_roles;
 mod raw;
+mod request;
 mod schedule;
 mod seats;
 mod sighting;
@@ -17,18 +18,8 @@ mod sighting;
 use std::path::{Path, PathBuf};
 
 pub use self::draft::{Draft, FillIn};
+pub use self::request::InitRequest;
 use crate::error::{Error, Place};
-
-/// What `experiment.toml` is to be drafted from.
-#[derive(Debug, Clone, PartialEq)]
-pub struct InitRequest {
-    /// Files of records and telemetry, or folders of them.
-    pub inputs: Vec<PathBuf>,
-    /// Folder of the experiment file, which names the others relative to itself.
-    pub folder: PathBuf,
-    /// Whether to write the source's six positions out where the files do not show the positions.
-    pub six_positions: bool,
-}
 
 /// Drafts an experiment file.
 ///

@@ -5,11 +5,11 @@ use std::path::Path;
 use centrical::STANDARD_GRAVITY;
 use centrical_table::{ColumnName, DecimalSign, TextForm};
 
-use super::InitRequest;
 use super::attitude::{Attitude, attitude};
 use super::draft::{Draft, UNKNOWN};
 use super::file_roles::{FileColumns, Label};
 use super::raw::{Extremes, Raw};
+use super::request::InitRequest;
 use super::schedule::{Set, schedules};
 use super::seats::seats;
 use super::sighting::SeenMounting;
