@@ -34,7 +34,7 @@ pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Ve
 /// The core of each scheduled plateau, in blocks.
 fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
     let evidence = Evidence::new(blocks);
-    let candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
+    let mut candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
     let between = evidence.in_transition();
     let mut trellis = Trellis::new(schedule.len(), blocks.len());
     let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(evidence.noise(), from, density);
@@ -50,6 +50,10 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
         }
         let count = schedule.len();
         return Err(ReductionError::PlateauNotFound { index, count, omega, level_z: nominal_z, least, seen });
+    }
+    for (k, candidate) in candidates.iter_mut().enumerate() {
+        let neighbours = [k.checked_sub(1), Some(k + 1)].into_iter().flatten().filter_map(|k| schedule.get(k));
+        neighbours.for_each(|neighbour| candidate.leave_to(neighbour, &schedule[k], &cores[k]));
     }
     // With the plateaus located, the changes on each give their own noise, far below that of a sample. This is repeated
     // until the noise holds no part of the ramps.

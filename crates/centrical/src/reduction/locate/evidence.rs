@@ -22,7 +22,12 @@ const DISTURBED: f64 = 0.01;
 
 /// Half-width of the level's density on a plateau, relative and absolute [m/s^2]: the uncalibrated unit's scale,
 /// misalignment and bias. The density has the tails of Cauchy's law, so the plateaus of a unit ten times worse are found too.
-pub(super) const LEVEL: (f64, f64) = (5e-3, 0.05);
+const LEVEL: (f64, f64) = (5e-3, 0.05);
+
+/// [`LEVEL`] about a nominal level [m/s^2].
+pub(super) fn level_width(nominal_z: &Vector3<f64>) -> f64 {
+    LEVEL.0 * nominal_z.norm() + LEVEL.1
+}
 
 /// Blocks whose mean is compared with that of as many before: the more, the slower a change is seen.
 const REACH: f64 = 4.0;
@@ -69,7 +74,7 @@ impl<'a> Evidence<'a> {
 
     /// Evidence for a scheduled plateau.
     pub fn of(&self, plateau: &ScheduledPlateau) -> Candidate<'_> {
-        let width = LEVEL.0 * plateau.nominal_z.norm() + LEVEL.1;
+        let width = level_width(&plateau.nominal_z);
         Candidate {
             evidence: self,
             reach: self.reach(plateau.omega),
@@ -264,6 +269,23 @@ impl Candidate<'_> {
         self.evidence.density_of_change(self.reach, noise, from, density);
         density.iter_mut().zip(&self.levels[from..]).for_each(|(x, level)| *x += level);
         widest(Mixture { share: 1.0 - DISTURBED, x: density });
+    }
+
+    /// Leaves the blocks to a neighbouring plateau whose level is more than half-way to its own, now that the core of this one is
+    /// known. The end of a slow settling looks like noise, and such noise would explain the settling of the neighbour too.
+    ///
+    /// Plateaus whose levels real units may exchange have no such boundary.
+    pub fn leave_to(&mut self, neighbour: &ScheduledPlateau, plateau: &ScheduledPlateau, core: &Range<usize>) {
+        let way = neighbour.nominal_z - plateau.nominal_z;
+        if way.norm() < level_width(&plateau.nominal_z) {
+            return;
+        }
+        let half_way = self.evidence.blocks.level(core).dot(&way) + 0.5 * way.norm_squared();
+        for (density, f_z) in self.levels.iter_mut().zip(&self.evidence.blocks.f_z) {
+            if f_z.dot(&way) > half_way {
+                *density = f64::NEG_INFINITY;
+            }
+        }
     }
 
     /// Whether the level of a block is more likely the plateau's than any other.

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::evidence::{Evidence, LEVEL};
+use super::evidence::{Evidence, level_width};
 use crate::reduction::error::ReductionError;
 use crate::reduction::mistake::Mistake;
 use crate::reduction::plateau::ScheduledPlateau;
@@ -109,7 +109,7 @@ impl Line {
 
 /// Cauchy's law in three dimensions about the nominal reading, of the half-width that alignment uses: logarithm.
 fn log_density(found: &Vector3<f64>, expected: &Vector3<f64>) -> f64 {
-    let width = LEVEL.0 * expected.norm() + LEVEL.1;
+    let width = level_width(expected);
     let distance = (found - expected).norm() / width;
     -3.0 * width.ln() - 2.0 * (1.0 + distance * distance).ln()
 }
