@@ -6,7 +6,7 @@ use centrical_report::assessment_text;
 use centrical_session::{AssessmentRequest, Error, STANDARD_GRAVITY, Session, assess};
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::show;
 use crate::progress;
 
 /// Uncertainty budget, validity, residual patterns and prediction of a session's calibration.
@@ -48,7 +48,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let bar = progress::reading(&session);
     let assessment = assess(&session, &request, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
-    let text = assessment_text(&assessment, arguments.coverage, arguments.correlations);
-    print(&text)?;
+    show(&assessment_text(&assessment, arguments.coverage, arguments.correlations))?;
     Ok(Outcome::Done)
 }

@@ -6,7 +6,7 @@ use centrical_report::comparison_table;
 use centrical_session::{CalibrationResult, Error, compare_results};
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::show;
 
 /// Compare two calibrations of one unit: differences over their uncertainties, drift, and a joint test.
 #[derive(Debug, clap::Args)]
@@ -24,7 +24,6 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let (first, second) = (CalibrationResult::read(&arguments.first)?, CalibrationResult::read(&arguments.second)?);
     let compared = compare_results(&first, &second);
-    let text = comparison_table(&first, &compared, arguments.years);
-    print(&text)?;
+    show(&comparison_table(&first, &compared, arguments.years))?;
     Ok(Outcome::acceptable(compared.agree))
 }

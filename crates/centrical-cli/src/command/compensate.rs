@@ -6,7 +6,7 @@ use centrical_report::compensation_text;
 use centrical_session::{CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate};
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::show;
 
 /// Convert a record of readings to specific force with a calibration result.
 #[derive(Debug, clap::Args)]
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         range: arguments.range,
         within_calibration: arguments.within_calibration,
     })?;
-    print(&compensation_text(&compensated, &certificate, &arguments.out))?;
+    show(&compensation_text(&compensated, &certificate, &arguments.out))?;
     Ok(Outcome::acceptable(compensated.outside == 0))
 }
 

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use centrical_report::Screen;
 use centrical_session::{Draft, Error, InitRequest, Place, init, write_whole};
 use clap::ValueEnum;
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::{print, show};
 
 /// Draft experiment.toml from records and telemetry: what the files show, what is likely, and what only a person knows.
 #[derive(Debug, clap::Args)]
@@ -49,7 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     match &arguments.out {
         Some(file) => {
             write_whole(file, draft.text.as_bytes())?;
-            print(&summary(file, &draft))?;
+            show(&summary(file, &draft))?;
         }
         None => print(&draft.text)?,
     }
@@ -57,16 +58,20 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 }
 
 /// What remains to be done.
-fn summary(file: &Path, draft: &Draft) -> String {
-    let mut text = format!(
-        "Written to {}. Guesses to check: {}. Lines to fill in: {}\n",
-        file.display(),
-        draft.guesses,
-        draft.fill_in.len()
+fn summary(file: &Path, draft: &Draft) -> Screen {
+    let mut screen = Screen::default();
+    screen.say(
+        0,
+        &format!(
+            "Written to {}. Guesses to check: {}. Lines to fill in: {}",
+            file.display(),
+            draft.guesses,
+            draft.fill_in.len()
+        ),
     );
     for entry in &draft.fill_in {
-        text.push_str(&format!("  line {}: {}: {}\n", entry.line, entry.key, entry.reason));
+        screen.say(2, &format!("line {}: {}: {}", entry.line, entry.key, entry.reason));
     }
-    text.push_str(&format!("Then: centrical calibrate {}\n", file.display()));
-    text
+    screen.say(0, &format!("Then: centrical calibrate {}", file.display()));
+    screen
 }

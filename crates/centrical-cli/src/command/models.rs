@@ -6,7 +6,7 @@ use centrical_report::selection_table;
 use centrical_session::{Error, Session, select_model};
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::show;
 use crate::progress;
 
 /// Fit rival models to a session and compare them by F test, BIC and hold-out.
@@ -22,6 +22,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let bar = progress::reading(&session);
     let selection = select_model(&session, &|bytes| bar.inc(bytes))?;
     bar.finish_and_clear();
-    print(&selection_table(&selection))?;
+    show(&selection_table(&selection))?;
     Ok(Outcome::Done)
 }

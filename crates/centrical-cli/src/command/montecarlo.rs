@@ -7,7 +7,7 @@ use centrical_session::{Error, MonteCarloCase, MonteCarloRequest, Session, read_
 
 use super::assess::probability;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::show;
 use crate::progress;
 
 /// Repeat the calibration on simulated noise and type B errors, and check the stated uncertainties.
@@ -56,8 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let bar = progress::calibrations(arguments.runs);
     let monte_carlo = case.run(&request, &|count| bar.inc(count as u64))?;
     bar.finish_and_clear();
-    let text = monte_carlo_text(&case, &monte_carlo, arguments.coverage);
-    print(&text)?;
+    show(&monte_carlo_text(&case, &monte_carlo, arguments.coverage))?;
     Ok(Outcome::Done)
 }
 

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{noise_table, noise_warnings, write_noise};
+use centrical_report::{Emphasis, Screen, noise_table, noise_warnings, write_noise};
 use centrical_session::{
     ColumnName, Dimension, Error, Estimator, NoiseRequest, NotThatQuantity, PlateauName, Quantity, noise_of,
 };
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::{print, show};
 
 /// Analyse the noise of a record: deviations of the Allan family with intervals, spectrum, noise terms.
 #[derive(Debug, clap::Args)]
@@ -71,16 +71,23 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         write_noise(&analysis, folder)?;
     }
     let warnings = noise_warnings(&analysis);
-    let text = if arguments.json {
-        analysis.to_json()
+    if arguments.json {
+        print(&analysis.to_json())?;
     } else {
-        let plateau = plateau.map(|name| format!("Plateau {}:{} of ", name.mounting, name.plateau));
-        let mut lines = vec![plateau.unwrap_or_default(), noise_table(&analysis), "\n".to_owned()];
-        lines.extend(warnings.iter().map(|warning| format!("NOT ACCEPTABLE  {warning}\n")));
-        lines.extend(arguments.out.iter().map(|folder| format!("Written to {}\n", folder.display())));
-        lines.concat()
-    };
-    print(&text)?;
+        let mut screen = Screen::default();
+        for warning in &warnings {
+            screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", warning);
+        }
+        if let Some(name) = plateau {
+            screen.say(0, &format!("Plateau {}:{} of", name.mounting, name.plateau));
+        }
+        screen.add(noise_table(&analysis));
+        if let Some(folder) = &arguments.out {
+            screen.gap();
+            screen.say(0, &format!("Written to {}", folder.display()));
+        }
+        show(&screen)?;
+    }
     Ok(Outcome::acceptable(warnings.is_empty()))
 }
 

@@ -6,7 +6,7 @@ use centrical_report::observation_text;
 use centrical_session::{Error, ObservabilityReport, subject};
 
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::{print, show};
 
 /// Analyse observability: rank, undetermined combinations, causes, remedies; before or after the experiment.
 #[derive(Debug, clap::Args)]
@@ -26,7 +26,10 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let subject = subject(&arguments.subject, &|_| ())?;
     let report = ObservabilityReport::of(&subject, &arguments.combination)?;
-    let text = if arguments.json { report.to_json()? } else { observation_text(&report) };
-    print(&text)?;
+    if arguments.json {
+        print(&report.to_json()?)?;
+    } else {
+        show(&observation_text(&report))?;
+    }
     Ok(Outcome::acceptable(report.is_acceptable()))
 }

@@ -7,7 +7,7 @@ use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, wri
 
 use super::assess::probability;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::{print, show};
 
 /// Find the schedule with the smallest uncertainty in the time available, or the shortest one that meets target
 /// uncertainties.
@@ -31,7 +31,7 @@ pub struct Arguments {
     #[arg(long)]
     certify: bool,
     /// Coverage probability of the expanded uncertainties
-    #[arg(long, default_value_t = 0.95, value_parser = probability)]
+    #[arg(long, default_value_t = 0.9545, value_parser = probability)]
     coverage: f64,
     /// Print the plan as JSON instead of text
     #[arg(long)]
@@ -54,8 +54,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if let Some(file) = &arguments.svg {
         write_whole(file, frontier_plot(&report).as_bytes())?;
     }
-    let text = if arguments.json { report.to_json()? } else { plan_text(&report) };
-    print(&text)?;
+    if arguments.json {
+        print(&report.to_json()?)?;
+    } else {
+        show(&plan_text(&report))?;
+    }
     Ok(Outcome::acceptable(report.is_acceptable()))
 }
 

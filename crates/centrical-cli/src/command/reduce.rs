@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
+use centrical_report::{Screen, counted};
 use centrical_session::{Error, Session, reduce_without_inputs, write_reduced};
 
 use crate::format::Format;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::show;
 use crate::progress;
 
 /// Reduce a session's records to plateau means: a session of a few kilobytes, calibrated to the same numbers.
@@ -30,10 +31,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     bar.finish_and_clear();
     write_reduced(&session, &reduced, arguments.format.into(), &arguments.out)?;
     let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();
-    print(&format!(
-        "{} plateaus of {samples} samples written to {}\n",
-        reduced.plateaus.len(),
-        arguments.out.display()
-    ))?;
+    let mut screen = Screen::default();
+    let [plateaus, samples] = [counted(reduced.plateaus.len(), "plateau"), counted(samples, "sample")];
+    screen.say(0, &format!("{plateaus} of {samples} written to {}", arguments.out.display()));
+    show(&screen)?;
     Ok(Outcome::Done)
 }

@@ -10,7 +10,7 @@ use clap::ValueEnum;
 
 use crate::command::compensate::acceleration;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::show;
 
 /// Write the documents of a calibration from its result.json.
 #[derive(Debug, clap::Args)]
@@ -91,11 +91,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let (result, unit) = (documents.result, documents.unit);
     let objections = result.objections();
     if !objections.is_empty() {
-        print(&verdict_text(&objections))?;
+        show(&verdict_text(&objections))?;
     }
     let is_within = is_within_limits(unit.as_ref());
     if !is_within {
-        print(&unit.as_ref().map(unit_text).unwrap_or_default())?;
+        show(&unit.as_ref().map(unit_text).unwrap_or_default())?;
     }
     Ok(Outcome::acceptable(objections.is_empty() && is_within))
 }
