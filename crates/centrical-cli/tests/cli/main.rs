@@ -19,3 +19,4 @@ mod speeds;
 mod steadiness;
 mod trust;
 mod watch;
+mod width;

@@ -65,7 +65,8 @@ impl Screen {
     /// A sentence that begins with a word in emphasis.
     pub fn marked(&mut self, emphasis: Emphasis, mark: &str, words: &str) {
         let mark = Some((emphasis, mark.to_owned()));
-        self.parts.push(Part::Words { mark, first: 0, further: 2, words: format!("  {}", harmless_line(words)) });
+        let words = if words.is_empty() { String::new() } else { format!("  {}", harmless_line(words)) };
+        self.parts.push(Part::Words { mark, first: 0, further: 2, words });
     }
 
     /// The head of a section.

@@ -24,19 +24,19 @@ pub(super) fn wrapped(words: &str, width: usize, first: usize, further: usize) -
     lines
 }
 
-/// The words; a value stays with its uncertainty.
+/// The words; a value stays with its uncertainty, and a name with what is set.
 fn unbroken(words: &str) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     let mut is_open = false;
     for word in words.split_whitespace() {
         match found.last_mut() {
-            Some(last) if is_open || word == "±" => {
+            Some(last) if is_open || matches!(word, "±" | "=") => {
                 last.push(' ');
                 last.push_str(word);
             }
             _ => found.push(word.to_owned()),
         }
-        is_open = word == "±";
+        is_open = matches!(word, "±" | "=");
     }
     found
 }
