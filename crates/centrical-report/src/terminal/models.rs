@@ -84,7 +84,10 @@ fn candidates(screen: &mut Screen, selection: &Selection) {
         } else {
             format!("{}/{}", rival.rank, rival.unknowns)
         };
-        let test = rival.against.as_ref().map_or(Cell::default(), |test| probability(test.probability).into());
+        let test = rival.against.as_ref().map_or(String::new(), |test| match test.probability {
+            p if p > 0.0 => probability(p),
+            _ => "<1e-300".to_owned(),
+        });
         table.row([
             short_name(&rival.name).into(),
             determined.into(),
@@ -92,7 +95,7 @@ fn candidates(screen: &mut Screen, selection: &Selection) {
             rival.degrees_of_freedom.to_string().into(),
             wide(rival.bic).into(),
             wide(rival.hold_out_score).into(),
-            test,
+            test.into(),
             if rival.converged { Cell::default() } else { "did not converge".into() },
         ]);
     }
