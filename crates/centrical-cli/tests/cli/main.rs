@@ -21,3 +21,4 @@ mod steadiness;
 mod trust;
 mod watch;
 mod way_in;
+mod width;
