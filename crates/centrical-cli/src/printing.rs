@@ -11,7 +11,7 @@ pub struct Printing {
     /// Print a JSON document instead of text; docs/json.md describes it
     #[arg(short, long)]
     pub json: bool,
-    /// Print nothing but what was asked for, and show no progress; messages of errors and the exit code stay
+    /// Print only what was asked for, without progress; messages of errors and the exit code stay
     #[arg(short, long)]
     pub quiet: bool,
 }

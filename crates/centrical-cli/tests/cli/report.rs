@@ -302,7 +302,7 @@ fn a_unit_in_counts() {
     assert!(header.contains("int centrical_compensate_raw("));
 }
 
-/// A picture that is none, or too large, is refused by name before anything is written.
+/// A file that is not a picture, or too large a picture, is refused by name before anything is written.
 #[test]
 fn a_logo_is_checked() {
     let copy = calibrated("en");

@@ -90,7 +90,8 @@ pub struct DifferenceSummary {
     pub standard_uncertainty: f64,
     /// Difference over its expanded uncertainty, `k = 2` (ISO/IEC 17043).
     pub e_n: f64,
-    /// Probability that any of the coefficients differs by so many uncertainties if nothing has changed (Bonferroni).
+    /// Probability of a difference as large as this, in uncertainties, in any of the coefficients if nothing has changed
+    /// (Bonferroni).
     pub probability: f64,
     /// Whether this coefficient alone shows that the two disagree.
     pub disagrees: bool,

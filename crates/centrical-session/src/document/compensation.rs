@@ -43,7 +43,7 @@ pub struct CompensationReport {
 pub struct ReadingsBeyond {
     /// Their number.
     pub count: u64,
-    /// The first; null where there is none.
+    /// The first; null without such readings.
     pub first: Option<FirstReading>,
 }
 

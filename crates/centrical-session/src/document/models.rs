@@ -49,7 +49,7 @@ pub struct CandidateSummary {
     pub bic: f64,
     /// Mean score per reading of the prediction of each mounting from the others: the lower the better.
     pub hold_out_score: Option<f64>,
-    /// F test against the largest model nested in this one; null if there is none.
+    /// F test against the largest model nested in this one; null without a nested model.
     pub nested_test: Option<NestedTestSummary>,
 }
 

@@ -63,7 +63,7 @@ fn pair_of(results: &[(&Path, &CalibrationResult)], pair: [usize; 2], years: Opt
 /// Years between the dates of two sessions, if both are days.
 fn years_between(first: &CalibrationResult, second: &CalibrationResult) -> Option<f64> {
     let [first, second] = [first, second].map(|result| result.session.date.parse::<Date>().ok());
-    Some((second?.days() - first?.days()) / 365.25)
+    Some(f64::from(second?.days_since(first?)?) / 365.25)
 }
 
 /// Names of the coefficients of terms that `of` has and `other` has not.

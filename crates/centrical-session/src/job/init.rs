@@ -1,6 +1,6 @@
 //! `experiment.toml` from the files of a laboratory: what they show, what is guessed from them, and what only a person knows.
 //!
-//! Files are told apart by their columns: a record has a time and three readings (or one, with a file for each
+//! Columns show the kind of a file: a record has a time and three readings (or one, with a file for each
 //! newtonometer), telemetry a time and a speed. The telemetry shows the schedule. The readings show the attitude: at
 //! rest the axis that reads `+-g` is vertical, while spinning the axis that reads most lies along the arm. Their ratio to
 //! the square of the speed is the radius.

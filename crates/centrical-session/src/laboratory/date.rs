@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
+use jiff::civil;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Deserializer};
 use serde::{Deserialize, Serialize};
@@ -20,15 +21,19 @@ pub struct Date {
 }
 
 impl Date {
-    /// Days since 1 March of the year 0 of the Gregorian calendar, for differences.
-    pub(crate) fn days(self) -> f64 {
-        // Years begin in March, so that a leap day is the last of its year.
-        let (year, month) = match self.month {
-            1 | 2 => (i64::from(self.year) - 1, i64::from(self.month) + 9),
-            _ => (i64::from(self.year), i64::from(self.month) - 3),
+    /// The day of a stamp without a time.
+    fn of(stamp: toml::value::Datetime) -> Option<Self> {
+        let date = stamp.date.filter(|_| stamp.time.is_none())?;
+        Some(Self { year: date.year, month: date.month, day: date.day })
+    }
+
+    /// Days from an earlier day to this one; none where one of them is not in the calendar.
+    pub(crate) fn days_since(self, earlier: Self) -> Option<i32> {
+        let civil = |date: Self| {
+            let [month, day] = [date.month, date.day].map(|number| i8::try_from(number).ok());
+            civil::Date::new(i16::try_from(date.year).ok()?, month?, day?).ok()
         };
-        let leaps = year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400);
-        (365 * year + leaps + (153 * month + 2) / 5 + i64::from(self.day) - 1) as f64
+        Some((civil(self)? - civil(earlier)?).get_days())
     }
 }
 
@@ -52,10 +57,7 @@ impl JsonSchema for Date {
 impl<'de> Deserialize<'de> for Date {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let stamp = toml::value::Datetime::deserialize(deserializer)?;
-        match (stamp.date, stamp.time) {
-            (Some(date), None) => Ok(Self { year: date.year, month: date.month, day: date.day }),
-            _ => Err(de::Error::custom(format!("{stamp} is no day, expected one such as 2026-10-05"))),
-        }
+        Self::of(stamp).ok_or_else(|| de::Error::custom(format!("{stamp} is no day, expected one such as 2026-10-05")))
     }
 }
 
@@ -69,10 +71,6 @@ impl FromStr for Date {
 
     /// A day of ISO 8601.
     fn from_str(text: &str) -> Result<Self, NotADay> {
-        let stamp: toml::value::Datetime = text.parse().map_err(|_| NotADay)?;
-        match (stamp.date, stamp.time) {
-            (Some(date), None) => Ok(Self { year: date.year, month: date.month, day: date.day }),
-            _ => Err(NotADay),
-        }
+        text.parse().ok().and_then(Self::of).ok_or(NotADay)
     }
 }

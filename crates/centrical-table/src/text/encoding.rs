@@ -1,7 +1,7 @@
 //! The encodings of text: which one a text has, and what its bytes mean.
 //!
-//! Digits, delimiters and ends of lines are the same bytes in UTF-8 and in every encoding of one byte a character, so that rows are
-//! read as they are and only names and units are decoded. UTF-16 is turned into UTF-8 on its way.
+//! Digits, delimiters and ends of lines are the same bytes in UTF-8 and in every encoding of one byte a character. Rows are
+//! read as they are; only names and units are decoded. UTF-16 is turned into UTF-8 on its way.
 
 use std::borrow::Cow;
 use std::fmt;

@@ -36,7 +36,7 @@ pub(super) struct Start {
 /// A line that is neither blank nor a comment, with its number from 0.
 pub(super) type Line<'a> = (u64, &'a [u8]);
 
-/// The header, or the first row where there is none.
+/// The header, or the first row of a text without a header.
 struct FirstLine {
     layout: Layout,
     /// Whether that line holds the names rather than the first row.
@@ -58,8 +58,7 @@ impl Prologue {
         }
     }
 
-    /// Finds the first row of a text of which these are the first lines; `first` is the number of the first of all lines in the
-    /// file, from 0.
+    /// Finds the first row of a text from its first lines. `first` is the number of the first of all lines in the file, from 0.
     pub fn start(&self, lines: &[Line], first: u64, fields: &[Field]) -> Result<Start, (u64, Fault)> {
         let lines = &lines[..lines.len().min(MOST_ABOVE)];
         let at = |index: usize| move |fault| (lines[index].0, fault);

@@ -122,9 +122,9 @@ impl<'m> Follower<'m> {
     /// # Errors
     /// [`FitError::Empty`] before the first.
     pub fn progress(&self) -> Result<Progress, FitError> {
-        let last = Some(self.last()?);
-        let structure = self.structure(last)?;
-        let (equations, misfit) = structure.equations(&self.design(last)?, &self.point, 1.0 / NULL_HOLD);
+        let last = self.last()?;
+        let (structure, design) = (self.structure(Some(last))?, self.design(Some(&self.linearised(last)?)));
+        let (equations, misfit) = structure.equations(&design, &self.point, 1.0 / NULL_HOLD);
         let (step, covariance) = (equations.solve(misfit), equations.covariance());
         let known = |j: usize| (self.point[j] + step.x[j], covariance[(j, j)].sqrt());
         let estimates = (0..structure.observability.columns())
@@ -159,8 +159,8 @@ impl<'m> Follower<'m> {
     fn move_point(&mut self) -> Result<(), FitError> {
         let typical = self.data.typical();
         for _ in 0..STEP_LIMIT {
-            let last = Linearised::new(self.data.model(), self.last()?, &self.point)?;
-            let (equations, misfit) = self.held(&self.design(Some(self.last()?))?, &typical);
+            let last = self.linearised(self.last()?)?;
+            let (equations, misfit) = self.held(&self.design(Some(&last)), &typical);
             let step = equations.solve(misfit);
             let x = &self.point + &step.x;
             let remainder = last.remainder(self.data.model(), &step.x, &x).hypot(self.past.remainder(&x));
@@ -168,7 +168,7 @@ impl<'m> Follower<'m> {
                 self.point = x;
                 return Ok(());
             }
-            let Some(point) = self.descend(&step.x, &typical)? else { break };
+            let Some(point) = self.descend(&last, &step.x, &typical) else { break };
             self.point = point;
             self.past.linearise_at(&self.point)?;
         }
@@ -176,20 +176,20 @@ impl<'m> Follower<'m> {
     }
 
     /// The point one step on, halved until the sum of squares falls; none if it does not: the point stays where it is.
-    fn descend(&self, dx: &DVector<f64>, typical: &DVector<f64>) -> Result<Option<DVector<f64>>, FitError> {
-        let last = Linearised::new(self.data.model(), self.last()?, &self.point)?;
+    fn descend(&self, last: &Linearised, dx: &DVector<f64>, typical: &DVector<f64>) -> Option<DVector<f64>> {
         let objective = |x: &DVector<f64>| {
             let plateaus = self.past.squared(x) + last.residual(self.data.model(), x).norm_squared();
             plateaus + self.data.squared_beforehand(x) + (x.component_div(typical) / HOLD).norm_squared()
         };
         let here = objective(&self.point);
         let mut halved = (0..HALVING_LIMIT).map(|halvings| &self.point + dx * 0.5_f64.powi(halvings.cast_signed()));
-        Ok(halved.find(|x| objective(x) <= here))
+        halved.find(|x| objective(x) <= here)
     }
 
     /// Least sum of squares of the plateaus behind and perhaps the last, linearised at the point, and their rank.
     fn unexplained(&self, last: Option<&Observation>) -> Result<Unexplained, FitError> {
-        let (structure, design) = (self.structure(last)?, self.design(last)?);
+        let at_point = last.map(|last| self.linearised(last)).transpose()?;
+        let (structure, design) = (self.structure(last)?, self.design(at_point.as_ref()));
         let (equations, misfit) = structure.equations(&design, &self.point, 1.0 / NULL_HOLD);
         let left = equations.redundant(&misfit).norm_squared();
         Ok(Unexplained { squared: left + design.rest.powi(2), rank: structure.observability.rank() })
@@ -203,9 +203,13 @@ impl<'m> Follower<'m> {
     }
 
     /// The equations of the plateaus behind and perhaps the last, at the point.
-    fn design(&self, last: Option<&Observation>) -> Result<Design, FitError> {
-        let last = last.map(|last| Linearised::new(self.data.model(), last, &self.point)).transpose()?;
-        Ok(self.whole(self.past.design(&self.point), last.as_ref().map(|last| &last.readings), &self.point))
+    fn design(&self, last: Option<&Linearised>) -> Design {
+        self.whole(self.past.design(&self.point), last.map(|last| &last.readings), &self.point)
+    }
+
+    /// A plateau at the point.
+    fn linearised(&self, observation: &Observation) -> Result<Linearised, FitError> {
+        Linearised::new(self.data.model(), observation, &self.point)
     }
 
     /// The equations of `past`, of some `readings` more, and of what is known beforehand, at `x`.

@@ -1,8 +1,8 @@
 //! Plateaus that are behind, linearised once and rotated into triangles.
 //!
 //! A point of the unknowns that moves makes all linearisations anew, which costs as much as all plateaus so far. But what a
-//! plateau adds to them is small: with `r` the whitened residuals of the exact model, `A` their derivatives and `x_0` the
-//! reference, at which they were linearised, the triangle is off at `x` by the remainder `r(x) - (r(x_0) - A (x - x_0))`.
+//! plateau adds to them is small. Let `r` be the whitened residuals of the exact model and `A` their derivatives at the
+//! reference `x_0`. The triangle is off at `x` by the remainder `r(x) - (r(x_0) - A (x - x_0))`.
 //! While its norm is below a hundredth of a standard uncertainty the triangle stands; beyond that the point becomes the
 //! reference. As the unknowns become known they move less, and references become rare.
 
@@ -27,8 +27,6 @@ pub(super) struct Past<'m> {
     plateaus: Vec<Arc<Linearised>>,
     at_reference: Factor,
     at_zero: Factor,
-    /// Sum of squared norms of the whitened readings of the model.
-    magnitude: f64,
 }
 
 /// A plateau linearised at a point of all unknowns.
@@ -69,7 +67,7 @@ impl<'m> Past<'m> {
     /// No plateau yet; the next ones will be linearised at the `reference`.
     pub fn new(model: &'m MeasurementModel, reference: DVector<f64>) -> Self {
         let none = || Factor::new(reference.len());
-        Self { model, plateaus: Vec::new(), at_reference: none(), at_zero: none(), magnitude: 0.0, reference }
+        Self { model, plateaus: Vec::new(), at_reference: none(), at_zero: none(), reference }
     }
 
     /// Where the plateaus are linearised.
@@ -93,7 +91,7 @@ impl<'m> Past<'m> {
     /// As [`Past::push`].
     pub fn linearise_at(&mut self, x: &DVector<f64>) -> Result<(), FitError> {
         let plateaus = std::mem::take(&mut self.plateaus);
-        (self.reference, self.at_reference, self.magnitude) = (x.clone(), Factor::new(x.len()), 0.0);
+        (self.reference, self.at_reference) = (x.clone(), Factor::new(x.len()));
         plateaus.iter().try_for_each(|plateau| self.push_at_reference(&plateau.observation))
     }
 
@@ -111,24 +109,28 @@ impl<'m> Past<'m> {
 
     /// The equations of the reference as equations at `x`.
     pub fn design(&self, x: &DVector<f64>) -> Design {
-        let rows = self.at_reference.triangle();
-        let misfit = self.at_reference.right_side() - &rows * (x - &self.reference);
-        Design { rows, misfit, rest: self.at_reference.rest().sqrt(), magnitude: self.magnitude.sqrt() }
+        let mut design = design_of(&self.at_reference);
+        design.misfit -= &design.rows * (x - &self.reference);
+        design
     }
 
     /// The equations at zero, on which the rank is decided.
     pub fn design_at_zero(&self) -> Design {
-        let (rows, misfit) = (self.at_zero.triangle(), self.at_zero.right_side());
-        Design { rows, misfit, rest: self.at_zero.rest().sqrt(), magnitude: 0.0 }
+        design_of(&self.at_zero)
     }
 
     fn push_at_reference(&mut self, observation: &Observation) -> Result<(), FitError> {
         let plateau = Linearised::new(self.model, observation, &self.reference)?;
         self.at_reference.update(&plateau.readings.columns, &plateau.readings.misfit);
-        self.magnitude += plateau.readings.magnitude.powi(2);
         self.plateaus.push(Arc::new(plateau));
         Ok(())
     }
+}
+
+/// The equations of a triangle. A follower has no use for the magnitude of the readings.
+fn design_of(factor: &Factor) -> Design {
+    let (rows, misfit) = (factor.triangle(), factor.right_side());
+    Design { rows, misfit, rest: factor.rest().sqrt(), magnitude: 0.0 }
 }
 
 /// The equations with those of one plateau more.

@@ -1,12 +1,12 @@
 //! Steady stretches of a signal: it stands still, ramps to another value, and stands still again. So a schedule looks to
 //! someone who does not have it.
 //!
-//! Means over half a second stand still from one to the next where they differ by no more than their noise, or by less
-//! than 2e-3 of the largest mean in a second, which no ramp is slow enough for. The noise of a sample is that of
+//! Means over half a second stand still from one to the next where they differ by no more than their noise. They also do
+//! where they change by less than 2e-3 of the largest mean in a second: no ramp is so slow. The noise of a sample is that of
 //! neighbours, `1.4826 median |y_k+1 - y_k| / sqrt(2)`. The value of a stretch is the median over its later three
 //! quarters: the beginning may still settle.
 
-use crate::statistics::median;
+use crate::statistics::{MAD, median};
 
 /// Length of a block [s].
 const BLOCK: f64 = 0.5;
@@ -96,7 +96,7 @@ fn stretch(blocks: &[Block]) -> Option<SteadyStretch> {
         return None;
     }
     let value = median(&mut means.clone());
-    let scatter = 1.4826 * median(&mut means.iter().map(|mean| (mean - value).abs()).collect::<Vec<_>>());
+    let scatter = MAD * median(&mut means.iter().map(|mean| (mean - value).abs()).collect::<Vec<_>>());
     // The median of normal values is 1.25 times as uncertain as their mean.
     Some(SteadyStretch { window, value, standard_uncertainty: 1.25 * scatter / (means.len() as f64).sqrt() })
 }
@@ -119,5 +119,5 @@ fn blocks(t: &[f64], y: &[f64]) -> Vec<Block> {
 /// Standard deviation of a sample, from neighbours.
 fn noise(y: &[f64]) -> f64 {
     let mut steps: Vec<f64> = y.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
-    if steps.is_empty() { 0.0 } else { 1.4826 / 2.0_f64.sqrt() * median(&mut steps) }
+    if steps.is_empty() { 0.0 } else { MAD / 2.0_f64.sqrt() * median(&mut steps) }
 }

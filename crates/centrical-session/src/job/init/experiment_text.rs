@@ -138,7 +138,7 @@ fn heading(draft: &mut Draft, mountings: &[SeenMounting]) {
         };
         let units = form.units_line.map_or(String::new(), |line| format!(", units in line {line}"));
         draft.line(&format!(
-            "# Records are text in {:?}, divided by {delimiter}{decimal}{above}{units}; read without a setting.",
+            "# Records are text in {}, divided by {delimiter}{decimal}{above}{units}; read without a setting.",
             form.encoding
         ));
     }

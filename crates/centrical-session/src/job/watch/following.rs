@@ -14,9 +14,7 @@ use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linea
 use nalgebra::Vector3;
 
 use super::arrivals::Watch;
-use crate::document::{
-    CalibrationResult, HistoryEntry, HistoryEstimate, Method, WatchState, WatchedPlateau, append_history, keep_history,
-};
+use crate::document::{CalibrationResult, Method, WatchState, WatchedPlateau, append_history, keep_history};
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
 use crate::job::calibrate::calibrate_without;
@@ -213,15 +211,8 @@ impl<'a> Following<'a> {
             return Ok(None);
         }
         let now = self.fitted(self.follower.progress())?;
-        let entry = HistoryEntry {
-            plateau: self.state.plateaus.len(),
-            set_point,
-            innovation: innovation.into(),
-            alarm,
-            held_out,
-            rank: now.rank,
-            estimates: HistoryEstimate::all(self.model, &now),
-        };
+        let count = self.state.plateaus.len();
+        let entry = self.state.plateaus[count - 1].entry(count, self.model, &now);
         append_history(&self.request.out.join(HISTORY_FILE), &entry)?;
         if self.kept.elapsed() >= KEPT_EACH {
             self.keep()?;

@@ -13,7 +13,7 @@ pub struct Readings {
     /// Whitened reading less whitened model.
     pub misfit: Vector3<f64>,
     /// Norm of the whitened reading of the model.
-    pub(in crate::fit) magnitude: f64,
+    pub(super) magnitude: f64,
 }
 
 impl Readings {
