@@ -60,7 +60,12 @@ fn run(folder: &Path, before: &str, blocks: usize, arguments: &[&str]) -> Output
 
 /// Runs the binary in a folder to its end.
 fn whole(folder: &Path, arguments: &[&str]) {
-    let run = Command::new(env!("CARGO_BIN_EXE_centrical")).args(arguments).current_dir(folder).output().unwrap();
+    let run = Command::new(env!("CARGO_BIN_EXE_centrical"))
+        .env("COLUMNS", "1000")
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
     assert!(matches!(run.status.code(), Some(0 | 1)), "{arguments:?}: {}", String::from_utf8_lossy(&run.stderr));
 }
 

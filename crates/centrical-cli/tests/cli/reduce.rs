@@ -13,6 +13,7 @@ use crate::session::example;
 
 fn centrical(arguments: &[&str], threads: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    command.env("COLUMNS", "1000");
     command.args(arguments).env("RAYON_NUM_THREADS", threads);
     command
 }

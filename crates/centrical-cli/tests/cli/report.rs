@@ -69,6 +69,7 @@ fn the_same_bytes() {
         let (session, laboratory) = (copy.session(), laboratory.to_str().unwrap().to_owned());
         let run = |arguments: &[&str]| {
             let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+            command.env("COLUMNS", "1000");
             let run =
                 command.args(arguments).current_dir(copy.out()).env("RAYON_NUM_THREADS", threads).output().unwrap();
             assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));

@@ -51,6 +51,7 @@ impl Copy {
     /// Runs the binary in the output folder.
     pub fn run(&self, arguments: &[&str]) -> Output {
         let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+        command.env("COLUMNS", "1000");
         command.args(arguments).current_dir(self.out()).output().unwrap()
     }
 

@@ -25,7 +25,7 @@ fn a_complete_session_is_followed_to_its_calibration() {
     let text = String::from_utf8(run.stdout).unwrap();
     assert_eq!(run.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&run.stderr));
     assert!(String::from_utf8_lossy(&run.stderr).starts_with("30 states of 49 unknowns"));
-    for part in ["PLATEAU 108 of 108   RANK 49 of 49", "Every target is met", "The schedule is complete"] {
+    for part in ["PLATEAU 108 of 108  RANK 49 of 49", "Every target is met", "The schedule is complete"] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
     assert!(!text.contains("DOES NOT FIT"), "{text}");
@@ -151,6 +151,7 @@ fn a_watch_killed_anywhere_ends_with_the_same_bytes() {
     for kill in 0.. {
         assert!(kill < 1000, "no end in sight");
         let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+        command.env("COLUMNS", "1000");
         command.args(["watch", stopped.session().to_str().unwrap(), "--once"]).current_dir(stopped.out());
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         let before = lines(&stopped.out());
@@ -198,6 +199,7 @@ fn lines(out: &Path) -> usize {
 
 fn start(copy: &Copy) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    command.env("COLUMNS", "1000");
     command.arg("watch").arg(copy.session()).args(["--interval", "0.05", "--quiet", "2"]);
     command.current_dir(copy.out()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
 }

@@ -151,6 +151,7 @@ fn adjustment_and_decision() {
     fs::write(folder.path().join("before.json"), before.to_string()).unwrap();
     let report = |arguments: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+        command.env("COLUMNS", "1000");
         command.args(["report", "result.json", "--pdf", "both.pdf", "--before", "before.json", "--laboratory"]);
         command.args(arguments).current_dir(&folder).output().unwrap()
     };
@@ -197,6 +198,7 @@ fn a_result_that_is_not_acceptable_says_so() {
     json["fit"]["chi_squared"] = 1000.0.into();
     fs::write(&result, json.to_string()).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    command.env("COLUMNS", "1000");
     command.args(["report", "result.json", "--pdf", "bad.pdf", "--dcc", "bad.xml", "--laboratory", "laboratory.toml"]);
     let run = command.current_dir(&folder).output().unwrap();
     assert_eq!(run.status.code(), Some(1));
@@ -240,6 +242,7 @@ fn the_certificate_carries_its_digital_form() {
     assert!(fs::read(folder.path().join("carried/certificate.xml")).unwrap() == copy, "the carried file differs");
     // Without it the file is an archive of the plainer kind.
     let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    command.env("COLUMNS", "1000");
     command.args(["report", "result.json", "--pdf", "certificate.pdf", "--laboratory", "laboratory.toml"]);
     assert!(command.current_dir(&folder).output().unwrap().status.success());
     assert!(said("pdfinfo", &["-meta"]).contains("<pdfaid:part>2<"));

@@ -22,6 +22,7 @@ fn documents(language: &str, alter: impl Fn(String) -> String) -> TempDir {
     let laboratory = folder.path().join("laboratory.toml");
     fs::write(&laboratory, alter(fs::read_to_string(example("laboratory.toml")).unwrap())).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    command.env("COLUMNS", "1000");
     command.arg("calibrate").arg(example("")).arg("--out").arg(folder.path()).args(["--language", language]);
     let run = command.arg("--laboratory").arg(laboratory).output().unwrap();
     // 1 where the altered limits are not kept.
