@@ -12,6 +12,9 @@ use console::{Style, Term};
 /// the machine.
 const USUAL: (u16, u16) = (24, 80);
 
+/// Widest lines where nobody states a width: longer ones are hard to read.
+const WIDEST: u16 = 120;
+
 /// Shows a text in the width of the terminal, verdicts in colour where it has any.
 ///
 /// # Errors
@@ -39,7 +42,7 @@ fn drawn(screen: &Screen, terminal: &Term, is_coloured: bool) -> String {
         });
         format!("{mark}{}\n", harmless(&rest))
     };
-    screen.lines(stated.unwrap_or(width.into()), height.into()).into_iter().map(line).collect()
+    screen.lines(stated.unwrap_or(width.min(WIDEST).into()), height.into()).into_iter().map(line).collect()
 }
 
 /// How an emphasis looks where there is colour.

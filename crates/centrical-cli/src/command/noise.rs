@@ -76,10 +76,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         for warning in &warnings {
             screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", warning);
         }
-        if let Some(name) = plateau {
-            screen.say(0, &format!("Plateau {}:{} of", name.mounting, name.plateau));
-        }
-        screen.add(noise_table(&analysis));
+        let plateau = plateau.map(|name| format!("Plateau {}:{} of ", name.mounting, name.plateau));
+        screen.add(noise_table(&analysis, &plateau.unwrap_or_default()));
         if let Some(folder) = &arguments.out {
             screen.gap();
             screen.say(0, &format!("Written to {}", folder.display()));

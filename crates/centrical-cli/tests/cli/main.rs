@@ -9,6 +9,8 @@ mod killed;
 mod noise;
 mod observe;
 mod plan;
+#[path = "../common/program.rs"]
+mod program;
 #[path = "../../../centrical/tests/common/random.rs"]
 mod random;
 mod reduce;

@@ -11,11 +11,11 @@ use super::table::{Align, Cell, Table};
 use crate::evaluation::Shown;
 use crate::number::{self, with_uncertainty};
 
-/// The analysis as text: for each column its deviations with their intervals, its spectrum by octaves, its terms.
-pub fn noise_table(analysis: &NoiseAnalysis) -> Screen {
+/// The analysis as text, of a `part` of the file such as "Plateau 2:1 of ": for each column its deviations with their intervals, its spectrum by octaves, its terms.
+pub fn noise_table(analysis: &NoiseAnalysis, part: &str) -> Screen {
     let [from, to] = analysis.window;
     let mut screen = Screen::default();
-    screen.say(0, &format!("{}, {from:.3} s to {to:.3} s", analysis.file_name()));
+    screen.say(0, &format!("{part}{}, {from:.3} s to {to:.3} s", analysis.file_name()));
     screen.say(
         0,
         &format!(

@@ -8,9 +8,6 @@ use super::wrap::wrapped;
 /// Narrowest width that texts are made for, in characters: narrower terminals wrap by themselves.
 pub const NARROWEST: usize = 40;
 
-/// Widest width that texts are made for: longer lines are hard to read.
-pub const WIDEST: usize = 120;
-
 /// Width of the column of keywords beside facts.
 const KEYWORD: usize = 8;
 
@@ -113,7 +110,7 @@ impl Screen {
 
     /// The lines for a terminal of `width` characters in `height` lines. Only a word that is longer than a line is not broken.
     pub fn lines(&self, width: usize, height: usize) -> Vec<Line> {
-        let width = width.clamp(NARROWEST, WIDEST);
+        let width = width.max(NARROWEST);
         let mut lines: Vec<Line> = self.parts.iter().flat_map(|part| part.lines(width)).collect();
         if let Some((emphasis, mark, words)) = self.closing.as_ref().filter(|_| lines.len() > height) {
             let mark = Some((*emphasis, mark.clone()));
