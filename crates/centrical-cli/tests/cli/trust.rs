@@ -269,7 +269,7 @@ fn compare_takes_any_number_of_results() {
     ] {
         assert!(said.contains(heading), "{said}");
     }
-    assert!(said.contains("2  2027.json: TA-200, serial 0001  2027-10-05"), "{said}");
+    assert!(said.contains("2 2027.json: TA-200, serial 0001, 2027-10-05"), "{said}");
     assert!(fs::read_to_string(copy.out().join("plot.svg")).unwrap().contains("<svg"));
     let json: Value =
         serde_json::from_slice(&copy.run(&["compare", "result.json", "2027.json", "--json"]).stdout).unwrap();
