@@ -1,9 +1,60 @@
 //! The one way to the terminal: what cannot be written is an error, and what comes from files cannot command the terminal.
 
+use std::env;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
+use centrical_report::{Emphasis, Line, Screen};
 use centrical_session::{Error, harmless};
+use console::{Style, Term};
+
+/// Lines and characters of a terminal that does not say how many it has, and of a pipe: what is written there does not depend on
+/// the machine.
+const USUAL: (u16, u16) = (24, 80);
+
+/// Widest lines where nobody states a width: longer ones are hard to read.
+const WIDEST: u16 = 120;
+
+/// Shows a text in the width of the terminal, verdicts in colour where it has any.
+///
+/// # Errors
+/// As [`print`].
+pub fn show(screen: &Screen) -> Result<(), Error> {
+    let terminal = Term::stdout();
+    let text = drawn(screen, &terminal, console::colors_enabled());
+    print_as_it_is(&text)
+}
+
+/// Shows a text on standard error. If that is closed or full there is nobody to tell.
+pub fn remark(screen: &Screen) {
+    let text = drawn(screen, &Term::stderr(), console::colors_enabled_stderr());
+    let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// The lines of a text. Colour comes after what files say was made harmless.
+fn drawn(screen: &Screen, terminal: &Term, is_coloured: bool) -> String {
+    let (height, width) = terminal.size_checked().filter(|_| terminal.is_term()).unwrap_or(USUAL);
+    let stated = env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    let line = |Line { mark, rest }: Line| {
+        let mark = mark.map_or(String::new(), |(emphasis, mark)| {
+            let mark = harmless(&mark);
+            if is_coloured { style(emphasis).apply_to(mark).to_string() } else { mark.into_owned() }
+        });
+        format!("{mark}{}\n", harmless(&rest))
+    };
+    screen.lines(stated.unwrap_or(width.min(WIDEST).into()), height.into()).into_iter().map(line).collect()
+}
+
+/// How an emphasis looks where there is colour.
+fn style(emphasis: Emphasis) -> Style {
+    let style = Style::new().force_styling(true).bold();
+    match emphasis {
+        Emphasis::Acceptable => style.green(),
+        Emphasis::NotAcceptable => style.red(),
+        Emphasis::Warning => style.yellow(),
+        Emphasis::Heading => style,
+    }
+}
 
 /// Prints a text on standard output. A reader that has seen enough (`| head`) is no failure; a full disk is.
 ///

@@ -1,8 +1,9 @@
 //! What a command prints: text for people, a JSON document, or no more than was asked for.
 
+use centrical_report::Screen;
 use centrical_session::Error;
 
-use crate::output::print;
+use crate::output::{print, show};
 
 /// How a command prints.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -22,12 +23,12 @@ impl Printing {
     /// [`Error`] when the document cannot be made or standard output does not take it.
     pub fn show(
         self,
-        text: impl FnOnce() -> String,
+        text: impl FnOnce() -> Screen,
         json: impl FnOnce() -> Result<String, Error>,
     ) -> Result<(), Error> {
         match (self.json, self.quiet) {
             (true, _) => print(&json()?),
-            (false, false) => print(&text()),
+            (false, false) => show(&text()),
             (false, true) => Ok(()),
         }
     }

@@ -27,9 +27,10 @@ pub use files::{
     DocumentRequest, Documents, read_issuer, write_all_documents, write_documents, write_history_plot, write_noise,
 };
 pub use language::Language;
-pub use number::with_uncertainty;
+pub use number::{counted, with_uncertainty};
 pub use render::{html, pdf};
 pub use terminal::{
-    assessment_text, comparison_text, compensation_text, monte_carlo_text, noise_table, noise_warnings,
-    observation_text, plan_text, selection_table, states_text, terminal_table, unit_text, verdict_text, watch_table,
+    Emphasis, Line, Screen, assessment_text, comparison_text, compensation_text, monte_carlo_text, noise_table,
+    noise_warnings, observation_text, plan_text, selection_table, states_text, terminal_table, unit_text, verdict_text,
+    watch_table,
 };

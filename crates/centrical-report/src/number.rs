@@ -39,6 +39,28 @@ pub fn with_uncertainty(value: f64, uncertainty: f64) -> (String, String) {
     }
 }
 
+/// An uncertainty to two significant digits, as [`with_uncertainty`] shows it beside a value: `0.0020`, `12000`; in powers of
+/// ten outside `1e-4` to `1e6`.
+pub(crate) fn two_digits(uncertainty: f64) -> String {
+    let exponent = scientific(uncertainty, 2).1;
+    match uncertainty {
+        _ if !uncertainty.is_finite() => uncertainty.to_string(),
+        0.0 => "0".to_owned(),
+        _ if !(-4..6).contains(&exponent) => format!("{uncertainty:.1e}"),
+        _ if uncertainty < 0.0 => format!("-{}", with_uncertainty(0.0, -uncertainty).1),
+        _ => with_uncertainty(0.0, uncertainty).1,
+    }
+}
+
+/// A count with its noun: `1 plateau`, `2 plateaus`.
+pub fn counted(count: impl TryInto<u64>, noun: &str) -> String {
+    match count.try_into() {
+        Ok(1) => format!("1 {noun}"),
+        Ok(count) => format!("{count} {noun}s"),
+        Err(_) => format!("many {noun}s"),
+    }
+}
+
 /// A number without the sign of a zero: `-0.00` is `0.00`.
 pub(crate) fn unsigned_zero(shown: String) -> String {
     let is_zero = shown.starts_with('-') && !shown.contains(|c: char| c.is_alphabetic() || ('1'..='9').contains(&c));
@@ -78,26 +100,6 @@ pub(crate) fn digits(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { significant(value, 3, -3..5) }
 }
 
-/// Two significant digits, without an exponent where that is shorter.
-pub(crate) fn short(value: f64) -> String {
-    let size = value.abs();
-    match size {
-        _ if size == 0.0 => "0".to_owned(),
-        _ if !(1e-3..1e5).contains(&size) => format!("{value:.0e}"),
-        _ if size >= 10.0 => format!("{value:.0}"),
-        _ if size >= 1.0 => format!("{value:.1}"),
-        _ if size >= 0.1 => format!("{value:.2}"),
-        _ if size >= 0.01 => format!("{value:.3}"),
-        _ => format!("{value:.4}"),
-    }
-}
-
-/// Two significant digits without zeros at the end.
-pub(crate) fn trimmed(value: f64) -> String {
-    let rounded: f64 = format!("{value:.1e}").parse().unwrap_or(value);
-    if (1e-3..1e4).contains(&rounded) { rounded.to_string() } else { format!("{rounded:e}") }
-}
-
 /// `10` with its exponent raised; plain numbers near 1.
 pub(crate) fn power_of_ten(exponent: i32) -> String {
     match exponent {
@@ -116,7 +118,7 @@ pub(crate) fn superscript(number: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{grouped, significant, with_uncertainty};
+    use super::{counted, grouped, significant, two_digits, with_uncertainty};
 
     #[test]
     fn two_digits_of_the_uncertainty() {
@@ -133,6 +135,19 @@ mod tests {
         assert_eq!(shown(-0.3, 40.0), "0 ± 40");
         assert_eq!(shown(-0.04, 3.0), "0.0 ± 3.0");
         assert_eq!(shown(f64::NAN, 3.0), "NaN ± 3.0");
+    }
+
+    #[test]
+    fn an_uncertainty_alone_has_the_digits_that_it_has_beside_a_value() {
+        let numbers = [0.001_96, 0.0996, 9.96, 26.0, 12_345.6, -40.4, 0.0, 3.21e-9, 1.55e7];
+        let shown = ["0.0020", "0.10", "10", "26", "12000", "-40", "0", "3.2e-9", "1.6e7"];
+        assert_eq!(numbers.map(two_digits), shown);
+        assert_eq!([f64::NAN, f64::INFINITY].map(two_digits), ["NaN", "inf"]);
+    }
+
+    #[test]
+    fn one_is_singular() {
+        assert_eq!([0, 1, 2].map(|n| counted(n, "plateau")), ["0 plateaus", "1 plateau", "2 plateaus"]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{
-    UnitStatement, read_issuer, states_text, terminal_table, unit_text, verdict_text, write_all_documents,
+    Screen, UnitStatement, read_issuer, states_text, terminal_table, unit_text, verdict_text, write_all_documents,
 };
 use centrical_session::{
     CalibrationResult, Error, Method, Place, PlateauName, ResultObjection, Session, calibrate_without, claim_folder,
@@ -12,7 +12,7 @@ use centrical_session::{
 
 use crate::command::report::{Documents, is_within_limits};
 use crate::outcome::Outcome;
-use crate::output::say;
+use crate::output::remark;
 use crate::printing::Printing;
 use crate::progress;
 
@@ -58,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     if method == Method::Recursive && !arguments.printing.quiet {
         let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
-        say(&states_text(&session.model()?, &order));
+        remark(&states_text(&session.model()?, &order));
     }
     let out = arguments.out.as_deref();
     let claim = out.map(claim_folder).transpose()?;
@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     if arguments.printing.json {
         // The result does not hold what the laboratory's limits say of the unit.
         if let Some(unit) = &unit {
-            say(&unit_text(unit));
+            remark(&unit_text(unit));
         }
     }
     Ok(Outcome::acceptable(objections.is_empty() && is_within_limits(unit.as_ref())))
@@ -119,14 +119,22 @@ fn refuse_another_unit(file: &Path, session: &Session) -> Result<(), Error> {
     Err(Error::content(file, Place::Whole, there, expected))
 }
 
+/// The verdict, then what it rests on.
 fn report(
     result: &CalibrationResult,
     objections: &[ResultObjection],
     unit: Option<&UnitStatement>,
     file: Option<&Path>,
-) -> String {
-    let mut lines = vec![terminal_table(result), verdict_text(objections)];
-    lines.extend(unit.map(unit_text));
-    lines.extend(file.map(|file| format!("\nWritten to {}\n", file.display())));
-    lines.concat()
+) -> Screen {
+    let mut screen = verdict_text(objections);
+    if let Some(unit) = unit {
+        screen.add(unit_text(unit));
+    }
+    screen.gap();
+    screen.add(terminal_table(result));
+    if let Some(file) = file {
+        screen.gap();
+        screen.say(0, &format!("Written to {}", file.display()));
+    }
+    screen
 }

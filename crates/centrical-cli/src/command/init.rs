@@ -1,8 +1,8 @@
 //! `centrical init FILES... --out experiment.toml`: an experiment file from what the files show.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use centrical_report::Screen;
 use centrical_session::{Draft, Error, InitRequest, Place, init, write_whole};
 use clap::ValueEnum;
 
@@ -57,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         // Without a file the draft itself is what was asked for.
         None if !arguments.printing.json => print(&draft.text)?,
         file => arguments.printing.show(
-            || file.as_deref().map_or_else(String::new, |file| summary(file, &draft)),
+            || file.as_deref().map_or_else(Screen::default, |file| summary(file, &draft)),
             || draft.report(file.as_deref()).to_json(),
         )?,
     }
@@ -65,16 +65,20 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 }
 
 /// What remains to be done.
-fn summary(file: &Path, draft: &Draft) -> String {
-    let mut text = format!(
-        "Written to {}. Guesses to check: {}. Lines to fill in: {}\n",
-        file.display(),
-        draft.guesses,
-        draft.fill_in.len()
+fn summary(file: &Path, draft: &Draft) -> Screen {
+    let mut screen = Screen::default();
+    screen.say(
+        0,
+        &format!(
+            "Written to {}. Guesses to check: {}. Lines to fill in: {}",
+            file.display(),
+            draft.guesses,
+            draft.fill_in.len()
+        ),
     );
     for entry in &draft.fill_in {
-        let _ = writeln!(text, "  line {}: {}: {}", entry.line, entry.key, entry.reason);
+        screen.say(2, &format!("line {}: {}: {}", entry.line, entry.key, entry.reason));
     }
-    let _ = writeln!(text, "Then: centrical calibrate {}", file.display());
-    text
+    screen.say(0, &format!("Then: centrical calibrate {}", file.display()));
+    screen
 }

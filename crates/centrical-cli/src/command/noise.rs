@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{noise_table, noise_warnings, write_noise};
+use centrical_report::{Emphasis, Screen, noise_table, noise_warnings, write_noise};
 use centrical_session::{
     ColumnName, Dimension, Error, Estimator, NoiseRequest, NotThatQuantity, PlateauName, Quantity, noise_of,
 };
@@ -72,11 +72,17 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     let warnings = noise_warnings(&analysis);
     let text = || {
+        let mut screen = Screen::default();
+        for warning in &warnings {
+            screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", warning);
+        }
         let plateau = plateau.map(|name| format!("Plateau {}:{} of ", name.mounting, name.plateau));
-        let mut lines = vec![plateau.unwrap_or_default(), noise_table(&analysis), "\n".to_owned()];
-        lines.extend(warnings.iter().map(|warning| format!("NOT ACCEPTABLE  {warning}\n")));
-        lines.extend(arguments.out.iter().map(|folder| format!("Written to {}\n", folder.display())));
-        lines.concat()
+        screen.add(noise_table(&analysis, &plateau.unwrap_or_default()));
+        if let Some(folder) = &arguments.out {
+            screen.gap();
+            screen.say(0, &format!("Written to {}", folder.display()));
+        }
+        screen
     };
     arguments.printing.show(text, || Ok(analysis.to_json()))?;
     Ok(Outcome::acceptable(warnings.is_empty()))

@@ -32,7 +32,7 @@ pub struct Arguments {
     #[arg(long)]
     certify: bool,
     /// Coverage probability of the expanded uncertainties
-    #[arg(long, default_value_t = 0.95, value_parser = probability)]
+    #[arg(long, default_value_t = 0.9545, value_parser = probability)]
     coverage: f64,
     #[command(flatten)]
     printing: Printing,

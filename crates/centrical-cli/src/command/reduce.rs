@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use centrical_report::{Screen, counted};
 use centrical_session::{Error, ReductionReport, Session, reduce_without_inputs, write_reduced};
 
 use crate::format::Format;
@@ -33,8 +34,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     bar.finish_and_clear();
     write_reduced(&session, &reduced, arguments.format.into(), &arguments.out)?;
     let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();
-    let count = reduced.plateaus.len();
-    let text = || format!("{count} plateaus of {samples} samples written to {}\n", arguments.out.display());
+    let text = || {
+        let mut screen = Screen::default();
+        let [plateaus, samples] = [counted(reduced.plateaus.len(), "plateau"), counted(samples, "sample")];
+        screen.say(0, &format!("{plateaus} of {samples} written to {}", arguments.out.display()));
+        screen
+    };
     arguments.printing.show(text, || ReductionReport::of(&session, &reduced, &arguments.out).to_json())?;
     Ok(Outcome::Done)
 }

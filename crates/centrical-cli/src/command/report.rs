@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{
-    DocumentRequest, Language, UnitStatement, UnitVerdict, unit_text, verdict_text, write_documents,
+    DocumentRequest, Language, Screen, UnitStatement, UnitVerdict, unit_text, verdict_text, write_documents,
 };
 use centrical_session::{DocumentKind, DocumentsReport, Error};
 use clap::ValueEnum;
@@ -97,9 +97,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let objections = result.objections();
     let is_within = is_within_limits(unit.as_ref());
     let text = || {
-        let objections = if objections.is_empty() { String::new() } else { verdict_text(&objections) };
-        let outside = unit.as_ref().filter(|_| !is_within).map(unit_text).unwrap_or_default();
-        objections + &outside
+        let mut screen = if objections.is_empty() { Screen::default() } else { verdict_text(&objections) };
+        screen.add(unit.as_ref().filter(|_| !is_within).map(unit_text).unwrap_or_default());
+        screen
     };
     let json = || DocumentsReport::of(&arguments.result, &result, &written(arguments)).to_json();
     arguments.printing.show(text, json)?;

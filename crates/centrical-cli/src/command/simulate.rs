@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use centrical_report::Screen;
 use centrical_session::{Error, Session, SimulationReport, Truth, simulate_session};
 
 use crate::format::Format;
@@ -38,6 +39,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let bar = progress::mountings("simulating", plan.experiment.mountings.len(), arguments.printing);
     simulate_session(&plan, &truth, arguments.seed, arguments.format.into(), &arguments.out, &|_| bar.inc(1))?;
     bar.finish_and_clear();
-    arguments.printing.show(String::new, || SimulationReport::of(&plan, arguments.seed, &arguments.out).to_json())?;
+    arguments
+        .printing
+        .show(Screen::default, || SimulationReport::of(&plan, arguments.seed, &arguments.out).to_json())?;
     Ok(Outcome::Done)
 }

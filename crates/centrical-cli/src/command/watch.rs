@@ -4,14 +4,14 @@ use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use centrical_report::{states_text, terminal_table, verdict_text, watch_table, write_history_plot};
+use centrical_report::{counted, states_text, terminal_table, verdict_text, watch_table, write_history_plot};
 use centrical_session::{
     Error, Following, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder, refuse_inputs,
 };
 
 use crate::interruption::asked_to_end;
 use crate::outcome::Outcome;
-use crate::output::{print, print_as_it_is, say};
+use crate::output::{print, print_as_it_is, remark, say, show as show_screen};
 
 /// Monitor a session folder while the laboratory is still adding records: after each plateau the uncertainties and the
 /// benefit of the next; the calibration when the schedule is complete. After Ctrl-C it resumes when started again.
@@ -68,7 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let mut following = Following::resume(&request, &session, &model)?;
     let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
-    say(&states_text(&model, &order));
+    remark(&states_text(&model, &order));
     let mut shown = Ok(());
     let end = following.run(asked_to_end(), &mut |event| {
         let outcome = if arguments.json { show_line(&event) } else { show(&event, &arguments.target) };
@@ -81,16 +81,23 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     match end {
         WatchEnd::Stopped { plateaus } => {
             let file = arguments.out.join("watch.json");
-            say(&format!("Stopped after {plateaus} plateaus; the same command goes on from {}\n", file.display()));
+            say(&format!(
+                "Stopped after {}; the same command goes on from {}\n",
+                counted(plateaus, "plateau"),
+                file.display()
+            ));
             Ok(Outcome::Done)
         }
         WatchEnd::Complete(result) => {
             let objections = result.objections();
             let file = arguments.out.join("result.json");
-            let written = format!("\nThe schedule is complete. Written to {}\n", file.display());
-            let text = terminal_table(&result) + &verdict_text(&objections) + &written;
+            let mut screen = verdict_text(&objections);
+            screen.gap();
+            screen.add(terminal_table(&result));
+            screen.gap();
+            screen.say(0, &format!("The schedule is complete. Written to {}", file.display()));
             if !arguments.json {
-                print(&text)?;
+                show_screen(&screen)?;
             }
             Ok(Outcome::acceptable(objections.is_empty()))
         }
@@ -109,7 +116,9 @@ fn show(event: &WatchEvent, targets: &[(String, f64)]) -> Result<(), Error> {
             if is_cleared {
                 print_as_it_is("\x1b[2J\x1b[H")?;
             }
-            print(&format!("{}\n", watch_table(progress, targets, is_cleared)))
+            let mut screen = watch_table(progress, targets, is_cleared);
+            screen.gap();
+            show_screen(&screen)
         }
     }
 }

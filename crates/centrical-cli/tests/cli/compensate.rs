@@ -3,9 +3,10 @@
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 use std::time::Duration;
 
+use crate::program;
 use crate::session::Copy;
 
 fn text(output: &Output) -> String {
@@ -79,7 +80,7 @@ fn readings_from_beyond_the_range_are_told() {
     let after = columns(&fs::read_to_string(copy.out().join("f.csv")).unwrap());
     let missing = after.iter().filter(|[_, f @ ..]| f.iter().all(|f| f.is_nan())).count();
     assert!(missing > 0 && missing < after.len());
-    let said = format!("NOT ACCEPTABLE  {missing} readings come from beyond the range and are nan, the first at t = ");
+    let said = format!("NOT ACCEPTABLE  {missing} readings beyond the range, written as nan, the first at t = ");
     assert!(text(&output).contains(&said), "{}", text(&output));
 }
 
@@ -173,7 +174,7 @@ fn peak_memory(copy: &Copy, rows: u64) -> u64 {
         writeln!(file, "{}.{:03},{}.25,-{}.125,9.8134277512345678", k / 1000, k % 1000, k % 1999, k % 1777).unwrap();
     }
     file.flush().unwrap();
-    let mut program = Command::new(env!("CARGO_BIN_EXE_centrical"))
+    let mut program = program::centrical()
         .args(["compensate", "result.json", "long.csv", "--out", "f.parquet"])
         .current_dir(copy.out())
         .env("RAYON_NUM_THREADS", "2")

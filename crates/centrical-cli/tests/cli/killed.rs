@@ -11,6 +11,7 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
+use crate::program;
 use crate::session::{Copy, example};
 
 /// The signal of the limit.
@@ -60,7 +61,7 @@ fn run(folder: &Path, before: &str, blocks: usize, arguments: &[&str]) -> Output
 
 /// Runs the binary in a folder to its end.
 fn whole(folder: &Path, arguments: &[&str]) {
-    let run = Command::new(env!("CARGO_BIN_EXE_centrical")).args(arguments).current_dir(folder).output().unwrap();
+    let run = program::centrical().args(arguments).current_dir(folder).output().unwrap();
     assert!(matches!(run.status.code(), Some(0 | 1)), "{arguments:?}: {}", String::from_utf8_lossy(&run.stderr));
 }
 

@@ -9,6 +9,8 @@ mod killed;
 mod noise;
 mod observe;
 mod plan;
+#[path = "../common/program.rs"]
+mod program;
 #[path = "../../../centrical/tests/common/random.rs"]
 mod random;
 mod reduce;
@@ -21,3 +23,4 @@ mod steadiness;
 mod trust;
 mod watch;
 mod way_in;
+mod width;

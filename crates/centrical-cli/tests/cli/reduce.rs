@@ -9,10 +9,11 @@ use std::time::Duration;
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::program;
 use crate::session::example;
 
 fn centrical(arguments: &[&str], threads: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    let mut command = program::centrical();
     command.args(arguments).env("RAYON_NUM_THREADS", threads);
     command
 }

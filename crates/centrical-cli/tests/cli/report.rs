@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
+use crate::program;
 use crate::session::{Copy, example};
 
 /// A calibrated copy: `calibrate --out .` with the laboratory's data.
@@ -68,7 +68,7 @@ fn the_same_bytes() {
         let laboratory = example().join("laboratory.toml");
         let (session, laboratory) = (copy.session(), laboratory.to_str().unwrap().to_owned());
         let run = |arguments: &[&str]| {
-            let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+            let mut command = program::centrical();
             let run =
                 command.args(arguments).current_dir(copy.out()).env("RAYON_NUM_THREADS", threads).output().unwrap();
             assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));

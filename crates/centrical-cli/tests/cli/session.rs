@@ -2,9 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use tempfile::TempDir;
+
+use crate::program;
 
 /// The session in the repository.
 pub fn example() -> PathBuf {
@@ -50,7 +52,7 @@ impl Copy {
 
     /// Runs the binary in the output folder.
     pub fn run(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+        let mut command = program::centrical();
         command.args(arguments).current_dir(self.out()).output().unwrap()
     }
 

@@ -2,12 +2,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::program;
 use crate::session::example;
 
 /// A typical unit, and a laboratory with most of what can be wrong with one.
@@ -48,7 +49,7 @@ impl Laboratory {
     }
 
     fn simulate(&self, plan: &Path, out: &str, more: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+        let mut command = program::centrical();
         command.arg("simulate").arg(plan).arg("--truth").arg(self.path("truth.toml")).arg("--out").arg(self.path(out));
         command.args(more).output().unwrap()
     }
@@ -75,8 +76,7 @@ fn json(file: &Path) -> Value {
 /// Squared error of the calibration weighted by its inverse covariance, every parameter estimable; the truth's windows
 /// hold the windows used, but for what was lost of their ends.
 fn squared_error(session: &Path) -> f64 {
-    let run =
-        Command::new(env!("CARGO_BIN_EXE_centrical")).args(["calibrate", "--json"]).arg(session).output().unwrap();
+    let run = program::centrical().args(["calibrate", "--json"]).arg(session).output().unwrap();
     done(&run);
     let (result, truth): (Value, _) = (serde_json::from_slice(&run.stdout).unwrap(), json(&session.join("truth.json")));
     let (found, truth_of) = (result["parameters"].as_array().unwrap(), truth["parameters"].as_array().unwrap());
@@ -122,7 +122,7 @@ fn calibrating_gives_the_truth_back() {
 fn files_follow_from_the_seed() {
     let laboratory = Laboratory::new(TRUTH);
     for (out, seed, threads) in [("a", "5", "1"), ("b", "5", "2"), ("c", "6", "2")] {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+        let mut command = program::centrical();
         command.env("RAYON_NUM_THREADS", threads).arg("simulate").arg(example()).args(["--seed", seed]);
         let run = command.arg("--truth").arg(laboratory.path("truth.toml")).arg("--out").arg(laboratory.path(out));
         done(&run.output().unwrap());

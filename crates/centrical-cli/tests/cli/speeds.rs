@@ -4,10 +4,11 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
+use crate::program;
 use crate::session::{Copy, example};
 
 /// The telemetry of a mounting with its columns changed.
@@ -32,7 +33,7 @@ fn said(run: &Output, code: i32) -> String {
 
 fn refused(copy: &Copy, parts: &[&str]) {
     let text = said(&copy.calibrate(&[]), 1);
-    let verdict: Vec<&str> = text.lines().filter(|line| line.starts_with("NOT ACCEPTABLE")).collect();
+    let verdict: Vec<&str> = text.lines().take_while(|line| line.starts_with("NOT ACCEPTABLE")).collect();
     assert_eq!(verdict.len(), 1, "{text}");
     for part in parts {
         assert!(verdict[0].contains(part), "{part:?} is not in {}", verdict[0]);
@@ -114,7 +115,7 @@ jitter = "3 us"
 "#;
 
 fn run(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_centrical")).args(arguments).current_dir(folder).output().unwrap()
+    program::centrical().args(arguments).current_dir(folder).output().unwrap()
 }
 
 /// The example as a plan whose speeds are measured `from` something, simulated.
@@ -173,7 +174,7 @@ fn speeds_by_pulses_are_used_and_kept() {
     assert_eq!(reduced["speeds"]["measured_by"], "plateaus");
     assert!(
         said(&run(&["calibrate", "session", "--out", "out"], at), 0)
-            .contains("SPEED measured by a counter of revolutions on 84 of 84")
+            .contains("SPEED   measured by a counter of revolutions on 84 of 84")
     );
 }
 

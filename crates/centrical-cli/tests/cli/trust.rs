@@ -3,14 +3,15 @@
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
+use crate::program;
 use crate::session::{Copy, example};
 
 fn run(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_centrical")).args(arguments).output().unwrap()
+    program::centrical().args(arguments).output().unwrap()
 }
 
 fn text(run: &Output) -> String {
@@ -34,11 +35,7 @@ fn montecarlo_repeats_itself() {
     let folder = example();
     let with = |threads: &str| {
         let arguments = ["montecarlo", folder.to_str().unwrap(), "--runs", "40", "--seed", "7"];
-        Command::new(env!("CARGO_BIN_EXE_centrical"))
-            .args(arguments)
-            .env("RAYON_NUM_THREADS", threads)
-            .output()
-            .unwrap()
+        program::centrical().args(arguments).env("RAYON_NUM_THREADS", threads).output().unwrap()
     };
     let one = text(&with("1"));
     assert!(one.contains("MONTE CARLO  40 calibrations, 0 did not converge"), "{one}");
@@ -92,7 +89,7 @@ fn montecarlo_draws_for_the_unit_that_is_predicted() {
 #[test]
 fn models_recommends_what_the_example_was_made_with() {
     let told = text(&run(&["models", example().to_str().unwrap()]));
-    assert!(told.contains("recommended: \"as stated\""), "{told}");
+    assert!(told.contains("RECOMMENDED  \"as stated\""), "{told}");
 }
 
 /// What a laboratory states, all of it.
@@ -122,9 +119,9 @@ fn calibrate_tells_sources_validity_and_verdict() {
     let told = text(&copy.calibrate(&[]));
     for part in [
         "value ± standard uncertainty",
-        "FROM  noise, speed of each plateau\n",
+        "FROM    noise, speed of each plateau\n",
         "states no [uncertainty]",
-        "VALID chi^2 as large or larger comes by chance with a probability of 0.1",
+        "VALID   chi^2 as large or larger comes by chance with a probability of 0.1",
         "none of the 108 plateaus stands out",
         "patterns against speed, position, radius and time in the residuals",
         "each mounting predicted from all others",
@@ -195,7 +192,7 @@ fn an_outlying_plateau_is_named() {
     assert!(told.contains("NOT ACCEPTABLE  plateaus that stand out: 5:9"), "{told}");
     assert!(text(&copy.calibrate(&["--hold-out", "5:9"])).contains("ACCEPTABLE  no check raised"));
     let cleaned = text(&copy.run(&["assess", copy.session().to_str().unwrap(), "--without-outliers"]));
-    assert!(cleaned.contains("OUTLIERS  1 plateaus left out\n  mounting 5, plateau 9"), "{cleaned}");
+    assert!(cleaned.contains("OUTLIERS  1 plateau left out\n  mounting 5, plateau 9"), "{cleaned}");
     assert!(cleaned.contains("estimates that moved most"), "{cleaned}");
 }
 
@@ -272,7 +269,7 @@ fn compare_takes_any_number_of_results() {
     ] {
         assert!(said.contains(heading), "{said}");
     }
-    assert!(said.contains("2  2027.json: TA-200, serial 0001  2027-10-05"), "{said}");
+    assert!(said.contains("2 2027.json: TA-200, serial 0001, 2027-10-05"), "{said}");
     assert!(fs::read_to_string(copy.out().join("plot.svg")).unwrap().contains("<svg"));
     let json: Value =
         serde_json::from_slice(&copy.run(&["compare", "result.json", "2027.json", "--json"]).stdout).unwrap();

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
+use crate::program;
 use crate::session::{Copy, example};
 
 /// Longest time that any step of a run may take.
@@ -25,7 +26,7 @@ fn a_complete_session_is_followed_to_its_calibration() {
     let text = String::from_utf8(run.stdout).unwrap();
     assert_eq!(run.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&run.stderr));
     assert!(String::from_utf8_lossy(&run.stderr).starts_with("30 states of 49 unknowns"));
-    for part in ["PLATEAU 108 of 108   RANK 49 of 49", "Every target is met", "The schedule is complete"] {
+    for part in ["PLATEAU 108 of 108  RANK 49 of 49", "Every target is met", "The schedule is complete"] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
     assert!(!text.contains("DOES NOT FIT"), "{text}");
@@ -166,7 +167,7 @@ fn a_watch_killed_anywhere_ends_with_the_same_bytes() {
 /// Starts a watch and kills it when it has written a plateau more, and `later`; whether it had ended by then.
 fn killed_after_a_plateau(copy: &Copy, later: Duration) -> bool {
     let before = lines(&copy.out());
-    let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    let mut command = program::centrical();
     command.args(["watch", copy.session().to_str().unwrap(), "--once"]).current_dir(copy.out());
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     until("a plateau", || lines(&copy.out()) > before || child.try_wait().unwrap().is_some());
@@ -201,7 +202,7 @@ fn lines(out: &Path) -> usize {
 }
 
 fn start(copy: &Copy) -> Child {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    let mut command = program::centrical();
     command.arg("watch").arg(copy.session()).args(["--interval", "0.05", "--quiet", "2"]);
     command.current_dir(copy.out()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
 }

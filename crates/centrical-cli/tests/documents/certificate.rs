@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::{documents, example};
+use crate::{documents, example, program};
 
 /// Text of a PDF file, pages apart by form feeds.
 pub fn text_of(pdf: &Path) -> String {
@@ -150,7 +150,7 @@ fn adjustment_and_decision() {
     bias["value"] = (2.0 * bias["value"].as_f64().unwrap()).into();
     fs::write(folder.path().join("before.json"), before.to_string()).unwrap();
     let report = |arguments: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+        let mut command = program::centrical();
         command.args(["report", "result.json", "--pdf", "both.pdf", "--before", "before.json", "--laboratory"]);
         command.args(arguments).current_dir(&folder).output().unwrap()
     };
@@ -196,7 +196,7 @@ fn a_result_that_is_not_acceptable_says_so() {
     let mut json: serde_json::Value = serde_json::from_str(&fs::read_to_string(&result).unwrap()).unwrap();
     json["fit"]["chi_squared"] = 1000.0.into();
     fs::write(&result, json.to_string()).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    let mut command = program::centrical();
     command.args(["report", "result.json", "--pdf", "bad.pdf", "--dcc", "bad.xml", "--laboratory", "laboratory.toml"]);
     let run = command.current_dir(&folder).output().unwrap();
     assert_eq!(run.status.code(), Some(1));
@@ -239,7 +239,7 @@ fn the_certificate_carries_its_digital_form() {
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     assert!(fs::read(folder.path().join("carried/certificate.xml")).unwrap() == copy, "the carried file differs");
     // Without it the file is an archive of the plainer kind.
-    let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    let mut command = program::centrical();
     command.args(["report", "result.json", "--pdf", "certificate.pdf", "--laboratory", "laboratory.toml"]);
     assert!(command.current_dir(&folder).output().unwrap().status.success());
     assert!(said("pdfinfo", &["-meta"]).contains("<pdfaid:part>2<"));

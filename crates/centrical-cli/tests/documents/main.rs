@@ -5,10 +5,11 @@
 mod certificate;
 mod chromium;
 mod page;
+#[path = "../common/program.rs"]
+mod program;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use tempfile::TempDir;
 
@@ -21,7 +22,7 @@ fn documents(language: &str, alter: impl Fn(String) -> String) -> TempDir {
     let folder = TempDir::new().unwrap();
     let laboratory = folder.path().join("laboratory.toml");
     fs::write(&laboratory, alter(fs::read_to_string(example("laboratory.toml")).unwrap())).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_centrical"));
+    let mut command = program::centrical();
     command.arg("calibrate").arg(example("")).arg("--out").arg(folder.path()).args(["--language", language]);
     let run = command.arg("--laboratory").arg(laboratory).output().unwrap();
     // 1 where the altered limits are not kept.

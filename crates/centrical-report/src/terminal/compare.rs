@@ -1,79 +1,96 @@
 //! Calibrations compared, as text for the terminal.
 
-use std::fmt::Write;
+use centrical_session::{ComparedResultSummary, ComparisonReport, PairComparison, customary};
 
-use centrical_session::{ComparedResultSummary, ComparisonReport, PairComparison, customary, harmless_line};
-
-use crate::number::short;
+use super::screen::{Emphasis, Screen};
+use super::symbols::legend;
+use super::table::{Align, Cell, Table};
+use crate::number::{unsigned_zero, with_uncertainty};
 
 /// Calibrations of one unit, two by two.
-pub fn comparison_text(report: &ComparisonReport) -> String {
-    let mut text = String::from("COMPARISON  E_n with expanded uncertainties, k = 2\n");
+pub fn comparison_text(report: &ComparisonReport) -> Screen {
+    let mut screen = Screen::default();
+    let (emphasis, mark, words) = if report.agree {
+        (Emphasis::Acceptable, "AGREE", "no difference beyond what the uncertainties explain")
+    } else {
+        (Emphasis::NotAcceptable, "DO NOT AGREE", "the reasons stand below")
+    };
+    screen.marked(emphasis, mark, words);
+    screen.gap();
+    screen.head("COMPARISON", "difference ± standard uncertainty; E_n with expanded uncertainties, k = 2");
     for (n, result) in report.results.iter().enumerate() {
         let ComparedResultSummary { file, title, date, .. } = result;
-        let _ = writeln!(
-            text,
-            "  {}  {}: {}  {}  {}",
-            n + 1,
-            harmless_line(file),
-            unit(result),
-            date,
-            harmless_line(title)
-        );
+        screen.say(2, &format!("{}  {file}: {}, {date}, {title}", n + 1, unit(result)));
     }
     for pair in &report.comparisons {
-        one_pair(&mut text, report, pair);
+        one_pair(&mut screen, report, pair);
     }
-    text
+    let all = report.comparisons.iter().flat_map(|pair| &pair.differences);
+    legend(&mut screen, all.map(|d| (d.name.as_str(), d.group)));
+    screen
 }
 
-fn one_pair(text: &mut String, report: &ComparisonReport, pair: &PairComparison) {
+fn one_pair(screen: &mut Screen, report: &ComparisonReport, pair: &PairComparison) {
+    screen.gap();
     let years = pair.years.map_or(String::new(), |years| format!(", {years:.2} years between them"));
-    let _ = writeln!(text, "\nRESULT {} LESS RESULT {}{years}", pair.second + 1, pair.first + 1);
-    let drift = if pair.years.is_some() { "per year" } else { "" };
-    if !pair.differences.is_empty() {
-        let _ = writeln!(text, "  {:<12}{:<9}{:>12}{:>10}{:>8}{drift:>12}", "", "unit", "difference", "u", "E_n");
-    }
-    for d in &pair.differences {
-        let (factor, unit) = customary(&d.unit, d.group);
-        let (difference, u) = (short(d.difference * factor), short(d.standard_uncertainty * factor));
-        let drift = d.per_year.map_or(String::new(), |drift| short(drift * factor));
-        let mark = if d.disagrees { "  DISAGREE" } else { "" };
-        let _ = writeln!(text, "  {:<12}{unit:<9}{difference:>12}{u:>10}{:>8.2}{drift:>12}{mark}", d.name, d.e_n);
-    }
+    screen.say(0, &format!("RESULT {} LESS RESULT {}{years}", pair.second + 1, pair.first + 1));
+    cautions(screen, report, pair);
+    differences(screen, pair);
     let beyond = pair.differences.iter().filter(|d| d.e_n.abs() > 1.0).count();
     if let (Some(chi_squared), Some(probability)) = (pair.chi_squared, pair.probability) {
         let count = pair.degrees_of_freedom;
-        let _ = writeln!(
-            text,
-            "  {beyond} of {count} have E_n beyond 1; by chance it is 1 in 20\n  \
-             all {count} together: chi^2 = {chi_squared:.1} with {count} degrees of freedom, probability {probability:.1e} \
-             if nothing has changed"
+        screen.say(2, &format!("{beyond} of {count} have E_n beyond 1; by chance it is 1 in 20"));
+        screen.say(
+            2,
+            &format!(
+                "all {count} together: chi^2 = {chi_squared:.1} with {count} degrees of freedom, probability \
+                 {probability:.1e} if nothing has changed"
+            ),
         );
     }
-    cautions(text, report, pair);
+}
+
+fn differences(screen: &mut Screen, pair: &PairComparison) {
+    let columns = [
+        ("", Align::Left),
+        ("unit", Align::Left),
+        ("difference", Align::Right),
+        ("E_n", Align::Right),
+        ("per year", Align::Right),
+        ("", Align::Words),
+    ];
+    let mut table = Table::new(2, columns);
+    for d in &pair.differences {
+        let (factor, unit) = customary(&d.unit, d.group);
+        let shown =
+            |share: f64| Cell::estimate(with_uncertainty(share * d.difference, share.abs() * d.standard_uncertainty));
+        let per_year = pair.years.map_or(Cell::default(), |years| shown(factor / years));
+        let mark = if d.disagrees { "DISAGREE" } else { "" };
+        let e_n = unsigned_zero(format!("{:.2}", d.e_n));
+        table.row([d.name.as_str().into(), unit.into(), shown(factor), e_n.into(), per_year, mark.into()]);
+    }
+    screen.table(table);
 }
 
 /// What forbids or limits the comparison.
-fn cautions(text: &mut String, report: &ComparisonReport, pair: &PairComparison) {
+fn cautions(screen: &mut Screen, report: &ComparisonReport, pair: &PairComparison) {
     if !pair.same_unit {
         let [first, second] = [pair.first, pair.second].map(|n| unit(&report.results[n]));
-        let _ = writeln!(text, "DIFFERENT UNITS  the first result is of {first}, the second of {second}");
+        let words = format!("the first result is of {first}, the second of {second}");
+        screen.marked(Emphasis::Warning, "DIFFERENT UNITS", &words);
     }
     for (which, terms) in [("first", &pair.only_in_first), ("second", &pair.only_in_second)] {
         if !terms.is_empty() {
-            let terms = terms.join(", ");
-            let _ = writeln!(
-                text,
-                "DIFFERENT ERROR MODELS  only the {which} has {terms}: other coefficients may differ for that"
-            );
+            let words = format!("only the {which} has {}: other coefficients may differ for that", terms.join(", "));
+            screen.marked(Emphasis::Warning, "DIFFERENT ERROR MODELS", &words);
         }
     }
     if pair.differences.is_empty() {
-        text.push_str("NOTHING TO COMPARE  the two determine no coefficient in common\n");
+        let words = "the two determine no coefficient in common";
+        screen.marked(Emphasis::Warning, "NOTHING TO COMPARE", words);
     }
 }
 
 fn unit(result: &ComparedResultSummary) -> String {
-    harmless_line(&format!("{}, serial {}", result.unit_model, result.unit_serial)).into_owned()
+    format!("{}, serial {}", result.unit_model, result.unit_serial)
 }

@@ -6,8 +6,11 @@ use centrical::STANDARD_GRAVITY;
 use centrical_compensate::Certificate;
 use centrical_session::Compensated;
 
+use super::screen::{Emphasis, Screen};
+use crate::number::counted;
+
 /// What became of a record, where the inverse is unique, and where the specific forces are.
-pub fn compensation_text(compensated: &Compensated, certificate: &Certificate, out: &Path) -> String {
+pub fn compensation_text(compensated: &Compensated, certificate: &Certificate, out: &Path) -> Screen {
     let g = |f: f64| format!("{:.6} g", f / STANDARD_GRAVITY);
     let Certificate { range, margin, .. } = *certificate;
     let farthest = if margin.is_finite() {
@@ -15,32 +18,38 @@ pub fn compensation_text(compensated: &Compensated, certificate: &Certificate, o
     } else {
         "anywhere".to_owned()
     };
-    let mut lines = vec![format!(
-        "{} readings compensated, range {} on each axis; the inverse is unique there, and could be asked for {farthest}\n",
-        compensated.readings,
-        g(range)
-    )];
+    let mut screen = Screen::default();
     if let Some(first) = &compensated.first_outside {
-        lines.push(format!(
-            "NOT ACCEPTABLE  {} readings come from beyond the range and are nan, the first at t = {} s: {}\n",
-            compensated.outside,
+        let words = format!(
+            "{} beyond the range, written as nan, the first at t = {} s: {}",
+            counted(compensated.outside, "reading"),
             first.t,
             first.reading.map(g).join(", ")
-        ));
+        );
+        screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", &words);
     }
     if let Some(first) = &compensated.first_beyond {
-        lines.push(format!(
-            "WARNING  {} readings lie beyond those of the calibration, where its error model is extrapolated, the first at \
-             t = {} s: {}\n",
-            compensated.beyond,
+        let words = format!(
+            "{} beyond those of the calibration, where its error model is extrapolated, the first at t = {} s: {}",
+            counted(compensated.beyond, "reading"),
             first.t,
             first.reading.map(g).join(", ")
-        ));
+        );
+        screen.marked(Emphasis::Warning, "WARNING", &words);
     }
+    let words = format!(
+        "{} compensated, range {} on each axis; the inverse is unique there, and could be asked for {farthest}",
+        counted(compensated.readings, "reading"),
+        g(range)
+    );
+    screen.say(0, &words);
     let out = out.display();
-    lines.push(match compensated.decimals {
-        Some(count) => format!("Written to {out}, specific forces to {count} decimals of a m/s^2\n"),
-        None => format!("Written to {out}\n"),
-    });
-    lines.concat()
+    screen.say(
+        0,
+        &match compensated.decimals {
+            Some(count) => format!("Written to {out}, specific forces to {} of a m/s^2", counted(count, "decimal")),
+            None => format!("Written to {out}"),
+        },
+    );
+    screen
 }

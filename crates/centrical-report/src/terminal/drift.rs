@@ -1,54 +1,55 @@
 //! How steady the readings were, as text for the terminal.
 
-use std::fmt::Write;
-
 use centrical_session::{
     CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, SessionDriftVerdict, TiltSummary, TiltVerdict,
 };
 
+use super::screen::Screen;
 use crate::evaluation::not_used;
-use crate::number::{MINUTE, with_uncertainty};
+use crate::number::{MINUTE, counted, with_uncertainty};
 
 /// The section of the terminal's table; empty for a session that came already averaged.
-pub(super) fn drift(text: &mut String, result: &CalibrationResult) {
-    left_out(text, result);
+pub(super) fn drift(screen: &mut Screen, result: &CalibrationResult) {
+    left_out(screen, result);
     if let Some(drift) = &result.drift {
-        over_plateaus(text, drift);
-        over_session(text, drift);
-        repeats(text, drift);
+        over_plateaus(screen, drift);
+        over_session(screen, drift);
+        repeats(screen, drift);
     }
     if let Some(tilt) = &result.tilt {
-        tilts(text, tilt);
+        tilts(screen, tilt);
     }
 }
 
 /// Samples that are not used, by kind, where there are any.
-fn left_out(text: &mut String, result: &CalibrationResult) {
+fn left_out(screen: &mut Screen, result: &CalibrationResult) {
     let LeftOutSummary { spikes, stuck, missing, repeated } = not_used(result);
     let kinds = [("spikes", spikes), ("missing", missing), ("stuck", stuck), ("repeated", repeated)];
     let named: Vec<String> =
         kinds.iter().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{kind} {count}")).collect();
     if !named.is_empty() {
-        let _ = writeln!(text, "      samples not used: {}", named.join(", "));
+        screen.fact("", &format!("samples not used: {}", named.join(", ")));
     }
 }
 
-fn over_plateaus(text: &mut String, drift: &DriftSummary) {
+fn over_plateaus(screen: &mut Screen, drift: &DriftSummary) {
     let shown: Vec<String> = (drift.slope.iter().zip(&drift.slope_uncertainty))
         .map(|(slope, u)| with_uncertainty(MINUTE * slope / MICRO_G, MINUTE * u / MICRO_G))
         .map(|(slope, u)| format!("{slope} ± {u}"))
         .collect();
     let verdict = if drift.plateaus_drift() { "plateaus drift" } else { "no drift seen" };
-    let _ = writeln!(
-        text,
-        "DRIFT over a plateau, mean: {} ug/min; chi^2 {:.1} of {} slopes, {verdict}",
-        shown.join(", "),
-        drift.chi_squared,
-        drift.degrees_of_freedom
+    screen.fact(
+        "DRIFT",
+        &format!(
+            "over a plateau, mean: {} ug/min; chi^2 {:.1} of {} slopes, {verdict}",
+            shown.join(", "),
+            drift.chi_squared,
+            drift.degrees_of_freedom
+        ),
     );
 }
 
-fn over_session(text: &mut String, drift: &DriftSummary) {
+fn over_session(screen: &mut Screen, drift: &DriftSummary) {
     if drift.over_session.is_empty() {
         return;
     }
@@ -62,22 +63,24 @@ fn over_session(text: &mut String, drift: &DriftSummary) {
         SessionDriftVerdict::WithinScatter => "no more than the plateaus scatter",
         SessionDriftVerdict::Seen => "the session drifts",
     };
-    let _ = writeln!(text, "      over the session: {} ug, {verdict}", trends.join(", "));
+    screen.fact("", &format!("over the session: {} ug, {verdict}", trends.join(", ")));
 }
 
-fn repeats(text: &mut String, drift: &DriftSummary) {
+fn repeats(screen: &mut Screen, drift: &DriftSummary) {
     let Some((worst, differ)) = drift.farthest_apart() else { return };
     let count = drift.repeats.len();
     let [first, second] = worst.indices.map(|index| index + 1);
     let verdict = if differ { "they differ" } else { "no difference seen" };
-    let _ = writeln!(
-        text,
-        "      plateaus run again: {count}; farthest apart are {}:{first} and {0}:{second}, chi^2 {:.1} of 3, {verdict}",
-        worst.mounting, worst.chi_squared
+    screen.fact(
+        "",
+        &format!(
+            "plateaus run again: {count}; farthest apart are {}:{first} and {0}:{second}, chi^2 {:.1} of 3, {verdict}",
+            worst.mounting, worst.chi_squared
+        ),
     );
 }
 
-fn tilts(text: &mut String, tilt: &TiltSummary) {
+fn tilts(screen: &mut Screen, tilt: &TiltSummary) {
     let shown = |value: f64, u: f64| {
         let (value, u) = with_uncertainty(1e6 * value, 1e6 * u);
         format!("{value} ± {u} urad")
@@ -92,20 +95,24 @@ fn tilts(text: &mut String, tilt: &TiltSummary) {
             format!("it turns the other way ({as_if}): the sense of rotation is wrong")
         }
     };
-    let _ = writeln!(
-        text,
-        "TILT  by the once-per-revolution term of {} plateaus {}, by rest {}; chi^2 {:.1} of 1, {verdict}",
-        tilt.plateaus,
-        shown(tilt.spinning, tilt.spinning_uncertainty),
-        shown(tilt.at_rest, tilt.at_rest_uncertainty),
-        tilt.chi_squared
+    screen.fact(
+        "TILT",
+        &format!(
+            "by the once-per-revolution term of {} {}, by rest {}; chi^2 {:.1} of 1, {verdict}",
+            counted(tilt.plateaus, "plateau"),
+            shown(tilt.spinning, tilt.spinning_uncertainty),
+            shown(tilt.at_rest, tilt.at_rest_uncertainty),
+            tilt.chi_squared
+        ),
     );
     if tilt.scatters() {
-        let _ = writeln!(
-            text,
-            "      the plateaus' own tilts scatter: chi^2 {:.1} of {}",
-            tilt.scatter_chi_squared,
-            tilt.plateaus.saturating_sub(1)
+        screen.fact(
+            "",
+            &format!(
+                "the plateaus' own tilts scatter: chi^2 {:.1} of {}",
+                tilt.scatter_chi_squared,
+                tilt.plateaus.saturating_sub(1)
+            ),
         );
     }
 }

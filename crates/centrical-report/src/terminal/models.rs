@@ -1,66 +1,120 @@
 //! The choice of the error model as text for the terminal.
 
-use std::fmt::Write;
-
 use centrical::uncertainty::Selection;
 
 use super::rivals::lines_of;
+use super::screen::{Emphasis, Screen};
+use super::table::{Align, Cell, Table};
+use crate::number::counted;
 
 /// Candidates in the table, beside the model as stated and its parts.
 const SHOWN: usize = 12;
 
-/// The candidates with the lowest BIC in one table, the recommendation and its reason, the terms one by one.
-pub fn selection_table(selection: &Selection) -> String {
-    let mut text = String::from("MODELS\n");
-    let _ = writeln!(
-        text,
-        "  {:<48}{:>9} {:>11} {:>5} {:>11} {:>9}  F test against",
-        "", "unknowns", "chi^2", "dof", "BIC", "hold-out"
-    );
+/// Terms that are listed by name: more of them are counted.
+const NAMED: usize = 12;
+
+/// How the candidates that add to the stated model are named.
+const STATED: &str = "as stated";
+
+/// The recommendation and its reason, the candidates with the lowest BIC in one table, the terms one by one.
+pub fn selection_table(selection: &Selection) -> Screen {
+    let mut screen = Screen::default();
+    recommendation(&mut screen, selection);
+    screen.gap();
+    candidates(&mut screen, selection);
+    let named = |kept: bool| {
+        let names: Vec<&str> = selection.terms.iter().filter(|t| t.kept == kept).map(|t| t.name.as_str()).collect();
+        match names.len() {
+            0 => "none".to_owned(),
+            count if count > NAMED && !kept => {
+                format!("{}, and {} more", names[..NAMED].join(", "), count - NAMED)
+            }
+            _ => names.join(", "),
+        }
+    };
+    screen.gap();
+    screen.head("TERMS", "one by one");
+    screen.say(2, &format!("the data show: {}", named(true)));
+    screen.say(2, &format!("they do not show: {}", named(false)));
+    screen
+}
+
+/// Which candidate, what that means, and why.
+fn recommendation(screen: &mut Screen, selection: &Selection) {
+    let best = &selection.candidates[selection.recommended];
+    let meaning = if best.rivals.is_empty() {
+        format!("\"{}\": the data support no addition to it", best.name)
+    } else {
+        format!("\"{}\": the data show an effect that the stated model leaves out", best.name)
+    };
+    screen.marked(Emphasis::Heading, "RECOMMENDED", &meaning);
+    if !best.rivals.is_empty() {
+        let lines = lines_of(&best.rivals).join("; ");
+        screen.say(2, &format!("in experiment.toml, under [model]: {lines}"));
+    }
+    for reason in reasons(selection) {
+        screen.say(2, &reason);
+    }
+}
+
+/// The candidates, the recommended one first, then by their BIC.
+fn candidates(screen: &mut Screen, selection: &Selection) {
     let mut order: Vec<usize> = (0..selection.candidates.len()).collect();
     order.sort_by(|&a, &b| selection.candidates[a].bic.total_cmp(&selection.candidates[b].bic));
+    order.sort_by_key(|n| *n != selection.recommended);
     let is_shown = |place: usize, n: usize| place < SHOWN || selection.candidates[n].rivals.is_empty();
     let shown: Vec<usize> =
         order.iter().enumerate().filter(|(place, n)| is_shown(*place, **n)).map(|(_, n)| *n).collect();
+    screen.head("MODELS", "by BIC, the lowest first; + adds to the model as stated");
+    let columns = [
+        ("", Align::Left),
+        ("unknowns", Align::Right),
+        ("chi^2", Align::Right),
+        ("dof", Align::Right),
+        ("BIC", Align::Right),
+        ("hold-out", Align::Right),
+        ("F test", Align::Right),
+        ("", Align::Words),
+    ];
+    let mut table = Table::new(1, columns);
     for &n in &shown {
         let rival = &selection.candidates[n];
-        let mark = if n == selection.recommended { "*" } else { " " };
         let determined = if rival.rank == rival.unknowns {
             rival.rank.to_string()
         } else {
             format!("{}/{}", rival.rank, rival.unknowns)
         };
-        let _ = write!(
-            text,
-            "{mark} {:<48}{determined:>9} {:>11} {:>5} {:>11} {:>9}",
-            rival.name,
-            wide(rival.chi_squared),
-            rival.degrees_of_freedom,
-            wide(rival.bic),
-            wide(rival.hold_out_score)
-        );
-        if let Some(test) = &rival.against {
-            let name = &selection.candidates[test.nested].name;
-            let _ = write!(text, "  {name}: {:.2} for {}, p = {}", test.f, test.further, probability(test.probability));
-        }
-        text.push_str(if rival.converged { "\n" } else { "  did not converge\n" });
+        let test = rival.against.as_ref().map_or(String::new(), |test| match test.probability {
+            p if p > 0.0 => probability(p),
+            _ => "<1e-300".to_owned(),
+        });
+        table.row([
+            short_name(&rival.name).into(),
+            determined.into(),
+            wide(rival.chi_squared).into(),
+            rival.degrees_of_freedom.to_string().into(),
+            wide(rival.bic).into(),
+            wide(rival.hold_out_score).into(),
+            test.into(),
+            if rival.converged { Cell::default() } else { "did not converge".into() },
+        ]);
     }
+    screen.table(table);
     let hidden = selection.candidates.len() - shown.len();
     if hidden > 0 {
-        let _ = writeln!(text, "  and {hidden} more with a higher BIC");
+        screen.say(2, &format!("and {hidden} more with a higher BIC"));
     }
-    text.push_str(&reason(selection));
-    let added = &selection.candidates[selection.recommended].rivals;
-    if !added.is_empty() {
-        let _ = writeln!(text, "  in experiment.toml, under [model]: {}", lines_of(added).join("; "));
-    }
-    let of = |kept: bool| {
-        let names: Vec<&str> = selection.terms.iter().filter(|t| t.kept == kept).map(|t| t.name.as_str()).collect();
-        if names.is_empty() { "none".to_owned() } else { names.join(", ") }
-    };
-    let _ = writeln!(text, "  terms that the data show, one by one: {}", of(true));
-    let _ = writeln!(text, "  terms that they do not show: {}", of(false));
-    text
+    screen.say(
+        2,
+        "unknowns: determined ones, of all where some are not; hold-out: score of the prediction \
+        of left-out mountings, little above 1 for a true model; F test: probability of the gain over the candidate \
+        without the addition, if it were chance",
+    );
+}
+
+/// `+ seat-radius` for what adds to the model as stated.
+fn short_name(name: &str) -> &str {
+    name.strip_prefix(STATED).map(str::trim_start).filter(|rest| rest.starts_with('+')).unwrap_or(name)
 }
 
 /// One digit; what is too small for a double by its bound.
@@ -74,32 +128,29 @@ fn wide(value: f64) -> String {
 }
 
 /// Why the recommended one.
-fn reason(selection: &Selection) -> String {
+fn reasons(selection: &Selection) -> Vec<String> {
     let best = &selection.candidates[selection.recommended];
-    let mut text = format!("  recommended: \"{}\", the lowest BIC", best.name);
-    if let Some(test) = &best.against {
-        let _ = write!(
-            text,
-            "; its {} further unknowns over \"{}\" would all be zero with a probability of {}",
-            test.further,
-            selection.candidates[test.nested].name,
-            probability(test.probability)
-        );
-    }
+    let mut reasons = vec!["it has the lowest BIC".to_owned()];
     let others = selection.candidates.iter().enumerate().filter(|(n, _)| *n != selection.recommended).map(|(_, r)| r);
     if let Some(second) = others.min_by(|a, b| a.bic.total_cmp(&b.bic)) {
-        let _ = write!(text, "; the next, \"{}\", is {:.1} behind", second.name, second.bic - best.bic);
+        reasons[0] =
+            format!("it has the lowest BIC; the next, \"{}\", is {:.1} behind", second.name, second.bic - best.bic);
+    }
+    if let Some(test) = &best.against {
+        reasons.push(format!(
+            "its {} over \"{}\" would all be zero with a probability of {}",
+            counted(test.further, "further unknown"),
+            selection.candidates[test.nested].name,
+            probability(test.probability)
+        ));
     }
     let sound = selection.candidates.iter().filter(|rival| rival.converged);
-    match sound.min_by(|a, b| a.hold_out_score.total_cmp(&b.hold_out_score)) {
-        Some(first) if first.hold_out_score < best.hold_out_score => {
-            let _ = writeln!(
-                text,
-                "; left-out mountings are predicted better by \"{}\", a score of {:.3} against {:.3}",
-                first.name, first.hold_out_score, best.hold_out_score
-            );
-        }
-        _ => text.push_str("; it predicts left-out mountings best as well\n"),
-    }
-    text
+    reasons.push(match sound.min_by(|a, b| a.hold_out_score.total_cmp(&b.hold_out_score)) {
+        Some(first) if first.hold_out_score < best.hold_out_score => format!(
+            "left-out mountings are predicted better by \"{}\", a score of {:.3} against {:.3}",
+            first.name, first.hold_out_score, best.hold_out_score
+        ),
+        _ => "it predicts left-out mountings best as well".to_owned(),
+    });
+    reasons
 }

@@ -1,74 +1,83 @@
 //! Monte Carlo runs as text for the terminal.
 
-use std::fmt::Write;
-
 use centrical::Parameters;
 use centrical::uncertainty::MonteCarlo;
-
-use super::prediction::LEANING;
 use centrical_session::{MonteCarloCase, customary};
 
-use crate::number::short;
+use super::prediction::LEANING;
+use super::screen::Screen;
+use super::symbols::legend;
+use super::table::{Align, Cell, Table};
+use crate::number::{counted, two_digits, unsigned_zero};
 
 /// For which unit the readings were drawn where that is not the one of the data, and what the runs show beside what was
 /// stated; `coverage` is the probability that the intervals are to cover.
-pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverage: f64) -> String {
+pub fn monte_carlo_text(case: &MonteCarloCase, monte_carlo: &MonteCarlo, coverage: f64) -> Screen {
     let parameters = case.model.parameters();
-    let mut text = drawn_unit(parameters, &case.truth).to_owned();
-    let _ = writeln!(text, "MONTE CARLO  {} calibrations, {} did not converge", monte_carlo.runs, monte_carlo.failures);
-    let percent = 100.0 * coverage;
-    let _ = writeln!(
-        text,
-        "  {:<12}{:<9}{:>10}{:>10}{:>8}{:>14}{:>12}",
-        "", "unit", "stated u", "spread", "ratio", "bias, in u", "covered, %"
-    );
-    for (parameter, statistics) in parameters.iter().zip(&monte_carlo.parameters) {
-        let (factor, unit) = customary(&parameter.unit, parameter.group);
-        let _ = write!(text, "  {:<12}{unit:<9}", parameter.name);
-        let Some(s) = statistics else {
-            text.push_str("  not determined\n");
-            continue;
-        };
-        let _ = writeln!(
-            text,
-            "{:>10}{:>10}{:>8.3}{:>14.3}{:>12.2}{}",
-            short(s.stated * factor),
-            short(s.standard_deviation * factor),
-            s.standard_deviation / s.stated,
-            s.bias / s.stated,
-            100.0 * s.coverage,
-            if s.is_affected_by_null_space { LEANING } else { "" }
-        );
+    let mut screen = Screen::default();
+    if let Some(unit) = drawn_unit(parameters, &case.truth) {
+        screen.say(0, unit);
     }
+    let runs = counted(monte_carlo.runs, "calibration");
+    screen.head("MONTE CARLO", &format!("{runs}, {} did not converge", monte_carlo.failures));
+    statistics(&mut screen, parameters, monte_carlo);
+    let percent = 100.0 * coverage;
     let chance = 2.0 * (percent * (100.0 - percent) / monte_carlo.runs.max(1) as f64).sqrt();
-    let _ = writeln!(
-        text,
-        "  intervals are to cover {percent:.2} %, within {chance:.2} by chance (two standard deviations)"
+    screen.say(
+        2,
+        &format!("intervals are to cover {percent:.2} %, within {chance:.2} by chance (two standard deviations)"),
     );
     for (name, square) in
         [("weighted squared error", &monte_carlo.weighted_square), ("chi^2 of the fit", &monte_carlo.chi_squared)]
     {
-        let _ = writeln!(
-            text,
-            "  {name}: mean {:.2}, standard deviation {:.2}; expected {} and {:.2}; distance from the chi^2 \
+        screen.say(
+            2,
+            &format!(
+                "{name}: mean {:.2}, standard deviation {:.2}; expected {} and {:.2}; distance from the chi^2 \
              distribution {:.4}, {:.4} by chance once in twenty",
-            square.mean,
-            square.standard_deviation,
-            square.degrees_of_freedom,
-            (2.0 * square.degrees_of_freedom as f64).sqrt(),
-            square.distance_from_chi_squared(),
-            1.36 / (monte_carlo.runs.max(1) as f64).sqrt()
+                square.mean,
+                square.standard_deviation,
+                square.degrees_of_freedom,
+                (2.0 * square.degrees_of_freedom as f64).sqrt(),
+                square.distance_from_chi_squared(),
+                1.36 / (monte_carlo.runs.max(1) as f64).sqrt()
+            ),
         );
     }
-    text
+    screen
 }
 
-fn drawn_unit(parameters: &Parameters, truth: &[f64]) -> &'static str {
+/// A row for each parameter: stated uncertainty, spread, bias, coverage.
+fn statistics(screen: &mut Screen, parameters: &Parameters, monte_carlo: &MonteCarlo) {
+    let numbers =
+        ["stated u", "spread", "ratio", "bias, in u", "covered, %"].map(|title| (title.to_owned(), Align::Right));
+    let names = ["", "unit"].map(|title| (title.to_owned(), Align::Left));
+    let columns = names.into_iter().chain(numbers).chain([(String::new(), Align::Words)]);
+    let mut table = Table::of(2, columns.collect());
+    for (parameter, statistics) in parameters.iter().zip(&monte_carlo.parameters) {
+        let (factor, unit) = customary(&parameter.unit, parameter.group);
+        let names: [Cell; 2] = [parameter.name.as_str().into(), unit.into()];
+        let cells: [Cell; 6] = match statistics {
+            Some(s) => [
+                two_digits(s.stated * factor).into(),
+                two_digits(s.standard_deviation * factor).into(),
+                format!("{:.3}", s.standard_deviation / s.stated).into(),
+                unsigned_zero(format!("{:.3}", s.bias / s.stated)).into(),
+                format!("{:.2}", 100.0 * s.coverage).into(),
+                if s.is_affected_by_null_space { LEANING.into() } else { Cell::default() },
+            ],
+            None => ["-", "-", "", "", "", "not determined"].map(Cell::from),
+        };
+        table.row(names.into_iter().chain(cells));
+    }
+    screen.table(table);
+    legend(screen, parameters.iter().map(|p| (p.name.as_str(), p.group)));
+}
+
+fn drawn_unit(parameters: &Parameters, truth: &[f64]) -> Option<&'static str> {
     if truth.iter().all(|value| *value == 0.0) {
-        "A unit without errors, as it is predicted; --typical draws for one of typical errors\n"
-    } else if truth == parameters.typical_alternating() {
-        "A unit of typical errors, signs in turn\n"
+        Some("A unit without errors, as it is predicted; --typical draws for one of typical errors")
     } else {
-        ""
+        (truth == parameters.typical_alternating()).then_some("A unit of typical errors, signs in turn")
     }
 }

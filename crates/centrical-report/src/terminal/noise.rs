@@ -6,30 +6,35 @@ use centrical::reduction::Staircase;
 use centrical::stability::{Analysis, Coefficient, Deviation, Estimator, NoiseTerm};
 use centrical_session::{NoiseAnalysis, ReadingNoise};
 
+use super::screen::Screen;
+use super::table::{Align, Cell, Table};
 use crate::evaluation::Shown;
 use crate::number::{self, with_uncertainty};
 
-/// The analysis as text: for each column its deviations with their intervals, its spectrum by octaves, its terms.
-pub fn noise_table(analysis: &NoiseAnalysis) -> String {
+/// The analysis as text, of a `part` of the file such as "Plateau 2:1 of ": for each column its deviations with their intervals, its spectrum by octaves, its terms.
+pub fn noise_table(analysis: &NoiseAnalysis, part: &str) -> Screen {
     let [from, to] = analysis.window;
-    let mut text = format!("{}, {from:.3} s to {to:.3} s\n", analysis.file_name());
-    let _ = writeln!(
-        text,
-        "intervals [lower, upper] hold the true value with {:.1} %; 1 g = 9.80665 m/s^2",
-        100.0 * analysis.confidence
+    let mut screen = Screen::default();
+    screen.say(0, &format!("{part}{}, {from:.3} s to {to:.3} s", analysis.file_name()));
+    screen.say(
+        0,
+        &format!(
+            "intervals [lower, upper] hold the true value with {:.1} %; 1 g = 9.80665 m/s^2",
+            100.0 * analysis.confidence
+        ),
     );
     for reading in &analysis.readings {
-        heading(&mut text, reading);
-        stability(&mut text, reading);
-        spectrum(&mut text, reading);
-        terms(&mut text, reading);
+        heading(&mut screen, reading);
+        stability(&mut screen, reading);
+        spectrum(&mut screen, reading);
+        terms(&mut screen, reading);
     }
-    text
+    screen
 }
 
-fn heading(text: &mut String, reading: &ReadingNoise) {
+fn heading(screen: &mut Screen, reading: &ReadingNoise) {
     let ReadingNoise { name, noise: Analysis { samples, interval, spikes, repeated, gaps, .. }, .. } = reading;
-    let _ = write!(text, "\n{name}  {samples} readings every {interval:.6} s");
+    let mut text = format!("{samples} readings every {interval:.6} s");
     if gaps.missing > 0 {
         let _ = write!(text, "; missing: {}, the longest run {}", gaps.missing, gaps.longest);
     }
@@ -39,16 +44,15 @@ fn heading(text: &mut String, reading: &ReadingNoise) {
     if *spikes > 0 {
         let _ = write!(text, "; left out as spikes: {spikes}");
     }
-    text.push('\n');
+    screen.gap();
+    screen.head(name, &text);
 }
 
 /// One table: a row for each averaging time, a column for each estimator.
-fn stability(text: &mut String, reading: &ReadingNoise) {
-    const CELL: usize = 34;
+fn stability(screen: &mut Screen, reading: &ReadingNoise) {
     let title = |e: Estimator| format!("{}, {}", e.name(), Shown::deviation(reading, e).unit);
-    let mut line = format!("  {:<12}", "tau, s");
-    line.extend(reading.noise.deviations.iter().map(|(e, _)| format!("{:<CELL$}", title(*e))));
-    let _ = writeln!(text, "{}", line.trim_end());
+    let titles = reading.noise.deviations.iter().map(|(e, _)| (title(*e), Align::Left));
+    let mut table = Table::of(1, [("tau, s".to_owned(), Align::Left)].into_iter().chain(titles).collect());
     let mut factors: Vec<(usize, f64)> = Vec::new();
     for deviation in reading.noise.deviations.iter().flat_map(|(_, family)| family) {
         if let Err(place) = factors.binary_search_by_key(&deviation.factor, |f| f.0) {
@@ -56,14 +60,13 @@ fn stability(text: &mut String, reading: &ReadingNoise) {
         }
     }
     for (factor, tau) in factors {
-        let mut line = format!("  {:<12}", significant(tau, 4));
-        for (estimator, family) in &reading.noise.deviations {
+        let cells = reading.noise.deviations.iter().map(|(estimator, family)| {
             let shown = Shown::deviation(reading, *estimator);
-            let cell = family.iter().find(|d| d.factor == factor).map_or(String::new(), |d| interval(d, shown.factor));
-            let _ = write!(line, "{cell:<CELL$}");
-        }
-        let _ = writeln!(text, "{}", line.trim_end());
+            family.iter().find(|d| d.factor == factor).map_or(Cell::default(), |d| interval(d, shown.factor).into())
+        });
+        table.row([significant(tau, 4).into()].into_iter().chain(cells));
     }
+    screen.table(table);
 }
 
 fn interval(d: &Deviation, factor: f64) -> String {
@@ -72,41 +75,50 @@ fn interval(d: &Deviation, factor: f64) -> String {
 }
 
 /// The spectrum in a line an octave, and the lines in it.
-fn spectrum(text: &mut String, reading: &ReadingNoise) {
+fn spectrum(screen: &mut Screen, reading: &ReadingNoise) {
     let Shown { factor, unit } = Shown::reading(reading);
     let spectrum = match &reading.noise.spectrum {
         Ok(spectrum) => spectrum,
         Err(error) => {
-            let _ = writeln!(text, "  no spectrum: {error}");
+            screen.say(2, &format!("no spectrum: {error}"));
             return;
         }
     };
-    let _ = writeln!(
-        text,
-        "  spectrum, one-sided, means of octaves; {} segments, resolution {} Hz",
-        spectrum.segments,
-        significant(spectrum.resolution, 3)
+    screen.say(
+        2,
+        &format!(
+            "spectrum, one-sided, means of octaves; {} segments, resolution {} Hz",
+            spectrum.segments,
+            significant(spectrum.resolution, 3)
+        ),
     );
-    let _ = writeln!(text, "  {:<12}{unit}/sqrt(Hz)", "Hz");
+    let density = format!("{unit}/sqrt(Hz)");
+    let mut table = Table::new(1, [("Hz", Align::Left), (&density, Align::Left)]);
     for band in spectrum.bands(1.0) {
         let density = factor * band.density.sqrt();
-        let _ = writeln!(text, "  {:<12}{}", significant(band.frequency, 4), significant(density, 4));
+        table.row([band.frequency, density].map(|number| significant(number, 4).into()));
     }
+    screen.table(table);
     for line in spectrum.lines() {
         let (frequency, amplitude) = (significant(line.frequency, 5), significant(factor * line.amplitude, 3));
         let excess = significant(line.excess, 2);
-        let _ =
-            writeln!(text, "  line at {frequency} Hz, amplitude {amplitude} {unit}, {excess} times the noise about it");
+        screen.say(
+            2,
+            &format!("line at {frequency} Hz, amplitude {amplitude} {unit}, {excess} times the noise about it"),
+        );
     }
 }
 
-fn terms(text: &mut String, reading: &ReadingNoise) {
+fn terms(screen: &mut Screen, reading: &ReadingNoise) {
     let Some(terms) = reading.noise.quotable() else { return };
-    let _ = writeln!(
-        text,
-        "  noise terms (IEEE Std 952); chi^2 {:.1} with {} degrees of freedom",
-        terms.chi_squared, terms.degrees_of_freedom
+    screen.say(
+        2,
+        &format!(
+            "noise terms (IEEE Std 952); chi^2 {:.1} with {} degrees of freedom",
+            terms.chi_squared, terms.degrees_of_freedom
+        ),
     );
+    let mut table = Table::new(2, [("", Align::Left), ("", Align::Left), ("", Align::Words)]);
     for term in NoiseTerm::ALL {
         let Shown { factor, unit } = Shown::coefficient(reading, term);
         let value = match terms.coefficient(term) {
@@ -119,8 +131,9 @@ fn terms(text: &mut String, reading: &ReadingNoise) {
             }
             Coefficient::NotDetermined { .. } => "not seen".to_owned(),
         };
-        let _ = writeln!(text, "  {}  {:<18}{value}", term.symbol(), term.name());
+        table.row([term.symbol().into(), term.name().into(), value.into()]);
     }
+    screen.table(table);
 }
 
 /// Why the coefficients of a column are not quoted, a sentence for each such column.

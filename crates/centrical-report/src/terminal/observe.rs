@@ -1,171 +1,190 @@
 //! What an experiment can see, as text for the terminal.
 
-use std::fmt::Write;
-
 use centrical_session::{
     ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport, customary, harmless_line,
 };
 
 use super::prediction::prediction_text;
-use crate::number::trimmed;
+use super::screen::Screen;
+use super::table::{Align, Table};
+use crate::number::{counted, two_digits};
 
 /// Remedies beyond these only raise the rank, and the list is long enough.
 const MOST_REMEDIES: usize = 8;
 
 /// The report as text: rank, what is lost and why, remedies, what is hardly told apart, the source's conditions, the
 /// uncertainties to be expected.
-pub fn observation_text(report: &ObservabilityReport) -> String {
-    let mut text = String::new();
-    heading(&mut text, report);
-    lost(&mut text, report);
-    remedies(&mut text, report);
-    combinations(&mut text, report);
-    groups(&mut text, report);
-    conditions(&mut text, report);
-    priors(&mut text, report);
-    uncertainties(&mut text, report);
-    text.push('\n');
-    text.push_str(&prediction_text(&report.prediction));
-    text
+pub fn observation_text(report: &ObservabilityReport) -> Screen {
+    let mut screen = Screen::default();
+    heading(&mut screen, report);
+    lost(&mut screen, report);
+    remedies(&mut screen, report);
+    combinations(&mut screen, report);
+    groups(&mut screen, report);
+    conditions(&mut screen, report);
+    priors(&mut screen, report);
+    uncertainties(&mut screen, report);
+    screen.gap();
+    screen.add(prediction_text(&report.prediction));
+    screen
 }
 
-fn heading(text: &mut String, report: &ObservabilityReport) {
+fn heading(screen: &mut Screen, report: &ObservabilityReport) {
     if !report.title.is_empty() {
-        let _ = writeln!(text, "{}", harmless_line(&report.title));
+        screen.say(0, &format!("{}", harmless_line(&report.title)));
     }
-    let _ = writeln!(
-        text,
-        "{} plateaus, pair relation {:?}, weighted by {}",
-        report.plateaus, report.pair_relation, report.weighted_by
+    screen.say(
+        0,
+        &format!(
+            "{}, pair relation {:?}, weighted by {}",
+            counted(report.plateaus, "plateau"),
+            report.pair_relation,
+            report.weighted_by
+        ),
     );
-    let _ = writeln!(
-        text,
-        "\nRANK  {} of {} (singular values below {:.0e} of the largest count as zero)",
-        report.rank, report.columns, report.tolerance
+    screen.gap();
+    screen.head(
+        "RANK",
+        &format!(
+            "{} of {} (singular values below {:.0e} of the largest count as zero)",
+            report.rank, report.columns, report.tolerance
+        ),
     );
     if let Some(condition) = report.condition_number {
-        let _ = writeln!(text, "  condition number of what is seen: {condition:.3e}");
+        screen.say(2, &format!("condition number of what is seen: {condition:.3e}"));
     }
     if report.doubtful {
-        text.push_str(
-            "  WARNING: a singular value lies within two decades of the tolerance: the rank is a matter of rounding\n",
+        screen.say(
+            2,
+            "WARNING: a singular value lies within two decades of the tolerance: the rank is a matter of rounding",
         );
     }
     let of_instrument = || report.parameters.iter().filter(|p| p.of_instrument);
     let (count, seen) = (of_instrument().count(), of_instrument().filter(|p| p.estimable).count());
-    let _ = writeln!(text, "  {seen} of the {count} parameters of the instrument are determined");
+    screen.say(2, &format!("{seen} of the {count} parameters of the instrument are determined"));
 }
 
-fn lost(text: &mut String, report: &ObservabilityReport) {
+fn lost(screen: &mut Screen, report: &ObservabilityReport) {
     if report.lost.is_empty() {
         return;
     }
-    text.push_str("\nLOST  no reading changes along\n");
+    screen.gap();
+    screen.head("LOST", "no reading changes along");
     for lost in &report.lost {
-        paragraph(text, "  - ", "    ", &lost.reason);
+        screen.sentence(2, 4, &format!("- {}", lost.reason));
     }
 }
 
-fn remedies(text: &mut String, report: &ObservabilityReport) {
+fn remedies(screen: &mut Screen, report: &ObservabilityReport) {
     if report.lost.is_empty() {
         return;
     }
     if report.remedies.is_empty() {
-        text.push_str("\nREMEDIES  none of the additions that were tried brings anything back\n");
+        screen.gap();
+        screen.head("REMEDIES", "none of the additions that were tried brings anything back");
         return;
     }
     let (restoring, raising): (Vec<_>, Vec<_>) = report.remedies.iter().partition(|remedy| remedy.restores_rank);
     if !restoring.is_empty() {
-        text.push_str("\nREMEDIES that restore the rank, cheapest first\n");
+        screen.gap();
+        screen.head("REMEDIES", "that restore the rank, cheapest first");
         for remedy in restoring {
-            one_remedy(text, remedy);
+            one_remedy(screen, remedy);
         }
     }
     if !raising.is_empty() {
-        text.push_str("\nREMEDIES that bring back a part, cheapest first\n");
+        screen.gap();
+        screen.head("REMEDIES", "that bring back a part, cheapest first");
         for remedy in raising.iter().take(MOST_REMEDIES) {
-            one_remedy(text, remedy);
+            one_remedy(screen, remedy);
         }
         if raising.len() > MOST_REMEDIES {
-            let _ = writeln!(text, "  and {} more", raising.len() - MOST_REMEDIES);
+            screen.say(2, &format!("and {} more", raising.len() - MOST_REMEDIES));
         }
     }
 }
 
-fn one_remedy(text: &mut String, remedy: &RemedyReport) {
+fn one_remedy(screen: &mut Screen, remedy: &RemedyReport) {
     let steps: Vec<String> = remedy.steps.iter().map(|step| format!("{} (+{})", step.text, step.gain)).collect();
     let condition = remedy.condition_number.map_or(String::new(), |c| format!("; condition number then {c:.1e}"));
-    paragraph(text, "  - ", "    ", &format!("{}{condition}", steps.join(", then ")));
+    screen.sentence(2, 4, &format!("- {}{condition}", steps.join(", then ")));
 }
 
-fn combinations(text: &mut String, report: &ObservabilityReport) {
+fn combinations(screen: &mut Screen, report: &ObservabilityReport) {
     if report.combinations.is_empty() {
         return;
     }
-    text.push_str("\nCOMBINATIONS asked for\n");
+    screen.gap();
+    screen.head("COMBINATIONS", "asked for");
     for combination in &report.combinations {
         let outcome = match combination.standard_uncertainty {
             Some(uncertainty) => format!("determined, standard uncertainty {uncertainty:.2e} (SI)"),
             None => "not determined".to_owned(),
         };
-        let _ = writeln!(text, "  {}: {outcome}", combination.text);
+        screen.say(2, &format!("{}: {outcome}", combination.text));
     }
 }
 
-fn groups(text: &mut String, report: &ObservabilityReport) {
+fn groups(screen: &mut Screen, report: &ObservabilityReport) {
     if report.correlated_groups.is_empty() {
         return;
     }
-    text.push_str("\nHARDLY TOLD APART  each is a combination of the others to 0.99 or more\n");
+    screen.gap();
+    screen.head("HARDLY TOLD APART", "each is a combination of the others to 0.99 or more");
     for group in &report.correlated_groups {
         let weakest = group.multiple_correlations.iter().copied().fold(1.0, f64::min);
         let strongest = group.multiple_correlations.iter().copied().fold(0.0, f64::max);
-        paragraph(
-            text,
-            "  - ",
-            "    ",
-            &format!("{} (multiple correlations {weakest:.5} to {strongest:.5})", group.parameters.join(", ")),
+        screen.sentence(
+            2,
+            4,
+            &format!("- {} (multiple correlations {weakest:.5} to {strongest:.5})", group.parameters.join(", ")),
         );
     }
 }
 
-fn conditions(text: &mut String, report: &ObservabilityReport) {
-    text.push_str("\nTHE SOURCE'S SUFFICIENT CONDITIONS\n");
+fn conditions(screen: &mut Screen, report: &ObservabilityReport) {
+    screen.gap();
+    screen.head("THE SOURCE'S SUFFICIENT CONDITIONS", "");
     for condition in &report.conditions {
-        let _ = writeln!(text, "  [{}] {}", if condition.is_met { 'x' } else { ' ' }, condition.requirement);
-        let _ = writeln!(text, "      {}; {}", condition.found, need(condition));
+        screen.say(2, &format!("[{}] {}", if condition.is_met { 'x' } else { ' ' }, condition.requirement));
+        screen.say(6, &format!("{}; {}", condition.found, need(condition)));
     }
 }
 
 fn need(condition: &ConditionReport) -> String {
     let count = condition.combinations;
-    let plural = if count == 1 { "" } else { "s" };
+    let more = counted(count, "more combination");
+    let combinations = counted(count, "combination");
     match (condition.is_met, condition.is_needed) {
-        (true, true) => format!("needed here: without it {count} more combination{plural} would be lost"),
+        (true, true) => format!("needed here: without it {more} would be lost"),
         (true, false) => "not needed here: without it no more would be lost".to_owned(),
-        (false, true) => format!("needed here: it would bring back {count} combination{plural}"),
+        (false, true) => format!("needed here: it would bring back {combinations}"),
         (false, false) => "not needed here".to_owned(),
     }
 }
 
-fn priors(text: &mut String, report: &ObservabilityReport) {
+fn priors(screen: &mut Screen, report: &ObservabilityReport) {
     let given: Vec<_> = report.parameters.iter().filter_map(|p| Some((p, p.prior?))).collect();
     if given.is_empty() {
         return;
     }
-    text.push_str("\nPRIORS  standard uncertainty after the data over that before\n");
+    screen.gap();
+    screen.head("PRIORS", "standard uncertainty after the data over that before");
+    let mut table = Table::new(1, [("", Align::Left), ("", Align::Right)]);
     for (parameter, prior) in given {
-        let _ = writeln!(text, "  {:<22}{:.3}", parameter.name, prior.posterior_over_prior);
+        table.row([parameter.name.as_str().into(), format!("{:.3}", prior.posterior_over_prior).into()]);
     }
+    screen.table(table);
     let resting: Vec<&str> = report.parameters.iter().filter(|p| p.rests_on_prior).map(|p| p.name.as_str()).collect();
     if !resting.is_empty() {
-        paragraph(text, "  ", "  ", &format!("without the priors these would be lost: {}", resting.join(", ")));
+        screen.sentence(2, 2, &format!("without the priors these would be lost: {}", resting.join(", ")));
     }
 }
 
 /// Parameters of one group and unit on a line.
-fn uncertainties(text: &mut String, report: &ObservabilityReport) {
-    text.push_str("\nSTANDARD UNCERTAINTIES to be expected of a unit without errors\n");
+fn uncertainties(screen: &mut Screen, report: &ObservabilityReport) {
+    screen.gap();
+    screen.head("STANDARD UNCERTAINTIES", "to be expected of a unit without errors");
     let mut rest: &[ObservedParameter] = &report.parameters;
     while let Some(first) = rest.first() {
         let same = rest.iter().take_while(|p| p.group == first.group && p.unit == first.unit).count();
@@ -174,33 +193,11 @@ fn uncertainties(text: &mut String, report: &ObservabilityReport) {
         let shown: Vec<String> = line
             .iter()
             .map(|p| {
-                let value = p.standard_uncertainty.map_or("lost".to_owned(), |u| trimmed(u * factor));
+                let value = p.standard_uncertainty.map_or("lost".to_owned(), |u| two_digits(u * factor));
                 format!("{} {value}", p.name)
             })
             .collect();
-        paragraph(text, &format!("  {unit:<9}"), "           ", &shown.join(", "));
+        screen.sentence(2, 11, &format!("{unit:\u{a0}<9}{}", shown.join(", ")));
         rest = others;
     }
-}
-
-/// Words in lines of a width that every terminal has.
-fn paragraph(text: &mut String, first: &str, further: &str, words: &str) {
-    const WIDTH: usize = 100;
-    let mut line = first.to_owned();
-    let mut is_empty = true;
-    for word in words.split(' ') {
-        if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            text.push_str(&line);
-            text.push('\n');
-            further.clone_into(&mut line);
-            is_empty = true;
-        }
-        if !is_empty {
-            line.push(' ');
-        }
-        line.push_str(word);
-        is_empty = false;
-    }
-    text.push_str(&line);
-    text.push('\n');
 }

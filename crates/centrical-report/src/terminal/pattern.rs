@@ -2,7 +2,7 @@
 
 use centrical_session::{Follows, MICRO_G, PatternSummary};
 
-use crate::number::short;
+use crate::number::with_uncertainty;
 
 /// "residuals of newtonometer 2 grow with the square of the speed in position 3 ...: an elastic turn or a loose seat".
 pub(super) fn pattern_in_words(pattern: &PatternSummary) -> String {
@@ -24,11 +24,10 @@ pub(super) fn pattern_in_words(pattern: &PatternSummary) -> String {
         }
         Follows::Time => ("drift over the session".to_owned(), "a drift of the bias"),
     };
+    let (amplitude, uncertainty) =
+        with_uncertainty(pattern.amplitude / MICRO_G, pattern.standard_uncertainty / MICRO_G);
     format!(
-        "residuals of newtonometer {} {what} ({} ± {} ug, probability {:.1e}): {cause}",
-        pattern.axis,
-        short(pattern.amplitude / MICRO_G),
-        short(pattern.standard_uncertainty / MICRO_G),
-        pattern.probability
+        "residuals of newtonometer {} {what} ({amplitude} ± {uncertainty} ug, probability {:.1e}): {cause}",
+        pattern.axis, pattern.probability
     )
 }

@@ -1,62 +1,69 @@
 //! What will be known, as text for the terminal.
 
-use std::fmt::Write;
-
 use centrical::STANDARD_GRAVITY;
 use centrical_session::{MICRO_G, PredictionReport, customary};
 
 use super::rests_on::rests_on_text;
-use crate::number::digits;
+use super::screen::Screen;
+use super::symbols::legend;
+use super::table::{Align, Cell, Table};
+use crate::number::two_digits;
 
 /// Said of a parameter in which lost combinations leave doubt that no number beside it holds.
-pub(super) const LEANING: &str = "  leans on what is lost";
+pub(super) const LEANING: &str = "leans on what is lost";
 
 /// What will be known: parameters, and the compensated reading.
-pub fn prediction_text(prediction: &PredictionReport) -> String {
-    let mut text = String::new();
-    let _ = writeln!(
-        text,
-        "PREDICTION  by {}\n  {:<12}{:<9}{:>10}{:>10}{:>10}",
-        prediction.sources.join(", "),
-        "",
-        "unit",
-        "type A",
-        "combined",
-        "expanded"
-    );
+pub fn prediction_text(prediction: &PredictionReport) -> Screen {
+    let mut screen = Screen::default();
+    screen.head("PREDICTION", &format!("standard uncertainties (k = 1) by {}", prediction.sources.join(", ")));
+    parameters(&mut screen, prediction);
+    reading(&mut screen, prediction);
+    screen.add(rests_on_text(&prediction.rests_on));
+    screen
+}
+
+fn parameters(screen: &mut Screen, prediction: &PredictionReport) {
+    let numbers = ["type A", "combined", "k", "expanded"].map(|title| (title, Align::Right));
+    let [a, combined, k, expanded] = numbers;
+    let names = [("", Align::Left), ("unit", Align::Left)];
+    let mut table = Table::new(2, [names[0], names[1], a, combined, k, expanded, ("", Align::Words)]);
     for p in &prediction.parameters {
         let (factor, unit) = customary(&p.unit, p.group);
-        let _ = write!(text, "  {:<12}{unit:<9}", p.name);
-        let _ = match (p.type_a, p.combined, p.expanded) {
-            (Some(a), Some(all), Some(expanded)) => {
-                let note = if p.is_affected_by_null_space { LEANING } else { "" };
-                let [a, all, expanded] = [a, all, expanded].map(|u| digits(u * factor));
-                writeln!(text, "{a:>10}{all:>10}{expanded:>10}{note}")
-            }
-            _ => writeln!(text, "  not determined"),
+        let names: [Cell; 2] = [p.name.as_str().into(), unit.into()];
+        let known = (p.type_a, p.combined, p.expanded);
+        let cells: [Cell; 5] = if let (Some(a), Some(combined), Some(expanded)) = known {
+            let [of_a, of_all, of_interval] = [a, combined, expanded].map(|u| two_digits(u * factor).into());
+            let note = if p.is_affected_by_null_space { LEANING } else { "" };
+            [of_a, of_all, format!("{:.2}", expanded / combined).into(), of_interval, note.into()]
+        } else {
+            ["-".into(), "-".into(), Cell::default(), "-".into(), "not determined".into()]
         };
+        table.row(names.into_iter().chain(cells));
     }
-    let _ = writeln!(text, "  expanded for {:.2} %", 100.0 * prediction.coverage);
-    let ug = |u: f64| digits(u / MICRO_G);
+    screen.table(table);
+    screen.say(2, &format!("expanded = k x combined, for a probability of {:.2} %", 100.0 * prediction.coverage));
+    legend(screen, prediction.parameters.iter().map(|p| (p.name.as_str(), p.group)));
+}
+
+fn reading(screen: &mut Screen, prediction: &PredictionReport) {
+    let ug = |u: f64| two_digits(u / MICRO_G);
     let range = prediction.range / STANDARD_GRAVITY;
-    match prediction.reading {
-        Some([a, all]) => {
-            let _ = writeln!(
-                text,
-                "  compensated reading, root mean square over all directions to {range:.0} g: type A {} ug, combined {} ug",
-                ug(a),
-                ug(all)
-            );
-        }
-        None => text.push_str("  compensated reading: a coefficient is not determined\n"),
+    screen.say(2, &match prediction.reading {
+        Some([a, all]) => format!(
+            "compensated reading, root mean square over all directions to {range:.0} g: type A {} ug, combined {} ug",
+            ug(a),
+            ug(all)
+        ),
+        None => "compensated reading: a coefficient is not determined".to_owned(),
+    });
+    if prediction.curves.is_empty() {
+        return;
     }
-    if !prediction.curves.is_empty() {
-        let _ = writeln!(text, "  {:>16}{:>14}{:>14}{:>14}", "along, ug, at", "axis 1", "axis 2", "axis 3");
-        for [force, u @ ..] in &prediction.curves {
-            let [a, b, c] = u.map(ug);
-            let _ = writeln!(text, "  {:>14.0} g{a:>14}{b:>14}{c:>14}", force / STANDARD_GRAVITY);
-        }
+    let axes = ["along, ug, at", "axis 1", "axis 2", "axis 3"].map(|title| (title, Align::Right));
+    let mut table = Table::new(1, axes);
+    for [force, u @ ..] in &prediction.curves {
+        let force = format!("{:.0} g", force / STANDARD_GRAVITY);
+        table.row([force.into()].into_iter().chain(u.map(|u| ug(u).into())));
     }
-    text.push_str(&rests_on_text(&prediction.rests_on));
-    text
+    screen.table(table);
 }

@@ -1,11 +1,10 @@
 //! What a result rests on, as text for the terminal.
 
-use std::fmt::Write;
-
 use centrical::{Extension, Rival};
 use centrical_session::RestsOn;
 
 use super::rivals::lines_of;
+use super::screen::Screen;
 use crate::document::rests_on_sentence;
 use crate::language::Language;
 
@@ -16,17 +15,17 @@ const SHOWN: usize = 3;
 const CHEAP: f64 = 1.5;
 
 /// The effects whose absence a result rests on most, and what would protect against each. Without effects the text is empty.
-pub(super) fn rests_on_text(effects: &[RestsOn]) -> String {
-    let mut text = String::new();
+pub(super) fn rests_on_text(effects: &[RestsOn]) -> Screen {
+    let mut screen = Screen::default();
     if effects.is_empty() {
-        return text;
+        return screen;
     }
-    text.push_str("RESTS on the absence of effects that could pass unseen, up to these sizes; the worst:\n");
+    screen.fact("RESTS", "on the absence of effects that could pass unseen, up to these sizes; the worst:");
     for effect in effects.iter().take(SHOWN) {
-        let _ = writeln!(text, "      {}", rests_on_sentence(effect, Language::English));
-        let _ = writeln!(text, "        {}", protection(effect));
+        screen.sentence(2, 4, &format!("- {}", rests_on_sentence(effect, Language::English)));
+        screen.sentence(4, 6, &protection(effect));
     }
-    text
+    screen
 }
 
 /// What protects against an effect: an unknown where it costs little, else a bound.

@@ -1,19 +1,30 @@
 //! What a decision says of the unit, as lines for the terminal.
 
+use super::screen::{Emphasis, Screen};
 use crate::document::judged_in_words;
 use crate::evaluation::{UnitStatement, UnitVerdict};
 use crate::language::Language;
 
 /// What is said of the unit: a line, and one for each limit that is not kept.
-pub fn unit_text(unit: &UnitStatement) -> String {
+pub fn unit_text(unit: &UnitStatement) -> Screen {
     let specification = &unit.specification;
+    let mut screen = Screen::default();
     match unit.verdict() {
-        UnitVerdict::Within => format!("UNIT  within its limits: {} judged, {specification}\n", unit.judged.len()),
-        UnitVerdict::NotStated => format!("UNIT  conformity not stated: {specification}\n"),
+        UnitVerdict::Within => screen.marked(
+            Emphasis::Acceptable,
+            "UNIT",
+            &format!("within its limits: {} judged, {specification}", unit.judged.len()),
+        ),
+        UnitVerdict::NotStated => {
+            screen.marked(Emphasis::Warning, "UNIT", &format!("conformity not stated: {specification}"));
+        }
         UnitVerdict::Outside => {
-            let broken = unit.judged.iter().filter(|judged| judged.conforms == Some(false));
-            let line = |judged| format!("UNIT NOT WITHIN ITS LIMITS  {}\n", judged_in_words(judged, Language::English));
-            broken.map(line).chain([format!("      {specification}\n")]).collect()
+            for broken in unit.judged.iter().filter(|judged| judged.conforms == Some(false)) {
+                let words = judged_in_words(broken, Language::English);
+                screen.marked(Emphasis::NotAcceptable, "UNIT NOT WITHIN ITS LIMITS", &words);
+            }
+            screen.say(2, specification);
         }
     }
+    screen
 }

@@ -1,71 +1,75 @@
 //! A session on the way, as a table for the terminal: what is known by now, and what the next plateau will bring.
 
 use std::f64::consts::PI;
-use std::fmt::Write;
 
 use centrical::fit::Progress;
 use centrical::fit::filter::Lifetimes;
 use centrical::{Group, MeasurementModel, Parameter};
-use centrical_session::{
-    InnovationSummary, PlateauName, Session, WatchProgress, WatchedPlateau, customary, harmless_line,
-};
+use centrical_session::{InnovationSummary, PlateauName, Session, WatchProgress, WatchedPlateau, customary};
+
+use super::screen::Screen;
+use super::table::{Align, Cell, Table};
+use crate::number::{counted, two_digits};
 
 /// Wanted standard uncertainties: group, and value in its customary unit.
 type Targets = [(String, f64)];
 
 /// The table: a line per group of unknowns with its largest standard uncertainty, beside the wanted one. Earlier alarms stand in
 /// it with `all_alarms`, for a terminal that is cleared between two tables; elsewhere they stand in the table of their plateau.
-pub fn watch_table(view: &WatchProgress, targets: &Targets, all_alarms: bool) -> String {
-    let mut text = String::new();
+pub fn watch_table(view: &WatchProgress, targets: &Targets, all_alarms: bool) -> Screen {
+    let mut screen = Screen::default();
     let (arrived, all) = (view.plateaus.len(), view.session.experiment.set_points.len());
     let columns = view.model.parameters().len();
-    let _ = writeln!(
-        text,
-        "{}\nPLATEAU {arrived} of {all}   RANK {} of {columns}",
-        harmless_line(&view.session.title),
-        view.now.rank
-    );
+    screen.say(0, &view.session.title);
+    screen.head(&format!("PLATEAU {arrived} of {all}"), &format!("RANK {} of {columns}", view.now.rank));
     for (n, plateau) in (1..).zip(view.plateaus) {
         if all_alarms && plateau.alarm || n == arrived {
-            outcome(&mut text, view.session, plateau);
+            screen.say(0, &outcome(view.session, plateau));
         }
     }
-    let label = |set_point: usize| label(view.session, set_point);
-    let heading = view.next.as_ref().map_or(String::new(), |(next, _)| format!("with {}", label(*next)));
-    row(&mut text, ["group", "unit", "determined", "largest u", "target", &heading]);
     let groups = groups(view.model);
+    let label = |set_point: usize| label(view.session, set_point);
+    let next = view.next.as_ref().map_or(String::new(), |(next, _)| format!("with {}", label(*next)));
+    let names = [("group", Align::Left), ("unit", Align::Left), ("determined", Align::Right)];
+    let numbers = [("largest u", Align::Right), ("target", Align::Right), (next.as_str(), Align::Right)];
+    let mut table = Table::new(2, [names[0], names[1], names[2], numbers[0], numbers[1], numbers[2]]);
     for &group in &groups {
-        group_row(&mut text, view, group, targets);
+        table.row(group_row(view, group, targets).map(Cell::from));
     }
+    screen.table(table);
     if !view.best.is_empty() {
         let shown: Vec<String> =
             view.best.iter().map(|gain| format!("{} (x {:.3})", label(gain.set_point), gain.factor)).collect();
-        let _ = writeln!(text, "BEST NEXT for the compensated reading's mean uncertainty: {}", shown.join("; "));
+        screen.head("BEST NEXT", &format!("for the compensated reading's mean uncertainty: {}", shown.join("; ")));
     }
     let is_kept = |(name, target): &(String, f64)| {
         groups.iter().any(|group| group.name() == name && is_met(view, *group, *target))
     };
     if !targets.is_empty() && targets.iter().all(is_kept) {
-        text.push_str("Every target is met.\n");
+        screen.say(0, "Every target is met.");
     }
-    text
+    screen
 }
 
 /// How many states a filter carries at a time for `order`, and what an order costs that does not keep positions together.
-pub fn states_text(model: &MeasurementModel, order: &[usize]) -> String {
+pub fn states_text(model: &MeasurementModel, order: &[usize]) -> Screen {
     let lifetimes = Lifetimes::new(model, order);
-    let mut text = format!("{} states of {} unknowns at a time\n", lifetimes.states(), lifetimes.unknowns());
+    let mut screen = Screen::default();
+    let (states, unknowns) = (counted(lifetimes.states(), "state"), counted(lifetimes.unknowns(), "unknown"));
+    screen.say(0, &format!("{states} of {unknowns} at a time"));
     if lifetimes.cost() > 0 {
         let waiting: Vec<&str> =
             lifetimes.waiting(model).iter().map(|&j| model.parameters()[j].name.as_str()).collect();
-        let _ = writeln!(
-            text,
-            "The order does not keep positions together, which costs {} states; waiting at the fullest: {}",
-            lifetimes.cost(),
-            waiting.join(", ")
+        screen.say(
+            0,
+            &format!(
+                "The order does not keep positions together, which costs {}; waiting at the fullest: {}",
+                counted(lifetimes.cost(), "state"),
+                waiting.join(", ")
+            ),
         );
     }
-    text
+    screen
 }
 
 /// The groups of the unknowns in the order of results.
@@ -90,23 +94,22 @@ fn label(session: &Session, set_point: usize) -> String {
     }
 }
 
-fn outcome(text: &mut String, session: &Session, plateau: &WatchedPlateau) {
+fn outcome(session: &Session, plateau: &WatchedPlateau) -> String {
     let WatchedPlateau { set_point, innovation, alarm, held_out, .. } = plateau;
     let plateau = label(session, *set_point);
     let InnovationSummary { squared, degrees_of_freedom, probability } = innovation;
-    let _ = match degrees_of_freedom {
-        0 => write!(text, "{plateau}: nothing to test it by yet"),
-        _ => write!(
-            text,
-            "{plateau}: normalised innovation {squared:.2} with {degrees_of_freedom} degrees of freedom, \
-             a chance of {probability:.2e}"
+    let tested = match degrees_of_freedom {
+        0 => "nothing to test it by yet".to_owned(),
+        _ => format!(
+            "normalised innovation {squared:.2} with {} of freedom, a chance of {probability:.2e}",
+            counted(*degrees_of_freedom, "degree")
         ),
     };
-    text.push_str(if *alarm { "; DOES NOT FIT" } else { "" });
-    text.push_str(if *held_out { ", held out\n" } else { "\n" });
+    let alarm = if *alarm { "; DOES NOT FIT" } else { "" };
+    format!("{plateau}: {tested}{alarm}{}", if *held_out { ", held out" } else { "" })
 }
 
-fn group_row(text: &mut String, view: &WatchProgress, group: Group, targets: &Targets) {
+fn group_row(view: &WatchProgress, group: Group, targets: &Targets) -> [String; 6] {
     let of_group: Vec<&Parameter> = view.model.parameters().iter().filter(|p| p.group == group).collect();
     let unit = of_group.first().map_or("", |p| customary(&p.unit, group).1);
     let (determined, now) = largest(view.model, &view.now, group);
@@ -115,9 +118,9 @@ fn group_row(text: &mut String, view: &WatchProgress, group: Group, targets: &Ta
     let met = target.map_or(String::new(), |(_, target)| {
         format!("{target} {}", if is_met(view, group, *target) { "met" } else { "-" })
     });
-    let shown = |u: Option<f64>| u.map_or("-".to_owned(), |u| format!("{u:.3e}"));
+    let shown = |u: Option<f64>| u.map_or("-".to_owned(), two_digits);
     let determined = format!("{determined} of {}", of_group.len());
-    row(text, [group.name(), unit, &determined, &shown(now), &met, &shown(next)]);
+    [group.name().to_owned(), unit.to_owned(), determined, shown(now), met, shown(next)]
 }
 
 /// How many of a group are determined, and the largest standard uncertainty of those in the customary unit.
@@ -132,11 +135,4 @@ fn is_met(view: &WatchProgress, group: Group, target: f64) -> bool {
     let (determined, largest) = largest(view.model, &view.now, group);
     let all = view.model.parameters().iter().filter(|p| p.group == group).count();
     determined == all && largest.is_some_and(|u| u <= target)
-}
-
-fn row(text: &mut String, cells: [&str; 6]) {
-    let [group, unit, determined, now, target, next] = cells;
-    let line = format!("  {group:<15}{unit:<8}{determined:>10}  {now:>11}  {target:>12}  {next}");
-    text.push_str(line.trim_end());
-    text.push('\n');
 }

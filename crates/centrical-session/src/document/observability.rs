@@ -17,8 +17,8 @@ use crate::experiment::Plan;
 /// Name of the schema's present version.
 pub const OBSERVABILITY_SCHEMA: &str = "centrical-observability/1";
 
-/// Probability that predicted expanded uncertainties are to cover.
-const COVERAGE: f64 = 0.95;
+/// Probability that predicted expanded uncertainties are to cover: that of all documents.
+const COVERAGE: f64 = 0.9545;
 
 /// A design with its weights: a plan, or a session with those of its data.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,0 +1,205 @@
+//! Tables in lines: columns as wide as their cells, folded where a line ends.
+
+use super::wrap::wrapped;
+
+/// Blanks before a row, and between two columns.
+const MARGIN: usize = 2;
+
+/// Narrowest column of words that wrap.
+const WORDS: usize = 24;
+
+/// How the cells of a column stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Align {
+    /// Names and units.
+    Left,
+    /// Numbers.
+    Right,
+    /// Words that wrap within what is free of the line; the last column.
+    Words,
+}
+
+/// One entry: what stands before the place at which a column is aligned, and what stands after it.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Cell(String, String);
+
+impl<T: Into<String>> From<T> for Cell {
+    fn from(text: T) -> Self {
+        Self(text.into(), String::new())
+    }
+}
+
+impl Cell {
+    /// `value ± uncertainty`, aligned at the sign.
+    pub fn estimate((value, uncertainty): (String, String)) -> Self {
+        Self(value, format!(" ± {uncertainty}"))
+    }
+
+    fn is_empty(&self) -> bool {
+        self.0.is_empty() && self.1.is_empty()
+    }
+}
+
+/// Named columns; the first ones name the row.
+#[derive(Debug, Clone)]
+pub(super) struct Table {
+    names: usize,
+    columns: Vec<(String, Align)>,
+    rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// A table without rows, whose first `names` columns name the row.
+    pub fn new<const N: usize>(names: usize, columns: [(&str, Align); N]) -> Self {
+        Self::of(names, columns.map(|(title, align)| (title.to_owned(), align)).into())
+    }
+
+    /// The same for any number of columns.
+    pub fn of(names: usize, columns: Vec<(String, Align)>) -> Self {
+        Self { names, columns, rows: Vec::new() }
+    }
+
+    /// Adds a row; cells that are missing are empty.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = Cell>) {
+        let mut cells: Vec<Cell> = cells.into_iter().collect();
+        cells.resize(self.columns.len(), Cell::default());
+        self.rows.push(cells);
+    }
+
+    /// The rows in lines of `width` characters. Columns that do not fit follow below, beside the names of their rows.
+    pub fn lines(&self, width: usize) -> Vec<String> {
+        let widths: Vec<[usize; 2]> = (0..self.columns.len()).map(|j| self.width(j)).collect();
+        let mut lines = Vec::new();
+        for (n, fold) in self.folds(&widths, width).iter().enumerate() {
+            let is_in_fold = |row: &&Vec<Cell>| n == 0 || fold[self.names..].iter().any(|&j| !row[j].is_empty());
+            let rows: Vec<&Vec<Cell>> = self.rows.iter().filter(is_in_fold).collect();
+            if n > 0 && rows.is_empty() {
+                continue;
+            }
+            if n > 0 {
+                lines.push(String::new());
+            }
+            let titles: Vec<Cell> = self.columns.iter().map(|(title, _)| title.as_str().into()).collect();
+            if fold.iter().any(|&j| !titles[j].is_empty()) {
+                self.line(&mut lines, fold, &widths, &titles, true, width);
+            }
+            for row in rows {
+                self.line(&mut lines, fold, &widths, row, false, width);
+            }
+        }
+        lines
+    }
+
+    /// Characters before and after the place of alignment; a column without entries has none.
+    fn width(&self, j: usize) -> [usize; 2] {
+        let length = |text: &str| text.chars().count();
+        let widest = |part: fn(&Cell) -> &str| self.rows.iter().map(|row| length(part(&row[j]))).max().unwrap_or(0);
+        let [before, after] = [widest(|cell| &cell.0), widest(|cell| &cell.1)];
+        if before + after == 0 {
+            return [0, 0];
+        }
+        [before.max(length(&self.columns[j].0).saturating_sub(after)), after]
+    }
+
+    /// Columns side by side in each fold, the names of rows first.
+    fn folds(&self, widths: &[[usize; 2]], width: usize) -> Vec<Vec<usize>> {
+        let taken = |j: usize| match widths[j].iter().sum() {
+            0 => 0,
+            full if self.columns[j].1 == Align::Words => MARGIN + WORDS.min(full),
+            full => MARGIN + full,
+        };
+        let names: Vec<usize> = (0..self.names).collect();
+        let start: usize = names.iter().map(|&j| taken(j)).sum();
+        let mut folds = vec![names.clone()];
+        let mut used = start;
+        for j in (self.names..self.columns.len()).filter(|&j| taken(j) > 0) {
+            if used + taken(j) > width && used > start {
+                folds.push(names.clone());
+                used = start;
+            }
+            used += taken(j);
+            if let Some(fold) = folds.last_mut() {
+                fold.push(j);
+            }
+        }
+        folds
+    }
+
+    fn line(
+        &self,
+        lines: &mut Vec<String>,
+        fold: &[usize],
+        widths: &[[usize; 2]],
+        cells: &[Cell],
+        is_title: bool,
+        width: usize,
+    ) {
+        let mut line = String::new();
+        let mut below: Vec<String> = Vec::new();
+        for &j in fold.iter().filter(|&&j| widths[j] != [0, 0]) {
+            let ([before, after], Cell(first, second)) = (widths[j], &cells[j]);
+            let full = before + after;
+            line.push_str(&" ".repeat(MARGIN));
+            let piece = match self.columns[j].1 {
+                Align::Left => format!("{first:<full$}"),
+                Align::Right if is_title => format!("{first:>full$}"),
+                Align::Right => format!("{first:>before$}{second:<after$}"),
+                Align::Words => {
+                    let start = line.chars().count();
+                    let mut wrapped = wrapped(first, width, start, start).into_iter();
+                    let first = wrapped.next().unwrap_or_default();
+                    below.extend(wrapped.map(|words| format!("{:start$}{words}", "")));
+                    first
+                }
+            };
+            line.push_str(&piece);
+        }
+        line.truncate(line.trim_end().len());
+        lines.push(line);
+        lines.extend(below);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Align, Cell, Table};
+
+    fn table() -> Table {
+        let columns = [("", Align::Left), ("value", Align::Right), ("chi^2", Align::Right), ("note", Align::Words)];
+        let mut table = Table::new(1, columns);
+        let estimate = |value: &str, u: &str| Cell::estimate((value.to_owned(), u.to_owned()));
+        table.row(["first".into(), estimate("-3.95", "0.10"), "12.0".into()]);
+        table.row([
+            "second".into(),
+            estimate("744", "12"),
+            "8.1".into(),
+            "words that take more than a line have".into(),
+        ]);
+        table
+    }
+
+    #[test]
+    fn columns_are_aligned_and_words_wrap_in_theirs() {
+        let lines = [
+            "                 value  chi^2  note",
+            "  first   -3.95 ± 0.10   12.0",
+            "  second    744 ± 12      8.1  words that take more than",
+            "                               a line have",
+        ];
+        assert_eq!(table().lines(56), lines);
+    }
+
+    #[test]
+    fn columns_that_do_not_fit_follow_beside_the_names() {
+        let lines = [
+            "                 value  chi^2",
+            "  first   -3.95 ± 0.10   12.0",
+            "  second    744 ± 12      8.1",
+            "",
+            "          note",
+            "  second  words that take more than",
+            "          a line have",
+        ];
+        assert_eq!(table().lines(36), lines);
+    }
+}
