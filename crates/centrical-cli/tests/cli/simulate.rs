@@ -117,6 +117,30 @@ fn calibrating_gives_the_truth_back() {
     assert_ne!(value("alpha_2"), 0.0, "what is not named is drawn");
 }
 
+/// Settling that is slow beside the plateau looks like noise, which would explain the settling of the next plateau as well: each
+/// window ends with its plateau all the same.
+#[test]
+fn slow_settling_joins_no_plateaus() {
+    let laboratory = Laboratory::new(
+        r#"
+typical = { size = 1.0 }
+[machine]
+plateau = "30 s"
+plateau_spread = "5 s"
+ramp = "8 s"
+settling = 1e-3
+settling_time = "4 s"
+[sensor]
+white = "0.2 mg"
+[tachometer]
+clock_offset = "2 s"
+"#,
+    );
+    done(&laboratory.simulate(&example(), "slow", &["--seed", "1", "--format", "parquet"]));
+    let squared = squared_error(&laboratory.path("slow"));
+    assert!(FORTY_NINE.contains(&squared), "weighted squared error {squared}");
+}
+
 /// The same bytes from one thread and from two; other bytes from another seed.
 #[test]
 fn files_follow_from_the_seed() {
