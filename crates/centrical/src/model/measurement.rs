@@ -16,6 +16,9 @@ use super::stated::{Influence, TypeB};
 /// Mountings that are asked one by one whether they differ from the others: each brings two dozen unknowns to be tried.
 const MOST_SINGLE: usize = 100;
 
+/// Unknowns of a rival at most: its test takes time with their cube, and memory with their square.
+const MOST_UNKNOWNS: usize = 3 * MOST_SINGLE;
+
 /// An experiment, the unit's error model, and the unknowns that follow from the two.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasurementModel {
@@ -115,7 +118,8 @@ impl MeasurementModel {
         };
         let count = self.experiment.mountings.len();
         let mountings = (0..count).take_while(|_| count <= MOST_SINGLE).flat_map(of_mounting);
-        let all = common.map(|(rival, _)| rival).chain(mountings);
+        let is_small = |rival: &Rival| rival.parameters(&self.experiment, &self.error_model).len() <= MOST_UNKNOWNS;
+        let all = common.map(|(rival, _)| rival).filter(is_small).chain(mountings);
         all.filter(|rival| !rival.is_in(&self.error_model, &self.extensions)).collect()
     }
 
