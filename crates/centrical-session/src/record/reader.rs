@@ -191,6 +191,15 @@ impl RecordReader {
         }
     }
 
+    /// Readings of newtonometers 1, 2, 3 that were interpolated to the stamps of another one; none where all are samples of one
+    /// file, or joined by their stamps.
+    pub(super) fn interpolated(&self) -> Option<[u64; 3]> {
+        match &self.table {
+            Source::One(_) => None,
+            Source::Three(joined) => joined.interpolated(),
+        }
+    }
+
     /// Bytes of the file that were read since this was last asked.
     pub(crate) fn newly_read(&mut self) -> u64 {
         let before = std::mem::replace(&mut self.reported, self.table.bytes());
