@@ -76,22 +76,23 @@ fn other_stamps_are_interpolated() {
     let line = |t: f64| [1.0 + 0.5 * t, 2.0 - 0.25 * t, 0.125 * t];
     // The second is 0.37 of a step late and has every third sample; the third has a gap of three steps and ends early.
     let of = |j: usize, k: usize, t: f64| match j {
-        1 => (k % 3 == 0).then_some(t + 0.0037),
+        1 => k.is_multiple_of(3).then_some(t + 0.0037),
         2 => (!(100..102).contains(&k) && k + 50 < count).then_some(t - 0.002),
         _ => Some(t),
     };
     let (folder, session) = split(of);
     for (j, name) in ["x.csv", "y.csv", "z.csv"].into_iter().enumerate() {
         let times = all.t.iter().enumerate().filter_map(|(k, t)| of(j, k, *t));
-        let rows: String = times.map(|t| format!("{t},{}\n", line(t)[j])).collect();
-        fs::write(folder.path().join(name), format!("t,f{}\n{rows}", j + 1)).unwrap();
+        let mut text = format!("t,f{}\n", j + 1);
+        times.for_each(|t| writeln!(text, "{t},{}", line(t)[j]).unwrap());
+        fs::write(folder.path().join(name), text).unwrap();
     }
     let record = session.record(0).unwrap();
     let has = |k: &usize| {
         let t = all.t[*k] + 0.0037;
         // The stamps of the third about the gap: those of samples 99 and 102.
         let in_gap = t > all.t[99] - 0.002 && t < all.t[102] - 0.002;
-        k % 3 == 0 && t <= all.t[count - 51] - 0.002 && !in_gap
+        k.is_multiple_of(3) && t <= all.t[count - 51] - 0.002 && !in_gap
     };
     let expected: Vec<f64> = (0..count).filter(has).map(|k| all.t[k] + 0.0037).collect();
     assert_eq!(record.t, expected);

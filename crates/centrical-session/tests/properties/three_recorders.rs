@@ -1,10 +1,11 @@
 //! Three recorders on one clock, each with stamps or a rate of its own, calibrate to what one recorder does.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use centrical_session::{
-    CalibrationResult, Method, Session, TableFormat, Truth, calibrate, reduce_without_inputs, simulate_session,
+    CalibrationResult, ColumnName, Method, NoiseRequest, Session, TableFormat, Truth, calibrate, noise_of,
+    reduce_without_inputs, simulate_session,
 };
 use centrical_table::{Decimals, TableWriter};
 use nalgebra::{DMatrix, DVector};
@@ -71,7 +72,7 @@ fn relative(file: &Path, folder: &Path) -> String {
     file.strip_prefix(folder).unwrap().to_str().unwrap().to_owned()
 }
 
-fn write(file: &PathBuf, j: usize, t: &[f64], f: &[f64]) {
+fn write(file: &Path, j: usize, t: &[f64], f: &[f64]) {
     let name = format!("f{}", j + 1);
     let mut table = TableWriter::create(file, &["t", &name], [Decimals::SHORTEST; 2]).unwrap();
     table.write(&[[t, f]]).unwrap();
@@ -181,8 +182,8 @@ fn lost_samples_and_gaps_stay_gaps() {
         assert!(record.f_z.iter().flatten().all(|f| f.is_finite()));
         assert!(record.t.windows(2).all(|pair| pair[0] < pair[1]));
         // Nothing between the third's last sample before a gap and its first one after it.
-        let number = |t: &f64| ((t - start) * RATE as f64).round() as usize;
-        let inside = record.t.iter().map(number).filter(|k| (8..RATE / 2 - 8).contains(&(k % (7 * RATE))));
+        let number = |t: &f64| ((t - start) * RATE as f64).round() % (7 * RATE) as f64;
+        let inside = record.t.iter().map(number).filter(|k| (8.0..(RATE / 2 - 8) as f64).contains(k));
         assert_eq!(inside.count(), 0);
         // A single sample that is lost is no gap.
         assert!(record.t.len() as f64 > 0.92 * laboratory.session.record(m).unwrap().t.len() as f64 / 8.0);
@@ -203,4 +204,22 @@ fn threads_change_nothing() {
         pool.install(|| format!("{:?}", reduce_without_inputs(&session, &|_| ()).unwrap().plateaus))
     };
     assert_eq!(means(1), means(3));
+    // A mean of neighbours has other noise than they have: of noise, the session says nothing.
+    let request = NoiseRequest {
+        file: session.file.clone(),
+        plateau: None,
+        session: None,
+        time: ColumnName::Number(1),
+        rate: None,
+        readings: Vec::new(),
+        unit: "m/s^2".to_owned(),
+        window: [f64::NEG_INFINITY, f64::INFINITY],
+        estimators: Vec::new(),
+    };
+    let refused = noise_of(&request).unwrap_err().to_string();
+    let expected = "samples as they were recorded: analyse the file of each newtonometer by itself (noise FILE)";
+    assert!(
+        refused.ends_with(&format!("found readings interpolated to common stamps, expected {expected}")),
+        "{refused}"
+    );
 }

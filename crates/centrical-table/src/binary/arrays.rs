@@ -158,7 +158,7 @@ pub(super) fn stamps(file: &Path, of: (&Array, &ArrayColumn), field: &Field, for
         Box::new(move |values, ticks| {
             let begin = ticks.len();
             next(&mut |stride, bytes| {
-                ticks.extend(bytes.chunks(stride).map(|row| scalar.integer(&row[..scalar.size])))
+                ticks.extend(bytes.chunks(stride).map(|row| scalar.integer(&row[..scalar.size])));
             })?;
             values.extend(ticks[begin..].iter().map(|ticks| *ticks as f64 * unit));
             Ok(())
