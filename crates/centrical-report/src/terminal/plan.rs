@@ -221,7 +221,9 @@ fn floors(screen: &mut Screen, report: &PlanReport) {
     if !lines.is_empty() {
         screen.gap();
         screen.head("TYPE B", "what is stated under [uncertainty] leaves this much, and no plan lowers it by much; noise and speeds have the rest");
-        lines.iter().for_each(|line| screen.say(2, line));
+        for line in &lines {
+            screen.say(2, line);
+        }
     }
 }
 
