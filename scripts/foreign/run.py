@@ -124,6 +124,20 @@ class ThreeFiles(Form):
             (folder / f"{stem}_{axis}.csv").write_text(text(frame[["t", column]]))
 
 
+class ThreeRecorders(Form):
+    """One file for each newtonometer, by recorders of their own: the second samples 0.37 of a step later, the third at twice the rate.
+    Interpolation is what moves a parameter."""
+    rounding = 0.5
+
+    def record(self, folder, stem, frame):
+        late = frame["t"].iloc[:-1] + 0.0037
+        often = numpy.linspace(frame["t"].iloc[0], frame["t"].iloc[-1], 2 * len(frame) - 1).round(4)
+        second = pandas.DataFrame({"t": late, "f2": numpy.interp(late, frame["t"], frame["f2"])})
+        third = pandas.DataFrame({"t": often, "f3": numpy.interp(often, frame["t"], frame["f3"])})
+        for axis, one in zip("xyz", [frame[["t", "f1"]], second, third]):
+            (folder / f"{stem}_{axis}.csv").write_text(text(one))
+
+
 class Gs(Form):
     """Readings in g, with a row of units."""
     def record(self, folder, stem, frame):
@@ -191,7 +205,7 @@ class Tdms(Form):
             writer.write_segment([ChannelObject("data", name, frame[name].to_numpy()) for name in frame.columns])
 
 
-FORMS = [Semicolons, Cyrillic, Utf16, LabView, Stamps, ThreeFiles, Gs, Volts, Packed, Parquet, Together, NoHeader, Tdms]
+FORMS = [Semicolons, Cyrillic, Utf16, LabView, Stamps, ThreeFiles, ThreeRecorders, Gs, Volts, Packed, Parquet, Together, NoHeader, Tdms]
 
 
 def run(*arguments, codes=(0,)):

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use centrical::reduction::RecordSlice;
-use centrical_table::{Decimals, StampTexts, TableFormat, TableWriter};
+use centrical_table::{Decimals, Stamps, TableFormat, TableWriter};
 
 use crate::error::Error;
 
@@ -63,11 +63,11 @@ impl RecordWriter {
         Ok(self.table.write(&pieces)?)
     }
 
-    /// Adds a stretch whose rows begin with stamps as they were read; only text has them, Parquet has their seconds.
+    /// Adds a stretch whose rows begin with stamps as they were read ([`TableWriter::write_stamped`]).
     ///
     /// # Errors
     /// As [`RecordWriter::write`].
-    pub fn write_stamped(&mut self, stamps: &StampTexts, stretch: RecordSlice) -> Result<(), Error> {
+    pub fn write_stamped(&mut self, stamps: &Stamps, stretch: RecordSlice) -> Result<(), Error> {
         let RecordSlice { t, f_z: [f1, f2, f3] } = stretch;
         Ok(self.table.write_stamped(stamps, [t, f1, f2, f3])?)
     }

@@ -35,6 +35,9 @@ pub struct MountingFindings {
     pub clock_offset: Option<ClockOffset>,
     /// How the ramps of the telemetry agree with those of the record; none without telemetry.
     pub agreement: Option<ClockAgreement>,
+    /// Readings of newtonometers 1, 2, 3 that were interpolated to the stamps of another one; none unless each has a file with stamps
+    /// of its own.
+    pub interpolated: Option<[u64; 3]>,
 }
 
 /// The mean reading of a plateau and what it was made of.
@@ -127,6 +130,12 @@ impl Reduced {
     /// As [`Session::model`].
     pub fn model(&self, session: &Session) -> Result<MeasurementModel, Error> {
         session.model_at(self.set_points(session))
+    }
+
+    /// Readings of newtonometers 1, 2, 3 that were interpolated in all mountings together; none where none were.
+    pub fn interpolated(&self) -> Option<[u64; 3]> {
+        let mountings = self.mountings.iter().filter_map(|mounting| mounting.interpolated);
+        mountings.reduce(|sum, of| [0, 1, 2].map(|axis: usize| sum[axis] + of[axis]))
     }
 
     /// Plateaus that came already averaged.

@@ -49,6 +49,7 @@ mod rows;
 #[cfg(feature = "xlsx")]
 mod sheet;
 mod stamp;
+mod stamps;
 mod text;
 mod unpacking;
 mod write;
@@ -58,9 +59,10 @@ pub use document::{open_regular, read_bytes, read_document};
 pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, harmless, harmless_line};
 pub use reader::{Extent, TableReader, estimate_rows, text_form};
-pub use rows::{Rows, StampTexts};
+pub use rows::Rows;
 pub use stamp::StampKind;
-pub use text::{DecimalSign, Index, Reread, Stamps, TextEncoding, TextForm};
+pub use stamps::Stamps;
+pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm};
 pub use write::{
     ClaimedFolder, Decimals, TableFormat, TableWriter, abandon_files, claim_folder, create_folder, parquet_bytes,
     refuse_inputs, write_stream, write_table, write_whole,

@@ -15,7 +15,8 @@ use crate::binary::{BinaryFormat, ColumnReader};
 use crate::column::{Field, TableLines, UnitsFound};
 use crate::document::open_regular;
 use crate::error::{Error, Place};
-use crate::rows::{RowNumber, Rows, StampTexts};
+use crate::rows::{RowNumber, Rows};
+use crate::stamps::Stamps;
 use crate::text::{FromUtf16, Index, Lines, Packed, Plain, SIGHT, TextEncoding, TextForm, TextReader};
 use crate::unpacking::Unpacked;
 
@@ -148,18 +149,19 @@ impl TableReader {
         self.source.rows(self.batch)
     }
 
-    /// Keeps stamps in the first field of a text as they are written, for [`TableReader::take_stamps`].
+    /// Keeps stamps in the first field as they are read, for [`TableReader::take_stamps`].
     pub fn keep_stamps(&mut self) {
-        if let Source::Text(text) = &mut self.source {
-            text.keep_stamps();
+        match &mut self.source {
+            Source::Text(text) => text.keep_stamps(),
+            Source::Binary(columns) => columns.keep_stamps(),
         }
     }
 
-    /// The stamps of the rows that were read last, for each set of them; of other formats than text there are none.
-    pub fn take_stamps(&mut self) -> Vec<StampTexts> {
+    /// The stamps of the rows that were read last, for each set of them; none where the field is of numbers.
+    pub fn take_stamps(&mut self) -> Vec<Stamps> {
         match &mut self.source {
             Source::Text(text) => text.take_stamps(self.batch),
-            Source::Binary(_) => vec![StampTexts::default(); self.batch],
+            Source::Binary(columns) => columns.take_stamps(self.batch),
         }
     }
 

@@ -8,38 +8,6 @@ pub(crate) const ROWS: usize = 16 * 1024;
 /// Rows of a table: the values of each field, in columns of equal length.
 pub type Rows = Vec<Vec<f64>>;
 
-/// Stamps of rows as they were written, where the first field of a row is one.
-#[derive(Debug, Default, Clone)]
-pub struct StampTexts {
-    text: Vec<u8>,
-    /// Row, and end of its stamp in the text.
-    ends: Vec<(u32, u32)>,
-}
-
-impl StampTexts {
-    /// The stamp of a row, if it has one.
-    pub fn get(&self, row: usize) -> Option<&[u8]> {
-        let place = self.ends.binary_search_by_key(&row, |(row, _)| *row as usize).ok()?;
-        let start = place.checked_sub(1).map_or(0, |before| self.ends[before].1);
-        Some(&self.text[start as usize..self.ends[place].1 as usize])
-    }
-
-    /// Whether no row has one.
-    pub fn is_empty(&self) -> bool {
-        self.ends.is_empty()
-    }
-
-    /// Notes the stamp of a later row.
-    pub(crate) fn push(&mut self, row: usize, stamp: &[u8]) {
-        if let Ok(row) = u32::try_from(row)
-            && let Ok(end) = u32::try_from(self.text.len() + stamp.len())
-        {
-            self.text.extend_from_slice(stamp);
-            self.ends.push((row, end));
-        }
-    }
-}
-
 /// The rows before those that are read next.
 #[derive(Debug)]
 pub(crate) struct Before {

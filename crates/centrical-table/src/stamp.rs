@@ -34,43 +34,58 @@ impl fmt::Display for StampKind {
 ///
 /// A number of seconds of this size resolves a quarter of a microsecond.
 pub(crate) fn seconds(text: &[u8]) -> Option<f64> {
-    parsed(text).map(|(_, seconds)| seconds)
+    parsed(text).map(|stamp| stamp.since.as_secs_f64())
+}
+
+/// Nanoseconds since 1970 of a stamp with a date, and whether it gives an offset from UTC; nothing for a time of the day, and outside
+/// the years 1678 to 2261, which 64 bits count.
+pub(crate) fn nanoseconds(text: &[u8]) -> Option<(i64, bool)> {
+    let stamp = parsed(text).filter(|stamp| stamp.kind != StampKind::TimeOfDay)?;
+    Some((i64::try_from(stamp.since.as_nanos()).ok()?, stamp.has_offset))
 }
 
 /// How a stamp is written.
 pub(crate) fn kind(text: &[u8]) -> Option<StampKind> {
-    parsed(text).map(|(kind, _)| kind)
+    parsed(text).map(|stamp| stamp.kind)
 }
 
-fn parsed(text: &[u8]) -> Option<(StampKind, f64)> {
+/// What a text says.
+struct Parsed {
+    kind: StampKind,
+    /// Since 1970, in UTC where there is no offset; of a time of the day since midnight.
+    since: SignedDuration,
+    has_offset: bool,
+}
+
+fn parsed(text: &[u8]) -> Option<Parsed> {
     // No number is a stamp, and most texts that are neither have no such sign.
     if !text.contains(&b':') && !text.contains(&b'-') {
         return None;
     }
     let text = std::str::from_utf8(text).ok()?.trim();
     iso(text)
-        .map(|seconds| (StampKind::Iso, seconds))
         .or_else(|| with_date(text))
-        .or_else(|| Some((StampKind::TimeOfDay, since_midnight(text)?)))
+        .or_else(|| Some(Parsed { kind: StampKind::TimeOfDay, since: since_midnight(text)?, has_offset: false }))
 }
 
-fn iso(text: &str) -> Option<f64> {
+fn iso(text: &str) -> Option<Parsed> {
     let stamp = text.parse::<Timestamp>().ok();
-    stamp.or_else(|| in_utc(text.parse::<DateTime>().ok()?)).map(since_1970)
+    let has_offset = stamp.is_some();
+    let since = stamp.or_else(|| in_utc(text.parse::<DateTime>().ok()?)).map(since_1970)?;
+    Some(Parsed { kind: StampKind::Iso, since, has_offset })
 }
 
 fn in_utc(stamp: DateTime) -> Option<Timestamp> {
     Offset::UTC.to_timestamp(stamp).ok()
 }
 
-fn since_1970(stamp: Timestamp) -> f64 {
-    let duration: SignedDuration = stamp.duration_since(Timestamp::UNIX_EPOCH);
-    duration.as_secs_f64()
+fn since_1970(stamp: Timestamp) -> SignedDuration {
+    stamp.duration_since(Timestamp::UNIX_EPOCH)
 }
 
 /// A date with points or slashes, a blank or `T`, and a time. With slashes the year comes first: day and month in `05/10/2026` cannot
 /// be told apart.
-fn with_date(text: &str) -> Option<(StampKind, f64)> {
+fn with_date(text: &str) -> Option<Parsed> {
     let (date, time) = text.split_once([' ', 'T'])?;
     let mark = if date.contains('.') { '.' } else { '/' };
     let mut parts = date.split(mark);
@@ -85,16 +100,14 @@ fn with_date(text: &str) -> Option<(StampKind, f64)> {
     };
     let date = Date::new(digits(year)?, digits(month)?, digits(day)?).ok()?;
     let stamp = in_utc(date.to_datetime(time_of_day(time)?))?;
-    Some((kind, since_1970(stamp)))
+    Some(Parsed { kind, since: since_1970(stamp), has_offset: false })
 }
 
-fn since_midnight(text: &str) -> Option<f64> {
+fn since_midnight(text: &str) -> Option<SignedDuration> {
     let time = time_of_day(text)?;
     let [hour, minute, second, nanosecond] =
         [i64::from(time.hour()), time.minute().into(), time.second().into(), time.subsec_nanosecond().into()];
-    let duration =
-        SignedDuration::from_secs(60 * (60 * hour + minute) + second) + SignedDuration::from_nanos(nanosecond);
-    Some(duration.as_secs_f64())
+    Some(SignedDuration::from_secs(60 * (60 * hour + minute) + second) + SignedDuration::from_nanos(nanosecond))
 }
 
 /// A time such as `9:10:00,0100`; digits beyond a nanosecond are left out.

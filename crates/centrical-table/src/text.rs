@@ -27,14 +27,15 @@ use rayon::prelude::*;
 pub use self::encoding::TextEncoding;
 pub(crate) use self::encoding::{FromUtf16, SIGHT};
 use self::fields::Fault;
-pub use self::form::{DecimalSign, Stamps, TextForm};
+pub use self::form::{DecimalSign, StampColumn, TextForm};
 use self::layout::Layout;
 pub(crate) use self::lines::{Lines, Packed, Plain};
 use self::piece::Piece;
 use self::prologue::Prologue;
 use crate::column::{Field, TableLines, UnitsFound};
 use crate::error::{Error, Place};
-use crate::rows::{ASCENDING, Backwards, Before, RowNumber, Rows, StampTexts};
+use crate::rows::{ASCENDING, Backwards, Before, RowNumber, Rows};
+use crate::stamps::Stamps;
 
 /// Pieces read at a time.
 const PIECES: usize = 8;
@@ -156,7 +157,7 @@ impl TextReader {
     }
 
     /// The stamps of the rows that were read last.
-    pub fn take_stamps(&mut self, count: usize) -> Vec<StampTexts> {
+    pub fn take_stamps(&mut self, count: usize) -> Vec<Stamps> {
         self.workplace.pieces[..count].iter_mut().map(|piece| std::mem::take(&mut piece.stamps)).collect()
     }
 

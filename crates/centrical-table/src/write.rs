@@ -26,7 +26,7 @@ use self::parquet::{Layout, ParquetTable};
 use self::row_groups::RowGroups;
 pub use self::text_lines::Decimals;
 use crate::error::Error;
-use crate::rows::StampTexts;
+use crate::stamps::Stamps;
 
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -79,7 +79,7 @@ impl<const N: usize> TableWriter<N> {
         let output = SteadyFile::new(output).map_err(failed)?;
         let table = match TableFormat::of(file) {
             TableFormat::Csv => TextTable::new(output, names, decimals).map(Table::Text),
-            TableFormat::Parquet => RowGroups::new(output, names).map(Table::Parquet),
+            TableFormat::Parquet => Ok(Table::Parquet(RowGroups::new(output, names))),
         };
         Ok(Self { file: file.to_owned(), table: table.map_err(failed)?, beside })
     }
@@ -96,15 +96,19 @@ impl<const N: usize> TableWriter<N> {
         written.map_err(|error| Error::writing(&self.file, error))
     }
 
-    /// Adds rows that begin with stamps as they were read, where they have one, given as a piece of all columns. Only text has them;
-    /// Parquet has the numbers.
+    /// Adds rows that begin with stamps in place of the numbers of the first column, where they have one, given as a piece of all
+    /// columns.
+    ///
+    /// A text has them as they were written, or in ISO 8601 with all decimals of their unit. Parquet has a column of timestamps if the
+    /// first row of all has a date: with the unit of the stamps (milliseconds of seconds, nanoseconds of texts), in UTC if they are. It has
+    /// numbers of a time of the day.
     ///
     /// # Errors
-    /// [`Error::Io`] if they cannot be written.
-    pub fn write_stamped(&mut self, stamps: &StampTexts, piece: [&[f64]; N]) -> Result<(), Error> {
+    /// [`Error::Io`] if they cannot be written, or if a later row does not fit a column of timestamps that was begun.
+    pub fn write_stamped(&mut self, stamps: &Stamps, piece: [&[f64]; N]) -> Result<(), Error> {
         let written = match &mut self.table {
             Table::Text(table) => table.write_stamped(stamps, piece),
-            Table::Parquet(table) => table.write(&[piece]),
+            Table::Parquet(table) => table.write_stamped(stamps, piece),
         };
         written.map_err(|error| Error::writing(&self.file, error))
     }
@@ -139,7 +143,7 @@ pub fn write_table<const N: usize>(
             stretches.try_for_each(|rows| table.write(&rows))
         }
         TableFormat::Parquet => {
-            let mut table = ParquetTable::new(output, Layout::PACKED, names)?;
+            let mut table = ParquetTable::new(output, Layout::PACKED, names, None)?;
             stretches.try_for_each(|rows| table.write(&rows))?;
             table.finish().map(|_| ())
         }
@@ -151,7 +155,7 @@ pub fn write_table<const N: usize>(
 /// # Errors
 /// If the table cannot be packed.
 pub fn parquet_bytes(names: &[&str], columns: &[Vec<f64>]) -> io::Result<Vec<u8>> {
-    let mut table = ParquetTable::new(Vec::new(), Layout::PACKED, names)?;
+    let mut table = ParquetTable::new(Vec::new(), Layout::PACKED, names, None)?;
     table.write(columns)?;
     table.finish()
 }

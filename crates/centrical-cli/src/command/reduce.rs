@@ -38,6 +38,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         let mut screen = Screen::default();
         let [plateaus, samples] = [counted(reduced.plateaus.len(), "plateau"), counted(samples, "sample")];
         screen.say(0, &format!("{plateaus} of {samples} written to {}", arguments.out.display()));
+        if let Some(interpolated) = reduced.interpolated() {
+            let named = ["f1", "f2", "f3"].iter().zip(interpolated).filter(|(_, count)| *count > 0);
+            let named: Vec<String> = named.map(|(name, count)| format!("{name} {count}")).collect();
+            screen.say(0, &format!("readings interpolated to common stamps: {}", named.join(", ")));
+        }
         screen
     };
     arguments.printing.show(text, || ReductionReport::of(&session, &reduced, &arguments.out).to_json())?;

@@ -4,7 +4,7 @@ use centrical_session::{
     CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, SessionDriftVerdict, TiltSummary, TiltVerdict,
 };
 
-use crate::evaluation::{newtonometer, not_used};
+use crate::evaluation::{interpolated, newtonometer, not_used};
 use crate::language::Language;
 use crate::number::MINUTE;
 
@@ -95,6 +95,11 @@ fn left_out(facts: &mut Vec<Fact>, result: &CalibrationResult, language: Languag
     let named = kinds.iter().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{kind}: {count}"));
     let named = named.collect::<Vec<_>>().join("; ");
     facts.push((messages.not_used, if named.is_empty() { messages.none.to_owned() } else { named }));
+    let named: Vec<String> =
+        interpolated(result).into_iter().map(|(number, count)| axis(number, &count.to_string())).collect();
+    if !named.is_empty() {
+        facts.push((messages.interpolated, named.join("; ")));
+    }
 }
 
 /// What is said of a newtonometer.

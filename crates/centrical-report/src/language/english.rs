@@ -83,6 +83,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     missing: "missing",
     stuck: "stuck",
     repeated: "repeated",
+    interpolated: "Readings interpolated to common stamps",
     positions: "Mounting positions",
     positions_caption: "Where the three sensitive axes point in each position: the arm goes to the right, the \
         rotation axis up.",

@@ -76,6 +76,7 @@ pub(crate) struct Messages {
     pub missing: &'static str,
     pub stuck: &'static str,
     pub repeated: &'static str,
+    pub interpolated: &'static str,
     pub positions: &'static str,
     pub positions_caption: &'static str,
     pub position: &'static str,

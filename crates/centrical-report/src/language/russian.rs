@@ -83,6 +83,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     missing: "пропуски",
     stuck: "застывшие",
     repeated: "повторы",
+    interpolated: "Показания, интерполированные на общие моменты",
     positions: "Положения прибора",
     positions_caption: "Куда направлены три оси чувствительности в каждом положении: плечо — вправо, ось вращения — \
         вверх.",

@@ -5,7 +5,7 @@ use centrical_session::{
 };
 
 use super::screen::Screen;
-use crate::evaluation::not_used;
+use crate::evaluation::{interpolated, not_used};
 use crate::number::{MINUTE, counted, with_uncertainty};
 
 /// The section of the terminal's table; empty for a session that came already averaged.
@@ -21,7 +21,7 @@ pub(super) fn drift(screen: &mut Screen, result: &CalibrationResult) {
     }
 }
 
-/// Samples that are not used, by kind, where there are any.
+/// Samples that are not used, by kind, and readings that are no samples, where there are any.
 fn left_out(screen: &mut Screen, result: &CalibrationResult) {
     let LeftOutSummary { spikes, stuck, missing, repeated } = not_used(result);
     let kinds = [("spikes", spikes), ("missing", missing), ("stuck", stuck), ("repeated", repeated)];
@@ -29,6 +29,10 @@ fn left_out(screen: &mut Screen, result: &CalibrationResult) {
         kinds.iter().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{kind} {count}")).collect();
     if !named.is_empty() {
         screen.fact("", &format!("samples not used: {}", named.join(", ")));
+    }
+    let named: Vec<String> = interpolated(result).iter().map(|(axis, count)| format!("f{axis} {count}")).collect();
+    if !named.is_empty() {
+        screen.fact("", &format!("readings interpolated to common stamps: {}", named.join(", ")));
     }
 }
 

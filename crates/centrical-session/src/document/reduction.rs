@@ -25,6 +25,10 @@ pub struct ReductionReport {
     pub title: String,
     /// Folder of the reduced session, as it was given.
     pub folder: String,
+    /// Readings of newtonometers 1, 2, 3 that were interpolated to the stamps of another one; none unless each has a file with stamps
+    /// of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interpolated: Option<[u64; 3]>,
     /// The plateaus, in the order of the schedule.
     pub plateaus: Vec<ReducedPlateauSummary>,
 }
@@ -80,6 +84,7 @@ impl ReductionReport {
             program: Program::this(),
             title: session.title.clone(),
             folder: folder.display().to_string(),
+            interpolated: reduced.interpolated(),
             plateaus: rows,
         }
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::RecordSlice;
 use centrical_compensate::{Certificate, Compensation};
-use centrical_table::{Rows, StampTexts, refuse_inputs};
+use centrical_table::{Rows, Stamps, refuse_inputs};
 use rayon::prelude::*;
 
 use crate::document::{CalibrationResult, CompensatedFiles, CompensationReport, FirstReading, ReadingsBeyond};
@@ -105,9 +105,8 @@ pub fn compensate(request: &CompensationRequest) -> Result<(Compensated, Certifi
 
 /// Compensates the record in `input` into `output`, CSV or Parquet by its name. The same bytes on any machine.
 ///
-/// Time is written as it was read: a number to the bit, a stamp in text letter by letter where the output is text, and otherwise as
-/// its seconds since 1970. So are specific forces as Parquet has them; as CSV has them, they are rounded to at
-/// most `10^-12` of the range ([`RecordWriter::create_rounded`]).
+/// Time is written as it was read: a number to the bit, a stamp as a stamp ([`RecordWriter::write_stamped`]). So are specific forces as
+/// Parquet has them; as CSV has them, they are rounded to at most `10^-12` of the range ([`RecordWriter::create_rounded`]).
 ///
 /// # Errors
 /// As [`RecordReader`] for `input` and [`RecordWriter`] for `output`, which is not touched then.
@@ -143,7 +142,7 @@ fn on_this_thread(
         }
         let stamps = record.take_stamps();
         let stretches: Vec<RecordSlice> = record.batch().iter().map(stretch).collect();
-        if stamps.iter().all(StampTexts::is_empty) {
+        if stamps.iter().all(Stamps::is_empty) {
             writer.write_all(&stretches)?;
         } else {
             stretches.iter().zip(&stamps).try_for_each(|(rows, stamps)| writer.write_stamped(stamps, *rows))?;

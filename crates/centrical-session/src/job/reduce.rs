@@ -46,13 +46,16 @@ pub fn reduce_without_inputs(session: &Session, progress: &(dyn Fn(u64) + Sync))
 /// The mountings, then the noise of all of them together, then the covariances.
 fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Reduced, Error> {
     let mountings = with_thread_limit(|| Scheduler::new(session, progress).run())?;
-    let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) = mountings.into_iter().unzip();
+    let interpolated: Vec<Option<[u64; 3]>> = mountings.iter().map(|mounting| mounting.interpolated).collect();
+    let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) =
+        mountings.into_iter().map(|mounting| (mounting.reduced, mounting.overview)).unzip();
     let noise = NoiseModel::pool(&reduced);
     let means = reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise));
-    let findings = |m: &ReducedMounting| MountingFindings {
+    let findings = |(m, interpolated): (&ReducedMounting, &Option<[u64; 3]>)| MountingFindings {
         settling_time: m.settling_time(),
         clock_offset: m.clock_offset(),
         agreement: m.clock_agreement(),
+        interpolated: *interpolated,
     };
     let set: Vec<f64> = session.experiment.set_points.iter().map(|set_point| set_point.omega).collect();
     let readings: Vec<_> = reduced.iter().flat_map(|mounting| mounting.speed_readings().iter().copied()).collect();
@@ -61,7 +64,7 @@ fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Re
     Ok(Reduced {
         speeds,
         plateaus: means.map(ReducedPlateau::from).collect(),
-        mountings: reduced.iter().map(findings).collect(),
+        mountings: reduced.iter().zip(&interpolated).map(findings).collect(),
         records,
         held_out: Vec::new(),
         inputs: Vec::new(),

@@ -1,68 +1,70 @@
 //! Three files of one mounting, one for each newtonometer, as one table.
 //!
-//! Rows with the same stamp in all three are joined. What one file lacks, as it began later, ended earlier or lost a sample, is a gap of
-//! all: nothing is resampled. Files of which most rows find no partner have different clocks or rates, and are refused.
+//! Files of one recorder have the same stamps: rows with one stamp in all three are joined. What one file lacks, as it began later,
+//! ended earlier or lost a sample, is a gap of all. Files of three recorders have stamps or rates of their own, on one clock:
+//! readings are interpolated to the stamps of the slowest file, neither beyond the ends of a file nor across its gaps.
 
-use std::path::{Path, PathBuf};
+mod interpolation;
+mod part;
+mod stamps;
 
-use centrical_table::{Extent, Rows, TableReader};
+use std::path::Path;
 
-use super::columns::{Columns, fields};
-use super::units_found::check_units;
+use centrical_table::{Extent, Rows};
+
+use self::interpolation::{Reading, reading_at};
+use self::part::Part;
+use self::stamps::Joining;
+use super::columns::Columns;
 use crate::error::{Error, Place};
 
 /// Rows of a set, and sets of a batch.
 const ROWS: usize = 16 * 1024;
 const SETS: usize = 8;
 
+/// Stamps of each file that are looked at before its rows are joined.
+const BEGINNING: usize = 4096;
+
 /// Three tables of time and one reading each.
 pub(super) struct Joined {
     parts: [Part; 3],
     extent: Extent,
+    /// Once the beginnings of the files were seen.
+    joining: Option<Joining>,
     sets: Vec<Rows>,
     filled: usize,
     /// Rows that were joined so far.
     count: u64,
-}
-
-/// One of them.
-struct Part {
-    file: PathBuf,
-    /// Names and units of its columns, until those in the file are held against them.
-    units: Option<[(String, String); 2]>,
-    table: TableReader,
-    /// Rows that are read and not joined yet begin at `at`.
-    rows: Rows,
-    at: usize,
-    is_over: bool,
-    count: u64,
+    /// Of each newtonometer the readings among them that were interpolated, and the rows that there are not for lack of one.
+    interpolated: [u64; 3],
+    missed: [u64; 3],
 }
 
 impl Joined {
     /// Opens the files of newtonometers 1, 2, 3.
     pub fn open(files: [&Path; 3], extent: Extent, columns: &Columns) -> Result<Self, Error> {
-        let open = |j: usize| {
-            let of_file = [&columns.time, &columns.f[j]];
-            let lines = columns.record_lines;
-            let table =
-                TableReader::open_at(files[j], extent, &fields(&of_file), "the record of a newtonometer", lines)?;
-            let units = Some(of_file.map(|column| (column.name.to_string(), column.unit.clone())));
-            let rows = vec![Vec::new(); 2];
-            Ok(Part { file: files[j].to_owned(), units, table, rows, at: 0, is_over: false, count: 0 })
-        };
-        let parts: [Result<Part, Error>; 3] = [0, 1, 2].map(open);
-        let [x, y, z] = parts;
-        Ok(Self { parts: [x?, y?, z?], extent, sets: vec![vec![Vec::new(); 4]; SETS], filled: 0, count: 0 })
+        let [x, y, z] = [0, 1, 2].map(|j: usize| Part::open(files[j], j, extent, columns));
+        let sets = vec![vec![Vec::new(); 4]; SETS];
+        let (interpolated, missed) = ([0; 3], [0; 3]);
+        Ok(Self { parts: [x?, y?, z?], extent, joining: None, sets, filled: 0, count: 0, interpolated, missed })
     }
 
     /// The next rows: time and three readings, raw. How many sets there are; none at the end.
     pub fn next_batch(&mut self) -> Result<usize, Error> {
         self.filled = 0;
-        while self.filled < SETS && self.fill()? {
+        if self.joining.is_none() {
+            self.joining = self.begin()?;
+        }
+        // Files that are still being written may have no time in common yet.
+        let Some(joining) = self.joining else { return Ok(0) };
+        while self.filled < SETS && self.fill(joining)? {
             self.filled += 1;
         }
         if self.filled == 0 && self.extent == Extent::Whole {
-            self.check()?;
+            match joining {
+                Joining::ByStamp => self.check_partners()?,
+                Joining::Interpolated { grid, .. } => self.check_readings(grid)?,
+            }
         }
         Ok(self.filled)
     }
@@ -74,13 +76,68 @@ impl Joined {
 
     /// Bytes of the files that were read so far.
     pub fn bytes(&self) -> u64 {
-        self.parts.iter().map(|part| part.table.bytes()).sum()
+        self.parts.iter().map(Part::bytes).sum()
+    }
+
+    /// Readings of newtonometers 1, 2, 3 that were interpolated so far; none where rows are joined by their stamps.
+    pub fn interpolated(&self) -> Option<[u64; 3]> {
+        matches!(self.joining, Some(Joining::Interpolated { .. })).then_some(self.interpolated)
+    }
+
+    /// Goes to where the last file begins, and sees from there how rows are to be joined. What comes later does not change it: a
+    /// growing file is read the same way each time. None where files that are still being written have no time in common.
+    fn begin(&mut self) -> Result<Option<Joining>, Error> {
+        let (mut last, mut latest) = (0, f64::NEG_INFINITY);
+        for (j, part) in self.parts.iter_mut().enumerate() {
+            let Some(start) = part.time()? else { return Ok(None) };
+            if start > latest {
+                (last, latest) = (j, start);
+            }
+        }
+        let mut passed = [0; 3];
+        for (part, passed) in self.parts.iter_mut().zip(&mut passed) {
+            while part.time()?.is_some_and(|time| time < latest) {
+                part.pass();
+                *passed += 1;
+            }
+        }
+        let last_file = self.parts[last].file.clone();
+        for part in &mut self.parts {
+            if part.time()?.is_none() {
+                if self.extent == Extent::Growing {
+                    return Ok(None);
+                }
+                let found = format!("samples up to t = {}", part.before.map_or(f64::NAN, |[t, _]| t));
+                let expected = format!(
+                    "samples from t = {latest} on, where {} begins: the files of one mounting have one clock",
+                    last_file.display()
+                );
+                return Err(Error::content(&part.file, Place::Whole, found, expected));
+            }
+        }
+        let [x, y, z] = &mut self.parts;
+        let joining = Joining::of([x.times(BEGINNING)?, y.times(BEGINNING)?, z.times(BEGINNING)?]);
+        if let Joining::Interpolated { grid, .. } = joining {
+            self.missed[last] = passed[grid];
+        }
+        Ok(Some(joining))
     }
 
     /// Fills the next set; whether there are any rows.
-    fn fill(&mut self) -> Result<bool, Error> {
+    fn fill(&mut self, joining: Joining) -> Result<bool, Error> {
+        self.sets[self.filled].iter_mut().for_each(Vec::clear);
+        match joining {
+            Joining::ByStamp => self.fill_by_stamp()?,
+            Joining::Interpolated { grid, gaps } => self.fill_interpolated(grid, gaps)?,
+        }
+        let rows = self.sets[self.filled][0].len();
+        self.count += rows as u64;
+        Ok(rows > 0)
+    }
+
+    /// Rows with one stamp in all files.
+    fn fill_by_stamp(&mut self) -> Result<(), Error> {
         let rows = &mut self.sets[self.filled];
-        rows.iter_mut().for_each(Vec::clear);
         while rows[0].len() < ROWS {
             let mut times = [None; 3];
             for (time, part) in times.iter_mut().zip(&mut self.parts) {
@@ -91,33 +148,52 @@ impl Joined {
             if x == y && y == z {
                 rows[0].push(latest);
                 for (values, part) in rows[1..].iter_mut().zip(&mut self.parts) {
-                    values.push(part.rows[1][part.at]);
-                    part.at += 1;
+                    values.push(part.reading());
+                    part.skip();
                 }
             } else {
-                for (part, time) in self.parts.iter_mut().zip([x, y, z]) {
-                    part.at += usize::from(time < latest);
+                for (part, _) in self.parts.iter_mut().zip([x, y, z]).filter(|(_, time)| *time < latest) {
+                    part.skip();
                 }
             }
         }
-        self.count += rows[0].len() as u64;
-        Ok(!rows[0].is_empty())
+        Ok(())
+    }
+
+    /// Rows of one file at whose time the others have readings.
+    fn fill_interpolated(&mut self, grid: usize, gaps: [f64; 3]) -> Result<(), Error> {
+        let rows = &mut self.sets[self.filled];
+        while rows[0].len() < ROWS {
+            let Some(t) = self.parts[grid].time()? else { break };
+            let mut readings = [None; 3];
+            for (j, part) in self.parts.iter_mut().enumerate() {
+                readings[j] =
+                    if j == grid { Some(Reading::Sampled(part.reading())) } else { reading_at(part, t, gaps[j])? };
+                self.missed[j] += u64::from(readings[j].is_none());
+            }
+            self.parts[grid].skip();
+            let [Some(x), Some(y), Some(z)] = readings else { continue };
+            rows[0].push(t);
+            for (j, reading) in [x, y, z].into_iter().enumerate() {
+                rows[1 + j].push(reading.value());
+                self.interpolated[j] += u64::from(matches!(reading, Reading::Interpolated(_)));
+            }
+        }
+        Ok(())
     }
 
     /// Sees at the end that most rows of every file found partners.
-    fn check(&mut self) -> Result<(), Error> {
+    fn check_partners(&mut self) -> Result<(), Error> {
         let joined = self.count;
         for part in &mut self.parts {
-            while part.time()?.is_some() {
-                part.at = part.rows[0].len();
-            }
+            part.skip_all()?;
         }
         let [first, others @ ..] = &self.parts;
         for part in others.iter().chain([first]) {
             if 2 * joined < part.count {
                 let found = format!("{joined} of {} samples with a stamp that the other files have too", part.count);
                 let expected = format!(
-                    "the stamps of {}: the files of one mounting have one clock and one rate (nothing is resampled)",
+                    "the stamps of {} to the end, as at the beginning: the files of one mounting have one clock",
                     if part.file == first.file { &others[0].file } else { &first.file }.display()
                 );
                 return Err(Error::content(&part.file, Place::Whole, found, expected));
@@ -125,27 +201,16 @@ impl Joined {
         }
         Ok(())
     }
-}
 
-impl Part {
-    /// The time of the next row; none at the end.
-    fn time(&mut self) -> Result<Option<f64>, Error> {
-        while self.at == self.rows[0].len() && !self.is_over {
-            self.at = 0;
-            self.rows.iter_mut().for_each(Vec::clear);
-            self.is_over = self.table.next_batch()?.is_none();
-            if self.is_over {
-                break;
-            }
-            if let Some(units) = self.units.take() {
-                let units = units.iter().map(|(name, unit)| (name.clone(), unit.as_str()));
-                check_units(&self.file, self.table.units().as_ref(), units)?;
-            }
-            for rows in self.table.batch() {
-                self.count += rows[0].len() as u64;
-                self.rows.iter_mut().zip(rows).for_each(|(all, values)| all.extend_from_slice(values));
-            }
+    /// Sees at the end that the other files have readings at most stamps of `grid`.
+    fn check_readings(&self, grid: usize) -> Result<(), Error> {
+        let Part { file, count, .. } = &self.parts[grid];
+        if 2 * self.count >= *count {
+            return Ok(());
         }
-        Ok(self.rows[0].get(self.at).copied())
+        let worst = (0..3).filter(|j| *j != grid).max_by_key(|j| self.missed[*j]).unwrap_or(grid);
+        let found = format!("readings at {} of {count} stamps of {}", count - self.missed[worst], file.display());
+        let expected = "most of them between two samples without a gap: the files of one mounting have one clock";
+        Err(Error::content(&self.parts[worst].file, Place::Whole, found, expected))
     }
 }

@@ -34,8 +34,8 @@ impl<'a> RecordFile<'a> {
     }
 
     /// First pass: surveys the record, its stretches condensed on all threads, and keeps its samples if they are not too
-    /// many.
-    pub fn survey(&self, cache: &mut SampleCache) -> Result<Survey, Error> {
+    /// many. The survey, and how many readings of each newtonometer were interpolated to the stamps of another one, if any.
+    pub fn survey(&self, cache: &mut SampleCache) -> Result<(Survey, Option<[u64; 3]>), Error> {
         let mut record = RecordReader::open_all(&self.files, Extent::Whole, self.columns)?;
         let mut beginning = Record::default();
         let mut survey: Option<Survey> = None;
@@ -60,10 +60,11 @@ impl<'a> RecordFile<'a> {
             (self.progress)(record.newly_read());
         }
         (self.progress)(record.newly_read());
+        let interpolated = record.interpolated();
         cache.index = record.into_index();
         let mut survey = survey.unwrap_or_else(|| begin(&beginning));
         survey.finish();
-        Ok(survey)
+        Ok((survey, interpolated))
     }
 
     /// Second pass: the means of the plateaus. Of a record that is not kept, a part of a plateau at a time is held.

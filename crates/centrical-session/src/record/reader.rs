@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
-use centrical_table::{Extent, Index, Reread, Rows, StampTexts, TableLines, TableReader};
+use centrical_table::{Extent, Index, Reread, Rows, Stamps, TableLines, TableReader};
 
 use super::columns::{Column, Columns, Scale, fields};
 use super::joined::Joined;
@@ -176,18 +176,27 @@ impl RecordReader {
         self.table.batch()
     }
 
-    /// Keeps stamps as they are written, for [`RecordReader::take_stamps`].
+    /// Keeps stamps as they are read, for [`RecordReader::take_stamps`].
     pub(crate) fn keep_stamps(&mut self) {
         if let Source::One(table) = &mut self.table {
             table.keep_stamps();
         }
     }
 
-    /// Stamps of the rows that were read last, as they are written; one entry for each set.
-    pub(crate) fn take_stamps(&mut self) -> Vec<StampTexts> {
+    /// Stamps of the rows that were read last; one entry for each set.
+    pub(crate) fn take_stamps(&mut self) -> Vec<Stamps> {
         match &mut self.table {
             Source::One(table) => table.take_stamps(),
-            Source::Three(joined) => vec![StampTexts::default(); joined.batch().len()],
+            Source::Three(joined) => vec![Stamps::default(); joined.batch().len()],
+        }
+    }
+
+    /// Readings of newtonometers 1, 2, 3 that were interpolated to the stamps of another one; none where all are samples of one
+    /// file, or joined by their stamps.
+    pub(super) fn interpolated(&self) -> Option<[u64; 3]> {
+        match &self.table {
+            Source::One(_) => None,
+            Source::Three(joined) => joined.interpolated(),
         }
     }
 

@@ -5,5 +5,6 @@ mod predictions;
 mod record_writer;
 mod session_forms;
 mod three_files;
+mod three_recorders;
 mod two_passes;
 mod watched;

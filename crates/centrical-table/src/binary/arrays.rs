@@ -11,6 +11,7 @@ use super::columnar::Column;
 use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
+use crate::stamps::TickForm;
 use crate::unpacking::Unpacked;
 
 /// Longest row of an array [bytes]: thousands of columns.
@@ -139,8 +140,41 @@ fn contents(arrays: &[Array]) -> String {
     format!("columns {}", quoted(arrays.iter().map(named).collect::<Vec<_>>().join(", ").trim().as_bytes()))
 }
 
-/// A reader of one column.
-pub(super) fn column(file: &Path, (array, place): (&Array, &ArrayColumn), field: &Field) -> Result<Column, Error> {
+/// A reader of one column of numbers.
+pub(super) fn column(file: &Path, of: (&Array, &ArrayColumn), field: &Field) -> Result<Column, Error> {
+    let scalar = of.1.scalar;
+    let mut next = next_bytes(file, of, field)?;
+    Ok(Column::Numbers(Box::new(move |values| {
+        next(&mut |stride, bytes| values.extend(bytes.chunks(stride).map(|row| scalar.read(&row[..scalar.size]))))
+    })))
+}
+
+/// A reader of one column of stamps, which are integers of 64 bits.
+pub(super) fn stamps(file: &Path, of: (&Array, &ArrayColumn), field: &Field, form: TickForm) -> Result<Column, Error> {
+    let (scalar, unit) = (of.1.scalar, form.unit.seconds());
+    let mut next = next_bytes(file, of, field)?;
+    Ok(Column::Stamps(
+        form,
+        Box::new(move |values, ticks| {
+            let begin = ticks.len();
+            next(&mut |stride, bytes| {
+                ticks.extend(bytes.chunks(stride).map(|row| scalar.integer(&row[..scalar.size])));
+            })?;
+            values.extend(ticks[begin..].iter().map(|ticks| *ticks as f64 * unit));
+            Ok(())
+        }),
+    ))
+}
+
+/// Takes rows of bytes, and how many a row has; the last row may have fewer.
+type TakeBytes<'a> = &'a mut dyn FnMut(usize, &[u8]);
+
+/// Hands out the next rows of a column, [`ROWS`] at most, from the first byte of each number on.
+fn next_bytes(
+    file: &Path,
+    (array, place): (&Array, &ArrayColumn),
+    field: &Field,
+) -> Result<impl FnMut(TakeBytes) -> Result<(), Error> + Send + use<>, Error> {
     let (name, path) = (Place::Column(field.name.to_string()), file.to_owned());
     let failed = move |e: io::Error| {
         let expected = "an array as long as it says";
@@ -158,7 +192,7 @@ pub(super) fn column(file: &Path, (array, place): (&Array, &ArrayColumn), field:
     let has_checksum = array.bytes.packing != Packing::Plain || array.bytes.crc_32.is_some();
     let at_a_time = (BUFFER / stride.max(1)).max(1) as u64;
     let mut buffer = Vec::new();
-    Ok(Box::new(move |values| {
+    Ok(move |take: TakeBytes| {
         let mut wanted = left.min(ROWS as u64);
         while wanted > 0 {
             let rows = wanted.min(at_a_time);
@@ -167,14 +201,14 @@ pub(super) fn column(file: &Path, (array, place): (&Array, &ArrayColumn), field:
             let unused = if left == 0 { stride - scalar.size } else { 0 };
             buffer.resize(usize::try_from(rows).unwrap_or(ROWS) * stride - unused, 0);
             input.read_exact(&mut buffer).map_err(&failed)?;
-            values.extend(buffer.chunks(stride).map(|row| scalar.read(&row[..scalar.size])));
+            take(stride, &buffer);
         }
         if left == 0 && has_checksum {
             // A checksum is that of all bytes, and stands at their end.
             io::copy(&mut input, &mut io::sink()).map_err(&failed)?;
         }
         Ok(())
-    }))
+    })
 }
 
 impl Bytes {
@@ -208,13 +242,24 @@ impl Scalar {
         known.then_some(Self { kind, size, big_endian })
     }
 
-    /// The number in the first bytes, as many as its size.
-    pub fn read(self, bytes: &[u8]) -> f64 {
+    /// The first bytes, as many as its size, the lowest first.
+    fn low_bytes(self, bytes: &[u8]) -> [u8; 8] {
         let mut low = [0; 8];
         low[..self.size].copy_from_slice(&bytes[..self.size]);
         if self.big_endian {
             low[..self.size].reverse();
         }
+        low
+    }
+
+    /// The integer of 64 bits in the first bytes.
+    fn integer(self, bytes: &[u8]) -> i64 {
+        i64::from_le_bytes(self.low_bytes(bytes))
+    }
+
+    /// The number in the first bytes, as many as its size.
+    pub fn read(self, bytes: &[u8]) -> f64 {
+        let low = self.low_bytes(bytes);
         let bits = u64::from_le_bytes(low);
         let unused = 64 - 8 * self.size;
         match self.kind {

@@ -16,7 +16,7 @@ use polars_arrow_format::ipc::{CompressionType, FooterRef, MessageHeaderRef, Rec
 pub(super) use self::messages::CONTINUATION;
 use self::messages::{Message, Messages, contradiction, damaged};
 pub(super) use self::schema::durations;
-use self::schema::{ArrowColumn, find, in_seconds};
+use self::schema::{ArrowColumn, find};
 use super::arrays::{self, Array, Packing};
 use super::catch_panic::catch_panic;
 use super::columnar::{Column, Parts};
@@ -98,7 +98,8 @@ fn batch_columns(
     let arrays =
         catch_panic(|| arrays(message, batch, columns)).map_err(|e| e.unwrap_or_else(|| contradiction(file)))?;
     let numbers = |((array, column), field): ((&Array, &ArrowColumn), &Field)| {
-        Ok(in_seconds(arrays::column(file, (array, &array.columns[0]), field)?, column.unit))
+        let of = (array, &array.columns[0]);
+        column.stamps.map_or_else(|| arrays::column(file, of, field), |form| arrays::stamps(file, of, field, form))
     };
     arrays.iter().zip(columns).zip(fields).map(numbers).collect()
 }

@@ -7,9 +7,19 @@ use rayon::prelude::*;
 use crate::column::{Field, LARGEST, Rule};
 use crate::error::{Error, Place};
 use crate::rows::{ASCENDING, Before, Rows, runs_backwards};
+use crate::stamps::{Stamps, TickForm};
+
+/// A column that is read some values at a time.
+pub(super) enum Column {
+    Numbers(NextNumbers),
+    Stamps(TickForm, NextStamps),
+}
 
 /// Appends the next values of a column, [`crate::rows::ROWS`] at most, and none at its end.
-pub(super) type Column = Box<dyn FnMut(&mut Vec<f64>) -> Result<(), Error> + Send>;
+pub(super) type NextNumbers = Box<dyn FnMut(&mut Vec<f64>) -> Result<(), Error> + Send>;
+
+/// The same of stamps: their seconds, and what they are counted as.
+pub(super) type NextStamps = Box<dyn FnMut(&mut Vec<f64>, &mut Vec<i64>) -> Result<(), Error> + Send>;
 
 /// The columns, in the order of the fields, of each part of a file in turn: of its row groups, or of all of it.
 pub(super) type Parts = Box<dyn Iterator<Item = Result<Vec<Column>, Error>>>;
@@ -20,6 +30,16 @@ pub(super) const MISSING: f64 = f64::from_bits(0x7ff8_0000_0000_0eaf);
 /// Sets of rows in a batch.
 const BATCH: usize = 8;
 
+impl Column {
+    /// Appends the next values, and what stamps are counted as.
+    fn read(&mut self, values: &mut Vec<f64>, ticks: &mut Vec<i64>) -> Result<(), Error> {
+        match self {
+            Self::Numbers(next) => next(values),
+            Self::Stamps(_, next) => next(values, ticks),
+        }
+    }
+}
+
 /// A binary table on its way to rows.
 pub(crate) struct ColumnReader {
     file: PathBuf,
@@ -28,6 +48,9 @@ pub(crate) struct ColumnReader {
     /// Of the part that is being read.
     columns: Vec<Column>,
     rows: Vec<Rows>,
+    /// Of the first field, for each set of rows, if they are kept.
+    stamps: Vec<Stamps>,
+    keeps_stamps: bool,
     before: Before,
     /// Rows that the file can hold.
     most: u64,
@@ -38,7 +61,8 @@ impl ColumnReader {
     pub(super) fn new(file: &Path, fields: Vec<Field>, parts: Parts, most: u64) -> Self {
         let rows = vec![vec![Vec::new(); fields.len()]; BATCH];
         let before = Before::new(fields.len());
-        Self { file: file.to_owned(), fields, parts, columns: Vec::new(), rows, before, most }
+        let (columns, stamps) = (Vec::new(), vec![Stamps::default(); BATCH]);
+        Self { file: file.to_owned(), fields, parts, columns, rows, stamps, keeps_stamps: false, before, most }
     }
 
     /// The parts of a file that is one.
@@ -67,12 +91,24 @@ impl ColumnReader {
         &mut self.rows[..count]
     }
 
+    /// Keeps stamps of the first field.
+    pub fn keep_stamps(&mut self) {
+        self.keeps_stamps = true;
+    }
+
+    /// The stamps of the rows that were read last.
+    pub fn take_stamps(&mut self, count: usize) -> Vec<Stamps> {
+        self.stamps[..count].iter_mut().map(std::mem::take).collect()
+    }
+
     /// Fills one set of rows; whether there are any.
     fn fill(&mut self, number: usize) -> Result<bool, Error> {
         let Self { file, fields, columns, rows, before, .. } = self;
         let rows = &mut rows[number];
         rows.iter_mut().for_each(Vec::clear);
-        let read = columns.par_iter_mut().zip(&mut *rows).map(|(column, values)| column(values));
+        let mut ticks = vec![Vec::new(); columns.len()];
+        let read = columns.par_iter_mut().zip(&mut *rows).zip(&mut ticks);
+        let read = read.map(|((column, values), ticks)| column.read(values, ticks));
         // Gathered before the first error is taken: which one it is does not depend on the threads.
         read.collect::<Vec<_>>().into_iter().collect::<Result<(), Error>>()?;
         let length = rows[0].len();
@@ -83,6 +119,12 @@ impl ColumnReader {
         }
         check(file, fields, rows, before)?;
         before.count += length as u64;
+        let ticks = ticks.swap_remove(0);
+        // What no whole number of the unit counts stays a number of seconds.
+        self.stamps[number] = match &columns[0] {
+            Column::Stamps(form, _) if self.keeps_stamps && ticks.len() == length => Stamps::counted(*form, ticks),
+            _ => Stamps::default(),
+        };
         Ok(length > 0)
     }
 }

@@ -68,13 +68,13 @@ fn column(file: &Path, hdf: &File, field: &Field, by_columns: bool, most: u64) -
     if by_columns || shape.first() == Some(&1) {
         // A row of the file holds the whole column.
         let mut whole = catch_panic(|| row(&dataset, number as u64 - 1)).map_err(&damaged)?.into_iter();
-        return Ok(Box::new(move |values| {
+        return Ok(Column::Numbers(Box::new(move |values| {
             values.extend(whole.by_ref().take(ROWS));
             Ok(())
-        }));
+        })));
     }
     let (mut start, step) = (0, AT_ONCE / columns);
-    Ok(Box::new(move |values| {
+    Ok(Column::Numbers(Box::new(move |values| {
         let end = (start + ROWS as u64).min(rows);
         while start < end {
             let count = step.min(end - start);
@@ -83,7 +83,7 @@ fn column(file: &Path, hdf: &File, field: &Field, by_columns: bool, most: u64) -
             values.extend(block.iter().skip(number - 1).step_by(usize::try_from(columns).unwrap_or(usize::MAX)));
         }
         Ok(())
-    }))
+    })))
 }
 
 /// A layout that the library does not know, and what it does.

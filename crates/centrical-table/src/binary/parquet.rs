@@ -20,6 +20,7 @@ use super::parquet_pages::{Checked, Source};
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
+use crate::stamps::{TickForm, TickUnit};
 
 /// The row groups of `file`.
 pub(super) fn parts(file: &Path, input: &File, fields: &[Field]) -> Result<Parts, Error> {
@@ -93,11 +94,11 @@ fn is_plain_of_old(column: &ColumnDescPtr) -> bool {
     signed || is_unsigned(column)
 }
 
-/// Seconds per unit of a column of stamps without a logical type.
-fn stamp_of_old(column: &ColumnDescPtr) -> Option<f64> {
+/// How the stamps of a column without a logical type are counted: always in UTC.
+fn stamp_of_old(column: &ColumnDescPtr) -> Option<TickForm> {
     match column.converted_type() {
-        ConvertedType::TIMESTAMP_MILLIS => Some(1e-3),
-        ConvertedType::TIMESTAMP_MICROS => Some(1e-6),
+        ConvertedType::TIMESTAMP_MILLIS => Some(TickForm { unit: TickUnit::Millisecond, is_utc: true }),
+        ConvertedType::TIMESTAMP_MICROS => Some(TickForm { unit: TickUnit::Microsecond, is_utc: true }),
         _ => None,
     }
 }
@@ -120,15 +121,18 @@ fn durations(metadata: &ParquetMetaData) -> Vec<String> {
     catch_panic(|| Ok::<_, ParquetError>(arrow::durations(&bytes))).unwrap_or_default()
 }
 
-/// Seconds per unit of a column of stamps, 1 for numbers.
-fn stamp_unit(column: &ColumnDescPtr) -> f64 {
+/// How the stamps of a column are counted; nothing of numbers.
+fn stamp_form(column: &ColumnDescPtr) -> Option<TickForm> {
     match column.logical_type_ref() {
-        Some(LogicalType::Timestamp(stamp)) => match stamp.unit {
-            TimeUnit::MILLIS => 1e-3,
-            TimeUnit::MICROS => 1e-6,
-            TimeUnit::NANOS => 1e-9,
-        },
-        _ => stamp_of_old(column).unwrap_or(1.0),
+        Some(LogicalType::Timestamp(stamp)) => {
+            let unit = match stamp.unit {
+                TimeUnit::MILLIS => TickUnit::Millisecond,
+                TimeUnit::MICROS => TickUnit::Microsecond,
+                TimeUnit::NANOS => TickUnit::Nanosecond,
+            };
+            Some(TickForm { unit, is_utc: stamp.is_adjusted_to_u_t_c })
+        }
+        _ => stamp_of_old(column),
     }
 }
 
@@ -142,11 +146,27 @@ fn column(
 ) -> ParquetResult<Column> {
     let pages = Checked::new(source, metadata.row_group(group), column)?;
     let description = metadata.file_metadata().schema_descr().column(column);
-    let (unit, is_unsigned) = (stamp_unit(&description), is_unsigned(&description));
+    let (stamps, is_unsigned) = (stamp_form(&description), is_unsigned(&description));
     let whole = description.max_def_level();
     let mut reader = get_column_reader(description, Box::new(pages));
     let file = file.to_owned();
-    Ok(Box::new(move |values| {
+    if let Some(form) = stamps {
+        let unit = form.unit.seconds();
+        return Ok(Column::Stamps(
+            form,
+            Box::new(move |values, ticks| {
+                let read = catch_panic(|| match &mut reader {
+                    ColumnReader::Int64ColumnReader(reader) => numbers(reader, values, |v| {
+                        ticks.push(v);
+                        v as f64 * unit
+                    }),
+                    _ => Err(ParquetError::General("stamps of other than 64 bits".to_owned())),
+                });
+                read.map_err(|e| damaged(&file, e.as_ref()))
+            }),
+        ));
+    }
+    Ok(Column::Numbers(Box::new(move |values| {
         let read = catch_panic(|| match &mut reader {
             // As they are, if every row has one.
             ColumnReader::DoubleColumnReader(reader) if whole == 0 => {
@@ -161,18 +181,18 @@ fn column(
             ColumnReader::Int64ColumnReader(reader) if is_unsigned => {
                 numbers(reader, values, |v| v.cast_unsigned() as f64)
             }
-            ColumnReader::Int64ColumnReader(reader) => numbers(reader, values, |v| v as f64 * unit),
+            ColumnReader::Int64ColumnReader(reader) => numbers(reader, values, |v| v as f64),
             _ => Err(ParquetError::General("a column without numbers".to_owned())),
         });
         read.map_err(|e| damaged(&file, e.as_ref()))
-    }))
+    })))
 }
 
 /// Reads the next values of one column.
 fn numbers<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     values: &mut Vec<f64>,
-    convert: impl Fn(T::T) -> f64,
+    convert: impl FnMut(T::T) -> f64,
 ) -> ParquetResult<()> {
     let (mut levels, mut raw) = (Vec::new(), Vec::with_capacity(ROWS));
     let (rows, present, _) = reader.read_records(ROWS, Some(&mut levels), None, &mut raw)?;

@@ -9,13 +9,13 @@ mod scaling;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use self::metadata::{Kind, Layout, Listed, Metadata, Properties, Segment, Value};
 use self::scaling::Scaling;
 use super::columnar::Column;
-use crate::column::{ColumnName, Field};
+use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
 
@@ -140,18 +140,58 @@ fn channel_column(file: &Path, metadata: &Metadata, channel: &Channel, field: &F
         let expected = "linear and polynomial scales, or data that are scaled already";
         Error::content(file, place.clone(), found, expected)
     })?;
-    let mut input = File::open(file).map_err(|e| Error::reading(file, e, "a TDMS file"))?;
-    let (mut runs, mut run, file, mut buffer) = (runs.into_iter(), None, file.to_owned(), Vec::new());
-    Ok(Box::new(move |values: &mut Vec<f64>| {
+    let input = File::open(file).map_err(|e| Error::reading(file, e, "a TDMS file"))?;
+    let is_stamps = field.rule == (Rule::Ascending { stamps: true })
+        && scaling == Scaling::default()
+        && runs.iter().all(|run| run.kind == Kind::Stamp);
+    let (runs, file) = (runs.into_iter(), file.to_owned());
+    let mut reader = RunReader { file, place, input, runs, run: None, buffer: Vec::new() };
+    if is_stamps {
+        return Ok(Column::Stamps(
+            metadata::STAMPS,
+            Box::new(move |values, ticks| {
+                reader.next(|run, bytes| {
+                    values.push(run.kind.value(bytes, run.big_endian));
+                    ticks.extend(metadata::nanoseconds(bytes, run.big_endian));
+                })
+            }),
+        ));
+    }
+    Ok(Column::Numbers(Box::new(move |values: &mut Vec<f64>| {
         let begin = values.len();
-        while values.len() - begin < ROWS {
-            let Some(this) = run.take().or_else(|| runs.next()) else { break };
-            let wanted = (ROWS - (values.len() - begin)) as u64;
-            run = read(&mut input, this, wanted, &mut buffer, values).map_err(|e| damaged(&file, place.clone(), &e))?;
-        }
+        reader.next(|run, bytes| values.push(run.kind.value(bytes, run.big_endian)))?;
         scaling.apply(&mut values[begin..]);
         Ok(())
-    }))
+    })))
+}
+
+/// The values of a channel, run after run.
+struct RunReader {
+    file: PathBuf,
+    place: Place,
+    input: File,
+    runs: std::vec::IntoIter<Run>,
+    /// The run that is being read.
+    run: Option<Run>,
+    buffer: Vec<u8>,
+}
+
+impl RunReader {
+    /// Hands out the bytes of the next values, [`ROWS`] at most.
+    fn next(&mut self, mut push: impl FnMut(Run, &[u8])) -> Result<(), Error> {
+        let mut left = ROWS as u64;
+        while left > 0 {
+            let Some(run) = self.run.take().or_else(|| self.runs.next()) else { break };
+            let before = left;
+            let push = |bytes: &[u8]| {
+                left -= 1;
+                push(run, bytes);
+            };
+            let read = read(&mut self.input, run, before, &mut self.buffer, push);
+            self.run = read.map_err(|e| damaged(&self.file, self.place.clone(), &e))?;
+        }
+        Ok(())
+    }
 }
 
 /// The scaling of a channel, of its group or of the file.
@@ -240,13 +280,13 @@ fn run(segment: &Segment, in_chunk: InChunk) -> Option<Run> {
     (count > 0).then_some(Run { kind, big_endian, offset, stride, chunk, of_chunk, count, read: 0 })
 }
 
-/// Reads values of a run, `wanted` at most and a buffer full; what is left of it.
+/// Reads values of a run, `wanted` at most and a buffer full, and hands out the bytes of each; what is left of it.
 fn read(
     input: &mut File,
     mut run: Run,
     wanted: u64,
     buffer: &mut Vec<u8>,
-    values: &mut Vec<f64>,
+    mut push: impl FnMut(&[u8]),
 ) -> io::Result<Option<Run>> {
     let (begin, size) = (run.place(run.read), run.kind.size());
     let most = run.count.min(run.read + wanted);
@@ -261,7 +301,7 @@ fn read(
     for value in run.read..end {
         let at = usize::try_from(run.place(value) - begin).unwrap_or(usize::MAX);
         let bytes = buffer.get(at..).ok_or_else(|| metadata::wrong("values that are not in order"))?;
-        values.push(run.kind.value(bytes, run.big_endian));
+        push(bytes);
     }
     run.read = end;
     Ok((run.read < run.count).then_some(run))
@@ -283,12 +323,12 @@ fn time_column(file: &Path, metadata: &Metadata, reading: Option<&Channel>, fiel
     let runs = runs(metadata, reading.object).map_err(|e| damaged(file, Place::Whole, &e))?;
     let count: u64 = runs.iter().map(|run| run.count).sum();
     let mut next = 0;
-    Ok(Box::new(move |values| {
+    Ok(Column::Numbers(Box::new(move |values| {
         let end = count.min(next + ROWS as u64);
         values.extend((next..end).map(|k| start + k as f64 * step));
         next = end;
         Ok(())
-    }))
+    })))
 }
 
 /// The time from one sample of a waveform to the next [s].

@@ -32,7 +32,7 @@ pub struct TextForm {
     /// The fields of the first row as they are written.
     pub first_row: Vec<String>,
     /// The first column of stamps, counted from 0, and their kind.
-    pub stamps: Option<Stamps>,
+    pub stamps: Option<StampColumn>,
 }
 
 /// The sign before the decimals of numbers.
@@ -48,7 +48,7 @@ pub enum DecimalSign {
 
 /// A column of stamps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stamps {
+pub struct StampColumn {
     /// Counted from 0.
     pub column: usize,
     /// How they are written.
@@ -75,7 +75,8 @@ impl TextForm {
         let first_row = fields(shape.first_row);
         let line = |index: usize| lines[index].0 + 1;
         let above = shape.header.unwrap_or(shape.first_row);
-        let stamp = |(column, text): (usize, &String)| Some(Stamps { column, kind: stamp::kind(text.as_bytes())? });
+        let stamp =
+            |(column, text): (usize, &String)| Some(StampColumn { column, kind: stamp::kind(text.as_bytes())? });
         Some(Self {
             encoding,
             delimiter: match shape.delimiter {

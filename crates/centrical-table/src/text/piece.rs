@@ -9,7 +9,8 @@ use super::lines::{self, Text};
 use super::prologue::{Line, MOST_ABOVE, Prologue, Start};
 use super::separators::Separators;
 use crate::column::Field;
-use crate::rows::{ASCENDING, Rows, StampTexts, runs_backwards};
+use crate::rows::{ASCENDING, Rows, runs_backwards};
+use crate::stamps::Stamps;
 
 /// A piece on its way from the file to the rows.
 #[derive(Default)]
@@ -22,7 +23,7 @@ pub(super) struct Piece {
     /// What stands wrong, and in which line of the piece.
     pub fault: Option<(u64, Fault)>,
     /// Stamps as they are written, if they are kept.
-    pub stamps: StampTexts,
+    pub stamps: Stamps,
     pub keeps_stamps: bool,
     separators: Separators,
     batch: Batch,
@@ -38,7 +39,7 @@ impl Piece {
             text = split_line(text).1;
         }
         (self.lines, self.first_row, self.fault) = (skipped, skipped, None);
-        self.stamps = StampTexts::default();
+        self.stamps = Stamps::default();
         if let Some(delimiter) = layout.delimiter() {
             self.separators.find(text, delimiter);
         }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::csv::{field, header};
 use super::output::{Output, Sink, SteadyFile};
 use super::text_lines::{Decimals, ROWS, write_lines};
-use crate::rows::StampTexts;
+use crate::stamps::Stamps;
 
 /// Pieces of lines that may wait to be written.
 const AHEAD: usize = 32;
@@ -63,25 +63,26 @@ impl<const N: usize> TextTable<N> {
         written.into_iter().try_for_each(|lines| self.output.send(lines))
     }
 
-    /// Adds the rows of a piece with these stamps in place of the numbers of the first column.
-    pub fn write_stamped(&mut self, stamps: &StampTexts, columns: [&[f64]; N]) -> io::Result<()> {
-        let count = columns[0].len();
-        for from in (0..count).step_by(ROWS) {
+    /// Adds the rows of a piece with these stamps in place of the numbers of the first column, on all threads.
+    pub fn write_stamped(&mut self, stamps: &Stamps, columns: [&[f64]; N]) -> io::Result<()> {
+        let (count, decimals, output) = (columns[0].len(), self.decimals, &self.output);
+        let rooms: Vec<(usize, Lines)> = (0..count).step_by(ROWS).map(|from| (from, output.room())).collect();
+        let written = rooms.into_par_iter().map(|(from, mut numbers)| {
             let rows = columns.map(|column| &column[from..count.min(from + ROWS)]);
-            let mut numbers = self.output.room();
-            numbers.start = write_lines(&mut numbers.text, self.decimals, rows);
+            numbers.start = write_lines(&mut numbers.text, decimals, rows);
             let mut text = Vec::with_capacity(2 * (numbers.text.len() - numbers.start));
             for (row, line) in numbers.text[numbers.start..].split_inclusive(|byte| *byte == b'\n').enumerate() {
-                let after = memchr(b',', line).unwrap_or(0);
-                match stamps.get(from + row) {
-                    Some(stamp) => text.extend_from_slice(field(&String::from_utf8_lossy(stamp)).as_bytes()),
+                let after = memchr(b',', line).unwrap_or(line.len() - 1);
+                match stamps.text(from + row) {
+                    Some(stamp) => text.extend_from_slice(field(&String::from_utf8_lossy(&stamp)).as_bytes()),
                     None => text.extend_from_slice(&line[..after]),
                 }
                 text.extend_from_slice(&line[after..]);
             }
-            self.output.send(Lines { text, start: 0 })?;
-        }
-        Ok(())
+            Lines { text, start: 0 }
+        });
+        let written: Vec<Lines> = written.collect();
+        written.into_iter().try_for_each(|lines| self.output.send(lines))
     }
 
     /// Writes the rest and sees it to the disk.

@@ -184,6 +184,24 @@ def write_arrow(t, f):
     holes = table.set_column(2, "f2", pa.array([None if i == 7 else float(v) for i, v in enumerate(f[:, 1])]))
     feather.write_feather(holes, HERE / "null.feather")
     write_stream("text.arrows", table.set_column(2, "f2", pa.array([str(v) for v in f[:, 1]])))
+    write_stamps(t, f)
+
+
+def write_stamps(t, f):
+    """A column of time for every unit of a timestamp, with a zone and without; in `stamps_of_units.txt` as NumPy writes them."""
+    columns, texts = {}, {}
+    for unit, per_second in [("s", 1), ("ms", 10**3), ("us", 10**6), ("ns", 10**9)]:
+        # All digits of the unit are used.
+        ticks = 1791194400 * per_second + np.floor(t * per_second).astype("i8") + np.arange(300) // 7
+        stamps = ticks.astype(f"datetime64[{unit}]")
+        for name, zone in [(unit, None), (f"{unit}_utc", "Europe/Moscow")]:
+            columns[name] = pa.array(ticks).cast(pa.timestamp(unit, zone))
+            texts[name] = np.datetime_as_string(stamps, unit, timezone="UTC" if zone else "naive")
+    table = pa.table({**columns, **{f"f{i + 1}": f[:, i] for i in range(3)}})
+    feather.write_feather(table, HERE / "stamps_of_units.feather")
+    pq.write_table(table, HERE / "stamps_of_units.parquet", version="2.6")
+    lines = [",".join(texts)] + [",".join(row) for row in zip(*texts.values())]
+    (HERE / "stamps_of_units.txt").write_text("\n".join(lines) + "\n")
 
 
 def write_stream(name, table):

@@ -6,3 +6,4 @@ mod growing;
 mod pieces;
 #[path = "../common/record.rs"]
 mod record;
+mod stamps;

@@ -8,7 +8,7 @@ use centrical_table::ColumnName;
 use crate::record::{Record, named, numbered, read_record};
 
 /// A file as it is kept or, with `CENTRICAL_GENERATED`, as those programs wrote it just now into that folder.
-fn data(name: &str) -> PathBuf {
+pub fn data(name: &str) -> PathBuf {
     let kept = || Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
     std::env::var_os("CENTRICAL_GENERATED").map_or_else(kept, PathBuf::from).join(name)
 }

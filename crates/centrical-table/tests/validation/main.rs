@@ -3,3 +3,4 @@
 mod formats;
 #[path = "../common/record.rs"]
 mod record;
+mod stamps;

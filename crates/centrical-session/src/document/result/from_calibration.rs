@@ -193,6 +193,7 @@ fn mountings(model: &MeasurementModel, reduced: &Reduced) -> Vec<MountingSummary
             arm: mounting.arm_y.into(),
             settling_time: findings.and_then(|f| f.settling_time),
             clock_offset: findings.and_then(|f| f.clock_offset).map(|offset| offset.seconds),
+            interpolated: findings.and_then(|f| f.interpolated),
         }
     };
     experiment.mountings.iter().enumerate().map(summary).collect()

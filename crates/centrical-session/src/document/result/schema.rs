@@ -267,6 +267,10 @@ pub struct MountingSummary {
     pub settling_time: Option<f64>,
     /// What to add to the time of the telemetry to have that of the record [s]; null without telemetry.
     pub clock_offset: Option<f64>,
+    /// Readings of newtonometers 1, 2, 3 that were interpolated to the stamps of another one; none unless each has a file with stamps
+    /// of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interpolated: Option<[u64; 3]>,
 }
 
 /// A plateau.

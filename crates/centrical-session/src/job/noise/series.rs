@@ -95,6 +95,12 @@ impl Series {
         };
         let columns = &session.columns;
         if files.further_records.is_some() {
+            // A mean of neighbours has less noise than they have.
+            if reduced.mountings[set_points[set_point].mounting].interpolated.is_some() {
+                let expected =
+                    "samples as they were recorded: analyse the file of each newtonometer by itself (noise FILE)";
+                return Err(Error::content(record, Place::Whole, "readings interpolated to common stamps", expected));
+            }
             let series = Self::of_files(session, set_points[set_point].mounting, window)?;
             return Ok((series, PlateauName::of(session, set_point)));
         }

@@ -7,13 +7,21 @@ use crate::error::Error;
 use crate::experiment::{Session, SpeedSource};
 use crate::record::{RecordFile, RecordOverview, SampleCache};
 
+/// What the record of a mounting comes down to.
+pub(super) struct OfRecord {
+    pub reduced: ReducedMounting,
+    pub overview: RecordOverview,
+    /// Readings of newtonometers 1, 2, 3 that were interpolated to the stamps of another one, if their files have stamps of their own.
+    pub interpolated: Option<[u64; 3]>,
+}
+
 /// Reduces the record of a mounting, its samples kept in `cache` between the passes.
 pub(super) fn reduce_mounting(
     session: &Session,
     number: usize,
     progress: &(dyn Fn(u64) + Sync),
     cache: &mut SampleCache,
-) -> Result<(ReducedMounting, RecordOverview), Error> {
+) -> Result<OfRecord, Error> {
     let record = RecordFile::new(session.record_files(number)?, &session.columns, progress);
     let file = session.record_file(number)?;
     let refused = |source: ReductionError| Error::Reduction {
@@ -21,7 +29,8 @@ pub(super) fn reduce_mounting(
         mounting: number + 1,
         source: Box::new(source),
     };
-    let survey = record.survey(cache)?.with_resolution(session.type_b.resolution);
+    let (survey, interpolated) = record.survey(cache)?;
+    let survey = survey.with_resolution(session.type_b.resolution);
     let telemetry = session.telemetry(number)?;
     let mut located = locate(&survey, telemetry.as_ref(), &schedule(session, number)).map_err(refused)?;
     if let Some(pulses) = counted_pulses(session, number)? {
@@ -29,7 +38,7 @@ pub(super) fn reduce_mounting(
     }
     let means = record.means(cache, &located)?.into_iter().collect::<Result<_, _>>().map_err(refused)?;
     let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
-    Ok((ReducedMounting::new(located, means), overview))
+    Ok(OfRecord { reduced: ReducedMounting::new(located, means), overview, interpolated })
 }
 
 /// The pulses of a mounting, where they measure the speed.
@@ -70,8 +79,8 @@ mod tests {
         let mut reduced = |file: &PathBuf, bytes: usize| {
             session.mountings[0].record = Some(file.clone());
             let budget = MemoryBudget::of(bytes);
-            let (mounting, overview) = reduce_mounting(&session, 0, &|_| {}, &mut SampleCache::new(&budget)).unwrap();
-            (format!("{mounting:?}"), overview)
+            let mounting = reduce_mounting(&session, 0, &|_| {}, &mut SampleCache::new(&budget)).unwrap();
+            (format!("{:?}", mounting.reduced), mounting.overview)
         };
         let cached = reduced(&plain, 1 << 30);
         assert!(reduced(&plain, 0) == cached && reduced(&packed, 0) == cached && reduced(&packed, 1 << 30) == cached);

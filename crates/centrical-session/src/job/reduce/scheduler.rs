@@ -2,16 +2,15 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use centrical::reduction::ReducedMounting;
 use rayon::prelude::*;
 
-use super::mounting::reduce_mounting;
+use super::mounting::{OfRecord, reduce_mounting};
 use crate::error::Error;
 use crate::experiment::Session;
-use crate::record::{MemoryBudget, RecordOverview, SampleCache};
+use crate::record::{MemoryBudget, SampleCache};
 
 /// A mounting's number, and its plateaus or why there are none.
-type Numbered = (usize, Result<(ReducedMounting, RecordOverview), Error>);
+type Numbered = (usize, Result<OfRecord, Error>);
 
 /// Hands out the mountings of a session in their order, to as many lanes as their samples fit into memory.
 pub(super) struct Scheduler<'a> {
@@ -29,7 +28,7 @@ impl<'a> Scheduler<'a> {
     }
 
     /// Reduces all mountings. Where the files do not show their length, the first record is read on all threads, and shows it.
-    pub fn run(&self) -> Result<Vec<(ReducedMounting, RecordOverview)>, Error> {
+    pub fn run(&self) -> Result<Vec<OfRecord>, Error> {
         let mut done = Vec::new();
         let lanes = match (mountings_in_flight(), self.estimate_samples()) {
             (1, _) => 1,

@@ -8,10 +8,10 @@ use polars_arrow_format::ipc::{
 };
 
 use super::super::arrays::{Array, ArrayColumn, Bytes, Scalar, ScalarKind};
-use super::super::columnar::Column;
 use super::messages::{CONTINUATION, damaged};
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
+use crate::stamps::{TickForm, TickUnit};
 
 /// A column that a field asks for.
 pub(super) struct ArrowColumn {
@@ -20,8 +20,8 @@ pub(super) struct ArrowColumn {
     pub node: usize,
     pub buffer: usize,
     scalar: Scalar,
-    /// Seconds per unit of stamps, 1 for numbers.
-    pub unit: f64,
+    /// How they are counted if they are stamps.
+    pub stamps: Option<TickForm>,
 }
 
 /// Deepest nesting of types, and most of them in all: a damaged schema may contain itself.
@@ -68,7 +68,7 @@ pub(super) fn find(file: &Path, schema: SchemaRef, fields: &[Field]) -> Result<V
             (node, buffer) = (node + nodes, buffer + buffers);
         }
         match numbers(&columns[place], field.rule, big_endian).map_err(failed)? {
-            Ok((scalar, unit)) => Ok(ArrowColumn { name: names[place].to_owned(), node, buffer, scalar, unit }),
+            Ok((scalar, stamps)) => Ok(ArrowColumn { name: names[place].to_owned(), node, buffer, scalar, stamps }),
             Err(other) => wrong(other, &field.expected),
         }
     };
@@ -90,48 +90,35 @@ impl ArrowColumn {
     }
 }
 
-/// A column of stamps in seconds; of numbers, as it is.
-pub(super) fn in_seconds(mut numbers: Column, unit: f64) -> Column {
-    if unit == 1.0 {
-        return numbers;
-    }
-    Box::new(move |values| {
-        numbers(values)?;
-        for value in values {
-            *value *= unit;
-        }
-        Ok(())
-    })
-}
-
 type Flat<T> = Result<T, polars_arrow_format::ipc::planus::Error>;
 
-/// The numbers of a column and their unit; or what it is if it is neither numbers nor, where allowed, stamps.
-fn numbers(column: &FieldRef, rule: Rule, big_endian: bool) -> Flat<Result<(Scalar, f64), String>> {
+/// The numbers of a column, and how they are counted if they are stamps; or what it is if it is neither numbers nor, where allowed, stamps.
+fn numbers(column: &FieldRef, rule: Rule, big_endian: bool) -> Flat<Result<(Scalar, Option<TickForm>), String>> {
     let described = || Ok(Err("a column without numbers".to_owned()));
     let (Some(kind), None) = (column.type_()?, column.dictionary()?) else { return described() };
-    let (kind, bits, unit) = match kind {
-        TypeRef::Int(int) if int.is_signed()? => (ScalarKind::Signed, int.bit_width()?, 1.0),
-        TypeRef::Int(int) => (ScalarKind::Unsigned, int.bit_width()?, 1.0),
+    let (kind, bits, stamps) = match kind {
+        TypeRef::Int(int) if int.is_signed()? => (ScalarKind::Signed, int.bit_width()?, None),
+        TypeRef::Int(int) => (ScalarKind::Unsigned, int.bit_width()?, None),
         TypeRef::FloatingPoint(float) => match float.precision()? {
-            Precision::Half => (ScalarKind::Float, 16, 1.0),
-            Precision::Single => (ScalarKind::Float, 32, 1.0),
-            Precision::Double => (ScalarKind::Float, 64, 1.0),
+            Precision::Half => (ScalarKind::Float, 16, None),
+            Precision::Single => (ScalarKind::Float, 32, None),
+            Precision::Double => (ScalarKind::Float, 64, None),
         },
         TypeRef::Timestamp(stamp) if rule == (Rule::Ascending { stamps: true }) => {
             let unit = match stamp.unit()? {
-                TimeUnit::Second => 1.0,
-                TimeUnit::Millisecond => 1e-3,
-                TimeUnit::Microsecond => 1e-6,
-                TimeUnit::Nanosecond => 1e-9,
+                TimeUnit::Second => TickUnit::Second,
+                TimeUnit::Millisecond => TickUnit::Millisecond,
+                TimeUnit::Microsecond => TickUnit::Microsecond,
+                TimeUnit::Nanosecond => TickUnit::Nanosecond,
             };
-            (ScalarKind::Signed, 64, unit)
+            let is_utc = stamp.timezone()?.is_some_and(|zone| !zone.is_empty());
+            (ScalarKind::Signed, 64, Some(TickForm { unit, is_utc }))
         }
         TypeRef::Duration(_) => return Ok(Err("a duration".to_owned())),
         _ => return described(),
     };
     let scalar = usize::try_from(bits / 8).ok().and_then(|size| Scalar::new(kind, size, big_endian));
-    Ok(scalar.map(|scalar| (scalar, unit)).ok_or_else(|| format!("numbers of {bits} bits")))
+    Ok(scalar.map(|scalar| (scalar, stamps)).ok_or_else(|| format!("numbers of {bits} bits")))
 }
 
 /// Names of the columns that are durations, of a schema as Parquet files keep it: a message of a stream.

@@ -9,6 +9,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::rc::Rc;
 
 use crate::binary::arrays::{Scalar, ScalarKind};
+use crate::stamps::{TickForm, TickUnit};
 
 /// First bytes of a segment.
 const TAG: &[u8; 4] = b"TDSm";
@@ -300,6 +301,16 @@ impl Kind {
     }
 }
 
+/// Stamps are in UTC. Their fractions of 2^-64 s are rounded to the nanosecond, far below any clock.
+pub(super) const STAMPS: TickForm = TickForm { unit: TickUnit::Nanosecond, is_utc: true };
+
+/// The stamp in the first bytes, so counted; nothing outside the years 1678 to 2261.
+pub(super) fn nanoseconds(bytes: &[u8], big_endian: bool) -> Option<i64> {
+    let (seconds, fraction) = Cursor { bytes, big_endian }.seconds_and_fraction().ok()?;
+    let rounded = (u128::from(fraction) * 1_000_000_000 + (1 << 63)) >> 64;
+    i64::try_from(i128::from(seconds) * 1_000_000_000 + i128::try_from(rounded).ok()?).ok()
+}
+
 /// Bytes that are read one value after the other.
 struct Cursor<'a> {
     bytes: &'a [u8],
@@ -331,12 +342,18 @@ impl<'a> Cursor<'a> {
         Ok(String::from_utf8_lossy(self.take(length)?).into_owned())
     }
 
-    /// Seconds since 1970: they are counted from 1904, with a fraction in units of 2^-64.
-    fn stamp(&mut self) -> io::Result<f64> {
+    /// Whole seconds since 1970, which are counted from 1904, and a fraction in units of 2^-64 s.
+    fn seconds_and_fraction(&mut self) -> io::Result<(i64, u64)> {
         const FROM_1904: i64 = 2_082_844_800;
         let [first, second] = [self.u64()?, self.u64()?];
         let (seconds, fraction) = if self.big_endian { (first, second) } else { (second, first) };
-        Ok((seconds.cast_signed().saturating_sub(FROM_1904)) as f64 + fraction as f64 / 2_f64.powi(64))
+        Ok((seconds.cast_signed().saturating_sub(FROM_1904), fraction))
+    }
+
+    /// Seconds since 1970.
+    fn stamp(&mut self) -> io::Result<f64> {
+        let (seconds, fraction) = self.seconds_and_fraction()?;
+        Ok(seconds as f64 + fraction as f64 / 2_f64.powi(64))
     }
 
     /// The value of a property, if it is a number or a text.

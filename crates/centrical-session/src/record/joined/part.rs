@@ -1,0 +1,105 @@
+//! The file of one newtonometer: rows that are read and not taken yet.
+
+use std::path::{Path, PathBuf};
+
+use centrical_table::{Extent, Rows, TableReader};
+
+use super::super::columns::{Columns, fields};
+use super::super::units_found::check_units;
+use crate::error::Error;
+
+/// A table of time and one reading.
+pub(super) struct Part {
+    pub file: PathBuf,
+    /// Names and units of its columns, until those in the file are held against them.
+    units: Option<[(String, String); 2]>,
+    table: TableReader,
+    /// Rows that are read and not taken yet begin at `at`.
+    rows: Rows,
+    at: usize,
+    is_over: bool,
+    /// Rows that were read.
+    pub count: u64,
+    /// The last row that was passed: time and reading. Of rows with one stamp it is the first, as the reduction takes it.
+    pub before: Option<[f64; 2]>,
+}
+
+impl Part {
+    /// Opens the file of newtonometer `j`, counted from 0.
+    pub fn open(file: &Path, j: usize, extent: Extent, columns: &Columns) -> Result<Self, Error> {
+        let of_file = [&columns.time, &columns.f[j]];
+        let expected = "the record of a newtonometer";
+        let table = TableReader::open_at(file, extent, &fields(&of_file), expected, columns.record_lines)?;
+        let units = Some(of_file.map(|column| (column.name.to_string(), column.unit.clone())));
+        let rows = vec![Vec::new(); 2];
+        Ok(Self { file: file.to_owned(), units, table, rows, at: 0, is_over: false, count: 0, before: None })
+    }
+
+    /// The time of the next row; none at the end.
+    pub fn time(&mut self) -> Result<Option<f64>, Error> {
+        while self.at == self.rows[0].len() && !self.is_over {
+            self.read()?;
+        }
+        Ok(self.rows[0].get(self.at).copied())
+    }
+
+    /// The times of the next rows, `count` of them or all that there are.
+    pub fn times(&mut self, count: usize) -> Result<&[f64], Error> {
+        while self.rows[0].len() - self.at < count && !self.is_over {
+            self.read()?;
+        }
+        let times = &self.rows[0][self.at..];
+        Ok(&times[..count.min(times.len())])
+    }
+
+    /// The reading of the next row, which [`Part::time`] has found.
+    pub fn reading(&self) -> f64 {
+        self.rows[1][self.at]
+    }
+
+    /// Goes on to the row after the next.
+    pub fn skip(&mut self) {
+        self.at += 1;
+    }
+
+    /// The same, and remembers the row.
+    pub fn pass(&mut self) {
+        let row = [self.rows[0][self.at], self.rows[1][self.at]];
+        if self.before.is_none_or(|before| before[0] < row[0]) {
+            self.before = Some(row);
+        }
+        self.skip();
+    }
+
+    /// Goes on to the end.
+    pub fn skip_all(&mut self) -> Result<(), Error> {
+        while self.time()?.is_some() {
+            self.at = self.rows[0].len();
+        }
+        Ok(())
+    }
+
+    /// Bytes of the file that were read so far.
+    pub fn bytes(&self) -> u64 {
+        self.table.bytes()
+    }
+
+    /// Reads the next rows behind those that are not taken yet.
+    fn read(&mut self) -> Result<(), Error> {
+        let at = std::mem::take(&mut self.at);
+        self.rows.iter_mut().for_each(|values| drop(values.drain(..at)));
+        self.is_over = self.table.next_batch()?.is_none();
+        if self.is_over {
+            return Ok(());
+        }
+        if let Some(units) = self.units.take() {
+            let units = units.iter().map(|(name, unit)| (name.clone(), unit.as_str()));
+            check_units(&self.file, self.table.units().as_ref(), units)?;
+        }
+        for rows in self.table.batch() {
+            self.count += rows[0].len() as u64;
+            self.rows.iter_mut().zip(rows).for_each(|(all, values)| all.extend_from_slice(values));
+        }
+        Ok(())
+    }
+}
