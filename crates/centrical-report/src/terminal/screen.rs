@@ -156,9 +156,8 @@ mod tests {
         let lines = [
             "NOT ACCEPTABLE  the residuals are larger",
             "  than the noise explains",
-            "FIT     a value of",
-            "        -3.952149 ± 0.000012 stands on",
-            "        one line",
+            "FIT     a value of -3.952149 ± 0.000012",
+            "        stands on one line",
             "",
         ];
         assert_eq!(screen.text(40, 24), lines.join("\n"));

@@ -81,22 +81,27 @@ impl Calibration<'_> {
 
     fn tested(&self, trends: &[Trend], explained: Option<&Columns>) -> Result<Vec<Pattern>, FitError> {
         let (gain, experiment) = (self.gain()?, self.data().model().experiment());
-        let taken = explained.map_or((0, 0.0), |columns| {
-            let seen = Seen::of(columns.redundancy());
-            (seen.rank(), seen.statistic(&columns.along))
-        });
+        let explained = explained.map(|columns| (columns, Seen::of(columns.redundancy())));
+        let taken =
+            explained.as_ref().map_or((0, 0.0), |(columns, seen)| (seen.rank(), seen.statistic(&columns.along)));
+        let explained = explained.map(|(columns, seen)| (columns, seen.inverse()));
         let left = self.fit().degrees_of_freedom.saturating_sub(taken.0 + 1);
         let mut list = Vec::new();
-        for (trend, axis) in trends.iter().flat_map(|trend| (0..3).map(move |axis| (*trend, axis))) {
+        for &trend in trends {
             let values: Vec<f64> =
                 self.data().observations().iter().map(|o| trend.value(experiment, o.set_point)).collect();
             let largest = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
             let acting: Vec<usize> = (0..values.len()).filter(|&n| values[n] != 0.0).collect();
-            let columns = Columns::new(gain, acting, 1, |n, _| Vector3::ith(axis, values[n] / largest));
-            let (redundancy, along) =
-                explained.map_or_else(|| (columns.redundancy(), columns.along.clone()), |other| columns.beside(other));
-            let (square, along) = (redundancy[(0, 0)], along[0]);
-            if square > REDUNDANT.powi(2) {
+            for axis in 0..3 {
+                let columns = Columns::new(gain, acting.clone(), 1, |n, _| Vector3::ith(axis, values[n] / largest));
+                let (redundancy, along) = match &explained {
+                    Some((other, inverse)) => columns.beside(other, inverse),
+                    None => (columns.redundancy(), columns.along.clone()),
+                };
+                let (square, along) = (redundancy[(0, 0)], along[0]);
+                if square <= REDUNDANT.powi(2) {
+                    continue;
+                }
                 let statistic = along * along / square;
                 let rest = (self.fit().chi_squared - taken.1 - statistic).max(0.0);
                 let probability = f_tail(statistic / (rest / left as f64), 1, left);

@@ -80,10 +80,10 @@ impl Columns {
         product - self.followed.tr_mul(&other.followed)
     }
 
-    /// `s^T s` and `s^T e` with what `other` explains taken off both.
-    pub fn beside(&self, other: &Self) -> (DMatrix<f64>, DVector<f64>) {
+    /// `s^T s` and `s^T e` with what `other`, whose `(s^T s)^+` is `inverse`, explains taken off both.
+    pub fn beside(&self, other: &Self, inverse: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
         let across = self.redundancy_with(other);
-        let explained = &across * Seen::of(other.redundancy()).inverse();
+        let explained = &across * inverse;
         (self.redundancy() - &explained * across.transpose(), &self.along - &explained * &other.along)
     }
 }

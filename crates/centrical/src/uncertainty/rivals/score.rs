@@ -66,7 +66,7 @@ impl Rivals<'_> {
     /// more than the best of so many would by chance.
     fn is_told_from(&self, best: Rival, other: Rival, tested: usize) -> bool {
         let (Some(best), Some(other)) = (self.columns_of(best), self.columns_of(other)) else { return true };
-        let (redundancy, along) = best.beside(other);
+        let (redundancy, along) = best.beside(other, &Seen::of(other.redundancy()).inverse());
         let seen = Seen::of(redundancy);
         let chance = tested as f64 * chi_squared_tail(seen.statistic(&along), seen.rank());
         Level::Reported.is_passed_by(chance)
