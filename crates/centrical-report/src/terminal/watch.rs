@@ -95,14 +95,14 @@ fn label(session: &Session, set_point: usize) -> String {
 }
 
 fn outcome(session: &Session, plateau: &WatchedPlateau) -> String {
-    let WatchedPlateau { set_point, innovation, alarm, held_out, .. } = plateau;
+    let WatchedPlateau { set_point, alarm, held_out, .. } = plateau;
+    let InnovationSummary { squared, degrees_of_freedom, probability } = plateau.innovation().into();
     let plateau = label(session, *set_point);
-    let InnovationSummary { squared, degrees_of_freedom, probability } = innovation;
     let tested = match degrees_of_freedom {
         0 => "nothing to test it by yet".to_owned(),
         _ => format!(
             "normalised innovation {squared:.2} with {} of freedom, a chance of {probability:.2e}",
-            counted(*degrees_of_freedom, "degree")
+            counted(degrees_of_freedom, "degree")
         ),
     };
     let alarm = if *alarm { "; DOES NOT FIT" } else { "" };

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use centrical::fit::Progress;
+use centrical::fit::{Innovation, Progress};
 use centrical::{MeasurementModel, Observation};
 use centrical_table::write_stream;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::history::{HistoryEntry, HistoryEstimate, InnovationSummary};
+use super::history::{HistoryEntry, HistoryEstimate};
 use crate::document::json;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
@@ -44,11 +44,20 @@ pub struct WatchedPlateau {
     /// Its covariance [m^2/s^4].
     pub covariance: [[f64; 3]; 3],
     /// Its test.
-    pub innovation: InnovationSummary,
+    innovation: WatchedInnovation,
     /// Whether it does not fit.
     pub alarm: bool,
     /// Whether it is held out.
     pub held_out: bool,
+}
+
+/// The test of a plateau, without its probability: the last digit of a tail of chi^2 differs between processors.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct WatchedInnovation {
+    /// Normalised innovation squared.
+    squared: f64,
+    /// Combinations of the three readings that could be predicted.
+    degrees_of_freedom: usize,
 }
 
 /// Numbers beyond this are no means of readings [m/s^2] or covariances of them.
@@ -137,7 +146,7 @@ impl WatchedPlateau {
         HistoryEntry {
             plateau,
             set_point: self.set_point,
-            innovation: self.innovation,
+            innovation: self.innovation().into(),
             alarm: self.alarm,
             held_out: self.held_out,
             rank: now.rank,
@@ -146,16 +155,23 @@ impl WatchedPlateau {
     }
 
     /// A plateau that has come.
-    pub fn new(observation: &Observation, innovation: InnovationSummary, alarm: bool, held_out: bool) -> Self {
+    pub fn new(observation: &Observation, innovation: Innovation, alarm: bool, held_out: bool) -> Self {
+        let Innovation { squared, degrees_of_freedom } = innovation;
         let row = |i: usize| [0, 1, 2].map(|j| observation.covariance[(i, j)]);
         Self {
             set_point: observation.set_point,
             mean: observation.mean.into(),
             covariance: [row(0), row(1), row(2)],
-            innovation,
+            innovation: WatchedInnovation { squared, degrees_of_freedom },
             alarm,
             held_out,
         }
+    }
+
+    /// Its test against the plateaus before it.
+    pub fn innovation(&self) -> Innovation {
+        let WatchedInnovation { squared, degrees_of_freedom } = self.innovation;
+        Innovation { squared, degrees_of_freedom }
     }
 
     /// Whether the covariance is one.

@@ -204,7 +204,7 @@ impl<'a> Following<'a> {
             self.planned(taken)?;
         }
         self.come[set_point] = true;
-        self.state.plateaus.push(WatchedPlateau::new(observation, innovation.into(), alarm, held_out));
+        self.state.plateaus.push(WatchedPlateau::new(observation, innovation, alarm, held_out));
         self.state.move_to(self.follower.point(), self.follower.reference());
         if self.follower.taken().is_empty() {
             self.keep()?;
