@@ -49,7 +49,6 @@ mod rows;
 #[cfg(feature = "xlsx")]
 mod sheet;
 mod stamp;
-mod stamps;
 mod text;
 mod unpacking;
 mod write;
@@ -60,8 +59,7 @@ pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, harmless, harmless_line};
 pub use reader::{Extent, TableReader, estimate_rows, text_form};
 pub use rows::Rows;
-pub use stamp::StampKind;
-pub use stamps::Stamps;
+pub use stamp::{StampKind, Stamps};
 pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm};
 pub use write::{
     ClaimedFolder, Decimals, TableFormat, TableWriter, abandon_files, claim_folder, create_folder, parquet_bytes,

@@ -16,7 +16,7 @@ use crate::column::{Field, TableLines, UnitsFound};
 use crate::document::open_regular;
 use crate::error::{Error, Place};
 use crate::rows::{RowNumber, Rows};
-use crate::stamps::Stamps;
+use crate::stamp::Stamps;
 use crate::text::{FromUtf16, Index, Lines, Packed, Plain, SIGHT, TextEncoding, TextForm, TextReader};
 use crate::unpacking::Unpacked;
 

@@ -35,7 +35,7 @@ use self::prologue::Prologue;
 use crate::column::{Field, TableLines, UnitsFound};
 use crate::error::{Error, Place};
 use crate::rows::{ASCENDING, Backwards, Before, RowNumber, Rows};
-use crate::stamps::Stamps;
+use crate::stamp::Stamps;
 
 /// Pieces read at a time.
 const PIECES: usize = 8;

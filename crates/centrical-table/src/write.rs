@@ -26,7 +26,7 @@ use self::parquet::{Layout, ParquetTable};
 use self::row_groups::RowGroups;
 pub use self::text_lines::Decimals;
 use crate::error::Error;
-use crate::stamps::Stamps;
+use crate::stamp::Stamps;
 
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -291,10 +291,12 @@ fn validity(screen: &mut Screen, result: &CalibrationResult) {
         screen.fact(
             "",
             &format!(
-                "each mounting predicted from all others: the worst, {}, chi^2 {:.1} with {}, chance {family_wise:.3}",
+                "each mounting predicted from all others: mounting {} is the worst, chi^2 {:.1} with {}; a worst of {} as \
+                 large comes by chance with a probability of {family_wise:.3}",
                 worst.mounting,
                 worst.chi_squared,
-                counted(worst.degrees_of_freedom, "degree")
+                counted(worst.degrees_of_freedom, "degree"),
+                validity.mountings.len()
             ),
         );
     }

@@ -11,7 +11,7 @@ use super::columnar::Column;
 use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
-use crate::stamps::TickForm;
+use crate::stamp::TickForm;
 use crate::unpacking::Unpacked;
 
 /// Longest row of an array [bytes]: thousands of columns.

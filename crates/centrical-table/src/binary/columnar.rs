@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::column::{Field, LARGEST, Rule};
 use crate::error::{Error, Place};
 use crate::rows::{ASCENDING, Before, Rows, runs_backwards};
-use crate::stamps::{Stamps, TickForm};
+use crate::stamp::{Stamps, TickForm};
 
 /// A column that is read some values at a time.
 pub(super) enum Column {

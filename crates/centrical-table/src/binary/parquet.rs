@@ -20,7 +20,7 @@ use super::parquet_pages::{Checked, Source};
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
-use crate::stamps::{TickForm, TickUnit};
+use crate::stamp::{TickForm, TickUnit};
 
 /// The row groups of `file`.
 pub(super) fn parts(file: &Path, input: &File, fields: &[Field]) -> Result<Parts, Error> {

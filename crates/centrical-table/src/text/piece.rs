@@ -10,7 +10,7 @@ use super::prologue::{Line, MOST_ABOVE, Prologue, Start};
 use super::separators::Separators;
 use crate::column::Field;
 use crate::rows::{ASCENDING, Rows, runs_backwards};
-use crate::stamps::Stamps;
+use crate::stamp::Stamps;
 
 /// A piece on its way from the file to the rows.
 #[derive(Default)]

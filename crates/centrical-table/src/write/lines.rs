@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::csv::{field, header};
 use super::output::{Output, Sink, SteadyFile};
 use super::text_lines::{Decimals, ROWS, write_lines};
-use crate::stamps::Stamps;
+use crate::stamp::Stamps;
 
 /// Pieces of lines that may wait to be written.
 const AHEAD: usize = 32;

@@ -11,7 +11,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-use crate::stamps::{TickForm, TickUnit};
+use crate::stamp::{TickForm, TickUnit};
 
 /// How a table is laid out in its file.
 #[derive(Debug, Clone, Copy)]

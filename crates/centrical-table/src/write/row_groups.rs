@@ -4,7 +4,7 @@ use std::io;
 
 use super::output::{Output, Sink, SteadyFile};
 use super::parquet::{Layout, ParquetTable, RowGroup};
-use crate::stamps::{Stamps, TickForm, TickUnit};
+use crate::stamp::{Stamps, TickForm, TickUnit};
 
 /// Row groups that may wait to be written.
 const AHEAD: usize = 1;

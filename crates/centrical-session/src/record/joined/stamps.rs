@@ -85,7 +85,7 @@ mod tests {
     fn one_recorder_is_told_from_three() {
         let x = stamps(100.0, 0.0, 4096);
         let lost: Vec<f64> = x.iter().copied().enumerate().filter(|(k, _)| k % 4 != 1).map(|(_, t)| t).collect();
-        assert_eq!(grid([&x, &lost, &x[1000..]]), None);
+        assert_eq!(grid([&x, &lost, &x[..3000]]), None);
         assert_eq!(grid([&x, &x, &stamps(100.0, 0.0037, 4096)]), Some(0));
         // Every stamp of the slow ones is one of the fast one.
         let fast = stamps(200.0, 0.0, 4096);

@@ -11,7 +11,7 @@ use super::super::arrays::{Array, ArrayColumn, Bytes, Scalar, ScalarKind};
 use super::messages::{CONTINUATION, damaged};
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
-use crate::stamps::{TickForm, TickUnit};
+use crate::stamp::{TickForm, TickUnit};
 
 /// A column that a field asks for.
 pub(super) struct ArrowColumn {

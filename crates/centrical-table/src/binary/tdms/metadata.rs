@@ -9,7 +9,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::rc::Rc;
 
 use crate::binary::arrays::{Scalar, ScalarKind};
-use crate::stamps::{TickForm, TickUnit};
+use crate::stamp::{TickForm, TickUnit};
 
 /// First bytes of a segment.
 const TAG: &[u8; 4] = b"TDSm";

@@ -2,10 +2,8 @@
 
 use std::borrow::Cow;
 
-use jiff::Timestamp;
-use jiff::tz::Offset;
-
-use crate::stamp;
+use super::ticks::{TickForm, TickUnit};
+use super::written::nanoseconds;
 
 /// Stamps of rows as they were read, where the first field of a row is one.
 #[derive(Debug, Clone)]
@@ -17,68 +15,6 @@ enum Kept {
     Texts { text: Vec<u8>, ends: Vec<(u32, u32)> },
     /// As a binary format counts them: of every row.
     Ticks { form: TickForm, ticks: Vec<i64> },
-}
-
-/// How stamps are counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct TickForm {
-    pub unit: TickUnit,
-    /// Whether they count from 1970 in UTC, or in a time whose zone is not stated.
-    pub is_utc: bool,
-}
-
-/// A unit of time in which stamps are whole numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum TickUnit {
-    Second,
-    Millisecond,
-    Microsecond,
-    Nanosecond,
-}
-
-impl TickUnit {
-    /// The unit in seconds.
-    pub fn seconds(self) -> f64 {
-        match self {
-            Self::Second => 1.0,
-            Self::Millisecond => 1e-3,
-            Self::Microsecond => 1e-6,
-            Self::Nanosecond => 1e-9,
-        }
-    }
-
-    /// Decimals of a second.
-    fn decimals(self) -> usize {
-        match self {
-            Self::Second => 0,
-            Self::Millisecond => 3,
-            Self::Microsecond => 6,
-            Self::Nanosecond => 9,
-        }
-    }
-
-    fn nanoseconds(self) -> i64 {
-        match self {
-            Self::Second => 1_000_000_000,
-            Self::Millisecond => 1_000_000,
-            Self::Microsecond => 1_000,
-            Self::Nanosecond => 1,
-        }
-    }
-}
-
-impl TickForm {
-    /// A stamp in ISO 8601, with all decimals of the unit; nothing for years of more than four digits.
-    fn text(self, ticks: i64) -> Option<String> {
-        let of_unit = self.unit.nanoseconds();
-        let a_second = TickUnit::Second.nanoseconds() / of_unit;
-        let nanoseconds = i32::try_from(ticks.rem_euclid(a_second) * of_unit).ok()?;
-        // A second and its fraction are of one sign, or the second is zero.
-        let stamp = Timestamp::new(ticks.div_euclid(a_second), nanoseconds).ok()?;
-        let civil = Offset::UTC.to_datetime(stamp);
-        let zone = if self.is_utc { "Z" } else { "" };
-        (0..=9999).contains(&civil.year()).then(|| format!("{civil:.0$}{zone}", self.unit.decimals()))
-    }
 }
 
 impl Default for Stamps {
@@ -114,7 +50,7 @@ impl Stamps {
     pub(crate) fn form(&self) -> Option<TickForm> {
         match &self.0 {
             Kept::Texts { text, ends } => {
-                let (_, has_offset) = stamp::nanoseconds(written(text, ends, 0)?)?;
+                let (_, has_offset) = nanoseconds(written(text, ends, 0)?)?;
                 Some(TickForm { unit: TickUnit::Nanosecond, is_utc: has_offset })
             }
             Kept::Ticks { form, .. } => Some(*form),
@@ -125,8 +61,8 @@ impl Stamps {
     pub(crate) fn ticks(&self, row: usize, wanted: TickForm) -> Option<i64> {
         match &self.0 {
             Kept::Texts { text, ends } => {
-                let (nanoseconds, has_offset) = stamp::nanoseconds(written(text, ends, row)?)?;
-                (wanted == TickForm { unit: TickUnit::Nanosecond, is_utc: has_offset }).then_some(nanoseconds)
+                let (ticks, has_offset) = nanoseconds(written(text, ends, row)?)?;
+                (wanted == TickForm { unit: TickUnit::Nanosecond, is_utc: has_offset }).then_some(ticks)
             }
             Kept::Ticks { form, ticks } => ticks.get(row).copied().filter(|_| *form == wanted),
         }
@@ -169,7 +105,7 @@ mod tests {
         ] {
             let form = TickForm { unit, is_utc };
             assert_eq!(form.text(ticks).as_deref(), Some(text));
-            assert_eq!(stamp::nanoseconds(text.as_bytes()), Some((ticks * unit.nanoseconds(), is_utc)));
+            assert_eq!(nanoseconds(text.as_bytes()), Some((ticks * unit.nanoseconds(), is_utc)));
             let stamps = Stamps::counted(form, vec![ticks]);
             assert_eq!((stamps.form(), stamps.ticks(0, form)), (Some(form), Some(ticks)));
         }
