@@ -71,6 +71,12 @@ impl Relaxed {
     pub fn gap(&self) -> f64 {
         (self.value - self.bound).exp() - 1.0
     }
+
+    /// This design, or `visits` whose criterion has the logarithm `value` if that is lower: among thousands of candidates the
+    /// search may end above a schedule in whole visits.
+    pub(super) fn or_better(self, visits: Vec<f64>, value: f64) -> Self {
+        if value < self.value { Self { visits, value, ..self } } else { self }
+    }
 }
 
 /// Seeks the optimum of `polytope` from `start` until it is known as well as `precision` asks.

@@ -149,6 +149,7 @@ impl<'a> Tree<'a> {
         let start: Vec<f64> = best.visits.iter().map(|n| f64::from(*n)).collect();
         let polytope = Node::on(&best.mountings(problem.candidates)).polytope(problem, time);
         let continuous = relax(&problem.scenarios, &polytope, Some(&start), Precision::of(5e-4));
+        let continuous = continuous.or_better(start, best.value);
         Plan::new(problem, &best, continuous, self.open.lowest(), self.open.count)
     }
 }
