@@ -14,8 +14,13 @@ ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "examples" / "ta-200"
 PROGRAM = os.environ.get("CENTRICAL_PROGRAM", str(ROOT / "target" / "release" / "centrical"))
 
-# A run that takes longer hangs [s]; one that takes more fills the memory [bytes].
+# So wide that no sentence is folded: cases look for whole ones.
+os.environ["COLUMNS"] = "1000"
+
+# A run that takes more processor time hangs, and so does one that has not ended by then [s]: a machine that others load is slow, and
+# no fault of the program. One that takes more fills the memory [bytes].
 LONGEST = 10.0
+PATIENCE = 60.0
 LARGEST = 1 << 30
 
 # What an error message has: where, what was found, what was expected; or what the system refused.
@@ -25,8 +30,9 @@ REFUSALS = [("found ", "expected "), ("cannot be written: ",), ("cannot be read:
 class Run:
     """A run that has ended."""
 
-    def __init__(self, arguments, code, out, err, seconds, memory):
-        self.arguments, self.code, self.seconds, self.memory = arguments, code, seconds, memory
+    def __init__(self, arguments, code, out, err, seconds, processor, memory):
+        self.arguments, self.code, self.memory = arguments, code, memory
+        self.seconds, self.processor = seconds, processor
         self.out, self.err = out, err
 
     @property
@@ -41,8 +47,8 @@ class Run:
         """Why the run is judged badly, or nothing."""
         if "panicked" in self.message or self.code in (101, 134, -6, -11):
             return f"panic (code {self.code})"
-        if self.seconds > LONGEST:
-            return f"hang: {self.seconds:.1f} s"
+        if self.processor > LONGEST or self.seconds > PATIENCE:
+            return f"hang: {self.seconds:.1f} s, {self.processor:.1f} s of them at work"
         if self.memory > LARGEST:
             return f"memory: {self.memory >> 20} MB"
         if self.code not in codes:
@@ -55,7 +61,7 @@ class Run:
         return self.message.startswith("error: ")
 
 
-def run(arguments, folder, stdin=None, stdout=None, stderr=None, file_size=None, timeout=LONGEST + 5, before=None):
+def run(arguments, folder, stdin=None, stdout=None, stderr=None, file_size=None, timeout=PATIENCE + 1, before=None):
     """Runs the program in a folder. Streams not given are kept; `before` runs in the child before it."""
     out = tempfile.TemporaryFile() if stdout is None else stdout
     err = tempfile.TemporaryFile() if stderr is None else stderr
@@ -82,7 +88,8 @@ def run(arguments, folder, stdin=None, stdout=None, stderr=None, file_size=None,
             stream.close()
         else:
             texts.append(b"")
-    return Run(arguments, os.waitstatus_to_exitcode(status), *texts, seconds, usage.ru_maxrss * 1024)
+    return Run(arguments, os.waitstatus_to_exitcode(status), *texts, seconds, usage.ru_utime + usage.ru_stime,
+               usage.ru_maxrss * 1024)
 
 
 def wait(child, until):

@@ -71,7 +71,7 @@ def ranges(place):
         rows = ["0,0.1,0.1,9.8"] + [f"{n},{largest * factor},0.1,9.8" for n in (1, 2, 3)]
         (folder / "r.csv").write_text("t,f1,f2,f3\n" + "\n".join(rows) + "\n")
         done = compensated(place, folder, "r.csv")
-        why = None if (f"{beyond} readings lie beyond" in done.text) == (beyond > 0) else "not counted"
+        why = None if (f"{beyond} readings beyond" in done.text) == (beyond > 0) else "not counted"
         found.judge(f"{factor} of the range", done, codes=(0,), why=why)
         done = run(["compensate", place.result, "r.csv", "--out", "no.csv", "--within-calibration"], folder)
         why = "written all the same" if beyond and (folder / "no.csv").exists() else None
