@@ -184,10 +184,18 @@ fn the_report_tells_the_residual_error() {
 /// Root mean squares of the three axes in a row of the report's table, in ug.
 fn row(page: &str, name: &str) -> [f64; 3] {
     let row = &page[page.find(&format!("<th scope=\"row\">{name}</th>")).unwrap()..];
-    let cells: Vec<&str> = row[..row.find("</tr>").unwrap()].split("<td>").skip(1).collect();
-    [0, 1, 2].map(|i| {
-        let cell = cells[i].trim_end_matches("</td>");
-        let rms: f64 = cell.split(' ').next().unwrap().parse().unwrap();
-        rms * if cell.ends_with("mg") { 1e3 } else { 1.0 }
-    })
+    let row = &row[..row.find("</tr>").unwrap()];
+    let cells: Vec<&str> = row.split("<td").skip(1).map(|cell| between(cell, '>', '<')).collect();
+    let [unit, axes @ ..] = cells.as_slice() else { panic!("{row}") };
+    let micro_g = match *unit {
+        "mg" => 1e3,
+        "µg" => 1.0,
+        other => panic!("a unit in which errors of readings are not printed: {other}"),
+    };
+    [0, 1, 2].map(|i| axes[i].parse::<f64>().unwrap() * micro_g)
+}
+
+fn between(text: &str, from: char, to: char) -> &str {
+    let text = &text[text.find(from).unwrap() + 1..];
+    &text[..text.find(to).unwrap()]
 }
