@@ -9,7 +9,8 @@ use nalgebra::Vector3;
 
 use super::holm::holm;
 use super::rivals::Rivals;
-use super::rivals::columns::{Columns, Seen};
+use super::rivals::Suspect;
+use super::rivals::columns::Columns;
 use super::validity::f_tail;
 use crate::fit::Calibration;
 use crate::model::{Experiment, FitError, Rival, SetPoint};
@@ -76,16 +77,15 @@ impl Calibration<'_> {
     /// # Errors
     /// As [`Calibration::patterns`].
     pub fn patterns_beside(&self, rivals: &Rivals, rival: Rival) -> Result<Vec<Pattern>, FitError> {
-        self.tested(&trends(self.data().model().experiment()), rivals.columns_of(rival))
+        self.tested(&trends(self.data().model().experiment()), rivals.get(rival))
     }
 
-    fn tested(&self, trends: &[Trend], explained: Option<&Columns>) -> Result<Vec<Pattern>, FitError> {
+    fn tested(&self, trends: &[Trend], explained: Option<&Suspect>) -> Result<Vec<Pattern>, FitError> {
         let (gain, experiment) = (self.gain()?, self.data().model().experiment());
-        let explained = explained.map(|columns| (columns, Seen::of(columns.redundancy())));
-        let taken =
-            explained.as_ref().map_or((0, 0.0), |(columns, seen)| (seen.rank(), seen.statistic(&columns.along)));
-        let explained = explained.map(|(columns, seen)| (columns, seen.inverse()));
-        let left = self.fit().degrees_of_freedom.saturating_sub(taken.0 + 1);
+        let (rank, statistic) = explained.map_or((0, 0.0), |rival| (rival.seen.rank(), rival.statistic()));
+        let explained = explained.map(|rival| (&rival.columns, rival.seen.inverse()));
+        let chi_squared = self.fit().chi_squared - statistic;
+        let left = self.fit().degrees_of_freedom.saturating_sub(rank + 1);
         let mut list = Vec::new();
         for &trend in trends {
             let values: Vec<f64> =
@@ -103,7 +103,7 @@ impl Calibration<'_> {
                     continue;
                 }
                 let statistic = along * along / square;
-                let rest = (self.fit().chi_squared - taken.1 - statistic).max(0.0);
+                let rest = (chi_squared - statistic).max(0.0);
                 let probability = f_tail(statistic / (rest / left as f64), 1, left);
                 let (amplitude, standard_uncertainty) = (along / square, 1.0 / square.sqrt());
                 let length = columns.lengths[0];

@@ -13,5 +13,6 @@ mod rests_on;
 mod score;
 
 pub use catalogue::Rivals;
+pub(super) use catalogue::Suspect;
 pub use rests_on::Unseen;
 pub use score::{RivalTest, Suspects};

@@ -15,13 +15,20 @@ pub struct Rivals<'c> {
 }
 
 /// One rival with its columns.
-pub(super) struct Suspect {
+pub(in crate::uncertainty) struct Suspect {
     pub rival: Rival,
     /// Its unknowns, one per column.
     pub unknowns: Vec<Parameter>,
     pub columns: Columns,
     /// What is seen of `s^T s`.
     pub seen: Seen,
+}
+
+impl Suspect {
+    /// Part of chi^2 that the rival explains.
+    pub fn statistic(&self) -> f64 {
+        self.seen.statistic(&self.columns.along)
+    }
 }
 
 impl<'c> Rivals<'c> {

@@ -1,7 +1,7 @@
 //! The score test of every rival, and which of them explains the residuals best.
 
 use super::catalogue::{Rivals, Suspect};
-use super::columns::{Columns, Seen};
+use super::columns::Seen;
 use crate::model::{Parameter, Rival};
 use crate::uncertainty::coverage::chi_squared_tail;
 use crate::uncertainty::holm::holm;
@@ -65,23 +65,23 @@ impl Rivals<'_> {
     /// Whether the residuals tell the rival `best`, the best of `tested`, from another: it explains what the other does not, and
     /// more than the best of so many would by chance.
     fn is_told_from(&self, best: Rival, other: Rival, tested: usize) -> bool {
-        let (Some(best), Some(other)) = (self.columns_of(best), self.columns_of(other)) else { return true };
-        let (redundancy, along) = best.beside(other, &Seen::of(other.redundancy()).inverse());
+        let (Some(best), Some(other)) = (self.get(best), self.get(other)) else { return true };
+        let (redundancy, along) = best.columns.beside(&other.columns, &other.seen.inverse());
         let seen = Seen::of(redundancy);
         let chance = tested as f64 * chi_squared_tail(seen.statistic(&along), seen.rank());
         Level::Reported.is_passed_by(chance)
     }
 
-    /// The columns of a rival.
-    pub(in crate::uncertainty) fn columns_of(&self, rival: Rival) -> Option<&Columns> {
-        self.list.iter().find(|suspect| suspect.rival == rival).map(|suspect| &suspect.columns)
+    /// The columns of a rival, and what is seen of them.
+    pub(in crate::uncertainty) fn get(&self, rival: Rival) -> Option<&Suspect> {
+        self.list.iter().find(|suspect| suspect.rival == rival)
     }
 
     /// The score test of one rival.
     fn test(&self, suspect: &Suspect) -> RivalTest {
         let fit = self.calibration.fit();
         let rank = suspect.seen.rank();
-        let statistic = suspect.seen.statistic(&suspect.columns.along);
+        let statistic = suspect.statistic();
         let left = fit.degrees_of_freedom.saturating_sub(rank);
         let rest = (fit.chi_squared - statistic).max(0.0);
         let probability = f_tail((statistic / rank as f64) / (rest / left as f64), rank, left);
