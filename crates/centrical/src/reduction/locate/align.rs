@@ -53,7 +53,8 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
     }
     for (k, candidate) in candidates.iter_mut().enumerate() {
         let neighbours = [k.checked_sub(1), Some(k + 1)].into_iter().flatten().filter_map(|k| schedule.get(k));
-        neighbours.for_each(|neighbour| candidate.leave_to(neighbour, &schedule[k], &cores[k]));
+        let level_z = blocks.level(&cores[k]);
+        neighbours.for_each(|neighbour| candidate.leave_to(neighbour, &schedule[k], &level_z));
     }
     // With the plateaus located, the changes on each give their own noise, far below that of a sample. This is repeated
     // until the noise holds no part of the ramps.

@@ -271,16 +271,16 @@ impl Candidate<'_> {
         widest(Mixture { share: 1.0 - DISTURBED, x: density });
     }
 
-    /// Leaves the blocks to a neighbouring plateau whose level is more than half-way to its own, now that the core of this one is
-    /// known. The end of a slow settling looks like noise, and such noise would explain the settling of the neighbour too.
+    /// Leaves the blocks to a neighbouring plateau whose level is more than half-way to its own, now that the level `level_z` of
+    /// this one is known. The end of a slow settling looks like noise, and such noise would explain the settling of the neighbour too.
     ///
     /// Plateaus whose levels real units may exchange have no such boundary.
-    pub fn leave_to(&mut self, neighbour: &ScheduledPlateau, plateau: &ScheduledPlateau, core: &Range<usize>) {
+    pub fn leave_to(&mut self, neighbour: &ScheduledPlateau, plateau: &ScheduledPlateau, level_z: &Vector3<f64>) {
         let way = neighbour.nominal_z - plateau.nominal_z;
         if way.norm() < level_width(&plateau.nominal_z) {
             return;
         }
-        let half_way = self.evidence.blocks.level(core).dot(&way) + 0.5 * way.norm_squared();
+        let half_way = level_z.dot(&way) + 0.5 * way.norm_squared();
         for (density, f_z) in self.levels.iter_mut().zip(&self.evidence.blocks.f_z) {
             if f_z.dot(&way) > half_way {
                 *density = f64::NEG_INFINITY;
