@@ -18,4 +18,4 @@ pub use self::reader::{RecordReader, read_growing_record, read_pulses, read_reco
 pub(crate) use self::reader::{read_growing_pulses, read_growing_telemetry};
 pub(crate) use self::reader::{read_growing_records, read_records};
 pub(crate) use self::sample_cache::{MemoryBudget, SampleCache};
-pub(crate) use self::units_found::check_units;
+pub(crate) use self::units_found::StatedUnits;

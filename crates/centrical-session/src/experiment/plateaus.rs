@@ -19,7 +19,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::schedule::FASTEST;
 use crate::error::{Error, Place};
-use crate::record::check_units;
+use crate::record::StatedUnits;
 
 /// The mean readings of one plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -120,9 +120,10 @@ fn read_columns(file: &Path, mountings: usize, columns: &[(&str, &str)]) -> Resu
     let fields: Vec<Field> = columns.iter().enumerate().map(field).collect();
     let mut rows: Vec<([f64; COLUMNS.len()], f64)> = Vec::new();
     let mut table = TableReader::open(file, Extent::Whole, &fields, "a table of plateaus")?;
+    let named = columns.iter().map(|(name, expected)| ((*name).to_owned(), unit_of(expected).to_owned()));
+    let mut units = StatedUnits::new(named.collect());
     while table.next_batch()?.is_some() {
-        let units = columns.iter().map(|(name, expected)| ((*name).to_owned(), unit_of(expected)));
-        check_units(file, table.units().as_ref(), units)?;
+        units.check(file, &table)?;
         for columns in table.batch() {
             let uncertainty = |row: usize| columns.get(COLUMNS.len()).map_or(f64::NAN, |column| column[row]);
             rows.extend((0..columns[0].len()).map(|row| (std::array::from_fn(|k| columns[k][row]), uncertainty(row))));

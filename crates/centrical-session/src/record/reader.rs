@@ -7,7 +7,7 @@ use centrical_table::{Extent, Index, Reread, Rows, Stamps, TableLines, TableRead
 
 use super::columns::{Column, Columns, Scale, fields};
 use super::joined::Joined;
-use super::units_found::check_units;
+use super::units_found::StatedUnits;
 use crate::error::Error;
 
 /// Reads the whole record of `file`.
@@ -105,8 +105,7 @@ pub struct RecordReader {
     file: PathBuf,
     table: Source,
     scales: Scales,
-    /// Names and units of the columns, until those that the file names are held against them.
-    units: Option<Vec<(String, String)>>,
+    units: StatedUnits,
     /// Bytes that [`RecordReader::newly_read`] has returned.
     reported: u64,
 }
@@ -129,7 +128,9 @@ impl RecordReader {
         if let [x, y, z] = *files {
             let joined = Box::new(Joined::open([x, y, z], extent, columns)?);
             let (file, scales) = (x.to_owned(), Scales::of(&of_record));
-            return Ok(Self { file, table: Source::Three(joined), scales, units: None, reported: 0 });
+            // Each file's part has its own.
+            let units = StatedUnits::of([]);
+            return Ok(Self { file, table: Source::Three(joined), scales, units, reported: 0 });
         }
         let file = files.first().copied().unwrap_or(Path::new(""));
         Self::with(file, extent, &of_record, columns.record_lines, "a record")
@@ -143,9 +144,9 @@ impl RecordReader {
         expected: &str,
     ) -> Result<Self, Error> {
         let table = TableReader::open_at(file, extent, &fields(columns), expected, lines)?;
-        let units = columns.iter().map(|column| (column.name.to_string(), column.unit.clone())).collect();
+        let units = StatedUnits::of(columns.iter().copied());
         let table = Source::One(Box::new(table));
-        Ok(Self { file: file.to_owned(), table, scales: Scales::of(columns), units: Some(units), reported: 0 })
+        Ok(Self { file: file.to_owned(), table, scales: Scales::of(columns), units, reported: 0 })
     }
 
     /// The next rows: columns of time [s] and of readings [m/s^2] ([`stretch`]), several sets of them, to be worked on where they
@@ -164,9 +165,8 @@ impl RecordReader {
         if is_over {
             return Ok(None);
         }
-        if let (Some(units), Source::One(table)) = (self.units.take(), &self.table) {
-            let units = units.iter().map(|(name, unit)| (name.clone(), unit.as_str()));
-            check_units(&self.file, table.units().as_ref(), units)?;
+        if let Source::One(table) = &self.table {
+            self.units.check(&self.file, table)?;
         }
         Ok(Some(self.scales.apply_to(self.table.batch())))
     }

@@ -2,34 +2,53 @@
 
 use std::path::Path;
 
-use centrical_table::UnitsFound;
+use centrical_table::{TableReader, UnitsFound};
 
+use super::columns::Column;
 use crate::error::{Error, Place};
 use crate::quantity::Dimension;
 
-/// Sees that the units of a file are those of the columns, each a name and a unit. What the file does not say, or says in words that
-/// are not understood, is no contradiction.
-pub(crate) fn check_units<'a>(
-    file: &Path,
-    found: Option<&UnitsFound>,
-    columns: impl Iterator<Item = (String, &'a str)>,
-) -> Result<(), Error> {
-    let Some(UnitsFound { line, units }) = found else { return Ok(()) };
-    for (found, (name, stated)) in units.iter().zip(columns) {
-        let Some(found) = found.filter(|found| !stated.is_empty() && !is_same(found, stated)) else { continue };
-        let place = Place::Line { line: *line, column: Some(name) };
-        let expected = match stated {
-            _ if Dimension::Time.factor(stated).is_some() || stated == "samples" => {
-                format!("{stated}, as the session says ([columns]: time = {{ column = ..., unit = \"{found}\" }})")
-            }
-            _ if Dimension::Speed.factor(stated).is_some() => {
-                format!("{stated}, as the session says (speed_unit in [columns])")
-            }
-            _ => format!("{stated}, as the session says (output_unit in [unit], or a unit in [columns])"),
-        };
-        return Err(Error::content(file, place, format!("the unit {found}"), expected));
+/// Names and units of columns as the session states them, until those of the file are known.
+pub(crate) struct StatedUnits(Option<Vec<(String, String)>>);
+
+impl StatedUnits {
+    /// Names and units in the order of the values.
+    pub fn new(columns: Vec<(String, String)>) -> Self {
+        Self(Some(columns))
     }
-    Ok(())
+
+    /// Those of columns.
+    pub fn of<'a>(columns: impl IntoIterator<Item = &'a Column>) -> Self {
+        Self::new(columns.into_iter().map(|column| (column.name.to_string(), column.unit.clone())).collect())
+    }
+
+    /// Sees, once, that the units of the file are the stated ones. A file contradicts nothing where it names no unit, or names one in
+    /// words that are not understood.
+    ///
+    /// # Errors
+    /// If the file names another unit.
+    pub fn check(&mut self, file: &Path, table: &TableReader) -> Result<(), Error> {
+        let (Some(stated), Some(UnitsFound { line, units })) = (self.0.take(), table.units()) else { return Ok(()) };
+        for (found, (name, stated)) in units.iter().zip(stated) {
+            let Some(found) = found.filter(|found| !stated.is_empty() && !is_same(found, &stated)) else { continue };
+            let place = Place::Line { line, column: Some(name) };
+            return Err(Error::content(file, place, format!("the unit {found}"), expected(&stated, found)));
+        }
+        Ok(())
+    }
+}
+
+/// The stated unit, and where it is stated.
+fn expected(stated: &str, found: &str) -> String {
+    match stated {
+        _ if Dimension::Time.factor(stated).is_some() || stated == "samples" => {
+            format!("{stated}, as the session says ([columns]: time = {{ column = ..., unit = \"{found}\" }})")
+        }
+        _ if Dimension::Speed.factor(stated).is_some() => {
+            format!("{stated}, as the session says (speed_unit in [columns])")
+        }
+        _ => format!("{stated}, as the session says (output_unit in [unit], or a unit in [columns])"),
+    }
 }
 
 /// Whether two names are of one unit.

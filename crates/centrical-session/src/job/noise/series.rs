@@ -8,7 +8,7 @@ use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
 use crate::job::reduce::reduce;
 use crate::quantity::Dimension;
-use crate::record::{Column, Scale, check_units};
+use crate::record::{Column, Scale, StatedUnits};
 
 /// Columns of readings, and their time.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,13 +38,9 @@ impl Series {
         let (mut t, mut values) = (Vec::new(), vec![Vec::new(); readings.len()]);
         let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
         let mut table = TableReader::open_at(file, Extent::Whole, &fields, "a record", lines)?;
-        let mut is_first = true;
+        let mut units = StatedUnits::of(std::iter::once(time).chain(readings));
         while table.next_batch()?.is_some() {
-            if std::mem::take(&mut is_first) {
-                let columns = std::iter::once(time).chain(readings);
-                let units = columns.map(|column| (column.name.to_string(), column.unit.as_str()));
-                check_units(file, table.units().as_ref(), units)?;
-            }
+            units.check(file, &table)?;
             let batch = table.batch();
             for rows in batch.iter().filter(|rows| !rows[0].is_empty()) {
                 let times: Vec<f64> = rows[0].iter().map(|raw| si(time, *raw)).collect();

@@ -4,15 +4,14 @@ use std::path::{Path, PathBuf};
 
 use centrical_table::{Extent, Rows, TableReader};
 
-use super::super::columns::{Columns, fields};
-use super::super::units_found::check_units;
 use crate::error::Error;
+use crate::record::columns::{Columns, fields};
+use crate::record::units_found::StatedUnits;
 
 /// A table of time and one reading.
 pub(super) struct Part {
     pub file: PathBuf,
-    /// Names and units of its columns, until those in the file are held against them.
-    units: Option<[(String, String); 2]>,
+    units: StatedUnits,
     table: TableReader,
     /// Rows that are read and not taken yet begin at `at`.
     rows: Rows,
@@ -30,7 +29,7 @@ impl Part {
         let of_file = [&columns.time, &columns.f[j]];
         let expected = "the record of a newtonometer";
         let table = TableReader::open_at(file, extent, &fields(&of_file), expected, columns.record_lines)?;
-        let units = Some(of_file.map(|column| (column.name.to_string(), column.unit.clone())));
+        let units = StatedUnits::of(of_file);
         let rows = vec![Vec::new(); 2];
         Ok(Self { file: file.to_owned(), units, table, rows, at: 0, is_over: false, count: 0, before: None })
     }
@@ -92,10 +91,7 @@ impl Part {
         if self.is_over {
             return Ok(());
         }
-        if let Some(units) = self.units.take() {
-            let units = units.iter().map(|(name, unit)| (name.clone(), unit.as_str()));
-            check_units(&self.file, self.table.units().as_ref(), units)?;
-        }
+        self.units.check(&self.file, &self.table)?;
         for rows in self.table.batch() {
             self.count += rows[0].len() as u64;
             self.rows.iter_mut().zip(rows).for_each(|(all, values)| all.extend_from_slice(values));
