@@ -9,7 +9,7 @@ use super::pattern::pattern_in_words;
 use super::rests_on::rests_on_text;
 use super::rivals::lines_of;
 use super::screen::{Emphasis, Screen};
-use super::symbols::legend;
+use super::symbols::{Symbol, legend};
 use super::table::{Align, Cell, Table};
 use crate::document::{objection, rival};
 use crate::evaluation::{combination, monomial};
@@ -116,16 +116,20 @@ fn mounting(screen: &mut Screen, result: &CalibrationResult) {
 
 /// `delta_2[4]` is axis 1 of the row `delta[4]`; `drho_33` axis 2 of `drho`.
 fn label_and_axis(name: &str) -> Option<(String, usize)> {
-    let (stem, rest) = name.split_once('_')?;
-    let axis = rest.chars().next()?.to_digit(10)?;
-    let index = rest.find('[').map_or("", |start| &rest[start..]);
-    Some((format!("{stem}{index}"), usize::try_from(axis).ok()?.checked_sub(1).filter(|axis| *axis < 3)?))
+    let Symbol { stem, index, place } = Symbol::of(name);
+    let axis = match index.as_bytes().first()? {
+        b'1' => 0,
+        b'2' => 1,
+        b'3' => 2,
+        _ => return None,
+    };
+    Some((format!("{stem}{place}"), axis))
 }
 
 /// What fits neither table: extensions of the model.
 fn others(screen: &mut Screen, result: &CalibrationResult) {
-    let in_model = |p: &ParameterEstimate| result.model.error_model.iter().any(|term| term.name == p.name);
-    let others: Vec<_> = result.parameters.iter().filter(|p| !p.group.is_of_mounting() && !in_model(p)).collect();
+    let is_other = |p: &&ParameterEstimate| !p.group.is_of_mounting() && !is_of_instrument(result, p);
+    let others: Vec<_> = result.parameters.iter().filter(is_other).collect();
     if others.is_empty() {
         return;
     }
@@ -138,6 +142,11 @@ fn others(screen: &mut Screen, result: &CalibrationResult) {
     }
     screen.table(table);
     legend(screen, others.iter().map(|p| (p.name.as_str(), p.group)));
+}
+
+/// Whether a parameter is a coefficient of the error model.
+fn is_of_instrument(result: &CalibrationResult, parameter: &ParameterEstimate) -> bool {
+    result.model.error_model.iter().any(|term| term.name == parameter.name)
 }
 
 fn cell(parameter: &ParameterEstimate) -> Cell {
@@ -160,9 +169,9 @@ fn not_estimable(screen: &mut Screen, result: &CalibrationResult) {
     }
     let lost: Vec<&str> = result.parameters.iter().filter(|p| !p.estimable).map(|p| p.name.as_str()).collect();
     screen.say(2, &format!("so these have no value of their own: {}", lost.join(", ")));
-    let names = |p: &&ParameterEstimate| result.model.error_model.iter().any(|term| term.name == p.name);
+    let of_instrument = result.parameters.iter().filter(|p| is_of_instrument(result, p));
     let (of_instrument, lost_of_it) =
-        result.parameters.iter().filter(names).fold((0, 0), |(n, lost), p| (n + 1, lost + usize::from(!p.estimable)));
+        of_instrument.fold((0, 0), |(n, lost), p| (n + 1, lost + usize::from(!p.estimable)));
     screen.say(
         2,
         &match lost_of_it {
