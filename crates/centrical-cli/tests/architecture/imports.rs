@@ -125,7 +125,7 @@ mod tests {
             "use crate::a::T;",
             "use crate::a::{\nself};",
             "use super::*;",
-            "fn f() -> super::T { todo!() }",
+            "fn f() -> super::T { g() }",
             "fn f() { assert!(super::T::new()); }",
             "fn f() { vec![g(1, crate::a::T)]; }",
             "use super::super::a as x; fn f() { x::T::new(); }",

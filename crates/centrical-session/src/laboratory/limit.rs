@@ -34,9 +34,9 @@ pub struct Limit {
 pub struct StatedLimit {
     /// What they limit.
     pub of: Limited,
-    /// Lowest value; none if there is no such limit.
+    /// Lowest value, if it is limited.
     pub low: Option<LimitEnd>,
-    /// Highest value; none if there is no such limit.
+    /// Highest value, if it is limited.
     pub high: Option<LimitEnd>,
 }
 
@@ -153,7 +153,7 @@ impl Limit {
 }
 
 impl LimitEnd {
-    /// The end with its number and unit as they were written; what was found and expected if it is none.
+    /// The end with its number and unit as they were written; of an invalid one, what was found and expected.
     fn read(quantity: &Quantity, unit: &str, group: Group) -> Result<Self, (String, String)> {
         let si = in_parameter_unit(quantity, unit, group).map_err(|not| (not.found, not.expected))?;
         if !si.is_finite() {

@@ -280,7 +280,8 @@ fn run(segment: &Segment, in_chunk: InChunk) -> Option<Run> {
     (count > 0).then_some(Run { kind, big_endian, offset, stride, chunk, of_chunk, count, read: 0 })
 }
 
-/// Reads values of a run, `wanted` at most and a buffer full, and hands out the bytes of each; what is left of it.
+/// Reads values of a run, `wanted` at most and a buffer full, and hands out the bytes of each. Returns the run with its unread
+/// values.
 fn read(
     input: &mut File,
     mut run: Run,

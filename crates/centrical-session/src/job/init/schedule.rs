@@ -13,7 +13,7 @@ pub(super) enum Set {
     Rest,
     /// A speed as text, such as `133.8 rpm`.
     Speed(String),
-    /// A plateau of the readings, of which no file has the speed.
+    /// A plateau in the readings whose speed no file states.
     Unknown,
 }
 
