@@ -72,9 +72,10 @@ impl Rivals<'_> {
             .map(|rank| (rank, non_centrality(rank, of_all.saturating_sub(rank), level, POWER)))
             .collect();
         let needed = |suspect: &Suspect| needed.get(&suspect.seen.rank()).copied().flatten();
+        let forces_z = self.forces();
         let mut list = Vec::new();
         for suspect in &self.list {
-            if let Some((c, mut unseen)) = self.worst_of(suspect, needed(suspect))? {
+            if let Some((c, mut unseen)) = self.worst_of(suspect, needed(suspect), &forces_z)? {
                 unseen.shrink_to(self.smallest_shown(&suspect.columns.only(c), needed));
                 list.push(unseen);
             }
@@ -96,7 +97,12 @@ impl Rivals<'_> {
     }
 
     /// The unknown of a rival that does most harm unseen, where its own test alone would show it, with its place.
-    fn worst_of(&self, suspect: &Suspect, needed: Option<f64>) -> Result<Option<(usize, Unseen)>, FitError> {
+    fn worst_of(
+        &self,
+        suspect: &Suspect,
+        needed: Option<f64>,
+        forces_z: &[Vector3<f64>],
+    ) -> Result<Option<(usize, Unseen)>, FitError> {
         let Suspect { rival, unknowns, columns, .. } = suspect;
         let redundancy = columns.redundancy();
         let shifts = self.calibration.gain()?.shifts(&columns.followed);
@@ -114,7 +120,7 @@ impl Rivals<'_> {
                 parameter,
                 shift: moved[parameter],
                 standard_uncertainties,
-                reading: self.reading_error(moved.as_slice()),
+                reading: self.reading_error(moved.as_slice(), forces_z),
                 price: self.price(suspect, &shifts.row(parameter).transpose(), parameter),
             };
             (size.is_some() || standard_uncertainties > HARMFUL).then(|| (c, unseen()))
@@ -142,20 +148,24 @@ impl Rivals<'_> {
         in_uncertainties.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Largest error of a compensated reading at the forces of the plateaus, where the coefficients are off by `moved`.
-    fn reading_error(&self, moved: &[f64]) -> f64 {
+    /// The specific forces of the plateaus [m/s^2].
+    fn forces(&self) -> Vec<Vector3<f64>> {
         let (data, x) = (self.calibration.data(), self.calibration.fit().state());
-        let model = data.model();
-        let (first, terms) = (model.parameters().first_term(), &model.error_model().terms);
-        let set_points = &model.experiment().set_points;
-        let error = |set_point: usize| {
-            let f = model.specific_force(&set_points[set_point], x);
+        let (model, set_points) = (data.model(), &data.model().experiment().set_points);
+        data.observations().iter().map(|o| model.specific_force(&set_points[o.set_point], x)).collect()
+    }
+
+    /// Largest error of a compensated reading at the forces `forces_z`, where the coefficients are off by `moved`.
+    fn reading_error(&self, moved: &[f64], forces_z: &[Vector3<f64>]) -> f64 {
+        let model = self.calibration.data().model();
+        let coefficients = &moved[model.parameters().first_term()..];
+        let error = |f: &Vector3<f64>| {
             let mut error = Vector3::zeros();
-            for (term, coefficient) in terms.iter().zip(&moved[first..]) {
-                error[term.axis] += coefficient * term.monomial.value(f.into());
+            for (term, coefficient) in model.error_model().terms.iter().zip(coefficients) {
+                error[term.axis] += coefficient * term.monomial.value((*f).into());
             }
             error.amax()
         };
-        data.observations().iter().map(|o| error(o.set_point)).fold(0.0, f64::max)
+        forces_z.iter().map(error).fold(0.0, f64::max)
     }
 }
