@@ -3,14 +3,14 @@
 use std::error::Error;
 use std::path::Path;
 
-use centrical_session::{ObservabilityReport, subject};
+use centrical_session::{ObservabilityReport, subject, unwatched};
 
 /// Rank, undetermined combinations, causes, and the cheapest remedy.
 ///
 /// # Errors
 /// If the plan file is wrong.
 pub fn main() -> Result<(), Box<dyn Error>> {
-    let subject = subject(Path::new("examples/plans/normalised.toml"), &|_| ())?;
+    let subject = subject(Path::new("examples/plans/normalised.toml"), &unwatched)?;
     let report = ObservabilityReport::of(&subject, &[])?;
 
     println!("rank {} of {}", report.rank, report.columns);

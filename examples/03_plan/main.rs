@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use centrical_session::{PlanRequest, plan};
+use centrical_session::{PlanRequest, plan, unwatched};
 
 /// The schedule with the smallest uncertainty, and how far from the optimum it can be.
 ///
@@ -12,7 +12,7 @@ use centrical_session::{PlanRequest, plan};
 pub fn main() -> Result<(), Box<dyn Error>> {
     let request =
         PlanRequest { certify: false, frontier: Vec::new(), levels: Vec::new(), coverage: 0.95, outputs: Vec::new() };
-    let report = plan(Path::new("examples/03_plan/plan.toml"), &request)?;
+    let report = plan(Path::new("examples/03_plan/plan.toml"), &request, &unwatched)?;
 
     for mounting in &report.mountings {
         println!("position {} at {} m: {} plateaus", mounting.position, mounting.radius, mounting.plateaus.len());

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::Path;
 
 use centrical_report::{DocumentRequest, Language, write_documents};
-use centrical_session::{Method, Session, calibrate, create_folder};
+use centrical_session::{Method, Session, calibrate, create_folder, unwatched};
 
 /// Report, certificate, digital certificate and the compensation as source code; and the objections if there are any.
 ///
@@ -14,7 +14,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::temp_dir().join("centrical-05");
     create_folder(&folder)?;
     let session = Session::read(Path::new("examples/ta-200"))?;
-    calibrate(&session, Method::Exact, &|_| ())?.write(&folder.join("result.json"))?;
+    calibrate(&session, Method::Exact, &unwatched)?.write(&folder.join("result.json"))?;
 
     let documents = write_documents(&DocumentRequest {
         result: folder.join("result.json"),

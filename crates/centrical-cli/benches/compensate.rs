@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use centrical_compensate::{Compensation, Term};
-use centrical_session::{Columns, RecordReader, RecordSlice, RecordWriter, compensate_record, stretch};
+use centrical_session::{Columns, RecordReader, RecordSlice, RecordWriter, compensate_record, stretch, unwatched};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use tempfile::TempDir;
@@ -74,8 +74,7 @@ fn compensate(bencher: Bencher, from_to: &str) {
     let compensation = Compensation::new(&terms, 2000.0).unwrap();
     // To a new file: what an old one takes to be given up is not the program's.
     let no_file = || _ = std::fs::remove_file(&out);
-    bencher
-        .counter(ItemsCount::new(rows()))
-        .with_inputs(no_file)
-        .bench_local_values(|()| compensate_record(&compensation, &file, &Columns::default(), &out).unwrap());
+    bencher.counter(ItemsCount::new(rows())).with_inputs(no_file).bench_local_values(|()| {
+        compensate_record(&compensation, &file, &Columns::default(), &out, &unwatched).unwrap()
+    });
 }

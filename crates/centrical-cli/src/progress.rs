@@ -1,5 +1,7 @@
 //! A bar for a person who waits; nothing when the output is not a terminal.
 
+use std::ops::ControlFlow;
+
 use centrical_session::Session;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -33,6 +35,19 @@ pub fn calibrations(count: usize, printing: Printing) -> ProgressBar {
         bar.set_style(style);
     }
     bar
+}
+
+/// Moves a bar by what was done.
+pub fn on(bar: &ProgressBar) -> impl Fn(u64) -> ControlFlow<()> + Sync {
+    |done| {
+        bar.inc(done);
+        ControlFlow::Continue(())
+    }
+}
+
+/// The same for what is counted in pieces.
+pub fn counting(bar: &ProgressBar) -> impl Fn(usize) -> ControlFlow<()> + Sync {
+    |count| on(bar)(count as u64)
 }
 
 /// A bar on standard error, or none for a quiet command.

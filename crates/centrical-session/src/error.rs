@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 pub use centrical_table::Place;
 pub(crate) use centrical_table::{quoted, shown_path};
 
+use centrical::{FitError, Stopped};
 use centrical_table::Error as TableError;
 
 /// Why a session, a record or a table could not be read or written.
@@ -40,7 +41,7 @@ pub enum Error {
         /// The experiment file.
         file: PathBuf,
         /// Which plateau, and why.
-        source: centrical::FitError,
+        source: FitError,
     },
     /// A result does not say how to compensate.
     #[error("{}: {source}", shown_path(file))]
@@ -84,6 +85,9 @@ pub enum Error {
         /// Which setting or value, and why.
         source: centrical::simulate::SimulationError,
     },
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// A document has a value that has no place in JSON.
     #[error("{document}: cannot be written as JSON: {source}")]
     Json {
@@ -98,6 +102,14 @@ impl Error {
     /// The content of `file` at `place` is not what was expected.
     pub fn content(file: &Path, place: Place, found: impl Into<String>, expected: impl Into<String>) -> Self {
         TableError::content(file, place, found, expected).into()
+    }
+
+    /// The plateau means of `file` cannot be fitted, or the caller stopped the fit.
+    pub(crate) fn fit(file: &Path, source: FitError) -> Self {
+        match source {
+            FitError::Stopped(stopped) => stopped.into(),
+            source => Self::Fit { file: file.to_owned(), source },
+        }
     }
 
     /// Reading `file`, of which `expected` says what it should be, failed with `source`.

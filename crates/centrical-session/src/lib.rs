@@ -6,10 +6,10 @@
 //! ```
 //! use std::path::Path;
 //!
-//! use centrical_session::{Method, Session, calibrate};
+//! use centrical_session::{Method, Session, calibrate, unwatched};
 //!
 //! let session = Session::read(Path::new("../../examples/ta-200"))?;
-//! let result = calibrate(&session, Method::Exact, &|_| ())?;
+//! let result = calibrate(&session, Method::Exact, &unwatched)?;
 //! let bias = result.parameter("df_1").expect("the error model has a bias");
 //! assert!(bias.estimable && bias.standard_uncertainty.is_some_and(|u| u < 1e-3));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -31,9 +31,9 @@ mod settings;
 mod truth;
 mod units;
 
-pub use centrical::STANDARD_GRAVITY;
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use centrical::stability::Estimator;
+pub use centrical::{OnProgress, STANDARD_GRAVITY, Stopped, unwatched};
 pub use centrical_table::{
     ClaimedFolder, ColumnName, TableFormat, abandon_files, claim_folder, create_folder, harmless, harmless_line,
     read_bytes, refuse_inputs, write_whole,

@@ -130,21 +130,21 @@ impl<const N: usize> TableWriter<N> {
 /// as text, and is packed in Parquet.
 ///
 /// # Errors
-/// [`Error::Io`] if the folder does not take the file.
+/// [`Error::Io`] if the folder does not take the file, or a stretch cannot be made; there is no file then.
 pub fn write_table<const N: usize>(
     file: &Path,
     format: TableFormat,
     names: &[&str; N],
-    mut stretches: impl Iterator<Item = [Vec<f64>; N]>,
+    mut stretches: impl Iterator<Item = io::Result<[Vec<f64>; N]>>,
 ) -> Result<(), Error> {
     write_stream(file, |output| match format {
         TableFormat::Csv => {
             let mut table = CsvTable::new(output, names)?;
-            stretches.try_for_each(|rows| table.write(&rows))
+            stretches.try_for_each(|rows| table.write(&rows?))
         }
         TableFormat::Parquet => {
             let mut table = ParquetTable::new(output, Layout::PACKED, names, None)?;
-            stretches.try_for_each(|rows| table.write(&rows))?;
+            stretches.try_for_each(|rows| table.write(&rows?))?;
             table.finish().map(|_| ())
         }
     })

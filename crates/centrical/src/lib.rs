@@ -46,6 +46,7 @@ mod model;
 pub mod observability;
 /// Plans of experiments.
 pub mod plan;
+mod progress;
 mod random;
 /// Reduction of continuous records to plateau means.
 pub mod reduction;
@@ -70,3 +71,4 @@ pub use model::{
 };
 pub use nalgebra;
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};
+pub use progress::{OnProgress, Stopped, advance, unwatched};

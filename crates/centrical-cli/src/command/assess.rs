@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         range: arguments.range.map(|g| g * STANDARD_GRAVITY),
     };
     let bar = progress::reading(&session, arguments.printing);
-    let assessment = assess(&session, &request, &|bytes| bar.inc(bytes))?;
+    let assessment = assess(&session, &request, &progress::on(&bar))?;
     bar.finish_and_clear();
     let text = || assessment_text(&assessment, arguments.coverage, arguments.correlations);
     arguments.printing.show(text, || assessment.report(arguments.coverage).to_json())?;

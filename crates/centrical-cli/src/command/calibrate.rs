@@ -73,7 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         file.as_deref().map_or(Ok(()), |file| refuse_another_unit(file, &session))?;
     }
     let bar = progress::reading(&session, arguments.printing);
-    let result = calibrate_without(&session, &arguments.hold_out, method, &|bytes| bar.inc(bytes))?;
+    let result = calibrate_without(&session, &arguments.hold_out, method, &progress::on(&bar))?;
     bar.finish_and_clear();
     if let Some(file) = &file {
         result.write(file)?;

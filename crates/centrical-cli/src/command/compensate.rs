@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::compensation_text;
-use centrical_session::{CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate};
+use centrical_session::{CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate, unwatched};
 
 use crate::outcome::Outcome;
 use crate::printing::Printing;
@@ -45,7 +45,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         range: arguments.range,
         within_calibration: arguments.within_calibration,
     };
-    let (compensated, certificate) = compensate(&request)?;
+    let (compensated, certificate) = compensate(&request, &unwatched)?;
     let text = || compensation_text(&compensated, &certificate, &arguments.out);
     arguments.printing.show(text, || compensated.report(&request, &certificate).to_json())?;
     Ok(Outcome::acceptable(compensated.outside == 0))

@@ -23,7 +23,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
     let bar = progress::reading(&session, arguments.printing);
-    let selection = select_model(&session, &|bytes| bar.inc(bytes))?;
+    let selection = select_model(&session, &progress::on(&bar))?;
     bar.finish_and_clear();
     let json = || ModelsReport::of(&selection, &session.title).to_json();
     arguments.printing.show(|| selection_table(&selection), json)?;

@@ -57,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         linear: arguments.linear,
     };
     let bar = progress::calibrations(arguments.runs, arguments.printing);
-    let monte_carlo = case.run(&request, &|count| bar.inc(count as u64))?;
+    let monte_carlo = case.run(&request, &progress::counting(&bar))?;
     bar.finish_and_clear();
     let text = || monte_carlo_text(&case, &monte_carlo, arguments.coverage);
     arguments.printing.show(text, || case.report(&request, &monte_carlo).to_json())?;
@@ -66,7 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 
 fn measured(session: &Session, printing: Printing) -> Result<MonteCarloCase, Error> {
     let bar = progress::reading(session, printing);
-    let case = MonteCarloCase::measured(session, &|bytes| bar.inc(bytes))?;
+    let case = MonteCarloCase::measured(session, &progress::on(&bar))?;
     bar.finish_and_clear();
     Ok(case)
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use centrical_report::{Emphasis, Screen, noise_table, noise_warnings, write_noise};
 use centrical_session::{
-    ColumnName, Dimension, Error, Estimator, NoiseRequest, NotThatQuantity, PlateauName, Quantity, noise_of,
+    ColumnName, Dimension, Error, Estimator, NoiseRequest, NotThatQuantity, PlateauName, Quantity, noise_of, unwatched,
 };
 
 use crate::outcome::Outcome;
@@ -56,17 +56,20 @@ struct Estimators(Vec<Estimator>);
 
 /// Runs the command. Not acceptable: noise terms do not describe a column of readings.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let (analysis, plateau) = noise_of(&NoiseRequest {
-        file: arguments.file.clone(),
-        plateau: arguments.plateau,
-        session: arguments.session.clone(),
-        time: arguments.time.clone(),
-        rate: arguments.rate,
-        readings: arguments.readings.clone(),
-        unit: arguments.unit.clone(),
-        window: [arguments.from.unwrap_or(f64::NEG_INFINITY), arguments.to.unwrap_or(f64::INFINITY)],
-        estimators: arguments.estimators.iter().flat_map(|some| some.0.clone()).collect(),
-    })?;
+    let (analysis, plateau) = noise_of(
+        &NoiseRequest {
+            file: arguments.file.clone(),
+            plateau: arguments.plateau,
+            session: arguments.session.clone(),
+            time: arguments.time.clone(),
+            rate: arguments.rate,
+            readings: arguments.readings.clone(),
+            unit: arguments.unit.clone(),
+            window: [arguments.from.unwrap_or(f64::NEG_INFINITY), arguments.to.unwrap_or(f64::INFINITY)],
+            estimators: arguments.estimators.iter().flat_map(|some| some.0.clone()).collect(),
+        },
+        &unwatched,
+    )?;
     if let Some(folder) = &arguments.out {
         write_noise(&analysis, folder)?;
     }

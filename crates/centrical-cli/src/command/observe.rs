@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::observation_text;
-use centrical_session::{Error, ObservabilityReport, subject};
+use centrical_session::{Error, ObservabilityReport, subject, unwatched};
 
 use crate::outcome::Outcome;
 use crate::printing::Printing;
@@ -26,7 +26,7 @@ pub struct Arguments {
 
 /// Runs the command. Not acceptable: a parameter of the instrument is undetermined, or the rank depends on rounding.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let subject = subject(&arguments.subject, &|_| ())?;
+    let subject = subject(&arguments.subject, &unwatched)?;
     let report = ObservabilityReport::of(&subject, &arguments.combination)?;
     arguments.printing.show(|| observation_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_acceptable()))

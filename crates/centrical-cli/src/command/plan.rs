@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{frontier_plot, plan_text};
-use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, write_whole};
+use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, unwatched, write_whole};
 
 use super::assess::probability;
 use crate::outcome::Outcome;
@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         coverage: arguments.coverage,
         outputs: arguments.out.iter().chain(&arguments.svg).cloned().collect(),
     };
-    let report = plan(&arguments.plan, &request)?;
+    let report = plan(&arguments.plan, &request, &unwatched)?;
     if let Some(file) = &arguments.out {
         write_whole(file, report.session_text(&arguments.plan)?.as_bytes())?;
     }

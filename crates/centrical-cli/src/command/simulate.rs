@@ -37,7 +37,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let plan = Session::read(&arguments.plan)?;
     let truth = Truth::read(&arguments.truth, &plan, arguments.seed)?;
     let bar = progress::mountings("simulating", plan.experiment.mountings.len(), arguments.printing);
-    simulate_session(&plan, &truth, arguments.seed, arguments.format.into(), &arguments.out, &|_| bar.inc(1))?;
+    simulate_session(
+        &plan,
+        &truth,
+        arguments.seed,
+        arguments.format.into(),
+        &arguments.out,
+        &progress::counting(&bar),
+    )?;
     bar.finish_and_clear();
     arguments
         .printing

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use centrical_report::{Block, Document, Language, Row, certificate, read_issuer, report};
-use centrical_session::{CalibrationResult, Method, Session, calibrate};
+use centrical_session::{CalibrationResult, Method, Session, calibrate, unwatched};
 
 const EXAMPLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/ta-200");
 
@@ -30,7 +30,7 @@ fn extended() -> CalibrationResult {
             fs::copy(file.path(), folder.path().join(part).join(file.file_name())).unwrap();
         }
     }
-    calibrate(&Session::read(folder.path()).unwrap(), Method::Recursive, &|_| {}).unwrap()
+    calibrate(&Session::read(folder.path()).unwrap(), Method::Recursive, &unwatched).unwrap()
 }
 
 /// Everything that a document says outside its drawings.

@@ -41,13 +41,13 @@ impl Subject {
     /// The budget to be expected of a calibration, and the uncertainty of the compensated reading up to the largest load of
     /// the experiment.
     fn prediction(&self) -> Result<PredictionReport, Error> {
-        let prediction = predict(&self.model, &self.weights, &self.nominal)
-            .map_err(|source| Error::Fit { file: self.file.clone(), source })?;
+        let prediction =
+            predict(&self.model, &self.weights, &self.nominal).map_err(|source| Error::fit(&self.file, source))?;
         let experiment = self.model.experiment();
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
         let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
         PredictionReport::of(&prediction, ReadingRange { force }, COVERAGE)
-            .map_err(|source| Error::Fit { file: self.file.clone(), source })
+            .map_err(|source| Error::fit(&self.file, source))
     }
 
     /// Studies the design at zero unknowns, where its structure is exact.
@@ -55,8 +55,7 @@ impl Subject {
     /// # Errors
     /// [`Error::Fit`] when a weight or the design is beyond all measure.
     pub fn study(&self) -> Result<Study, Error> {
-        Study::at_zero(self.model.clone(), self.weights.clone())
-            .map_err(|source| Error::Fit { file: self.file.clone(), source })
+        Study::at_zero(self.model.clone(), self.weights.clone()).map_err(|source| Error::fit(&self.file, source))
     }
 }
 

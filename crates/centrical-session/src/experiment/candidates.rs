@@ -73,7 +73,10 @@ impl Planning {
     }
 
     pub(crate) fn failed(&self, source: PlanError) -> Error {
-        Error::Planning { file: self.file.clone(), source }
+        match source {
+            PlanError::Stopped(stopped) => stopped.into(),
+            source => Error::Planning { file: self.file.clone(), source },
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! How far the calibration of a session can be trusted: budget, validity, residual patterns, prediction.
 
 use centrical::uncertainty::{Budget, Compensated, CurvePoint, Pattern, Validity};
-use centrical::{Calibration, Data, Fit, FitError, MeasurementModel, Observation, linear};
+use centrical::{Calibration, Data, Fit, FitError, MeasurementModel, Observation, OnProgress, linear};
 use nalgebra::{DMatrix, Vector3};
 
 use super::calibrate::Problem;
@@ -52,13 +52,9 @@ pub struct Assessment {
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
-pub fn assess(
-    session: &Session,
-    request: &AssessmentRequest,
-    progress: &(dyn Fn(u64) + Sync),
-) -> Result<Assessment, Error> {
+pub fn assess(session: &Session, request: &AssessmentRequest, progress: OnProgress) -> Result<Assessment, Error> {
     let problem = Problem::of(session, progress)?;
-    of_problem(problem, &session.title, request).map_err(|source| Error::Fit { file: session.file.clone(), source })
+    of_problem(problem, &session.title, request).map_err(|source| Error::fit(&session.file, source))
 }
 
 impl Assessment {

@@ -1,6 +1,6 @@
 //! The whole job for one session: what the command, a fleet's worker and a notebook all call.
 
-use centrical::{Calibration, Data, MeasurementModel};
+use centrical::{Calibration, Data, MeasurementModel, OnProgress};
 
 use super::reduce::reduce;
 use crate::document::{CalibrationResult, Method};
@@ -23,7 +23,7 @@ impl Problem {
     ///
     /// # Errors
     /// [`Error`] naming the file, the place, what was found and what was expected.
-    pub fn of(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
+    pub fn of(session: &Session, progress: OnProgress) -> Result<Self, Error> {
         let reduced = reduce(session, progress)?;
         let model = reduced.model(session)?;
         Ok(Self { model, reduced })
@@ -35,11 +35,7 @@ impl Problem {
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
-pub fn calibrate(
-    session: &Session,
-    method: Method,
-    progress: &(dyn Fn(u64) + Sync),
-) -> Result<CalibrationResult, Error> {
+pub fn calibrate(session: &Session, method: Method, progress: OnProgress) -> Result<CalibrationResult, Error> {
     calibrate_without(session, &[], method, progress)
 }
 
@@ -51,11 +47,11 @@ pub fn calibrate_without(
     session: &Session,
     held_out: &[PlateauName],
     method: Method,
-    progress: &(dyn Fn(u64) + Sync),
+    progress: OnProgress,
 ) -> Result<CalibrationResult, Error> {
     let Problem { model, mut reduced } = Problem::of(session, progress)?;
     reduced.held_out = held_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
-    let failed = |source| Error::Fit { file: session.file.clone(), source };
+    let failed = |source| Error::fit(&session.file, source);
     let data = Data::new(&model, reduced.observations()).map_err(failed)?;
     let calibration = match method {
         Method::Exact => Calibration::exact(&data),

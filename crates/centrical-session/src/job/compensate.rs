@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical::reduction::RecordSlice;
+use centrical::{OnProgress, advance};
 use centrical_compensate::{Certificate, Compensation};
 use centrical_table::{Rows, Stamps, refuse_inputs};
 use rayon::prelude::*;
@@ -70,11 +71,12 @@ impl Calibrated {
     const ANYWHERE: Self = Self { limit: [f64::INFINITY; 3], is_demanded: false };
 }
 
-/// Compensates a record by the result of a calibration, and says where the inverse is unique.
+/// Compensates a record by the result of a calibration, and says where the inverse is unique. `progress` is called with the number
+/// of bytes read.
 ///
 /// # Errors
 /// As [`compensate_record`]; and if the result has no error model that can be inverted.
-pub fn compensate(request: &CompensationRequest) -> Result<(Compensated, Certificate), Error> {
+pub fn compensate(request: &CompensationRequest, progress: OnProgress) -> Result<(Compensated, Certificate), Error> {
     let result = CalibrationResult::read(&request.result)?;
     let file = || request.result.clone();
     let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
@@ -98,8 +100,9 @@ pub fn compensate(request: &CompensationRequest) -> Result<(Compensated, Certifi
     refuse_inputs(std::slice::from_ref(&request.out), &inputs)?;
     let calibrated = Calibrated { limit: result.calibrated_readings(), is_demanded: request.within_calibration };
     // On a thread of those that share the work: another one would be waited for, batch by batch.
-    let compensated =
-        rayon::scope(|_| on_this_thread(&compensation, &calibrated, &request.record, &columns, &request.out))?;
+    let compensated = rayon::scope(|_| {
+        on_this_thread(&compensation, &calibrated, &request.record, &columns, &request.out, progress)
+    })?;
     Ok((compensated, *compensation.certificate()))
 }
 
@@ -109,14 +112,15 @@ pub fn compensate(request: &CompensationRequest) -> Result<(Compensated, Certifi
 /// Parquet has them; as CSV has them, they are rounded to at most `10^-12` of the range ([`RecordWriter::create_rounded`]).
 ///
 /// # Errors
-/// As [`RecordReader`] for `input` and [`RecordWriter`] for `output`, which is not touched then.
+/// As [`RecordReader`] for `input` and [`RecordWriter`] for `output`, which is not touched then; [`Error::Stopped`].
 pub fn compensate_record(
     compensation: &Compensation,
     input: &Path,
     columns: &Columns,
     output: &Path,
+    progress: OnProgress,
 ) -> Result<Compensated, Error> {
-    rayon::scope(|_| on_this_thread(compensation, &Calibrated::ANYWHERE, input, columns, output))
+    rayon::scope(|_| on_this_thread(compensation, &Calibrated::ANYWHERE, input, columns, output, progress))
 }
 
 fn on_this_thread(
@@ -125,6 +129,7 @@ fn on_this_thread(
     input: &Path,
     columns: &Columns,
     output: &Path,
+    progress: OnProgress,
 ) -> Result<Compensated, Error> {
     let mut record = RecordReader::open(input, columns)?;
     record.keep_stamps();
@@ -147,6 +152,7 @@ fn on_this_thread(
         } else {
             stretches.iter().zip(&stamps).try_for_each(|(rows, stamps)| writer.write_stamped(stamps, *rows))?;
         }
+        advance(progress, record.newly_read())?;
     }
     writer.finish()?;
     Ok(sum)

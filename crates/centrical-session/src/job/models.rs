@@ -1,5 +1,6 @@
 //! Which error model the data of a session speak for.
 
+use centrical::OnProgress;
 use centrical::uncertainty::{Selection, select_beside};
 
 use super::calibrate::Problem;
@@ -11,7 +12,7 @@ use crate::experiment::Session;
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
-pub fn select_model(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Selection, Error> {
+pub fn select_model(session: &Session, progress: OnProgress) -> Result<Selection, Error> {
     let Problem { model, reduced } = Problem::of(session, progress)?;
-    select_beside(&model, &reduced.observations()).map_err(|source| Error::Fit { file: session.file.clone(), source })
+    select_beside(&model, &reduced.observations(), &|_| progress(0)).map_err(|source| Error::fit(&session.file, source))
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use centrical::plan::unit_of;
 use centrical::uncertainty::{Method, MonteCarlo, Settings, monte_carlo};
-use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, STANDARD_GRAVITY, Weight};
+use centrical::{Calibration, Data, FitError, MeasurementModel, Observation, OnProgress, STANDARD_GRAVITY, Weight};
 use nalgebra::Vector3;
 
 use super::calibrate::Problem;
@@ -43,11 +43,10 @@ impl MonteCarloCase {
     ///
     /// # Errors
     /// [`Error`] naming the file, the place, what was found and what was expected.
-    pub fn measured(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Self, Error> {
+    pub fn measured(session: &Session, progress: OnProgress) -> Result<Self, Error> {
         let Problem { model, reduced } = Problem::of(session, progress)?;
         let (observations, file) = (reduced.observations(), session.file.clone());
-        let truth =
-            estimated(&model, observations.clone()).map_err(|source| Error::Fit { file: file.clone(), source })?;
+        let truth = estimated(&model, observations.clone()).map_err(|source| Error::fit(&file, source))?;
         Ok(Self { model, truth, file, observations })
     }
 
@@ -58,7 +57,7 @@ impl MonteCarloCase {
     /// [`Error::Fit`] when a weight is invalid.
     pub fn planned(plan: Plan, noise: Option<f64>) -> Result<Self, Error> {
         let Plan { file, model, nominal, weights, .. } = plan;
-        let truth = unit_of(&model, &weights, &nominal).map_err(|source| Error::Fit { file: file.clone(), source })?;
+        let truth = unit_of(&model, &weights, &nominal).map_err(|source| Error::fit(&file, source))?;
         let equal = |noise: f64| Weight::equal(weights.len(), noise * 1e-6 * STANDARD_GRAVITY);
         let weights = noise.map_or_else(|| weights.clone(), equal);
         let observation =
@@ -74,11 +73,11 @@ impl MonteCarloCase {
         self
     }
 
-    /// Repeats the calibration. `done` is called with the number of calibrations that a batch brought.
+    /// Repeats the calibration. `progress` is called with the number of calibrations that were done.
     ///
     /// # Errors
-    /// [`Error::Fit`] when a weight is invalid.
-    pub fn run(&self, request: &MonteCarloRequest, done: &dyn Fn(usize)) -> Result<MonteCarlo, Error> {
+    /// [`Error::Fit`] when a weight is invalid; [`Error::Stopped`].
+    pub fn run(&self, request: &MonteCarloRequest, progress: OnProgress<usize>) -> Result<MonteCarlo, Error> {
         let settings = Settings {
             runs: request.runs,
             seed: request.seed,
@@ -86,8 +85,8 @@ impl MonteCarloCase {
             method: if request.linear { Method::Linear } else { Method::Exact },
         };
         Data::new(&self.model, self.observations.clone())
-            .and_then(|data| monte_carlo(&data, &self.truth, &settings, done))
-            .map_err(|source| Error::Fit { file: self.file.clone(), source })
+            .and_then(|data| monte_carlo(&data, &self.truth, &settings, progress))
+            .map_err(|source| Error::fit(&self.file, source))
     }
 
     /// What the runs of `request` show, as a document.

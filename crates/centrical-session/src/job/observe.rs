@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical::Weight;
+use centrical::{OnProgress, Weight};
 
 use super::plan::read_plan;
 use super::reduce::reduce;
@@ -15,14 +15,14 @@ use crate::experiment::Session;
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
-pub fn subject(path: &Path, progress: &(dyn Fn(u64) + Sync)) -> Result<Subject, Error> {
+pub fn subject(path: &Path, progress: OnProgress) -> Result<Subject, Error> {
     match read_plan(path)? {
         Some(plan) => Ok(plan.into()),
         None => of_session(&Session::read(path)?, progress),
     }
 }
 
-fn of_session(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Subject, Error> {
+fn of_session(session: &Session, progress: OnProgress) -> Result<Subject, Error> {
     let reduced = reduce(session, progress)?;
     let model = reduced.model(session)?;
     Ok(Subject {

@@ -8,6 +8,7 @@ mod schedule_file;
 
 use std::path::Path;
 
+use centrical::OnProgress;
 use centrical_table::refuse_inputs;
 
 use self::read::read_with_inputs;
@@ -17,13 +18,14 @@ pub use self::request::{PlanRequest, USUAL_LEVELS, USUAL_TIMES};
 use crate::document::PlanReport;
 use crate::error::Error;
 
-/// Plans as a plan file asks, and reports the plan.
+/// Plans as a plan file asks, and reports the plan. `progress` is called again and again; it changes nothing but whether the search
+/// goes on.
 ///
 /// # Errors
-/// As [`read_planning`]; when an output is an input; [`Error::Planning`] when there is no plan, or it cannot be predicted.
-pub fn plan(file: &Path, request: &PlanRequest) -> Result<PlanReport, Error> {
+/// As [`read_planning`]; [`Error::Stopped`]; when an output is an input; [`Error::Planning`] when there is no plan, or it cannot be predicted.
+pub fn plan(file: &Path, request: &PlanRequest, progress: OnProgress<()>) -> Result<PlanReport, Error> {
     let (mut planning, inputs) = read_with_inputs(file)?;
     refuse_inputs(&request.outputs, &inputs)?;
-    let plan = planning.task.plan(request.certify).map_err(|source| planning.failed(source))?;
-    report(&planning, &plan, request)
+    let plan = planning.task.plan(request.certify, progress).map_err(|source| planning.failed(source))?;
+    report(&planning, &plan, request, progress)
 }

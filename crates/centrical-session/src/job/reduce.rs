@@ -5,6 +5,7 @@ mod scheduler;
 
 use std::path::Path;
 
+use centrical::OnProgress;
 use centrical::reduction::{MeasuredSpeed, NoiseModel, ReducedMounting, measured_speeds, plateau_means};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
@@ -24,10 +25,10 @@ const OTHER_UNIT: f64 = 0.1;
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
-pub fn reduce(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Reduced, Error> {
+pub fn reduce(session: &Session, progress: OnProgress) -> Result<Reduced, Error> {
     let mut reduced = reduce_without_inputs(session, progress)?;
     let folder = session.file.parent().unwrap_or(Path::new(""));
-    let inputs = session.files().into_par_iter().map(|file| Input::of(folder, file));
+    let inputs = session.files().into_par_iter().map(|file| Input::of(folder, file, progress));
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
     Ok(reduced)
 }
@@ -36,7 +37,7 @@ pub fn reduce(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Redu
 ///
 /// # Errors
 /// As [`reduce`].
-pub fn reduce_without_inputs(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Reduced, Error> {
+pub fn reduce_without_inputs(session: &Session, progress: OnProgress) -> Result<Reduced, Error> {
     match &session.plateaus {
         Some(table) => Ok(Reduced::of_table(&table.rows)),
         None => from_records(session, progress),
@@ -44,7 +45,7 @@ pub fn reduce_without_inputs(session: &Session, progress: &(dyn Fn(u64) + Sync))
 }
 
 /// The mountings, then the noise of all of them together, then the covariances.
-fn from_records(session: &Session, progress: &(dyn Fn(u64) + Sync)) -> Result<Reduced, Error> {
+fn from_records(session: &Session, progress: OnProgress) -> Result<Reduced, Error> {
     let mountings = with_thread_limit(|| Scheduler::new(session, progress).run())?;
     let interpolated: Vec<Option<[u64; 3]>> = mountings.iter().map(|mounting| mounting.interpolated).collect();
     let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) =

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use centrical::reduction::{Averaging, Located, PlateauFit, Record, RecordSlice, ReductionError, Survey};
+use centrical::{OnProgress, advance};
 use centrical_table::Extent;
 use rayon::prelude::*;
 
@@ -24,12 +25,12 @@ pub(crate) struct RecordFile<'a> {
     /// The file, or the three of the newtonometers.
     files: Vec<&'a Path>,
     columns: &'a Columns,
-    /// Told of bytes as they are read.
-    progress: &'a (dyn Fn(u64) + Sync),
+    /// Bytes as they are read.
+    progress: OnProgress<'a>,
 }
 
 impl<'a> RecordFile<'a> {
-    pub fn new(files: Vec<&'a Path>, columns: &'a Columns, progress: &'a (dyn Fn(u64) + Sync)) -> Self {
+    pub fn new(files: Vec<&'a Path>, columns: &'a Columns, progress: OnProgress<'a>) -> Self {
         Self { files, columns, progress }
     }
 
@@ -57,9 +58,9 @@ impl<'a> RecordFile<'a> {
                     survey = Some(begin(&std::mem::take(&mut beginning)));
                 }
             }
-            (self.progress)(record.newly_read());
+            advance(self.progress, record.newly_read())?;
         }
-        (self.progress)(record.newly_read());
+        advance(self.progress, record.newly_read())?;
         let interpolated = record.interpolated();
         cache.index = record.into_index();
         let mut survey = survey.unwrap_or_else(|| begin(&beginning));
@@ -74,20 +75,43 @@ impl<'a> RecordFile<'a> {
         match &cache.index {
             _ if cache.is_whole => {
                 let length = |file: &&Path| std::fs::metadata(file).map_or(0, |file| file.len());
-                (self.progress)(self.files.iter().map(length).sum());
-                Ok(means_of_cache(cache, plateaus))
+                advance(self.progress, self.files.iter().map(length).sum())?;
+                self.means_of_cache(cache, plateaus)
             }
             Some(index) => self.means_reread(index, plateaus),
             None => self.means_in_order(plateaus),
         }
     }
 
+    /// The means of the plateaus of a record that is kept.
+    fn means_of_cache(&self, cache: &SampleCache, mut plateaus: Vec<PlateauInParts>) -> Result<Vec<Mean>, Error> {
+        let mut means = Vec::with_capacity(plateaus.len());
+        while !plateaus.is_empty() {
+            let mut samples = 0;
+            let is_beyond = |plateau: &PlateauInParts| {
+                samples += plateau.parts.iter().map(|part| cache.samples_in(*part)).max().unwrap_or(0);
+                samples > SAMPLES_AT_A_TIME
+            };
+            let later = plateaus.split_off(plateaus.iter().position(is_beyond).unwrap_or(plateaus.len()).max(1));
+            // Times are written to the same memory again and again: memory that is asked for anew is faulted in anew, page by page.
+            means.par_extend(plateaus.into_par_iter().map_init(Vec::new, |times, mut plateau| {
+                while let Some(part) = plateau.next_part() {
+                    let (samples, repeated) = cache.between(part, times);
+                    plateau.add(samples, repeated);
+                }
+                plateau.finish(Record::default().as_slice())
+            }));
+            plateaus = later;
+            advance(self.progress, 0)?;
+        }
+        Ok(means)
+    }
+
     /// Part after part: while one is worked on, the next is read.
     fn means_reread(&self, index: &RecordIndex, mut plateaus: Vec<PlateauInParts>) -> Result<Vec<Mean>, Error> {
         let mut record = index.parts();
         let mut read = |part: [f64; 2], samples: &mut Record| {
-            (self.progress)(record.read(part, samples)?);
-            Ok::<(), Error>(())
+            Ok::<(), Error>(advance(self.progress, record.read(part, samples)?)?)
         };
         let parts: Vec<(usize, [f64; 2])> = (plateaus.iter().enumerate())
             .flat_map(|(k, plateau)| plateau.parts.iter().map(move |part| (k, *part)))
@@ -126,35 +150,12 @@ impl<'a> RecordFile<'a> {
                     }
                 }
             }
-            (self.progress)(record.newly_read());
+            advance(self.progress, record.newly_read())?;
         }
-        (self.progress)(record.newly_read());
+        advance(self.progress, record.newly_read())?;
         let plateaus = plateaus.into_iter().zip(gathered);
         Ok(plateaus.map(|(plateau, samples)| plateau.finish(samples.as_slice())).collect())
     }
-}
-
-/// The means of the plateaus of a record that is kept.
-fn means_of_cache(cache: &SampleCache, mut plateaus: Vec<PlateauInParts>) -> Vec<Mean> {
-    let mut means = Vec::with_capacity(plateaus.len());
-    while !plateaus.is_empty() {
-        let mut samples = 0;
-        let is_beyond = |plateau: &PlateauInParts| {
-            samples += plateau.parts.iter().map(|part| cache.samples_in(*part)).max().unwrap_or(0);
-            samples > SAMPLES_AT_A_TIME
-        };
-        let later = plateaus.split_off(plateaus.iter().position(is_beyond).unwrap_or(plateaus.len()).max(1));
-        // Times are written to the same memory again and again: memory that is asked for anew is faulted in anew, page by page.
-        means.par_extend(plateaus.into_par_iter().map_init(Vec::new, |times, mut plateau| {
-            while let Some(part) = plateau.next_part() {
-                let (samples, repeated) = cache.between(part, times);
-                plateau.add(samples, repeated);
-            }
-            plateau.finish(Record::default().as_slice())
-        }));
-        plateaus = later;
-    }
-    means
 }
 
 /// A plateau that is averaged part by part.

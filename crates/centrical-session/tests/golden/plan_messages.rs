@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical_session::{Session, SettingsForm, read_plan, read_planning, subject};
+use centrical_session::{Session, SettingsForm, read_plan, read_planning, subject, unwatched};
 
 use crate::sample::{EXPERIMENT, Sample};
 use crate::schemas::refuses_what_the_parser_refuses;
@@ -136,7 +136,7 @@ fn plans_and_sessions_are_told_apart() {
     let unmeasured = EXPERIMENT.lines().filter(|line| !line.starts_with("record =")).collect::<Vec<_>>().join("\n");
     let file = sample.file("plan.toml", unmeasured);
     assert_eq!(read_plan(&file).unwrap().unwrap().weights.len(), 4);
-    let message = sample.relative(&subject(Path::new("no/such.toml"), &|_| ()).unwrap_err().to_string());
+    let message = sample.relative(&subject(Path::new("no/such.toml"), &unwatched).unwrap_err().to_string());
     assert_eq!(
         message,
         "no/such.toml: found no such file, expected an experiment file, or the folder with its experiment.toml"

@@ -4,6 +4,7 @@ mod columns;
 mod predictions;
 mod record_writer;
 mod session_forms;
+mod stopping;
 mod three_files;
 mod three_recorders;
 mod two_passes;

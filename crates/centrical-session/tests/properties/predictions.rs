@@ -7,7 +7,7 @@ use centrical::TypeB;
 use centrical::plan::predict;
 use centrical::uncertainty::{Method, Settings, monte_carlo};
 use centrical::{Data, MeasurementModel, Observation, Weight};
-use centrical_session::{Plan, read_plan, read_planning};
+use centrical_session::{Plan, read_plan, read_planning, unwatched};
 use nalgebra::Vector3;
 
 /// The standard deviation of a ratio is 1 / sqrt(2 runs) = 0.5 %: 3 % is six of them, and a parameter that is off by 5 % is
@@ -53,7 +53,7 @@ impl Case {
     /// The best plan from the candidates of the example.
     fn planned() -> (Self, TypeB) {
         let mut planning = read_planning(&example("best.toml")).unwrap();
-        let plan = planning.task.plan(false).unwrap();
+        let plan = planning.task.plan(false, &unwatched).unwrap();
         let (experiment, weights) = planning.task.candidates.experiment_of(&plan.schedule);
         let model = planning.task.model().in_experiment(experiment);
         let stated = *model.stated();
@@ -84,7 +84,7 @@ impl Case {
         let observations: Vec<Observation> = self.weights.iter().map(observation).collect();
         let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact };
         let data = Data::new(&model, observations).unwrap();
-        let shown = monte_carlo(&data, truth, &settings, &|_| {}).unwrap();
+        let shown = monte_carlo(&data, truth, &settings, &unwatched).unwrap();
         let mut compared = Vec::new();
         for (j, statistics) in shown.parameters.iter().enumerate() {
             let parameter = &self.model.parameters()[j].name;
@@ -174,7 +174,7 @@ fn every_parameter_of_the_source_as_printed_scatters_as_predicted() {
     let settings = Settings { runs: 4000, seed: 3, coverage: 0.95, method: Method::Exact };
     let zero = quiet.truth(0.0);
     let data = Data::new(model, observations).unwrap();
-    let shown = monte_carlo(&data, &zero, &settings, &|_| {}).unwrap();
+    let shown = monte_carlo(&data, &zero, &settings, &unwatched).unwrap();
     let statistics = shown.parameters[j].unwrap();
     let ratio = statistics.standard_deviation / statistics.stated;
     println!("[K5.5] as printed, at zero, a hundredth of the noise: delta_2[3] {ratio:.4}");

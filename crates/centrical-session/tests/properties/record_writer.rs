@@ -1,7 +1,7 @@
 use std::fs;
 
 use centrical_compensate::{Compensation, Term};
-use centrical_session::{Columns, Compensated, Record, RecordWriter, compensate_record, read_record};
+use centrical_session::{Columns, Compensated, Record, RecordWriter, compensate_record, read_record, unwatched};
 use proptest::prelude::*;
 
 /// A record of `rows` rows whose numbers need all their digits.
@@ -39,7 +39,7 @@ proptest! {
         let mut writer = RecordWriter::create(&input).unwrap();
         writer.write(record.as_slice()).unwrap();
         writer.finish().unwrap();
-        let compensated = compensate_record(&compensation, &input, &Columns::default(), &output).unwrap();
+        let compensated = compensate_record(&compensation, &input, &Columns::default(), &output, &unwatched).unwrap();
         let expected = Compensated { readings: rows as u64, ..Compensated::default() };
         prop_assert_eq!(compensated, expected);
         compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
@@ -57,7 +57,7 @@ proptest! {
         let mut writer = RecordWriter::create(&input).unwrap();
         writer.write(record.as_slice()).unwrap();
         writer.finish().unwrap();
-        let compensated = compensate_record(&compensation, &input, &Columns::default(), &output).unwrap();
+        let compensated = compensate_record(&compensation, &input, &Columns::default(), &output, &unwatched).unwrap();
         let half = 0.5 * 10_f64.powi(-i32::try_from(compensated.decimals.unwrap()).unwrap());
         prop_assert!(half <= 1e-12 * range);
         compensation.apply_all(record.f_z.each_mut().map(Vec::as_mut_slice)).unwrap();
@@ -80,7 +80,8 @@ fn nothing_is_left_of_half_a_record() {
     let input = folder.path().join("bad.csv");
     fs::write(&input, "t,f1,f2,f3\n0,1,2,3\n1,1,oops,3\n").unwrap();
     let compensation = Compensation::new(&[], 200.0).unwrap();
-    let error = compensate_record(&compensation, &input, &Columns::default(), &file).unwrap_err().to_string();
+    let error =
+        compensate_record(&compensation, &input, &Columns::default(), &file, &unwatched).unwrap_err().to_string();
     assert!(error.contains("bad.csv, line 3, f2: found \"oops\""), "{error}");
     let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left, ["bad.csv"]);
@@ -97,7 +98,7 @@ fn stamps_go_through_letter_by_letter() {
     let (input, output) = (folder.path().join("in.csv"), folder.path().join("out.csv"));
     for (header, rows, stamps) in [("t;f1;f2;f3", rows, &stamps[..]), ("t,f1,f2,f3", iso_rows, &iso[..])] {
         fs::write(&input, format!("{header}\n{}", rows.join("\n"))).unwrap();
-        compensate_record(&compensation, &input, &Columns::default(), &output).unwrap();
+        compensate_record(&compensation, &input, &Columns::default(), &output, &unwatched).unwrap();
         let text = fs::read_to_string(&output).unwrap();
         let quoted = |stamp: &str| if stamp.contains(',') { format!("\"{stamp}\"") } else { stamp.to_owned() };
         let expected: Vec<String> =

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use centrical_session::{
     CalibrationResult, ColumnName, Method, NoiseRequest, Session, TableFormat, Truth, calibrate, noise_of,
-    reduce_without_inputs, simulate_session,
+    reduce_without_inputs, simulate_session, unwatched,
 };
 use centrical_table::{Decimals, TableWriter};
 use nalgebra::{DMatrix, DVector};
@@ -34,7 +34,7 @@ impl Laboratory {
             .unwrap();
         let truth = Truth::read(&file, &plan, seed).unwrap();
         let whole = folder.path().join("whole");
-        simulate_session(&plan, &truth, seed, TableFormat::Parquet, &whole, &|_| ()).unwrap();
+        simulate_session(&plan, &truth, seed, TableFormat::Parquet, &whole, &unwatched).unwrap();
         Self { session: Session::read(&whole).unwrap(), truth: truth.values, folder }
     }
 
@@ -89,7 +89,7 @@ fn squared(result: &CalibrationResult, difference: &[f64]) -> f64 {
 }
 
 fn calibrated(session: &Session) -> CalibrationResult {
-    calibrate(session, Method::Exact, &|_| ()).unwrap()
+    calibrate(session, Method::Exact, &unwatched).unwrap()
 }
 
 /// Every eighth sample of all three newtonometers.
@@ -201,7 +201,7 @@ fn threads_change_nothing() {
     let session = laboratory.split("near", near_rates);
     let means = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| format!("{:?}", reduce_without_inputs(&session, &|_| ()).unwrap().plateaus))
+        pool.install(|| format!("{:?}", reduce_without_inputs(&session, &unwatched).unwrap().plateaus))
     };
     assert_eq!(means(1), means(3));
     // A mean of neighbours has other noise than they have: of noise, the session says nothing.
@@ -216,7 +216,7 @@ fn threads_change_nothing() {
         window: [f64::NEG_INFINITY, f64::INFINITY],
         estimators: Vec::new(),
     };
-    let refused = noise_of(&request).unwrap_err().to_string();
+    let refused = noise_of(&request, &unwatched).unwrap_err().to_string();
     let expected = "samples as they were recorded: analyse the file of each newtonometer by itself (noise FILE)";
     assert!(
         refused.ends_with(&format!("found readings interpolated to common stamps, expected {expected}")),

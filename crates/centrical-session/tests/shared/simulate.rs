@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::fs;
 
-use centrical_session::{Session, TableFormat, Truth, reduce, simulate_session};
+use centrical_session::{Session, TableFormat, Truth, reduce, simulate_session, unwatched};
 use nalgebra::{Cholesky, Vector3};
 use serde_json::Value;
 
@@ -60,10 +60,10 @@ fn compare(name: &str, seed: u64) {
     fs::write(&file, truth_file(&truth)).unwrap();
     let truth = Truth::read(&file, &theirs, seed).unwrap();
     let out = folder.path().join("session");
-    simulate_session(&theirs, &truth, seed, TableFormat::Parquet, &out, &|_| ()).unwrap();
+    simulate_session(&theirs, &truth, seed, TableFormat::Parquet, &out, &unwatched).unwrap();
 
-    let ours = reduce(&Session::read(&out).unwrap(), &|_| ()).unwrap().observations();
-    let theirs = reduce(&theirs, &|_| ()).unwrap().observations();
+    let ours = reduce(&Session::read(&out).unwrap(), &unwatched).unwrap().observations();
+    let theirs = reduce(&theirs, &unwatched).unwrap().observations();
     assert_eq!(ours.len(), theirs.len());
     let mut squares = Vector3::zeros();
     for ((a, b), set_point) in ours.iter().zip(&theirs).zip(&truth.model.experiment().set_points) {

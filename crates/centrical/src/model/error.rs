@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::progress::Stopped;
+
 /// Why a fit cannot be made at all. A rank that is short is not among them: it is an answer.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -37,6 +39,9 @@ pub enum FitError {
         /// Its diagonal [m^2/s^4].
         diagonal: [f64; 3],
     },
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// A plateau comes when unknowns that it sees are not carried any more, or not yet.
     #[error("plateau at place {} of the order: found its unknowns retired, expected the plateaus in their order", place + 1)]
     Retired {

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::model::FitError;
+use crate::progress::Stopped;
 
 /// Why there is no plan.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -62,4 +63,7 @@ pub enum PlanError {
     /// A schedule cannot be predicted.
     #[error(transparent)]
     Prediction(#[from] FitError),
+    /// The caller stopped the search.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }

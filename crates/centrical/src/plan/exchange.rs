@@ -7,6 +7,7 @@ use super::atom::Atom;
 use super::candidates::{Candidates, Visit};
 use super::information::{Factor, Insight, LinearisedScenario};
 use super::scenarios::LinearisedScenarios;
+use crate::progress::Watch;
 
 /// Whole visits by atom, with their criterion and time.
 #[derive(Debug, Clone)]
@@ -21,7 +22,7 @@ pub(super) struct IntegerSchedule {
 }
 
 /// The exchange of visits within a time, on some mountings.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(super) struct Exchange<'a> {
     pub candidates: &'a Candidates,
     pub scenarios: &'a LinearisedScenarios,
@@ -31,6 +32,7 @@ pub(super) struct Exchange<'a> {
     pub open: &'a [bool],
     /// Limit of exchanges that are tried.
     pub trials: usize,
+    pub watch: &'a Watch<'a>,
 }
 
 /// One visit of a candidate turned from a duration, or none, to another, or none.
@@ -132,7 +134,7 @@ impl Exchange<'_> {
                 .collect();
             falls.sort_by(|a, b| a.0.total_cmp(&b.0));
             for (_, fall) in falls {
-                if trials == self.trials {
+                if trials == self.trials || self.watch.is_stopped() {
                     break 'again;
                 }
                 trials += 1;
@@ -152,6 +154,9 @@ impl Exchange<'_> {
     /// The schedule with the remaining time filled, best gain for a second first.
     pub fn fill(&self, mut schedule: IntegerSchedule) -> IntegerSchedule {
         loop {
+            if self.watch.is_stopped() {
+                return schedule;
+            }
             let left = self.time - schedule.time;
             let prices = self.set_ups(&schedule);
             if !self.moves(&schedule).any(|m| (0.0..=left + 1e-9).contains(&self.price_with_set_up(&prices, &m))) {

@@ -4,6 +4,7 @@ use super::candidates::{Candidates, Schedule, Visit};
 use super::criterion::Criterion;
 use super::error::PlanError;
 use super::search::{Effort, Plan, Problem, best_for_time};
+use crate::progress::{OnProgress, unwatched};
 
 /// The best plan for one time.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,10 +24,11 @@ pub fn frontier(
     criterion: &Criterion,
     times: &[f64],
     effort: Effort,
+    progress: OnProgress<()>,
 ) -> Result<Vec<FrontierPoint>, PlanError> {
     let mut points = Vec::with_capacity(times.len());
     for &time in times {
-        match best_for_time(candidates, criterion, time, effort) {
+        match best_for_time(candidates, criterion, time, effort, progress) {
             Ok(plan) => points.push(FrontierPoint { time, plan }),
             Err(PlanError::TooShort { .. }) => {}
             Err(error) => return Err(error),
@@ -62,7 +64,7 @@ impl Candidates {
 
     fn valued(&self, criterion: &Criterion, duration: f64) -> Result<(Schedule, f64), PlanError> {
         let only = Self { durations: vec![duration], repeats: 1, ..self.clone() };
-        let value = Problem::new(&only, criterion)?.everything().value;
+        let value = Problem::new(&only, criterion, &unwatched)?.everything().value;
         Ok((only.schedule(self.each_once(duration)), value.exp()))
     }
 }

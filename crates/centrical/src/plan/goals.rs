@@ -8,6 +8,7 @@ use super::error::PlanError;
 use super::prediction::{Prediction, predict};
 use super::search::{Effort, Plan, best_for_time, shortest_for_goals};
 use crate::model::{FitError, MeasurementModel, Parameter};
+use crate::progress::OnProgress;
 
 /// The shortest plan is sought to this part of its time.
 const RESOLUTION: f64 = 0.01;
@@ -59,17 +60,17 @@ impl Task {
     /// (see [`predict`]). One that does is planned again for a unit of typical errors, which `self` expects from then on.
     ///
     /// # Errors
-    /// [`PlanError`] when there is no plan.
-    pub fn plan(&mut self, certify: bool) -> Result<Plan, PlanError> {
+    /// [`PlanError`] when there is no plan, or the caller stops.
+    pub fn plan(&mut self, certify: bool, progress: OnProgress<()>) -> Result<Plan, PlanError> {
         let effort = self.effort(certify);
         let expects_none = self.candidates.scenarios.iter().all(|s| s.nominal.iter().all(|value| *value == 0.0));
         if self.time.is_some() || !expects_none {
-            return self.search(effort);
+            return self.search(effort, progress);
         }
         // A hasty plan mostly shows whether a good one would meet the goals.
-        let hasty = self.search(Effort::QUICK)?;
+        let hasty = self.search(Effort::QUICK, progress)?;
         if self.meets_goals(&hasty)? {
-            let plan = self.search(effort)?;
+            let plan = self.search(effort, progress)?;
             if self.meets_goals(&plan)? {
                 return Ok(plan);
             }
@@ -77,7 +78,7 @@ impl Task {
         for scenario in &mut self.candidates.scenarios {
             scenario.nominal = scenario.model.parameters().typical_alternating();
         }
-        self.search(effort)
+        self.search(effort, progress)
     }
 
     /// The model of the first scenario.
@@ -125,11 +126,11 @@ impl Task {
         Ok(self.goals().iter().zip(reached).all(is_met))
     }
 
-    fn search(&self, effort: Effort) -> Result<Plan, PlanError> {
+    fn search(&self, effort: Effort, progress: OnProgress<()>) -> Result<Plan, PlanError> {
         if self.time.is_none() && !self.model().influences().is_empty() {
             self.check_type_b()?;
         }
-        self.best(&self.criterion, effort)
+        self.best(&self.criterion, effort, progress)
     }
 
     /// A goal below what type B leaves of it with every candidate as often and as long as possible cannot be reached.
@@ -144,10 +145,10 @@ impl Task {
         Ok(())
     }
 
-    fn best(&self, criterion: &Criterion, effort: Effort) -> Result<Plan, PlanError> {
+    fn best(&self, criterion: &Criterion, effort: Effort, progress: OnProgress<()>) -> Result<Plan, PlanError> {
         match self.time {
-            Some(time) => best_for_time(&self.candidates, criterion, time, effort),
-            None => shortest_for_goals(&self.candidates, criterion, RESOLUTION, effort),
+            Some(time) => best_for_time(&self.candidates, criterion, time, effort, progress),
+            None => shortest_for_goals(&self.candidates, criterion, RESOLUTION, effort, progress),
         }
     }
 

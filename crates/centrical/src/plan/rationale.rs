@@ -6,6 +6,7 @@ use super::criterion::{Criterion, Goal};
 use super::error::PlanError;
 use super::information::LinearisedScenario;
 use super::search::Problem;
+use crate::progress::unwatched;
 
 /// The purpose of a part of a schedule.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +64,7 @@ struct Reference<'a> {
 
 impl<'a> Reference<'a> {
     fn new(candidates: &'a Candidates, criterion: &Criterion, schedule: &'a Schedule) -> Result<Self, PlanError> {
-        let problem = Problem::new(candidates, criterion)?;
+        let problem = Problem::new(candidates, criterion, &unwatched)?;
         let model = &candidates.scenarios[0].model;
         let parameters: Vec<usize> =
             (0..model.parameters().len()).filter(|&j| model.parameters()[j].is_of_instrument()).collect();

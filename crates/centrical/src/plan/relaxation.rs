@@ -25,6 +25,7 @@ use self::point::{Objective, Point};
 pub(super) use self::polytope::Polytope;
 use super::information::Factor;
 use super::scenarios::LinearisedScenarios;
+use crate::progress::Watch;
 
 /// Multiplicative steps at the start.
 const MULTIPLICATIVE: usize = 15;
@@ -79,8 +80,9 @@ impl Relaxed {
     }
 }
 
-/// Seeks the optimum of `polytope` from `start` until it is known as well as `precision` asks.
+/// Seeks the optimum of `polytope` from `start` until it is known as well as `precision` asks, or the search is stopped.
 pub(super) fn relax(
+    watch: &Watch,
     scenarios: &LinearisedScenarios,
     polytope: &Polytope,
     start: Option<&[f64]>,
@@ -88,7 +90,7 @@ pub(super) fn relax(
 ) -> Relaxed {
     let has_norm = scenarios.has_norm();
     let objective = Objective { scenarios, polytope, exponent: if has_norm { 4.0 } else { 1.0 } };
-    let mut search = Search { objective, best: f64::NEG_INFINITY, models: 0, precision };
+    let mut search = Search { objective, best: f64::NEG_INFINITY, models: 0, precision, watch };
     let mut w = polytope.within(&start.map_or_else(|| polytope.spread(), <[f64]>::to_vec));
     if start.is_none_or(|_| search.is_far(&w)) {
         w = polytope.within(&polytope.spread());
@@ -109,6 +111,7 @@ struct Search<'a> {
     best: f64,
     models: usize,
     precision: Precision,
+    watch: &'a Watch<'a>,
 }
 
 impl<'a> Search<'a> {
@@ -126,11 +129,11 @@ impl<'a> Search<'a> {
         point.value - self.best > FAR && !self.is_done(point.value)
     }
 
-    /// Whether to stop: the bound is known, or is enough, or cannot become enough and is nearly known.
+    /// Whether to end: the bound is known, or is enough, or cannot become enough and is nearly known; or the caller stops.
     fn is_done(&self, value: f64) -> bool {
         let left = value - self.best;
         let Precision { tolerance, loose, enough } = self.precision;
-        self.best >= enough || left <= tolerance || (value < enough && left <= loose)
+        self.best >= enough || left <= tolerance || (value < enough && left <= loose) || self.watch.is_stopped()
     }
 
     /// Multiplicative steps `w_x (g_x / lambda tau_x)^e`, from a spread design.

@@ -16,20 +16,22 @@ use self::tree::Tree;
 use super::candidates::Candidates;
 use super::criterion::Criterion;
 use super::error::PlanError;
+use crate::progress::OnProgress;
 
-/// The best schedule within `time` [s].
+/// The best schedule within `time` [s]. `progress` is called again and again; it changes nothing but whether the search goes on.
 ///
 /// # Errors
-/// [`PlanError`] when there is no plan.
+/// [`PlanError`] when there is no plan, or the caller stops.
 pub fn best_for_time(
     candidates: &Candidates,
     criterion: &Criterion,
     time: f64,
     effort: Effort,
+    progress: OnProgress<()>,
 ) -> Result<Plan, PlanError> {
-    let problem = Problem::new(candidates, criterion)?;
+    let problem = Problem::new(candidates, criterion, progress)?;
     problem.check_time(time)?;
-    Ok(Tree::new(&problem, time, effort).run())
+    Ok(problem.watch.found(Tree::new(&problem, time, effort).run())?)
 }
 
 /// The shortest schedule that meets every goal, to `resolution` of its time (0.01: 1 %), and a time in which no schedule does.
@@ -41,6 +43,8 @@ pub fn shortest_for_goals(
     criterion: &Criterion,
     resolution: f64,
     effort: Effort,
+    progress: OnProgress<()>,
 ) -> Result<Plan, PlanError> {
-    Ok(Shortest::new(&Problem::new(candidates, criterion)?, resolution, effort)?.run())
+    let problem = Problem::new(candidates, criterion, progress)?;
+    Ok(problem.watch.found(Shortest::new(&problem, resolution, effort)?.run())?)
 }

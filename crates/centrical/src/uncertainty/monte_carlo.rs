@@ -12,6 +12,7 @@ use super::comparison::weighted_square;
 use super::coverage::{Degrees, chi_squared_tail, coverage_factor};
 use crate::fit::{Calibration, Data, Fit, Structure, Termination};
 use crate::model::{FitError, MeasurementModel, Observation, SetPoint};
+use crate::progress::{OnProgress, advance};
 use crate::random::Random;
 
 /// What to draw, and how often.
@@ -84,26 +85,30 @@ pub struct WeightedSquare {
 const BATCH: usize = 256;
 
 /// Repeats the calibration of `data` for a unit with unknowns `truth`. The means of `data` are not used, only their weights.
-/// `done` is called with the number of runs of each batch.
+/// `progress` is called with the number of runs that were done.
 ///
 /// # Errors
-/// [`FitError`] when numbers overflow.
+/// [`FitError`] when numbers overflow or the caller stops.
 pub fn monte_carlo(
     data: &Data,
     truth: &[f64],
     settings: &Settings,
-    done: &dyn Fn(usize),
+    progress: OnProgress<usize>,
 ) -> Result<MonteCarlo, FitError> {
     let laboratory = Laboratory::new(data, truth, settings)?;
     let mut tally = Tally::new(&laboratory);
     for first in (0..settings.runs).step_by(BATCH) {
         let batch = first..settings.runs.min(first + BATCH);
         let count = batch.len();
-        let runs: Vec<Option<Run>> = batch.into_par_iter().map(|n| laboratory.run(n)).collect::<Result<_, _>>()?;
+        let run = |n: usize| {
+            advance(progress, 0)?;
+            laboratory.run(n)
+        };
+        let runs: Vec<Option<Run>> = batch.into_par_iter().map(run).collect::<Result<_, _>>()?;
         for run in &runs {
             tally.add(run.as_ref());
         }
-        done(count);
+        advance(progress, count)?;
     }
     Ok(tally.into_monte_carlo(&laboratory))
 }

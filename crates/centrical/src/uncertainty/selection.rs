@@ -14,6 +14,7 @@ use super::rivals::columns::Columns;
 use super::validity::f_tail;
 use crate::fit::{Calibration, Data, Fit, Termination};
 use crate::model::{ErrorModel, Extension, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
+use crate::progress::{OnProgress, advance};
 
 /// A model that could be meant.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,13 +124,17 @@ fn with_rivals(model: &MeasurementModel, rivals: Vec<Rival>) -> Candidate {
 ///
 /// # Errors
 /// [`FitError`] when an observation is invalid.
-pub fn select_beside(model: &MeasurementModel, observations: &[Observation]) -> Result<Selection, FitError> {
+pub fn select_beside(
+    model: &MeasurementModel,
+    observations: &[Observation],
+    progress: OnProgress<usize>,
+) -> Result<Selection, FitError> {
     let single = candidates_of(model);
     let data = data_of(&single, observations)?;
-    let mut fits = fits(&single, &data)?;
+    let mut fits = fits(&single, &data, progress)?;
     let paired = pairs(model, &fits);
     let data_of_pairs = data_of(&paired, observations)?;
-    fits.extend(self::fits(&paired, &data_of_pairs)?);
+    fits.extend(self::fits(&paired, &data_of_pairs, progress)?);
     conclude(&fits)
 }
 
@@ -158,9 +163,13 @@ fn pairs(model: &MeasurementModel, single: &[(&Candidate, Calibration)]) -> Vec<
 ///
 /// # Errors
 /// [`FitError`] when an observation cannot be one, or when there is no candidate ([`FitError::Empty`]).
-pub fn select(candidates: &[Candidate], observations: &[Observation]) -> Result<Selection, FitError> {
+pub fn select(
+    candidates: &[Candidate],
+    observations: &[Observation],
+    progress: OnProgress<usize>,
+) -> Result<Selection, FitError> {
     let data = data_of(candidates, observations)?;
-    conclude(&fits(candidates, &data)?)
+    conclude(&fits(candidates, &data, progress)?)
 }
 
 /// The plateaus with the model of each candidate.
@@ -172,8 +181,14 @@ fn data_of<'c>(candidates: &'c [Candidate], observations: &[Observation]) -> Res
 fn fits<'c>(
     candidates: &'c [Candidate],
     data: &'c [Data<'c>],
+    progress: OnProgress<usize>,
 ) -> Result<Vec<(&'c Candidate, Calibration<'c>)>, FitError> {
-    candidates.iter().zip(data).map(|(candidate, data)| Ok((candidate, Calibration::exact(data)?))).collect()
+    let fit = |(candidate, data): (&'c Candidate, &'c Data<'c>)| {
+        let calibration = Calibration::exact(data)?;
+        advance(progress, 1)?;
+        Ok((candidate, calibration))
+    };
+    candidates.iter().zip(data).map(fit).collect()
 }
 
 /// Compares the fits.

@@ -8,7 +8,7 @@ use centrical::simulate::{Machine, Recorder, Sensor, Simulation};
 use centrical::uncertainty::{Compensated, Method, Settings, monte_carlo};
 use centrical::{
     Centrifuge, Data, ErrorModel, Experiment, Extension, Law, MeasurementModel, Monomial, Mounting, NULL_HOLD,
-    Observation, PairRelation, ReferencePoint, SetPoint, Site, Term, Unit, Weight, linear,
+    Observation, PairRelation, ReferencePoint, SetPoint, Site, Term, Unit, Weight, linear, unwatched,
 };
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
@@ -230,14 +230,14 @@ fn compared_with_all(
         if best.1.is_empty() {
             continue;
         }
-        let plan = best_for_time(&candidates, &criterion, time, Effort::CERTIFIED).unwrap();
+        let plan = best_for_time(&candidates, &criterion, time, Effort::CERTIFIED, &unwatched).unwrap();
         let found = value(&criterion, &candidates, &plan.schedule.visits);
         assert!((plan.criterion / found - 1.0).abs() < 1e-6, "case {case}: {} {found}", plan.criterion);
         assert!(plan.schedule.time <= time * (1.0 + 1e-12), "case {case}");
         // However early the search ends, no schedule is below its bound.
         let ends = [1, 2, 3, 5, 9].map(|nodes| Effort { nodes, ..Effort::QUICK });
         for effort in ends.into_iter().chain([Effort::CERTIFIED]) {
-            let early = best_for_time(&candidates, &criterion, time, effort).unwrap();
+            let early = best_for_time(&candidates, &criterion, time, effort, &unwatched).unwrap();
             assert!(early.bound <= best.0 * (1.0 + 1e-9), "case {case}, {effort:?}: {:e} {:e}", early.bound, best.0);
             assert!(early.bound > 0.0 && early.criterion >= best.0 * (1.0 - 1e-6), "case {case}, {effort:?}");
         }
@@ -285,7 +285,8 @@ fn large_plans_are_certified() {
     for (number, time) in [(2, 4.0), (2, 6.0), (0, 8.0), (1, 8.0), (3, 8.0)] {
         let candidates = large(8, &[30.0, 60.0, 120.0]);
         let criterion = criterion(number, &candidates.scenarios[0].model);
-        let plan = best_for_time(&candidates, &criterion, time * 3600.0, Effort::usual(candidates.len())).unwrap();
+        let plan =
+            best_for_time(&candidates, &criterion, time * 3600.0, Effort::usual(candidates.len()), &unwatched).unwrap();
         assert!(schedule_is_sorted(&plan.schedule, &candidates));
         // The continuous design within 0.2 % of the optimum; the schedule, where there is more time to fill than set-ups take,
         // within 0.2 % of it; and of the best on any mountings within 1 % of the uncertainty.
@@ -300,7 +301,7 @@ fn large_plans_are_certified() {
 fn planned() -> (Candidates, Schedule) {
     let candidates = large(5, &[20.0, 40.0]);
     let criterion = Criterion::Reading(ReadingRange { force: 200.0 * 9.80665 });
-    let plan = best_for_time(&candidates, &criterion, 5.5 * 3600.0, Effort::QUICK).unwrap();
+    let plan = best_for_time(&candidates, &criterion, 5.5 * 3600.0, Effort::QUICK, &unwatched).unwrap();
     (candidates, plan.schedule)
 }
 
@@ -325,7 +326,7 @@ fn predictions_are_what_monte_carlo_shows() {
         .collect();
     let settings = Settings { runs: RUNS, seed: 3, coverage: 0.95, method: Method::Exact };
     let data = Data::new(&model, observations).unwrap();
-    let shown = monte_carlo(&data, &zero, &settings, &|_| {}).unwrap();
+    let shown = monte_carlo(&data, &zero, &settings, &unwatched).unwrap();
     let mut ratios = Vec::new();
     for (j, statistics) in shown.parameters.iter().enumerate() {
         let (Some(statistics), Some(u)) = (statistics, prediction.budget().standard_uncertainty(j)) else { continue };
@@ -457,7 +458,7 @@ fn reading_criterion_is_the_mean_over_forces() {
 fn shortest_plans_keep_their_goals() {
     let candidates = large(5, &[30.0, 120.0]);
     let of_reading = Criterion::Reading(ReadingRange { force: 200.0 * 9.80665 });
-    let known = best_for_time(&candidates, &of_reading, 6.0 * 3600.0, Effort::QUICK).unwrap();
+    let known = best_for_time(&candidates, &of_reading, 6.0 * 3600.0, Effort::QUICK, &unwatched).unwrap();
     let goal = |factor: f64| {
         Criterion::Worst(vec![Goal::Reading {
             range: ReadingRange { force: 200.0 * 9.80665 },
@@ -465,11 +466,11 @@ fn shortest_plans_keep_their_goals() {
         }])
     };
     // What six hours reach is reached in six hours, and no less by more than the search's resolution and gaps.
-    let shortest = shortest_for_goals(&candidates, &goal(1.0), 0.01, Effort::QUICK).unwrap();
+    let shortest = shortest_for_goals(&candidates, &goal(1.0), 0.01, Effort::QUICK, &unwatched).unwrap();
     assert!(shortest.criterion <= 1.0, "{}", shortest.criterion);
     let hours = shortest.schedule.time / 3600.0;
     assert!(hours < 6.0 * 1.02 && hours > 5.0, "{hours} h");
-    let error = shortest_for_goals(&candidates, &goal(0.1), 0.01, Effort::QUICK).unwrap_err();
+    let error = shortest_for_goals(&candidates, &goal(0.1), 0.01, Effort::QUICK, &unwatched).unwrap_err();
     assert!(matches!(error, PlanError::OutOfReach { factor } if factor > 1.0), "{error}");
 }
 
@@ -486,7 +487,7 @@ fn least_times_for_goals_are_below_all_that_keep_them() {
         let reached = value(&Criterion::Reading(RANGE), &candidates, &everything).sqrt();
         let uncertainty = reached * (1.02 + random.uniform());
         let goal = Criterion::Worst(vec![Goal::Reading { range: RANGE, uncertainty }]);
-        let plan = shortest_for_goals(&candidates, &goal, 0.01, Effort::CERTIFIED).unwrap();
+        let plan = shortest_for_goals(&candidates, &goal, 0.01, Effort::CERTIFIED, &unwatched).unwrap();
         let mut shortest = f64::INFINITY;
         enumerated(&candidates, plan.schedule.time, &mut |visits| {
             let time = candidates.time_of(visits);
@@ -514,10 +515,12 @@ fn least_times_for_goals_are_below_all_that_keep_them() {
 fn plans_of_little_time_see_what_they_are_to_see() {
     let candidates = large(8, &[30.0, 60.0]);
     let criterion = Criterion::Reading(RANGE);
-    let plan = best_for_time(&candidates, &criterion, 2.4 * 3600.0, Effort::usual(candidates.len())).unwrap();
+    let plan =
+        best_for_time(&candidates, &criterion, 2.4 * 3600.0, Effort::usual(candidates.len()), &unwatched).unwrap();
     println!("{:.2e} {:.2e}, {} nodes", plan.gap(), plan.rounding(), plan.nodes);
     assert!((1.0 + plan.gap()).sqrt() < 1.1, "{}", plan.gap());
-    let more = best_for_time(&candidates, &criterion, 2.6 * 3600.0, Effort::usual(candidates.len())).unwrap();
+    let more =
+        best_for_time(&candidates, &criterion, 2.6 * 3600.0, Effort::usual(candidates.len()), &unwatched).unwrap();
     assert!(more.criterion < plan.criterion && more.bound < plan.bound);
 }
 
@@ -577,7 +580,7 @@ fn no_usual_plan_is_below_the_bound() {
     let mut compared = 0;
     for hours in [3.4, 4.0, 5.5, 7.0] {
         let time = hours * 3600.0;
-        let plan = best_for_time(&candidates, &criterion, time, Effort::usual(candidates.len())).unwrap();
+        let plan = best_for_time(&candidates, &criterion, time, Effort::usual(candidates.len()), &unwatched).unwrap();
         let Some((schedule, uniform)) = candidates.uniform(&criterion, time).unwrap() else { continue };
         assert!(schedule.time <= time, "{hours} h: {}", schedule.time);
         assert!(schedule.visits.iter().all(|visit| candidates.durations.contains(&visit.duration)));

@@ -1,5 +1,5 @@
 use centrical::uncertainty::{Candidate, select, select_beside};
-use centrical::{ErrorModel, Group, MeasurementModel, Monomial, Rival, Term};
+use centrical::{ErrorModel, Group, MeasurementModel, Monomial, Rival, Term, unwatched};
 use rayon::prelude::*;
 
 use crate::common::{Random, observations, truth};
@@ -46,7 +46,7 @@ fn five_sigma_is_kept_and_nothing_is_rejected() {
                         rivals: Vec::new(),
                         model: model.clone(),
                     });
-                    let selection = select(&candidates, &data).unwrap();
+                    let selection = select(&candidates, &data, &unwatched).unwrap();
                     let verdict = selection.terms.iter().find(|t| t.name == term).unwrap();
                     ((selection.recommended == 1) == present, verdict.kept == present)
                 })
@@ -64,7 +64,7 @@ fn five_sigma_is_kept_and_nothing_is_rejected() {
 fn the_true_model_is_recommended() {
     let (model, mut random) = (source_model(), Random::new(21));
     let data = session(&model, &truth(&model, 1.0, &mut random), &mut random);
-    let selection = select_beside(&model, &data).unwrap();
+    let selection = select_beside(&model, &data, &unwatched).unwrap();
     let names: Vec<&str> = selection.candidates.iter().map(|r| r.name.as_str()).collect();
     // Three parts of the model, the model, and every rival of the catalogue.
     assert!(names.len() >= 4 + Rival::COUNT, "{names:?}");
@@ -89,5 +89,5 @@ fn the_true_model_is_recommended() {
 fn no_candidate_is_an_error() {
     let model = source_model();
     let data = observations(&model, &truth(&model, 1.0, &mut Random::new(3)));
-    assert!(select(&[], &data).is_err());
+    assert!(select(&[], &data, &unwatched).is_err());
 }

@@ -3,7 +3,9 @@
 
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::uncertainty::{Level, Method, MonteCarlo, Settings, chi_squared_tail, monte_carlo};
-use centrical::{Calibration, Data, Extension, Law, MeasurementModel, PairRelation, Rival, SetPoint, Source, TypeB};
+use centrical::{
+    Calibration, Data, Extension, Law, MeasurementModel, PairRelation, Rival, SetPoint, Source, TypeB, unwatched,
+};
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
 use crate::uncertainty::STATED;
@@ -19,7 +21,7 @@ fn repeated(model: &MeasurementModel, stated: &TypeB) -> MonteCarlo {
     let x = truth(&model, 0.5, &mut Random::new(3));
     let data = Data::new(&model, observations(&model, &x)).unwrap();
     let settings = Settings { runs: RUNS, seed: 4, coverage: 0.95, method: Method::Exact };
-    monte_carlo(&data, &x, &settings, &|_| {}).unwrap()
+    monte_carlo(&data, &x, &settings, &unwatched).unwrap()
 }
 
 fn bounded(name: &str, u: f64) -> TypeB {

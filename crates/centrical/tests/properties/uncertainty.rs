@@ -2,6 +2,7 @@ use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::uncertainty::{Budget, Degrees, Method, MonteCarlo, Settings, monte_carlo};
 use centrical::{
     Calibration, Data, Experiment, Fit, MeasurementModel, Observation, PairRelation, Rival, Source, TypeB, rotation,
+    unwatched,
 };
 use nalgebra::Vector3;
 
@@ -50,7 +51,7 @@ impl Case {
         let settings = Settings { runs, seed: 1, coverage: 0.95, method };
         let model = self.model.clone().with_stated(*stated);
         let data = Data::new(&model, self.observations.clone()).unwrap();
-        monte_carlo(&data, &self.truth, &settings, &|_| {}).unwrap()
+        monte_carlo(&data, &self.truth, &settings, &unwatched).unwrap()
     }
 }
 
@@ -248,7 +249,7 @@ fn monte_carlo_does_not_depend_on_threads() {
     let settings = Settings { runs: 300, seed: 2, coverage: 0.95, method: Method::Exact };
     let stating = case.model.clone().with_stated(STATED);
     let data = Data::new(&stating, case.observations.clone()).unwrap();
-    let other = monte_carlo(&data, &case.truth, &settings, &|_| {}).unwrap();
+    let other = monte_carlo(&data, &case.truth, &settings, &unwatched).unwrap();
     assert_ne!(one, other);
 }
 

@@ -2,7 +2,7 @@
 
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::uncertainty::{Method, Settings, monte_carlo};
-use centrical::{Calibration, Data, PairRelation, Termination};
+use centrical::{Calibration, Data, PairRelation, Termination, unwatched};
 
 use crate::common::{Random, experiment, kozlov, observations, truth};
 
@@ -18,7 +18,7 @@ fn joint_covariance_with_one_radius() {
             let x = truth(&model, 0.5, &mut Random::new(3));
             let data = Data::new(&model, observations(&model, &x)).unwrap();
             let settings = Settings { runs: 300, seed: 4, coverage: 0.95, method: Method::Exact };
-            let shown = monte_carlo(&data, &x, &settings, &|_| {}).unwrap();
+            let shown = monte_carlo(&data, &x, &settings, &unwatched).unwrap();
             let ratio = shown.weighted_square.mean / shown.weighted_square.degrees_of_freedom as f64;
             println!("{relation:?} {name}: squared error {ratio:.3} of the stated");
             assert_eq!((shown.weighted_square.degrees_of_freedom, shown.failures), (49, 0), "{relation:?} {name}");

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use centrical::fit::{Innovation, Progress};
-use centrical::{MeasurementModel, Observation};
+use centrical::{MeasurementModel, Observation, unwatched};
 use centrical_table::write_stream;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -70,7 +70,7 @@ impl WatchState {
     /// [`Error`] when the experiment file cannot be read.
     pub fn new(session: &Session) -> Result<Self, Error> {
         let folder = session.file.parent().unwrap_or(Path::new(""));
-        let experiment = Input::of(folder, &session.file)?;
+        let experiment = Input::of(folder, &session.file, &unwatched)?;
         Ok(Self { schema: SCHEMA.to_owned(), experiment, point: Vec::new(), reference: None, plateaus: Vec::new() })
     }
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use centrical::OnProgress;
 use centrical::stability::Estimator;
 use centrical_table::{ColumnName, TableLines};
 
@@ -36,12 +37,13 @@ pub struct NoiseRequest {
     pub estimators: Vec<Estimator>,
 }
 
-/// Analyses the noise of a record or of a plateau of a session, which is named then.
+/// Analyses the noise of a record or of a plateau of a session, which is named then. `progress` is called with the number of bytes
+/// read, from any thread.
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
-pub fn noise_of(request: &NoiseRequest) -> Result<(NoiseAnalysis, Option<PlateauName>), Error> {
-    let (series, plateau) = series(request)?;
+pub fn noise_of(request: &NoiseRequest, progress: OnProgress) -> Result<(NoiseAnalysis, Option<PlateauName>), Error> {
+    let (series, plateau) = series(request, progress)?;
     let mut estimators: Vec<Estimator> = Vec::new();
     for estimator in &request.estimators {
         if !estimators.contains(estimator) {
@@ -51,10 +53,10 @@ pub fn noise_of(request: &NoiseRequest) -> Result<(NoiseAnalysis, Option<Plateau
     Ok((analyse_noise(&series, &estimators)?, plateau))
 }
 
-fn series(request: &NoiseRequest) -> Result<(Series, Option<PlateauName>), Error> {
+fn series(request: &NoiseRequest, progress: OnProgress) -> Result<(Series, Option<PlateauName>), Error> {
     let NoiseRequest { file, .. } = request;
     if file.is_dir() || file.extension().is_some_and(|extension| extension == "toml") {
-        let (series, name) = Series::of_plateau(&Session::read(file)?, request.plateau)?;
+        let (series, name) = Series::of_plateau(&Session::read(file)?, request.plateau, progress)?;
         return Ok((series, Some(name)));
     }
     let mut lines = TableLines::default();
@@ -66,7 +68,7 @@ fn series(request: &NoiseRequest) -> Result<(Series, Option<PlateauName>), Error
         }
         None => columns(request),
     };
-    Ok((Series::read(file, lines, &time, &readings, request.window)?, None))
+    Ok((Series::read(file, lines, &time, &readings, request.window, progress)?, None))
 }
 
 fn columns(request: &NoiseRequest) -> (Column, Vec<Column>) {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use centrical::{OnProgress, advance};
 use centrical_table::{Extent, Rule, TableLines, TableReader};
 
 use crate::error::{Error, Place};
@@ -22,7 +23,8 @@ pub struct Series {
 }
 
 impl Series {
-    /// Reads the columns `readings` of a file from `window[0]` to `window[1]` on its clock [s].
+    /// Reads the columns `readings` of a file from `window[0]` to `window[1]` on its clock [s]. `progress` is called with the
+    /// number of bytes read.
     ///
     /// # Errors
     /// As of a record; and if nothing is in the window.
@@ -32,15 +34,18 @@ impl Series {
         time: &Column,
         readings: &[Column],
         window: [f64; 2],
+        progress: OnProgress,
     ) -> Result<Self, Error> {
         let mut fields = vec![time.field(Rule::Ascending { stamps: true })];
         fields.extend(readings.iter().map(|column| column.field(Rule::OrMissing)));
         let (mut t, mut values) = (Vec::new(), vec![Vec::new(); readings.len()]);
         let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
         let mut table = TableReader::open_at(file, Extent::Whole, &fields, "a record", lines)?;
+        let mut bytes = 0;
         let mut units = StatedUnits::of(std::iter::once(time).chain(readings));
         while table.next_batch()?.is_some() {
             units.check(file, &table)?;
+            advance(progress, table.bytes() - std::mem::replace(&mut bytes, table.bytes()))?;
             let batch = table.batch();
             for rows in batch.iter().filter(|rows| !rows[0].is_empty()) {
                 let times: Vec<f64> = rows[0].iter().map(|raw| si(time, *raw)).collect();
@@ -75,8 +80,12 @@ impl Series {
     ///
     /// # Errors
     /// As of a calibration; and if the session has no such plateau, or came already averaged.
-    pub fn of_plateau(session: &Session, name: Option<PlateauName>) -> Result<(Self, PlateauName), Error> {
-        let reduced = reduce(session, &|_| ())?;
+    pub fn of_plateau(
+        session: &Session,
+        name: Option<PlateauName>,
+        progress: OnProgress,
+    ) -> Result<(Self, PlateauName), Error> {
+        let reduced = reduce(session, progress)?;
         let set_points = &session.experiment.set_points;
         let length = |k: &usize| reduced.plateaus[*k].window.map_or(0.0, |[from, to]| to - from);
         let longest = || {
@@ -100,7 +109,7 @@ impl Series {
             let series = Self::of_files(session, set_points[set_point].mounting, window)?;
             return Ok((series, PlateauName::of(session, set_point)));
         }
-        let series = Self::read(record, columns.record_lines, &columns.time, &columns.f, window)?;
+        let series = Self::read(record, columns.record_lines, &columns.time, &columns.f, window, progress)?;
         Ok((series, PlateauName::of(session, set_point)))
     }
 }

@@ -1,7 +1,7 @@
 //! Time against uncertainty, with plans that are made without a search beside the best.
 
 use centrical::plan::{Candidates, Effort, FrontierPoint, Schedule, Task, frontier};
-use centrical::{Experiment, SetPoint};
+use centrical::{Experiment, OnProgress, SetPoint};
 
 use super::request::PlanRequest;
 use crate::document::FrontierRow;
@@ -12,13 +12,18 @@ use crate::experiment::Planning;
 const UNIFORM_SPEEDS: usize = 8;
 
 /// The frontier about `time`, with the uniform plan and [K5.5] beside it.
-pub(super) fn frontier_rows(planning: &Planning, time: f64, request: &PlanRequest) -> Result<Vec<FrontierRow>, Error> {
+pub(super) fn frontier_rows(
+    planning: &Planning,
+    time: f64,
+    request: &PlanRequest,
+    progress: OnProgress<()>,
+) -> Result<Vec<FrontierRow>, Error> {
     if request.frontier.is_empty() {
         return Ok(Vec::new());
     }
     let Task { candidates, criterion, .. } = &planning.task;
     let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
-    let points = frontier(candidates, criterion, &times, Effort::usual(candidates.len()));
+    let points = frontier(candidates, criterion, &times, Effort::usual(candidates.len()), progress);
     let experiment = candidates.experiment();
     let uniform = with_set_points(candidates, &uniform_set_points(experiment));
     let normalised = with_set_points(candidates, &normalised_set_points(experiment, &request.levels));

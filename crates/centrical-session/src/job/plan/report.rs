@@ -1,7 +1,7 @@
 //! The report of a plan.
 
 use centrical::plan::{Criterion, Goal, Plan, PlanError, Prediction, Rationale, Reached, Reason, Robustness, Task};
-use centrical::{Group, SetPoint};
+use centrical::{Group, OnProgress, SetPoint};
 
 use super::frontier::frontier_rows;
 use super::request::PlanRequest;
@@ -16,7 +16,12 @@ use crate::experiment::Planning;
 ///
 /// # Errors
 /// [`Error::Planning`] when it cannot be predicted.
-pub(super) fn report(planning: &Planning, plan: &Plan, request: &PlanRequest) -> Result<PlanReport, Error> {
+pub(super) fn report(
+    planning: &Planning,
+    plan: &Plan,
+    request: &PlanRequest,
+    progress: OnProgress<()>,
+) -> Result<PlanReport, Error> {
     let failed = |source| planning.failed(source);
     let task = &planning.task;
     let candidates = &task.candidates;
@@ -58,7 +63,7 @@ pub(super) fn report(planning: &Planning, plan: &Plan, request: &PlanRequest) ->
         goals: goals(task, &prediction),
         prediction: PredictionReport::of(&prediction, planning.range, request.coverage)
             .map_err(|source| failed(PlanError::from(source)))?,
-        frontier: frontier_rows(planning, schedule.time, request)?,
+        frontier: frontier_rows(planning, schedule.time, request, progress)?,
     })
 }
 

@@ -1,7 +1,7 @@
 //! A mounting's record in two passes: where its plateaus are, then what they read.
 
-use centrical::linear;
 use centrical::reduction::{PulseTrain, ReducedMounting, ReductionError, ScheduledPlateau, locate};
+use centrical::{OnProgress, linear};
 
 use crate::error::Error;
 use crate::experiment::{Session, SpeedSource};
@@ -19,7 +19,7 @@ pub(super) struct OfRecord {
 pub(super) fn reduce_mounting(
     session: &Session,
     number: usize,
-    progress: &(dyn Fn(u64) + Sync),
+    progress: OnProgress,
     cache: &mut SampleCache,
 ) -> Result<OfRecord, Error> {
     let record = RecordFile::new(session.record_files(number)?, &session.columns, progress);
@@ -60,6 +60,7 @@ mod tests {
     use std::fs::{self, File};
     use std::path::{Path, PathBuf};
 
+    use centrical::unwatched;
     use flate2::{Compression, write::GzEncoder};
 
     use super::*;
@@ -79,7 +80,7 @@ mod tests {
         let mut reduced = |file: &PathBuf, bytes: usize| {
             session.mountings[0].record = Some(file.clone());
             let budget = MemoryBudget::of(bytes);
-            let mounting = reduce_mounting(&session, 0, &|_| {}, &mut SampleCache::new(&budget)).unwrap();
+            let mounting = reduce_mounting(&session, 0, &unwatched, &mut SampleCache::new(&budget)).unwrap();
             (format!("{:?}", mounting.reduced), mounting.overview)
         };
         let cached = reduced(&plain, 1 << 30);

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use centrical::OnProgress;
 use rayon::prelude::*;
 
 use super::mounting::{OfRecord, reduce_mounting};
@@ -15,7 +16,7 @@ type Numbered = (usize, Result<OfRecord, Error>);
 /// Hands out the mountings of a session in their order, to as many lanes as their samples fit into memory.
 pub(super) struct Scheduler<'a> {
     session: &'a Session,
-    progress: &'a (dyn Fn(u64) + Sync),
+    progress: OnProgress<'a>,
     budget: MemoryBudget,
     /// The next mounting.
     next: AtomicUsize,
@@ -23,7 +24,7 @@ pub(super) struct Scheduler<'a> {
 
 impl<'a> Scheduler<'a> {
     /// Begins with the first mounting.
-    pub fn new(session: &'a Session, progress: &'a (dyn Fn(u64) + Sync)) -> Self {
+    pub fn new(session: &'a Session, progress: OnProgress<'a>) -> Self {
         Self { session, progress, budget: MemoryBudget::default(), next: AtomicUsize::new(0) }
     }
 

@@ -1,9 +1,11 @@
 //! A whole session as a laboratory would deliver it: experiment.toml, records, telemetry; and truth.json, which no
 //! laboratory has.
 
+use std::io;
 use std::path::Path;
 
 use centrical::simulate::{SimulatedMounting, Simulation};
+use centrical::{OnProgress, advance};
 use centrical_table::{ColumnName, TableFormat, claim_folder, create_folder, refuse_inputs, write_table, write_whole};
 use rayon::prelude::*;
 
@@ -15,19 +17,19 @@ use crate::experiment::{EXPERIMENT_FILE, OutputUnit, Session};
 use crate::record::Column;
 use crate::truth::Truth;
 
-/// Simulates the session that `plan` describes and writes it to `folder`. `done` is told the index of each mounting as
-/// it is written, from any thread; the files do not depend on the number of threads.
+/// Simulates the session that `plan` describes and writes it to `folder`. `progress` is called with the number of mountings that
+/// were written, from any thread; the files do not depend on the number of threads.
 ///
 /// # Errors
 /// [`Error`] when the folder holds a session already, the plan brings plateaus already averaged or columns without
-/// names, or a file cannot be written.
+/// names, or a file cannot be written; [`Error::Stopped`].
 pub fn simulate_session(
     plan: &Session,
     truth: &Truth,
     seed: u64,
     format: TableFormat,
     folder: &Path,
-    done: &(dyn Fn(usize) + Sync),
+    progress: OnProgress<usize>,
 ) -> Result<(), Error> {
     let _claim = claim_folder(folder)?;
     let experiment_file = folder.join(EXPERIMENT_FILE);
@@ -63,9 +65,9 @@ pub fn simulate_session(
         create_folder(&folder.join("pulses"))?;
     }
     let mountings = mountings.into_par_iter().map(|m| {
-        let written = write_mounting(plan, &columns, &simulation.mounting(m), format, folder, m);
-        done(m);
-        written
+        let written = write_mounting(plan, &columns, &simulation.mounting(m), format, folder, m, progress)?;
+        advance(progress, 1)?;
+        Ok(written)
     });
     let mountings = mountings.collect::<Result<Vec<Written>, Error>>()?;
     write_whole(&folder.join("truth.json"), truth_json(plan, truth, seed, &mountings).as_bytes())?;
@@ -81,27 +83,32 @@ fn write_mounting(
     format: TableFormat,
     folder: &Path,
     m: usize,
+    progress: OnProgress<usize>,
 ) -> Result<Written, Error> {
     let [f1, f2, f3] = &plan.columns.f;
     let columns = [&plan.columns.time, f1, f2, f3];
     let record = mounting.records().map(|stretch| {
+        advance(progress, 0).map_err(io::Error::other)?;
         let [f1, f2, f3] = stretch.f_z;
         let mut rows = raw([stretch.t, f1, f2, f3], columns);
         if plan.output_unit == OutputUnit::Counts {
             rows[1..].iter_mut().flatten().for_each(|value| *value = value.round());
         }
-        rows
+        Ok(rows)
     });
-    write_table(&folder.join(record_path(m, format)), format, &headers.record, record)?;
+    let written = write_table(&folder.join(record_path(m, format)), format, &headers.record, record);
+    // A caller who stops the work is the reason why the file could not be written.
+    advance(progress, 0)?;
+    written?;
 
     let telemetry = mounting.telemetry();
     let sense = plan.experiment.centrifuge.rotation.sign();
     let speed = telemetry.omega.iter().map(|omega| sense * omega + 0.0).collect();
     let rows = raw([telemetry.t, speed], [&plan.columns.telemetry_time, &plan.columns.speed]);
-    write_table(&folder.join(telemetry_path(m, format)), format, &headers.telemetry, std::iter::once(rows))?;
+    write_table(&folder.join(telemetry_path(m, format)), format, &headers.telemetry, std::iter::once(Ok(rows)))?;
     if counts_pulses(plan) {
         let rows = raw([mounting.pulses()], [&plan.columns.pulse]);
-        write_table(&folder.join(pulses_path(m, format)), format, &headers.pulses, std::iter::once(rows))?;
+        write_table(&folder.join(pulses_path(m, format)), format, &headers.pulses, std::iter::once(Ok(rows)))?;
     }
     Ok(Written {
         plateaus: mounting.plateaus(),

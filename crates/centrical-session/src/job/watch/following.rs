@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use centrical::fit::{Follower, Progress};
 use centrical::plan::{Benefit, Criterion, NextPlateau, PlanError, ReadingRange};
 use centrical::reduction::MeasuredSpeed;
-use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linear};
+use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linear, unwatched};
 
 use nalgebra::Vector3;
 
@@ -111,7 +111,7 @@ impl<'a> Following<'a> {
         // One that has been taken up before is held out from now on.
         state.plateaus.iter_mut().for_each(|plateau| plateau.held_out |= held_out.contains(&plateau.set_point));
         let follower = Follower::resume(model, state.taken(), &state.point, state.reference())
-            .map_err(|source| Error::Fit { file: state_file, source })?;
+            .map_err(|source| Error::fit(&state_file, source))?;
         let experiment = &session.experiment;
         let load = |s: &SetPoint| linear::nominal(experiment, s).norm();
         let force = experiment.set_points.iter().map(load).fold(0.0, f64::max);
@@ -268,7 +268,7 @@ impl<'a> Following<'a> {
     fn finish(&self) -> Result<WatchEnd, Error> {
         let held_out = self.state.plateaus.iter().filter(|plateau| plateau.held_out);
         let held_out: Vec<_> = held_out.map(|plateau| PlateauName::of(self.session, plateau.set_point)).collect();
-        let result = calibrate_without(self.session, &held_out, Method::Recursive, &|_| {})?;
+        let result = calibrate_without(self.session, &held_out, Method::Recursive, &unwatched)?;
         result.write(&self.request.out.join("result.json"))?;
         Ok(WatchEnd::Complete(Box::new(result)))
     }
@@ -278,7 +278,7 @@ impl<'a> Following<'a> {
     }
 
     fn fitted<T>(&self, outcome: Result<T, FitError>) -> Result<T, Error> {
-        outcome.map_err(|source| Error::Fit { file: self.session.file.clone(), source })
+        outcome.map_err(|source| Error::fit(&self.session.file, source))
     }
 }
 

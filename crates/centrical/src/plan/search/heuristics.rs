@@ -87,7 +87,8 @@ impl<'a> Heuristics<'a> {
             for (n, (set, relaxed)) in sets.into_iter().zip(relaxed).enumerate() {
                 self.round(set, relaxed, Some(n) == most_promising);
             }
-            if self.incumbent.value() >= best.value || self.incumbent.is_reached() {
+            let is_over = self.incumbent.is_reached() || self.problem.watch.is_stopped();
+            if is_over || self.incumbent.value() >= best.value {
                 return;
             }
         }
@@ -166,7 +167,7 @@ impl<'a> Heuristics<'a> {
                 break;
             }
             let precision = self.incumbent.precision(Some(DIVING));
-            let rest = relax(&self.problem.scenarios, &polytope, Some(&visits), precision);
+            let rest = relax(&self.problem.watch, &self.problem.scenarios, &polytope, Some(&visits), precision);
             if rest.bound >= self.incumbent.threshold() {
                 break;
             }

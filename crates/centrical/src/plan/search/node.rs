@@ -58,7 +58,7 @@ impl Node {
         if fits {
             // A bound of the parent is one of its children.
             let inherited = self.relaxed.bound;
-            self.relaxed = relax(&problem.scenarios, &polytope, start, precision);
+            self.relaxed = relax(&problem.watch, &problem.scenarios, &polytope, start, precision);
             self.relaxed.bound = self.relaxed.bound.max(inherited);
         }
         fits

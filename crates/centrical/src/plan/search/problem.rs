@@ -6,6 +6,7 @@ use crate::plan::error::PlanError;
 use crate::plan::exchange::{Exchange, IntegerSchedule};
 use crate::plan::information::LinearisedScenario;
 use crate::plan::scenarios::LinearisedScenarios;
+use crate::progress::{OnProgress, Watch};
 
 /// Limits of a search. The outcome depends on them, never on the clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,15 +37,21 @@ impl Effort {
 pub(in crate::plan) struct Problem<'a> {
     pub candidates: &'a Candidates,
     pub scenarios: LinearisedScenarios,
+    pub watch: Watch<'a>,
 }
 
 impl<'a> Problem<'a> {
-    pub fn new(candidates: &'a Candidates, criterion: &Criterion) -> Result<Self, PlanError> {
+    pub fn new(
+        candidates: &'a Candidates,
+        criterion: &Criterion,
+        progress: OnProgress<'a, ()>,
+    ) -> Result<Self, PlanError> {
         candidates.check()?;
         let total: f64 = candidates.scenarios.iter().map(|s| s.weight).sum();
         let linearised = |scenario| LinearisedScenario::new(scenario, candidates, criterion, total);
         let all = candidates.scenarios.iter().map(linearised).collect::<Result<_, _>>()?;
-        Ok(Self { candidates, scenarios: LinearisedScenarios { all, robustness: candidates.robustness } })
+        let scenarios = LinearisedScenarios { all, robustness: candidates.robustness };
+        Ok(Self { candidates, scenarios, watch: Watch::new(progress) })
     }
 
     /// Number of mountings.
@@ -69,7 +76,7 @@ impl<'a> Problem<'a> {
 
     /// The exchange of visits within a time, on the mountings that are `open`.
     pub fn exchange<'b>(&'b self, time: f64, open: &'b [bool], trials: usize) -> Exchange<'b> {
-        Exchange { candidates: self.candidates, scenarios: &self.scenarios, time, open, trials }
+        Exchange { candidates: self.candidates, scenarios: &self.scenarios, time, open, trials, watch: &self.watch }
     }
 
     /// The schedule of these visits, whatever time it takes.

@@ -81,7 +81,7 @@ impl<'a> Shortest<'a> {
                 Answer::None => self.below = time,
                 Answer::Open => {}
             }
-            if time >= self.everything {
+            if time >= self.everything || self.problem.watch.is_stopped() {
                 let visits = self.problem.everything().list(self.problem.candidates);
                 let plan = self.tree(time, self.quick()).run();
                 return Plan { schedule: self.problem.candidates.schedule(visits), ..plan };
@@ -115,7 +115,7 @@ impl<'a> Shortest<'a> {
     fn shortened(&self, mut plan: Plan) -> Plan {
         let used = self.problem.candidates.mountings_used(plan.schedule.visits.iter().map(|visit| visit.candidate));
         let mut low = self.below.max(self.problem.candidates.set_up_time(&used));
-        while plan.schedule.time / low > 1.0 + 0.5 * self.resolution {
+        while plan.schedule.time / low > 1.0 + 0.5 * self.resolution && !self.problem.watch.is_stopped() {
             let middle = (low * plan.schedule.time).sqrt();
             let shorter = self.wanted(middle, self.effort).run_on(used.clone(), &plan.continuous.visits);
             if shorter.criterion <= 1.0 { plan = shorter } else { low = middle }

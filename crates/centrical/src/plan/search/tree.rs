@@ -53,7 +53,7 @@ impl<'a> Tree<'a> {
         let root = self.root();
         self.open.count = 1;
         self.heuristics.seek(&root, false);
-        if !self.is_reached() {
+        if !self.is_over() {
             self.heuristics.seek_on_all(&root);
         }
         self.heuristics.exchange_mountings();
@@ -61,7 +61,7 @@ impl<'a> Tree<'a> {
             self.relax_again(&mut root);
             self.open.nodes.push(root);
         }
-        while !self.is_reached() {
+        while !self.is_over() {
             // Two at once keep two processors busy; the number is fixed, so that the plan does not depend on theirs.
             let nodes: Vec<Node> = [self.next(), self.next()].into_iter().flatten().collect();
             if nodes.is_empty() {
@@ -85,8 +85,9 @@ impl<'a> Tree<'a> {
         root
     }
 
-    fn is_reached(&self) -> bool {
-        self.heuristics.incumbent.is_reached()
+    /// Whether the incumbent suffices, or the search is stopped.
+    fn is_over(&self) -> bool {
+        self.heuristics.incumbent.is_reached() || self.heuristics.problem.watch.is_stopped()
     }
 
     fn next(&mut self) -> Option<Node> {
@@ -148,7 +149,7 @@ impl<'a> Tree<'a> {
         let best = self.heuristics.polished();
         let start: Vec<f64> = best.visits.iter().map(|n| f64::from(*n)).collect();
         let polytope = Node::on(&best.mountings(problem.candidates)).polytope(problem, time);
-        let continuous = relax(&problem.scenarios, &polytope, Some(&start), Precision::of(5e-4));
+        let continuous = relax(&problem.watch, &problem.scenarios, &polytope, Some(&start), Precision::of(5e-4));
         let continuous = continuous.or_better(start, best.value);
         Plan::new(problem, &best, continuous, self.open.lowest(), self.open.count)
     }
