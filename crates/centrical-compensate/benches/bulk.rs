@@ -81,3 +81,15 @@ fn scale(f: &mut [f64], factor: f64) {
         *f *= factor;
     }
 }
+
+/// Rows of three, as arrays of shape `(n, 3)` have them, from one array to another.
+#[divan::bench(sample_count = 40)]
+fn rows_on_all_threads(bencher: Bencher) {
+    let terms = kozlov();
+    let compensation = Compensation::new(&terms, 2000.0).unwrap();
+    let [f1, f2, f3] = readings();
+    let rows: Vec<[f64; 3]> = f1.into_iter().zip(f2).zip(f3).map(|((f1, f2), f3)| [f1, f2, f3]).collect();
+    let mut forces = vec![[0.0; 3]; rows.len()];
+    let bencher = bencher.counter(ItemsCount::new(READINGS));
+    bencher.bench_local(|| compensation.apply_rows_to_parallel(&rows, &mut forces).unwrap());
+}

@@ -4,6 +4,7 @@ use crate::compensation::Compensation;
 use crate::error::UnequalLengths;
 use crate::lanes::Lanes;
 use crate::machine::on_this_machine;
+use crate::term::Term;
 
 /// Readings of a bulk that no specific force within the range gives; they are NaN on all axes afterwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -15,9 +16,13 @@ pub struct Outside {
 }
 
 /// Readings worked on together: long enough for any vectors, short enough to stay in the first-level cache.
-const LANES: usize = 64;
+pub(crate) const LANES: usize = 64;
 
-impl Compensation<'_> {
+/// Readings in a task: 384 KiB, some tenths of a millisecond.
+#[cfg(feature = "std")]
+pub(crate) const TASK: usize = 16 * 1024;
+
+impl<T: AsRef<[Term]>> Compensation<T> {
     /// Takes readings `f'` [m/s^2], an array per axis, to specific forces [m/s^2] in place. Each becomes what
     /// [`Compensation::apply`] makes of it; where that is an error, NaN on all axes, and it is counted.
     ///
@@ -33,10 +38,11 @@ impl Compensation<'_> {
     /// # Errors
     /// As [`Compensation::apply_all`].
     #[cfg(feature = "std")]
-    pub fn apply_all_parallel(&self, f: [&mut [f64]; 3]) -> Result<Outside, UnequalLengths> {
+    pub fn apply_all_parallel(&self, f: [&mut [f64]; 3]) -> Result<Outside, UnequalLengths>
+    where
+        T: Sync,
+    {
         use rayon::prelude::*;
-        /// Readings in a task: 384 KiB, some tenths of a millisecond.
-        const TASK: usize = 16 * 1024;
         check(&f)?;
         let [f1, f2, f3] = f.map(|f| f.par_chunks_mut(TASK));
         let outside =
@@ -81,18 +87,18 @@ impl Compensation<'_> {
 }
 
 impl Outside {
-    fn of(f: &[f64]) -> Self {
+    pub(crate) fn of(f: &[f64]) -> Self {
         let count = f.iter().filter(|f| f.is_nan()).count();
         Self { count, first: if count > 0 { f.iter().position(|f| f.is_nan()) } else { None } }
     }
 
     /// The same, of readings that come after `earlier` others.
-    fn after(self, earlier: usize) -> Self {
+    pub(crate) fn after(self, earlier: usize) -> Self {
         Self { first: self.first.map(|first| first + earlier), ..self }
     }
 
     /// These and later ones.
-    fn and(self, later: Self) -> Self {
+    pub(crate) fn and(self, later: Self) -> Self {
         Self { count: self.count + later.count, first: self.first.or(later.first) }
     }
 }

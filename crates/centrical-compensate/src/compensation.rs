@@ -20,26 +20,26 @@ use crate::term::Term;
 /// A range ends a few last places beyond its edge, so that what lies on it is not refused for its rounding.
 const EDGE: f64 = 1.0 + 8.0 * f64::EPSILON;
 
-/// The inverse of an error model over a range.
+/// The inverse of an error model over a range; its terms are borrowed, `&[Term]`, or its own, `Vec<Term>`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Compensation<'t> {
-    model: Model<'t>,
+pub struct Compensation<T> {
+    model: Model<T>,
     linear: Linear,
     shift: Shift,
     certificate: Certificate,
     steps: Steps,
 }
 
-impl<'t> Compensation<'t> {
+impl<T: AsRef<[Term]>> Compensation<T> {
     /// The inverse of `f' = f + E(f)`, `E` the sum of `terms`, for all `f` with `|f_i| <= range` [m/s^2].
     ///
     /// # Errors
     /// [`NotInvertible`] when a term makes no sense, the gain at zero is singular, or the non-linear terms are too
     /// strong for an inverse that is certainly unique: then it is said over which part of the range it is.
-    pub fn new(terms: &'t [Term], range: f64) -> Result<Self, NotInvertible> {
-        check(terms, range)?;
-        let linear = Linear::of(terms).ok_or(NotInvertible::Singular)?;
-        let certificate = Certificate::new(terms, &linear, range)?;
+    pub fn new(terms: T, range: f64) -> Result<Self, NotInvertible> {
+        check(terms.as_ref(), range)?;
+        let linear = Linear::of(terms.as_ref()).ok_or(NotInvertible::Singular)?;
+        let certificate = Certificate::new(terms.as_ref(), &linear, range)?;
         // Half a unit in the last place of the range.
         let steps = certificate.steps(0.5 * f64::EPSILON);
         let model = Model::new(terms);

@@ -69,6 +69,16 @@ pub struct OutOfRange {
     pub range: f64,
 }
 
+/// As many rows of specific forces as of readings are needed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("found {readings} rows of readings and {forces} of specific forces, expected as many of both")]
+pub struct UnequalRows {
+    /// Rows of readings.
+    pub readings: usize,
+    /// Rows of specific forces.
+    pub forces: usize,
+}
+
 /// Arrays of readings of unequal lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("found {}, {} and {} readings on axes 1, 2, 3, expected as many on each", lengths[0], lengths[1], lengths[2])]

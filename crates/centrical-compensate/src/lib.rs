@@ -38,13 +38,14 @@ mod linear;
 mod machine;
 mod model;
 mod monomial;
+mod rows;
 mod separable;
 mod term;
 
 pub use bulk::Outside;
 pub use certificate::{Certificate, GAIN_CHANGE_LIMIT, START_REGION};
 pub use compensation::Compensation;
-pub use error::{NotInvertible, OutOfRange, UnequalLengths};
+pub use error::{NotInvertible, OutOfRange, UnequalLengths, UnequalRows};
 pub use linear::Linear;
 pub use monomial::Monomial;
 pub use term::{Term, gain, reading};

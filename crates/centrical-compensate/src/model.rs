@@ -6,10 +6,11 @@ use crate::term::Term;
 
 /// An error model, its terms sorted by form.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Model<'t> {
+pub(crate) struct Model<T> {
     pub separable: Separable,
-    /// All terms, if some do not fit the fast form; else none.
-    terms: &'t [Term],
+    terms: T,
+    /// Whether all terms fit the fast form.
+    is_fast: bool,
 }
 
 /// What the terms that do not fit the fast form add to the errors of `W` readings and to the columns of their gains.
@@ -18,15 +19,15 @@ pub(crate) struct Others<const W: usize> {
     pub gain: [Lanes<W>; 3],
 }
 
-impl<'t> Model<'t> {
-    pub fn new(terms: &'t [Term]) -> Self {
-        let is_fast = terms.iter().all(is_separable);
-        Self { separable: Separable::part_of(terms), terms: if is_fast { &[] } else { terms } }
+impl<T: AsRef<[Term]>> Model<T> {
+    pub fn new(terms: T) -> Self {
+        let is_fast = terms.as_ref().iter().all(is_separable);
+        Self { separable: Separable::part_of(terms.as_ref()), terms, is_fast }
     }
 
     /// Whether all terms fit the fast form.
     pub fn is_fast(&self) -> bool {
-        self.terms.is_empty()
+        self.is_fast
     }
 
     /// What the other terms add to the errors at `f`, term by term, each for all lanes at once.
@@ -49,7 +50,7 @@ impl<'t> Model<'t> {
         others
     }
 
-    fn others_terms(&self) -> impl Iterator<Item = &'t Term> {
-        self.terms.iter().filter(|term| !is_separable(term))
+    fn others_terms(&self) -> impl Iterator<Item = &Term> {
+        self.terms.as_ref().iter().filter(|term| !is_separable(term))
     }
 }

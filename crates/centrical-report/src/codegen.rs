@@ -52,7 +52,7 @@ pub fn compensation_source(
     range: f64,
 ) -> Result<Vec<SourceFile>, NotInvertible> {
     let plain: Vec<Term> = terms.iter().map(|named| named.term).collect();
-    let compensation = Compensation::new(&plain, range)?;
+    let compensation = Compensation::new(plain.as_slice(), range)?;
     let model = Model { heading, terms, output, plain: &plain, compensation: &compensation };
     Ok(vec![
         SourceFile { name: "centrical_compensate.h", text: c::header(&model) },

@@ -1,4 +1,4 @@
-use centrical_compensate::{Compensation, Outside, UnequalLengths, reading};
+use centrical_compensate::{Compensation, Outside, Term, UnequalLengths, UnequalRows, reading};
 use proptest::prelude::*;
 
 use crate::models::{Model, everything, kozlov};
@@ -25,7 +25,7 @@ fn slices(f: &mut [Vec<f64>; 3]) -> [&mut [f64]; 3] {
 }
 
 /// What single readings become, and which of them have no answer.
-fn one_by_one(compensation: &Compensation, f: &[Vec<f64>; 3]) -> ([Vec<f64>; 3], Outside) {
+fn one_by_one(compensation: &Compensation<Vec<Term>>, f: &[Vec<f64>; 3]) -> ([Vec<f64>; 3], Outside) {
     let mut answer = f.clone();
     let mut outside = Outside::default();
     for k in 0..f[0].len() {
@@ -40,24 +40,44 @@ fn one_by_one(compensation: &Compensation, f: &[Vec<f64>; 3]) -> ([Vec<f64>; 3],
     (answer, outside)
 }
 
+fn rows(f: &[Vec<f64>; 3]) -> Vec<[f64; 3]> {
+    (0..f[0].len()).map(|k| [f[0][k], f[1][k], f[2][k]]).collect()
+}
+
+fn bits_of_rows(f: &[[f64; 3]]) -> Vec<u64> {
+    (0..3).flat_map(|axis| f.iter().map(move |row| row[axis].to_bits())).collect()
+}
+
 fn bits(f: &[Vec<f64>; 3]) -> Vec<u64> {
     f.iter().flatten().map(|f| f.to_bits()).collect()
 }
 
 /// Many readings become, to the bit, what each becomes alone: in any vectors, by any number of threads.
 fn bulk_is_each_alone(model: &Model, count: usize) -> Result<(), TestCaseError> {
-    let compensation = Compensation::new(&model.terms, model.range).unwrap();
+    let compensation = Compensation::new(model.terms.clone(), model.range).unwrap();
     let f = readings(model, count);
     let (expected, outside) = one_by_one(&compensation, &f);
     let mut swept = f.clone();
     prop_assert_eq!(compensation.apply_all(slices(&mut swept)), Ok(outside));
     prop_assert!(bits(&swept) == bits(&expected));
+    let mut in_place = rows(&f);
+    prop_assert_eq!(compensation.apply_rows(&mut in_place), outside);
+    prop_assert!(bits_of_rows(&in_place) == bits(&expected));
+    let mut forces = vec![[0.0; 3]; count];
+    prop_assert_eq!(compensation.apply_rows_to(&rows(&f), &mut forces), Ok(outside));
+    prop_assert!(bits_of_rows(&forces) == bits(&expected));
     #[cfg(feature = "std")]
     for threads in [1, 2, 5] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let mut swept = f.clone();
         prop_assert_eq!(pool.install(|| compensation.apply_all_parallel(slices(&mut swept))), Ok(outside));
         prop_assert!(bits(&swept) == bits(&expected), "{threads} threads");
+        let mut in_place = rows(&f);
+        prop_assert_eq!(pool.install(|| compensation.apply_rows_parallel(&mut in_place)), outside);
+        let mut forces = vec![[0.0; 3]; count];
+        prop_assert_eq!(pool.install(|| compensation.apply_rows_to_parallel(&rows(&f), &mut forces)), Ok(outside));
+        prop_assert!(in_place.len() == count && bits_of_rows(&in_place) == bits(&expected));
+        prop_assert!(bits_of_rows(&forces) == bits(&expected), "{threads} threads");
     }
     Ok(())
 }
@@ -84,7 +104,9 @@ proptest! {
 
 #[test]
 fn unequal_lengths_are_refused() {
-    let compensation = Compensation::new(&[], 1.0).unwrap();
+    let compensation = Compensation::new(Vec::new(), 1.0).unwrap();
     let mut f = [vec![0.5; 4], vec![0.5; 3], vec![0.5; 4]];
     assert_eq!(compensation.apply_all(slices(&mut f)), Err(UnequalLengths { lengths: [4, 3, 4] }));
+    let rows = compensation.apply_rows_to(&[[0.5; 3]; 4], &mut [[0.0; 3]; 3]);
+    assert_eq!(rows, Err(UnequalRows { readings: 4, forces: 3 }));
 }

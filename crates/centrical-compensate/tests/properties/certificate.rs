@@ -14,7 +14,7 @@ fn norm(m: &Matrix3<f64>) -> f64 {
 }
 
 /// Change of the gain at `f`, relative to the gain of the affine part.
-fn gain_change(compensation: &Compensation, model: &Model, f: [f64; 3]) -> f64 {
+fn gain_change(compensation: &Compensation<&Vec<Term>>, model: &Model, f: [f64; 3]) -> f64 {
     norm(&(matrix(compensation.linear().inverse) * matrix(gain(&model.terms, f)) - Matrix3::identity()))
 }
 
@@ -97,7 +97,7 @@ proptest! {
 }
 
 /// `f <- C (f' - b) - C N(f)`.
-fn fixed_point(compensation: &Compensation, terms: &[Term], read: [f64; 3], steps: usize) -> [f64; 3] {
+fn fixed_point(compensation: &Compensation<&Vec<Term>>, terms: &[Term], read: [f64; 3], steps: usize) -> [f64; 3] {
     let linear = compensation.linear();
     let (inverse, affine_gain) = (matrix(linear.inverse), matrix(linear.gain));
     let mut f = inverse * (Vector3::from(read) - Vector3::from(linear.bias));
@@ -110,7 +110,7 @@ fn fixed_point(compensation: &Compensation, terms: &[Term], read: [f64; 3], step
 }
 
 /// Newton's iteration on `f` itself.
-fn newton(compensation: &Compensation, terms: &[Term], read: [f64; 3], steps: usize) -> [f64; 3] {
+fn newton(compensation: &Compensation<&Vec<Term>>, terms: &[Term], read: [f64; 3], steps: usize) -> [f64; 3] {
     let linear = compensation.linear();
     let mut f = matrix(linear.inverse) * (Vector3::from(read) - Vector3::from(linear.bias));
     for _ in 0..steps {

@@ -12,7 +12,7 @@ pub(super) struct Model<'a> {
     pub terms: &'a [NamedTerm],
     pub output: Option<&'a OutputSummary>,
     pub plain: &'a [Term],
-    pub compensation: &'a Compensation<'a>,
+    pub compensation: &'a Compensation<&'a [Term]>,
 }
 
 impl Model<'_> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::RecordSlice;
 use centrical::{OnProgress, advance};
-use centrical_compensate::{Certificate, Compensation};
+use centrical_compensate::{Certificate, Compensation, Term};
 use centrical_table::{Rows, Stamps, refuse_inputs};
 use rayon::prelude::*;
 
@@ -114,7 +114,7 @@ pub fn compensate(request: &CompensationRequest, progress: OnProgress) -> Result
 /// # Errors
 /// As [`RecordReader`] for `input` and [`RecordWriter`] for `output`, which is not touched then; [`Error::Stopped`].
 pub fn compensate_record(
-    compensation: &Compensation,
+    compensation: &Compensation<impl AsRef<[Term]> + Sync>,
     input: &Path,
     columns: &Columns,
     output: &Path,
@@ -124,7 +124,7 @@ pub fn compensate_record(
 }
 
 fn on_this_thread(
-    compensation: &Compensation,
+    compensation: &Compensation<impl AsRef<[Term]> + Sync>,
     calibrated: &Calibrated,
     input: &Path,
     columns: &Columns,
@@ -160,7 +160,7 @@ fn on_this_thread(
 
 /// Compensates readings in place.
 fn compensate_rows(
-    compensation: &Compensation,
+    compensation: &Compensation<impl AsRef<[Term]> + Sync>,
     calibrated: &Calibrated,
     input: &Path,
     rows: &mut Rows,

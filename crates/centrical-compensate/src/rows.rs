@@ -1,0 +1,89 @@
+//! Many readings at once as rows of three, as arrays of shape `(n, 3)` have them.
+
+use crate::bulk::{LANES, Outside};
+use crate::compensation::Compensation;
+use crate::error::UnequalRows;
+use crate::lanes::Lanes;
+use crate::machine::on_this_machine;
+use crate::term::Term;
+
+impl<T: AsRef<[Term]>> Compensation<T> {
+    /// Takes readings `f'` [m/s^2], a row of three each, to specific forces [m/s^2] in place. Each becomes what
+    /// [`Compensation::apply`] makes of it; where that is an error, NaN on all axes, and it is counted.
+    pub fn apply_rows(&self, f: &mut [[f64; 3]]) -> Outside {
+        on_this_machine(
+            #[inline(always)]
+            || self.sweep_rows(None, f),
+        )
+    }
+
+    /// The same from `readings` to `forces`.
+    ///
+    /// # Errors
+    /// [`UnequalRows`] when they are not of one length; nothing is touched then.
+    pub fn apply_rows_to(&self, readings: &[[f64; 3]], forces: &mut [[f64; 3]]) -> Result<Outside, UnequalRows> {
+        check(readings, forces)?;
+        Ok(self.sweep_to(readings, forces))
+    }
+
+    /// [`Compensation::apply_rows`] on all threads of the current rayon pool. The same bytes for any number of them.
+    #[cfg(feature = "std")]
+    pub fn apply_rows_parallel(&self, f: &mut [[f64; 3]]) -> Outside
+    where
+        T: Sync,
+    {
+        use rayon::prelude::*;
+        let tasks = f.par_chunks_mut(crate::bulk::TASK).enumerate();
+        let outside = tasks.map(|(n, f)| self.apply_rows(f).after(n * crate::bulk::TASK));
+        outside.reduce(Outside::default, Outside::and)
+    }
+
+    /// [`Compensation::apply_rows_to`] on all threads of the current rayon pool. The same bytes for any number of them.
+    ///
+    /// # Errors
+    /// As [`Compensation::apply_rows_to`].
+    #[cfg(feature = "std")]
+    pub fn apply_rows_to_parallel(&self, readings: &[[f64; 3]], forces: &mut [[f64; 3]]) -> Result<Outside, UnequalRows>
+    where
+        T: Sync,
+    {
+        use crate::bulk::TASK;
+        use rayon::prelude::*;
+        check(readings, forces)?;
+        let tasks = readings.par_chunks(TASK).zip(forces.par_chunks_mut(TASK)).enumerate();
+        let outside = tasks.map(|(n, (readings, forces))| self.sweep_to(readings, forces).after(n * TASK));
+        Ok(outside.reduce(Outside::default, Outside::and))
+    }
+
+    fn sweep_to(&self, readings: &[[f64; 3]], forces: &mut [[f64; 3]]) -> Outside {
+        on_this_machine(
+            #[inline(always)]
+            || self.sweep_rows(Some(readings), forces),
+        )
+    }
+
+    /// From the `readings`, or from what stands in `f`, to `f`.
+    #[inline(always)]
+    fn sweep_rows(&self, readings: Option<&[[f64; 3]]>, f: &mut [[f64; 3]]) -> Outside {
+        let mut outside = Outside::default();
+        for (n, f) in f.chunks_mut(LANES).enumerate() {
+            let first = n * LANES;
+            let mut lanes = Lanes::<LANES>::ZERO;
+            let readings = readings.map_or(&*f, |readings| &readings[first..first + f.len()]);
+            for (w, reading) in readings.iter().enumerate() {
+                lanes.put(w, *reading);
+            }
+            self.invert(&mut lanes);
+            for (w, f) in f.iter_mut().enumerate() {
+                *f = lanes.at(w);
+            }
+            outside = outside.and(Outside::of(&lanes.0[0][..f.len()]).after(first));
+        }
+        outside
+    }
+}
+
+fn check(readings: &[[f64; 3]], forces: &[[f64; 3]]) -> Result<(), UnequalRows> {
+    let (readings, forces) = (readings.len(), forces.len());
+    if readings == forces { Ok(()) } else { Err(UnequalRows { readings, forces }) }
+}
