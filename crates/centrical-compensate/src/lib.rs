@@ -38,7 +38,6 @@ mod linear;
 mod machine;
 mod model;
 mod monomial;
-mod rows;
 mod separable;
 mod term;
 

@@ -98,7 +98,87 @@ pub enum Error {
     },
 }
 
+/// What kind of thing went wrong, for a program that has to choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// There is no such file.
+    Missing,
+    /// The operating system refused to read or write a file.
+    Io,
+    /// What a file holds, or what follows from it, is not what was expected.
+    Input,
+    /// The caller stopped the work.
+    Stopped,
+    /// A document cannot be written: a fault of the program.
+    Internal,
+}
+
 impl Error {
+    /// What kind of thing went wrong.
+    pub fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Table(TableError::Missing { .. }) => ErrorKind::Missing,
+            Self::Table(TableError::Io { .. }) => ErrorKind::Io,
+            Self::Stopped(_) => ErrorKind::Stopped,
+            Self::Json { .. } => ErrorKind::Internal,
+            Self::Table(TableError::Content { .. })
+            | Self::Form { .. }
+            | Self::Reduction { .. }
+            | Self::Fit { .. }
+            | Self::ErrorModel { .. }
+            | Self::NotInvertible { .. }
+            | Self::Planning { .. }
+            | Self::Noise { .. }
+            | Self::Simulation { .. } => ErrorKind::Input,
+        }
+    }
+
+    /// The file, if one is concerned.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Table(
+                TableError::Content { file, .. } | TableError::Missing { file, .. } | TableError::Io { file, .. },
+            )
+            | Self::Form { file, .. }
+            | Self::Reduction { file, .. }
+            | Self::Fit { file, .. }
+            | Self::ErrorModel { file, .. }
+            | Self::NotInvertible { file, .. }
+            | Self::Planning { file, .. }
+            | Self::Noise { file, .. }
+            | Self::Simulation { file, .. } => Some(file),
+            Self::Stopped(_) | Self::Json { .. } => None,
+        }
+    }
+
+    /// The place in the file, if it is not the file as a whole.
+    pub fn place(&self) -> Option<&Place> {
+        match self {
+            Self::Table(TableError::Content { place, .. }) | Self::Form { place, .. } => {
+                Some(place).filter(|place| **place != Place::Whole)
+            }
+            _ => None,
+        }
+    }
+
+    /// What was found, where it can be told from the rest of the message.
+    pub fn found(&self) -> Option<&str> {
+        match self {
+            Self::Table(TableError::Content { found, .. }) => Some(found),
+            Self::Table(TableError::Missing { .. }) => Some("no such file"),
+            _ => None,
+        }
+    }
+
+    /// What was expected there.
+    pub fn expected(&self) -> Option<&str> {
+        match self {
+            Self::Table(TableError::Content { expected, .. } | TableError::Missing { expected, .. }) => Some(expected),
+            _ => None,
+        }
+    }
+
     /// The content of `file` at `place` is not what was expected.
     pub fn content(file: &Path, place: Place, found: impl Into<String>, expected: impl Into<String>) -> Self {
         TableError::content(file, place, found, expected).into()

@@ -17,7 +17,7 @@ mod simulate;
 mod watch;
 
 pub use self::assess::{Assessment, AssessmentRequest, assess};
-pub use self::calibrate::{Problem, calibrate, calibrate_without};
+pub use self::calibrate::{Problem, calibrate, calibrate_reduced, calibrate_without};
 pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
 pub use self::init::{Draft, FillIn, InitRequest, init};
@@ -26,7 +26,7 @@ pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
 pub use self::noise::{NoiseRequest, Series, noise_of};
 pub use self::observe::subject;
 pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, read_plan, read_planning};
-pub use self::reduce::{reduce, reduce_without_inputs};
+pub use self::reduce::{Recorded, reduce, reduce_recorded, reduce_without_inputs};
 pub use self::reduced_session::write_reduced;
 pub use self::settings_schema::{SettingsForm, settings_schema};
 pub use self::simulate::simulate_session;

@@ -59,18 +59,18 @@ pub use document::{
     SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, TiltVerdict,
     ValiditySummary, WatchState, WatchedPlateau, read_history,
 };
-pub use error::{Error, NoErrorModel, Place};
+pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
     ExpectedValues, Measured, MountingFiles, OutputUnit, Plan, Planning, PlateauMean, PlateauName, PlateauTable,
     Session, SpeedSource, Speeds, read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn, FirstOutside,
-    Following, InitRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Series,
+    Following, InitRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Recorded, Series,
     SettingsForm, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess,
-    calibrate, calibrate_without, compare_results, compensate, compensate_record, init, noise_of, plan, read_plan,
-    read_planning, reduce, reduce_without_inputs, select_model, settings_schema, simulate_session, subject,
-    write_reduced,
+    calibrate, calibrate_reduced, calibrate_without, compare_results, compensate, compensate_record, init, noise_of,
+    plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs, select_model, settings_schema,
+    simulate_session, subject, write_reduced,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,

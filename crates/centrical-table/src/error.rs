@@ -47,6 +47,14 @@ pub enum Error {
         /// What should stand there.
         expected: String,
     },
+    /// There is no such file.
+    #[error("{}: found no such file, expected {}", shown_path(file), cut(expected, LONGEST_EXPECTED))]
+    Missing {
+        /// The file.
+        file: PathBuf,
+        /// What it should be.
+        expected: String,
+    },
     /// The operating system refused to read or write a file.
     #[error("{}: cannot be {action}: {source}", shown_path(file))]
     Io {
@@ -131,7 +139,7 @@ impl Error {
     #[must_use]
     pub fn reading(file: &Path, source: io::Error, expected: &str) -> Self {
         match source.kind() {
-            io::ErrorKind::NotFound => Self::content(file, Place::Whole, "no such file", expected),
+            io::ErrorKind::NotFound => Self::Missing { file: file.to_owned(), expected: expected.to_owned() },
             io::ErrorKind::IsADirectory => Self::content(file, Place::Whole, "a folder", expected),
             _ => Self::Io { file: file.to_owned(), action: "read", source },
         }

@@ -47,7 +47,6 @@ pub mod observability;
 /// Plans of experiments.
 pub mod plan;
 mod progress;
-mod random;
 /// Reduction of continuous records to plateau means.
 pub mod reduction;
 mod simd;

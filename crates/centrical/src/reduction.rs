@@ -62,7 +62,7 @@ pub fn reduce(
     telemetry: Option<&SpeedTrace>,
     schedule: &[ScheduledPlateau],
 ) -> Result<ReducedMounting, ReductionError> {
-    let located = locate(&Survey::of(record)?, telemetry, schedule)?;
+    let located = locate(&Survey::of(record.as_slice())?, telemetry, schedule)?;
     averaged(record, located, schedule.len())
 }
 
@@ -75,7 +75,7 @@ pub fn reduce_counted(
     pulses: &PulseTrain,
     schedule: &[ScheduledPlateau],
 ) -> Result<ReducedMounting, ReductionError> {
-    let mut located = locate(&Survey::of(record)?, None, schedule)?;
+    let mut located = locate(&Survey::of(record.as_slice())?, None, schedule)?;
     located.time_pulses(pulses);
     averaged(record, located, schedule.len())
 }
@@ -92,8 +92,8 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::random::Random;
     use crate::simd::lanes::tests::on_all;
+    use crate::statistics::Random;
 
     const RATE: f64 = 250.0;
     const PLATEAU: f64 = 12.0;

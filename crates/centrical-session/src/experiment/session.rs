@@ -90,21 +90,30 @@ impl Session {
     /// known, every quantity finite and of its dimension, every position a rotation and mounted.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let file = if path.is_dir() { path.join(EXPERIMENT_FILE) } else { path.to_owned() };
-        let form = from_toml::<Form>(&file, &read_text(&file)?)?.with_schedules();
+        Self::parse(&read_text(&file)?, &file)
+    }
+
+    /// The session of an experiment file with this `text`. Messages name `file`, which need not exist, and paths start from its
+    /// folder.
+    ///
+    /// # Errors
+    /// As [`Session::read`].
+    pub fn parse(text: &str, file: &Path) -> Result<Self, Error> {
+        let form = from_toml::<Form>(file, text)?.with_schedules();
         let folder = file.parent().unwrap_or(Path::new(""));
-        let mut session = Self::without_plateaus(&file, &form)?;
+        let mut session = Self::without_plateaus(file, &form)?;
         let rotation = session.experiment.centrifuge.rotation;
         if let Some(table) = &form.plateaus {
-            let has_speeds = has_measured_speeds(&file, &session.speeds)?;
+            let has_speeds = has_measured_speeds(file, &session.speeds)?;
             let table = PlateauTable::read(folder.join(table), form.mounting.len(), has_speeds)?;
             session.experiment.set_points = table.set_points(rotation);
             session.plateaus = Some(table);
         } else {
-            session.experiment.set_points = schedule::set_points(&file, &form.mounting, rotation)?;
-            session.durations = schedule::durations(&file, &form.mounting)?;
+            session.experiment.set_points = schedule::set_points(file, &form.mounting, rotation)?;
+            session.durations = schedule::durations(file, &form.mounting)?;
         }
         if session.experiment.set_points.iter().all(SetPoint::is_rest) {
-            let at = TomlPath::entry(&file, "mounting", 0);
+            let at = TomlPath::entry(file, "mounting", 0);
             return Err(at.unexpected("plateaus", "all plateaus at rest", "at least one plateau with a speed"));
         }
         // Whatever is wrong with the priors is said before any record is read.
@@ -207,9 +216,14 @@ impl Session {
     /// As [`read_record`].
     pub fn pulses(&self, mounting: usize) -> Result<Option<PulseTrain>, Error> {
         let file = self.mountings.get(mounting).and_then(|m| m.pulses.as_ref());
-        let per_revolution = self.speeds.measured.map_or(1.0, |measured| measured.pulses_per_revolution);
+        let per_revolution = self.pulses_per_revolution();
         let read = |file: &PathBuf| Ok(PulseTrain { t: read_pulses(file, &self.columns)?, per_revolution });
         file.map(read).transpose()
+    }
+
+    /// Pulses of a revolution, of an index mark unless the session says otherwise.
+    pub(crate) fn pulses_per_revolution(&self) -> f64 {
+        self.speeds.measured.map_or(1.0, |measured| measured.pulses_per_revolution)
     }
 
     /// Size of the records [bytes]; zero for a session that comes already averaged, and of records that are not there.

@@ -49,8 +49,17 @@ pub fn calibrate_without(
     method: Method,
     progress: OnProgress,
 ) -> Result<CalibrationResult, Error> {
-    let Problem { model, mut reduced } = Problem::of(session, progress)?;
+    let mut reduced = reduce(session, progress)?;
     reduced.held_out = held_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
+    calibrate_reduced(session, &reduced, method)
+}
+
+/// Fits a session that is reduced already, from files or from memory.
+///
+/// # Errors
+/// [`Error::Fit`] naming the session, what was found and what was expected.
+pub fn calibrate_reduced(session: &Session, reduced: &Reduced, method: Method) -> Result<CalibrationResult, Error> {
+    let model = reduced.model(session)?;
     let failed = |source| Error::fit(&session.file, source);
     let data = Data::new(&model, reduced.observations()).map_err(failed)?;
     let calibration = match method {
@@ -58,5 +67,5 @@ pub fn calibrate_without(
         Method::Recursive => Calibration::recursive(&data),
         Method::Linear => Calibration::linear(&data),
     };
-    calibration.and_then(|calibration| CalibrationResult::from(&calibration, session, &reduced)).map_err(failed)
+    calibration.and_then(|calibration| CalibrationResult::from(&calibration, session, reduced)).map_err(failed)
 }

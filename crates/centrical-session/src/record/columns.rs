@@ -52,7 +52,7 @@ impl Scale {
         si / self.factor + self.offset
     }
 
-    pub(super) fn apply(self, values: &mut [f64]) {
+    pub(crate) fn apply(self, values: &mut [f64]) {
         if self != Self::factor(1.0) {
             for value in values {
                 *value = (*value - self.offset) * self.factor;

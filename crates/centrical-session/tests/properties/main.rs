@@ -1,6 +1,7 @@
 //! What holds for any input.
 
 mod columns;
+mod in_memory;
 mod predictions;
 mod record_writer;
 mod session_forms;

@@ -57,10 +57,10 @@ impl Survey {
     ///
     /// # Errors
     /// [`ReductionError`] if the record is invalid: lengths, times.
-    pub fn of(record: &Record) -> Result<Self, ReductionError> {
+    pub fn of(record: RecordSlice) -> Result<Self, ReductionError> {
         check(record)?;
-        let mut survey = Self::new(&record.t);
-        survey.append(survey.condense(record.as_slice()));
+        let mut survey = Self::new(record.t);
+        survey.append(survey.condense(record));
         survey.finish();
         Ok(survey)
     }
@@ -138,9 +138,9 @@ impl Survey {
 }
 
 /// Refuses an invalid record: columns of different lengths, too few samples, time that runs backwards.
-fn check(record: &Record) -> Result<(), ReductionError> {
+fn check(record: RecordSlice) -> Result<(), ReductionError> {
     let times = record.t.len();
-    let readings = record.f_z.each_ref().map(Vec::len);
+    let readings = record.f_z.map(<[f64]>::len);
     if readings != [times; 3] {
         return Err(ReductionError::UnequalColumns { times, readings });
     }

@@ -162,7 +162,7 @@ pub(crate) mod tests {
     use pulp::Arch;
 
     use super::*;
-    use crate::random::Random;
+    use crate::statistics::Random;
 
     thread_local! {
         /// The processor whose vectors this thread uses: the machine's own, unless a test chooses another.

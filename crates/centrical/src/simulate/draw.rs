@@ -1,6 +1,6 @@
 //! Random draws: each imperfection of each mounting has a stream of its own, so that they do not disturb each other.
 
-use crate::random::Random;
+use crate::statistics::Random;
 
 /// A kind of draw. The numbers are part of what a seed means: never reuse one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use super::draw::Draw;
 use super::equipment::Machine;
 use crate::model::{ArmMotion, SetPoint};
-use crate::random::Random;
+use crate::statistics::Random;
 use crate::statistics::whole;
 
 /// The motion of the arm from the beginning of a record to its end.

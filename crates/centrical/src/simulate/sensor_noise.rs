@@ -4,7 +4,7 @@ use std::f64::consts::{LN_2, PI};
 
 use super::draw::Draw;
 use super::equipment::Sensor;
-use crate::random::Random;
+use crate::statistics::Random;
 
 /// The sampling of one record.
 #[derive(Debug, Clone, Copy)]

@@ -13,7 +13,7 @@ use super::coverage::{Degrees, chi_squared_tail, coverage_factor};
 use crate::fit::{Calibration, Data, Fit, Structure, Termination};
 use crate::model::{FitError, MeasurementModel, Observation, SetPoint};
 use crate::progress::{OnProgress, advance};
-use crate::random::Random;
+use crate::statistics::Random;
 
 /// What to draw, and how often.
 #[derive(Debug, Clone, Copy, PartialEq)]

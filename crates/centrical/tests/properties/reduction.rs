@@ -492,7 +492,7 @@ fn a_constant_reading_needs_a_stated_resolution() {
     let mut record = run.record();
     record.f_z[2].fill(9.84);
     let reduced = |resolution: f64| -> Result<(), ReductionError> {
-        let survey = Survey::of(&record)?.with_resolution(resolution);
+        let survey = Survey::of(record.as_slice())?.with_resolution(resolution);
         let located = locate(&survey, None, &run.schedule())?;
         average(&located, 0, record.as_slice(), 0).map(|_| ())
     };

@@ -43,12 +43,16 @@ pub(super) fn reduce_mounting(
 
 /// The pulses of a mounting, where they measure the speed.
 fn counted_pulses(session: &Session, number: usize) -> Result<Option<PulseTrain>, Error> {
-    let is_counted = session.speeds.measured.is_some_and(|measured| measured.source == SpeedSource::Pulses);
-    if is_counted { session.pulses(number) } else { Ok(None) }
+    if counts_pulses(session) { session.pulses(number) } else { Ok(None) }
+}
+
+/// Whether pulses measure the speed.
+pub(super) fn counts_pulses(session: &Session) -> bool {
+    session.speeds.measured.is_some_and(|measured| measured.source == SpeedSource::Pulses)
 }
 
 /// The plateaus of a mounting in their order.
-fn schedule(session: &Session, mounting: usize) -> Vec<ScheduledPlateau> {
+pub(super) fn schedule(session: &Session, mounting: usize) -> Vec<ScheduledPlateau> {
     let experiment = &session.experiment;
     let of_mounting = experiment.set_points.iter().filter(|set_point| set_point.mounting == mounting);
     let scheduled = |set_point| linear::nominal(experiment, set_point);

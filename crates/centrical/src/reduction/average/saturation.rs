@@ -42,7 +42,7 @@ fn poisson_tail(count: usize, mean: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::piled_up;
-    use crate::random::Random;
+    use crate::statistics::Random;
 
     #[test]
     fn clipped_readings_pile_up_and_noise_does_not() {

@@ -123,7 +123,7 @@ fn repeats_by_rounding(spread: f64, step: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::repeats_by_rounding;
-    use crate::random::Random;
+    use crate::statistics::Random;
 
     /// Noise with the level anywhere between two steps repeats the most frequent reading no more often than stated.
     #[test]

@@ -1,6 +1,6 @@
 //! Many readings at once as rows of three, as arrays of shape `(n, 3)` have them.
 
-use crate::bulk::{LANES, Outside};
+use super::outside::{LANES, Outside};
 use crate::compensation::Compensation;
 use crate::error::UnequalRows;
 use crate::lanes::Lanes;
@@ -32,9 +32,10 @@ impl<T: AsRef<[Term]>> Compensation<T> {
     where
         T: Sync,
     {
+        use super::outside::TASK;
         use rayon::prelude::*;
-        let tasks = f.par_chunks_mut(crate::bulk::TASK).enumerate();
-        let outside = tasks.map(|(n, f)| self.apply_rows(f).after(n * crate::bulk::TASK));
+        let tasks = f.par_chunks_mut(TASK).enumerate();
+        let outside = tasks.map(|(n, f)| self.apply_rows(f).after(n * TASK));
         outside.reduce(Outside::default, Outside::and)
     }
 
@@ -47,7 +48,7 @@ impl<T: AsRef<[Term]>> Compensation<T> {
     where
         T: Sync,
     {
-        use crate::bulk::TASK;
+        use super::outside::TASK;
         use rayon::prelude::*;
         check(readings, forces)?;
         let tasks = readings.par_chunks(TASK).zip(forces.par_chunks_mut(TASK)).enumerate();

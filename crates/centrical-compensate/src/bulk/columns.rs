@@ -1,0 +1,78 @@
+//! Many readings at once as an array for each axis.
+
+use super::outside::{LANES, Outside};
+use crate::compensation::Compensation;
+use crate::error::UnequalLengths;
+use crate::lanes::Lanes;
+use crate::machine::on_this_machine;
+use crate::term::Term;
+
+impl<T: AsRef<[Term]>> Compensation<T> {
+    /// Takes readings `f'` [m/s^2], an array per axis, to specific forces [m/s^2] in place. Each becomes what
+    /// [`Compensation::apply`] makes of it; where that is an error, NaN on all axes, and it is counted.
+    ///
+    /// # Errors
+    /// [`UnequalLengths`] when the arrays are not of one length; nothing is touched then.
+    pub fn apply_all(&self, f: [&mut [f64]; 3]) -> Result<Outside, UnequalLengths> {
+        check(&f)?;
+        Ok(self.sweep(f))
+    }
+
+    /// [`Compensation::apply_all`] on all threads of the current rayon pool. The same bytes for any number of them.
+    ///
+    /// # Errors
+    /// As [`Compensation::apply_all`].
+    #[cfg(feature = "std")]
+    pub fn apply_all_parallel(&self, f: [&mut [f64]; 3]) -> Result<Outside, UnequalLengths>
+    where
+        T: Sync,
+    {
+        use super::outside::TASK;
+        use rayon::prelude::*;
+        check(&f)?;
+        let [f1, f2, f3] = f.map(|f| f.par_chunks_mut(TASK));
+        let outside =
+            f1.zip(f2).zip(f3).enumerate().map(|(n, ((f1, f2), f3))| self.sweep([f1, f2, f3]).after(n * TASK));
+        Ok(outside.reduce(Outside::default, Outside::and))
+    }
+
+    fn sweep(&self, f: [&mut [f64]; 3]) -> Outside {
+        on_this_machine(
+            #[inline(always)]
+            || self.sweep_blocks(f),
+        )
+    }
+
+    #[inline(always)]
+    fn sweep_blocks(&self, f: [&mut [f64]; 3]) -> Outside {
+        let mut outside = Outside::default();
+        let [f1, f2, f3] = f.map(|f| f.as_chunks_mut::<LANES>());
+        let rest_from = LANES * f1.0.len();
+        let mut lanes = Lanes::ZERO;
+        for (n, ((f1, f2), f3)) in f1.0.iter_mut().zip(f2.0).zip(f3.0).enumerate() {
+            // One axis after the other: an array of all would be made elsewhere first.
+            lanes.0[0] = *f1;
+            lanes.0[1] = *f2;
+            lanes.0[2] = *f3;
+            self.invert(&mut lanes);
+            (*f1, *f2, *f3) = (lanes.0[0], lanes.0[1], lanes.0[2]);
+            outside = outside.and(Outside::of(&lanes.0[0]).after(n * LANES));
+        }
+        let rest = [f1.1, f2.1, f3.1];
+        lanes = Lanes::ZERO;
+        for (lane, f) in lanes.0.iter_mut().zip(&rest) {
+            lane[..f.len()].copy_from_slice(f);
+        }
+        self.invert(&mut lanes);
+        outside = outside.and(Outside::of(&lanes.0[0][..rest[0].len()]).after(rest_from));
+        for (lane, f) in lanes.0.iter().zip(rest) {
+            f.copy_from_slice(&lane[..f.len()]);
+        }
+        outside
+    }
+}
+
+fn check(f: &[&mut [f64]; 3]) -> Result<(), UnequalLengths> {
+    let lengths = [f[0].len(), f[1].len(), f[2].len()];
+    if lengths[0] == lengths[1] && lengths[1] == lengths[2] { Ok(()) } else { Err(UnequalLengths { lengths }) }
+}

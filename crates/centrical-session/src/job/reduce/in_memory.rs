@@ -1,0 +1,84 @@
+//! Records that are in memory: the same reduction, without files.
+
+use centrical::reduction::{PulseTrain, Record, ReducedMounting, ReductionError, SpeedTrace, Survey, average, locate};
+use centrical::{OnProgress, advance};
+use rayon::prelude::*;
+
+use super::mounting::{OfRecord, counts_pulses, schedule};
+use super::pooling::pooled;
+use crate::error::{Error, Place};
+use crate::experiment::Session;
+use crate::record::RecordOverview;
+use crate::reduced::Reduced;
+
+/// What was recorded of one mounting, in the units of the session's columns.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Recorded {
+    /// The record: time, and the output of newtonometers 1, 2, 3.
+    pub record: Record,
+    /// The telemetry: time and speed.
+    pub telemetry: Option<SpeedTrace>,
+    /// Times of the pulses of an index mark or an encoder.
+    pub pulses: Option<Vec<f64>>,
+}
+
+/// Reduces the mountings of a session from memory, one of `recorded` for each; the numbers are those of
+/// [`reduce`](super::reduce) on files with the same values. `progress` is called with the number of mountings reduced.
+///
+/// # Errors
+/// [`Error`] naming the mounting, what was found and what was expected; [`Error::Stopped`].
+pub fn reduce_recorded(
+    session: &Session,
+    recorded: Vec<Recorded>,
+    progress: OnProgress<usize>,
+) -> Result<Reduced, Error> {
+    let (found, expected) = (recorded.len(), session.experiment.mountings.len());
+    if found != expected {
+        let expected = format!("{expected}, one for each mounting");
+        return Err(Error::content(&session.file, Place::Whole, format!("{found} records in memory"), expected));
+    }
+    let mountings = recorded.into_par_iter().enumerate().map(|(number, recorded)| {
+        advance(progress, 0)?;
+        let reduced = reduce_mounting(session, number, recorded)?;
+        advance(progress, 1)?;
+        Ok(reduced)
+    });
+    // Which error is the first does not depend on the threads.
+    let mountings: Vec<Result<OfRecord, Error>> = mountings.collect();
+    pooled(session, mountings.into_iter().collect::<Result<_, _>>()?)
+}
+
+fn reduce_mounting(session: &Session, number: usize, recorded: Recorded) -> Result<OfRecord, Error> {
+    let Recorded { record, telemetry, pulses } = in_si(session, recorded);
+    let refused = |source: ReductionError| Error::Reduction {
+        file: session.file.clone(),
+        mounting: number + 1,
+        source: Box::new(source),
+    };
+    let survey = Survey::of(record.as_slice()).map_err(refused)?.with_resolution(session.type_b.resolution);
+    let schedule = schedule(session, number);
+    let mut located = locate(&survey, telemetry.as_ref(), &schedule).map_err(refused)?;
+    if let Some(t) = pulses.filter(|_| counts_pulses(session)) {
+        located.time_pulses(&PulseTrain { t, per_revolution: session.pulses_per_revolution() });
+    }
+    let means = (0..schedule.len()).map(|plateau| average(&located, plateau, record.as_slice(), 0));
+    let means = means.collect::<Result<_, _>>().map_err(refused)?;
+    let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
+    Ok(OfRecord { reduced: ReducedMounting::new(located, means), overview, interpolated: None })
+}
+
+/// The numbers of the columns in SI.
+fn in_si(session: &Session, recorded: Recorded) -> Recorded {
+    let Recorded { mut record, mut telemetry, mut pulses } = recorded;
+    let columns = &session.columns;
+    columns.time.scale.apply(&mut record.t);
+    record.f_z.iter_mut().zip(&columns.f).for_each(|(values, column)| column.scale.apply(values));
+    if let Some(SpeedTrace { t, omega }) = &mut telemetry {
+        columns.telemetry_time.scale.apply(t);
+        columns.speed.scale.apply(omega);
+    }
+    if let Some(times) = &mut pulses {
+        columns.pulse.scale.apply(times);
+    }
+    Recorded { record, telemetry, pulses }
+}

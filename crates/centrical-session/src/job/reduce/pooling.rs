@@ -1,0 +1,63 @@
+//! All mountings of a session together: the noise of their records, the covariances of their means, the measured speeds.
+
+use centrical::reduction::{MeasuredSpeed, NoiseModel, ReducedMounting, measured_speeds, plateau_means};
+
+use super::mounting::OfRecord;
+use crate::error::{Error, Place};
+use crate::experiment::Session;
+use crate::record::RecordOverview;
+use crate::reduced::{MountingFindings, Reduced, ReducedPlateau};
+
+/// A measured speed farther than this from the one that was set, relative, is in another unit. The record bears out the
+/// schedule better than that, or its plateaus would not be found.
+const OTHER_UNIT: f64 = 0.1;
+
+/// From the mountings to the noise of all of them together, then to the covariances.
+pub(super) fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Reduced, Error> {
+    let interpolated: Vec<Option<[u64; 3]>> = mountings.iter().map(|mounting| mounting.interpolated).collect();
+    let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) =
+        mountings.into_iter().map(|mounting| (mounting.reduced, mounting.overview)).unzip();
+    let noise = NoiseModel::pool(&reduced);
+    let means = reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise));
+    let findings = |(m, interpolated): (&ReducedMounting, &Option<[u64; 3]>)| MountingFindings {
+        settling_time: m.settling_time(),
+        clock_offset: m.clock_offset(),
+        agreement: m.clock_agreement(),
+        interpolated: *interpolated,
+    };
+    let set: Vec<f64> = session.experiment.set_points.iter().map(|set_point| set_point.omega).collect();
+    let readings: Vec<_> = reduced.iter().flat_map(|mounting| mounting.speed_readings().iter().copied()).collect();
+    let speeds = measured_speeds(&set, &readings);
+    refuse_other_units(session, &speeds)?;
+    Ok(Reduced {
+        speeds,
+        plateaus: means.map(ReducedPlateau::from).collect(),
+        mountings: reduced.iter().zip(&interpolated).map(findings).collect(),
+        records,
+        held_out: Vec::new(),
+        inputs: Vec::new(),
+    })
+}
+
+/// Refuses measured speeds that cannot be those of the plateaus: a wrong unit, or a wrong number of pulses.
+fn refuse_other_units(session: &Session, speeds: &[Option<MeasuredSpeed>]) -> Result<(), Error> {
+    if !session.speeds.is_in_files() {
+        return Ok(());
+    }
+    let pairs =
+        session.experiment.set_points.iter().zip(speeds).filter_map(|(set, speed)| Some((set, speed.as_ref()?)));
+    let Some((set, speed)) =
+        pairs.into_iter().find(|(set, speed)| (speed.speed / set.omega.abs() - 1.0).abs() > OTHER_UNIT)
+    else {
+        return Ok(());
+    };
+    let of_mounting = session.mountings.get(set.mounting);
+    let file = of_mounting.and_then(|m| m.pulses.as_deref().or(m.telemetry.as_deref())).unwrap_or(&session.file);
+    let rpm = |speed: f64| speed * 60.0 / std::f64::consts::TAU;
+    let found = format!("{:.2} rpm", rpm(speed.speed));
+    let expected = format!(
+        "about {:.2} rpm, the speed that is set (speed_unit in [columns], pulses_per_revolution in [centrifuge])",
+        rpm(set.omega.abs())
+    );
+    Err(Error::content(file, Place::Whole, found, expected))
+}
