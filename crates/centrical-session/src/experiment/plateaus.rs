@@ -43,8 +43,8 @@ pub struct PlateauMean {
 /// Plateaus already averaged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlateauTable {
-    /// The file.
-    pub file: PathBuf,
+    /// The file; `None` for a table in memory.
+    pub file: Option<PathBuf>,
     /// One row for each of the experiment's set points, in the same order.
     pub rows: Vec<PlateauMean>,
 }
@@ -55,7 +55,33 @@ impl PlateauTable {
         let mut rows =
             if has_speeds { read_measured_plateaus(&file, mountings) } else { read_plateaus(&file, mountings) }?;
         rows.sort_by_key(|row| row.mounting);
-        Ok(Self { file, rows })
+        Ok(Self { file: Some(file), rows })
+    }
+
+    /// The table of columns in memory, in the order of [`PlateauTable::columns`]; the last may be absent. Messages name `file`.
+    pub(crate) fn in_memory(file: &Path, columns: &[Vec<f64>], mountings: usize) -> Result<Self, Error> {
+        let (count, length) = (columns.len(), columns.first().map_or(0, Vec::len));
+        if !(COLUMNS.len()..=COLUMNS.len() + 1).contains(&count) || columns.iter().any(|column| column.len() != length)
+        {
+            let lengths: Vec<usize> = columns.iter().map(Vec::len).collect();
+            let expected = format!("{} columns of equal lengths, and perhaps {}", COLUMNS.len(), SPEED_UNCERTAINTY.0);
+            return Err(Error::content(
+                file,
+                Place::Whole,
+                format!("plateaus in columns of {lengths:?} rows"),
+                expected,
+            ));
+        }
+        let uncertainty = |row: usize| columns.get(COLUMNS.len()).map_or(f64::NAN, |column| column[row]);
+        let row = |row: usize| (std::array::from_fn(|k| columns[k][row]), uncertainty(row));
+        let mut rows = checked(file, &(0..length).map(row).collect::<Vec<_>>(), mountings)?;
+        rows.sort_by_key(|row| row.mounting);
+        Ok(Self { file: None, rows })
+    }
+
+    /// Names of the columns.
+    pub fn columns() -> impl Iterator<Item = &'static str> {
+        COLUMNS.into_iter().chain([SPEED_UNCERTAINTY]).map(|(name, _)| name)
     }
 
     pub(crate) fn set_points(&self, rotation: Rotation) -> Vec<SetPoint> {
@@ -118,7 +144,7 @@ fn read_columns(file: &Path, mountings: usize, columns: &[(&str, &str)]) -> Resu
         rule: if k == ANGLE || k == COLUMNS.len() { Rule::OrMissing } else { Rule::Any },
     };
     let fields: Vec<Field> = columns.iter().enumerate().map(field).collect();
-    let mut rows: Vec<([f64; COLUMNS.len()], f64)> = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
     let mut table = TableReader::open(file, Extent::Whole, &fields, "a table of plateaus")?;
     let named = columns.iter().map(|(name, expected)| ((*name).to_owned(), unit_of(expected).to_owned()));
     let mut units = StatedUnits::new(named.collect());
@@ -129,11 +155,18 @@ fn read_columns(file: &Path, mountings: usize, columns: &[(&str, &str)]) -> Resu
             rows.extend((0..columns[0].len()).map(|row| (std::array::from_fn(|k| columns[k][row]), uncertainty(row))));
         }
     }
-    let checked = |(number, (row, uncertainty)): (u64, &([f64; COLUMNS.len()], f64))| {
+    checked(file, &rows, mountings)
+}
+
+/// The numbers of a row, and the uncertainty of its speed.
+type Row = ([f64; COLUMNS.len()], f64);
+
+fn checked(file: &Path, rows: &[Row], mountings: usize) -> Result<Vec<PlateauMean>, Error> {
+    let checked = |(number, (row, uncertainty)): (u64, &Row)| {
         let speed_uncertainty = speed_uncertainty(file, number, *uncertainty)?;
         Ok(PlateauMean { speed_uncertainty, ..plateau(file, number, row, mountings)? })
     };
-    (1..).zip(&rows).map(checked).collect()
+    (1..).zip(rows).map(checked).collect()
 }
 
 /// The unit at the end of what is expected of a column.

@@ -112,13 +112,22 @@ impl Session {
             session.experiment.set_points = schedule::set_points(file, &form.mounting, rotation)?;
             session.durations = schedule::durations(file, &form.mounting)?;
         }
-        if session.experiment.set_points.iter().all(SetPoint::is_rest) {
-            let at = TomlPath::entry(file, "mounting", 0);
-            return Err(at.unexpected("plateaus", "all plateaus at rest", "at least one plateau with a speed"));
-        }
+        refuse_rests_alone(file, &session.experiment.set_points)?;
         // Whatever is wrong with the priors is said before any record is read.
         session.model()?;
         Ok(session)
+    }
+
+    /// The session with a table of plateaus from memory, columns in the order of [`PlateauTable::columns`].
+    ///
+    /// # Errors
+    /// If a row is invalid, as in a file.
+    pub fn with_plateaus(mut self, columns: &[Vec<f64>]) -> Result<Self, Error> {
+        let table = PlateauTable::in_memory(&self.file, columns, self.mountings.len())?;
+        self.experiment.set_points = table.set_points(self.experiment.centrifuge.rotation);
+        (self.plateaus, self.durations) = (Some(table), Vec::new());
+        refuse_rests_alone(&self.file, &self.experiment.set_points)?;
+        Ok(self)
     }
 
     /// The measurement model of the session: its experiment, error model, extensions and priors.
@@ -235,7 +244,7 @@ impl Session {
     /// All files of the session in the order they are named: the experiment file first.
     pub fn files(&self) -> Vec<&Path> {
         let of_mountings = self.mountings.iter().flat_map(|m| m.records().chain(&m.telemetry).chain(&m.pulses));
-        let table = self.plateaus.iter().map(|table| &table.file);
+        let table = self.plateaus.iter().flat_map(|table| &table.file);
         std::iter::once(&self.file).chain(table).chain(of_mountings).map(PathBuf::as_path).collect()
     }
 
@@ -252,6 +261,15 @@ impl Session {
             TomlPath::entry(&self.file, "mounting", mounting).unexpected("record", "no record", "the path of one")
         })
     }
+}
+
+/// Plateaus at rest alone show nothing of a centrifuge.
+fn refuse_rests_alone(file: &Path, set_points: &[SetPoint]) -> Result<(), Error> {
+    if set_points.iter().all(SetPoint::is_rest) {
+        let at = TomlPath::entry(file, "mounting", 0);
+        return Err(at.unexpected("plateaus", "all plateaus at rest", "at least one plateau with a speed"));
+    }
+    Ok(())
 }
 
 /// The text of the experiment file.

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    Error, ErrorKind, Method, Recorded, Session, calibrate, calibrate_reduced, reduce, reduce_recorded, unwatched,
+    Error, ErrorKind, Method, PlateauMean, PlateauTable, Recorded, Session, TableFormat, calibrate, calibrate_reduced,
+    reduce, reduce_recorded, unwatched, write_reduced,
 };
 
 fn example() -> PathBuf {
@@ -68,6 +69,38 @@ fn what_is_no_record_is_refused() {
     assert!(backwards.contains("mounting 1: sample 701: found time 1 s"), "{backwards}");
     let empty = refused(&|recorded| recorded[5] = Recorded::default());
     assert!(empty.contains("mounting 6: record too short"), "{empty}");
+}
+
+/// A reduced session, its table as columns: the plateaus of its own file.
+#[test]
+fn plateaus_from_memory_are_those_of_a_file() {
+    let session = Session::read(&example()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let reduced = reduce(&session, &unwatched).unwrap();
+    write_reduced(&session, &reduced, TableFormat::Csv, folder.path()).unwrap();
+    let from_file = Session::read(folder.path()).unwrap();
+    let rows = &from_file.plateaus.as_ref().unwrap().rows;
+    let column = |of: &dyn Fn(&PlateauMean) -> f64| rows.iter().map(of).collect::<Vec<f64>>();
+    let mut columns = vec![
+        column(&|p| (p.mounting + 1) as f64),
+        column(&|p| p.speed),
+        column(&|p| if p.speed == 0.0 { p.angle } else { f64::NAN }),
+    ];
+    columns.extend((0..3).map(|i| column(&move |p| p.mean[i])));
+    columns.extend([(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|at| column(&move |p| p.covariance[at])));
+    columns.push(column(&|p| p.samples as f64));
+    let memory = session.clone().with_plateaus(&columns).unwrap();
+    assert_eq!(memory.experiment, from_file.experiment);
+    assert_eq!(&memory.plateaus.as_ref().unwrap().rows, rows);
+    assert_eq!(PlateauTable::columns().count(), columns.len() + 1);
+
+    columns[3].pop();
+    let error = session.clone().with_plateaus(&columns).unwrap_err().to_string();
+    assert!(error.contains("found plateaus in columns of [108, 108, 108, 107, "), "{error}");
+    columns[3].push(f64::NAN);
+    columns[0][7] = 13.0;
+    let error = session.with_plateaus(&columns).unwrap_err().to_string();
+    assert!(error.ends_with("row 8, mounting: found 13, expected the number of a mounting, 1 to 12"), "{error}");
 }
 
 #[test]
