@@ -1,6 +1,6 @@
 //! The whole job for one session: what the command, a fleet's worker and a notebook all call.
 
-use centrical::{Calibration, Data, MeasurementModel, OnProgress};
+use centrical::{Calibration, Data, MeasurementModel, OnProgress, advance};
 
 use super::reduce::reduce;
 use crate::document::{CalibrationResult, Method};
@@ -51,14 +51,19 @@ pub fn calibrate_without(
 ) -> Result<CalibrationResult, Error> {
     let mut reduced = reduce(session, progress)?;
     reduced.held_out = held_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
-    calibrate_reduced(session, &reduced, method)
+    calibrate_reduced(session, &reduced, method, progress)
 }
 
-/// Fits a session that is reduced already, from files or from memory.
+/// Fits a session that is reduced already, from files or from memory. `progress` is called with 0 after every step.
 ///
 /// # Errors
-/// [`Error::Fit`] naming the session, what was found and what was expected.
-pub fn calibrate_reduced(session: &Session, reduced: &Reduced, method: Method) -> Result<CalibrationResult, Error> {
+/// [`Error::Fit`] naming the session, what was found and what was expected; [`Error::Stopped`].
+pub fn calibrate_reduced(
+    session: &Session,
+    reduced: &Reduced,
+    method: Method,
+    progress: OnProgress,
+) -> Result<CalibrationResult, Error> {
     let model = reduced.model(session)?;
     let failed = |source| Error::fit(&session.file, source);
     let data = Data::new(&model, reduced.observations()).map_err(failed)?;
@@ -67,5 +72,8 @@ pub fn calibrate_reduced(session: &Session, reduced: &Reduced, method: Method) -
         Method::Recursive => Calibration::recursive(&data),
         Method::Linear => Calibration::linear(&data),
     };
-    calibration.and_then(|calibration| CalibrationResult::from(&calibration, session, reduced)).map_err(failed)
+    advance(progress, 0)?;
+    calibration
+        .and_then(|calibration| CalibrationResult::from(&calibration, session, reduced, progress))
+        .map_err(failed)
 }

@@ -34,7 +34,7 @@ fn the_result_has_the_bytes_of_that_from_files() {
     assert!(of_memory.inputs.is_empty());
     of_memory.inputs.clone_from(&of_files.inputs);
     assert_eq!(format!("{of_memory:?}"), format!("{of_files:?}"));
-    let json = |reduced| calibrate_reduced(&files, reduced, Method::Exact).unwrap().to_json().unwrap();
+    let json = |reduced| calibrate_reduced(&files, reduced, Method::Exact, &unwatched).unwrap().to_json().unwrap();
     assert_eq!(json(&of_memory), calibrate(&files, Method::Exact, &unwatched).unwrap().to_json().unwrap());
 }
 

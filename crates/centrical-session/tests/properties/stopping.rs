@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical_session::{
     AssessmentRequest, ColumnName, CompensationRequest, Error, Estimator, Method, MonteCarloCase, MonteCarloRequest,
-    NoiseRequest, PlanRequest, Session, TableFormat, Truth, assess, calibrate, compensate, noise_of, plan, reduce,
-    select_model, simulate_session, subject, unwatched,
+    NoiseRequest, PlanRequest, Session, TableFormat, Truth, assess, calibrate, calibrate_reduced, compensate, noise_of,
+    plan, reduce, select_model, simulate_session, subject, unwatched,
 };
 use tempfile::TempDir;
 
@@ -64,6 +64,14 @@ fn jobs_on_records() {
     is_stopped(|caller| assess(&session, &AssessmentRequest::default(), &|n| caller.asked(n)));
     is_stopped(|caller| select_model(&session, &|n| caller.asked(n)));
     is_stopped(|caller| subject(&session.file, &|n| caller.asked(n)));
+}
+
+/// Between the steps of a fit, where a session has thousands of plateaus.
+#[test]
+fn a_fit() {
+    let session = session();
+    let reduced = reduce(&session, &unwatched).unwrap();
+    is_stopped(|caller| calibrate_reduced(&session, &reduced, Method::Exact, &|n| caller.asked(n)));
 }
 
 #[test]

@@ -1,7 +1,10 @@
 //! From a fit to the result's form.
 
 use centrical::uncertainty::Rivals;
-use centrical::{Calibration, Fit, FitError, MeasurementModel, Mounting, Position, PriorUse, SetPoint, Termination};
+use centrical::{
+    Calibration, Fit, FitError, MeasurementModel, Mounting, OnProgress, Position, PriorUse, SetPoint, Termination,
+    advance,
+};
 use nalgebra::{Matrix3, Vector3};
 
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
@@ -18,22 +21,31 @@ use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
 
 impl CalibrationResult {
     /// Puts a calibration and the reduced session that it rests on into the form of the file: with its budget and, for a fit
-    /// on the exact model, its checks.
+    /// on the exact model, its checks. `progress` is called between them.
     ///
     /// # Errors
-    /// [`FitError`] when numbers overflow.
-    pub fn from(calibration: &Calibration, session: &Session, reduced: &Reduced) -> Result<Self, FitError> {
+    /// [`FitError`] when numbers overflow or the caller stops.
+    pub fn from(
+        calibration: &Calibration,
+        session: &Session,
+        reduced: &Reduced,
+        progress: OnProgress,
+    ) -> Result<Self, FitError> {
         let (model, fit) = (calibration.data().model(), calibration.fit());
         let budget = calibration.budget()?;
+        advance(progress, 0)?;
         let covariance = |i, j| fit.covariance(i, j);
         let count = model.parameters().len();
         let (validity, rests_on) = if fit.termination == Termination::Linear {
             (None, Vec::new())
         } else {
             let rivals = Rivals::of(calibration)?;
+            advance(progress, 0)?;
             let checks = ValiditySummary::of(calibration, &rivals)?;
+            advance(progress, 0)?;
             (Some(checks), RestsOn::all(model, rivals.rests_on()?))
         };
+        advance(progress, 0)?;
         Ok(Self {
             schema: SCHEMA.to_owned(),
             program: Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
