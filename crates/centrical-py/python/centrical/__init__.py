@@ -8,7 +8,7 @@ SI units, and a text such as ``"120 g"`` may stand for a quantity with a unit.
 >>> result.acceptable
 True
 >>> result["G1_11"].unit
-'1'
+'s^2/m'
 >>> result.compensate(np.array([[9.81, 0.0, 0.0]])).shape
 (1, 3)
 """

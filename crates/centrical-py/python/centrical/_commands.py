@@ -50,7 +50,7 @@ def calibrate(
         A folder for ``result.json``, the report and its plots; with ``laboratory`` also the certificates.
 
     >>> ct.calibrate(example).names[:2]
-    ('df_1', 'G1_11')
+    ('alpha_1', 'alpha_2')
     """
     with Bar("calibrating") as shown:
         return Result(_native.calibrate(session, method, _texts(hold_out), out, laboratory, language, shown))

@@ -51,6 +51,9 @@ class InputError(ValueError):
 class FileError(InputError, OSError):
     """The system refused to read or write a file; ``errno`` says why."""
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return input_error, (self.message, self.file, self.place, self.found, self.expected, self.errno)
+
 
 class NoSuchFileError(FileError, FileNotFoundError):
     """There is no such file."""

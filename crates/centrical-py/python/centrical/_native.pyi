@@ -11,7 +11,25 @@ _Path = Union[str, os.PathLike[str]]
 _Quantity = Union[float, str]
 _Shown = Union[Callable[[int, int], None], None]
 
-__all__: list[str]
+__all__ = [
+    "CalibrationResult",
+    "Watcher",
+    "assess",
+    "calibrate",
+    "compare",
+    "compensate",
+    "init",
+    "models",
+    "montecarlo",
+    "noise",
+    "observe",
+    "plan",
+    "reduce",
+    "report",
+    "schema",
+    "set_threads",
+    "simulate",
+]
 
 @final
 class CalibrationResult:

@@ -61,8 +61,8 @@ class Result:
     """The result of a calibration, ``centrical-result/1``. All values in SI.
 
     >>> result = ct.calibrate(example)
-    >>> result["df_1"].value == result.values[result.names.index("df_1")]
-    True
+    >>> result.names.index("df_1"), result["df_1"].unit, result["df_1"].group
+    (28, 'm/s^2', 'bias')
     >>> result.covariance.shape
     (49, 49)
     """
@@ -135,7 +135,8 @@ class Result:
     @property
     def rests_on(self) -> list[Record]:
         """The effects whose absence the result rests on, the worst first; empty where this was not asked."""
-        return self.document.content.get("rests_on", [])
+        effects: list[Record] = self.document.content.get("rests_on", [])
+        return effects
 
     @property
     def budget(self) -> Record | None:

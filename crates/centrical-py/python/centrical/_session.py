@@ -21,7 +21,7 @@ class Session:
     Each method is the function of the same name, with its arguments.
 
     >>> session = ct.Session(example)
-    >>> session.calibrate(hold_out=["4:3"]).document.plateaus[20].held_out
+    >>> session.calibrate(hold_out=["1:1"]).document.plateaus[0].held_out
     True
     """
 
