@@ -247,6 +247,9 @@ fn between(py: Python, compensation: &Owned, readings: &arrays::Rows, forces: &a
         let message = format!("out: found shape ({to}, 3), expected ({from}, 3) as of the readings");
         return Err(pyo3::exceptions::PyValueError::new_err(message));
     }
+    if from == 0 {
+        return Ok(0);
+    }
     let (read, mut write) = (arrays::to_read("readings", readings)?, arrays::to_write("out", forces)?);
     let (from, to) = (as_rows(read.as_slice()?), as_rows_mut(write.as_slice_mut()?));
     if from.len() < MANY {

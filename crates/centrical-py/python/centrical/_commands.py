@@ -1,14 +1,15 @@
 """The commands of the program as functions; ``docs/python.md`` has the table.
 
 Each gives the document that the command prints with ``--json``. Paths are texts or ``os.PathLike``. Wrong files raise
-:class:`InputError`, wrong arguments ``ValueError`` or ``TypeError``. Ctrl-C stops a function within a fifth of a second.
+:class:`InputError`, wrong arguments ``ValueError`` or ``TypeError``. Ctrl-C stops a function within a fifth of a second; :func:`noise` only while
+it reads.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from typing import Any, Literal, Union
+from typing import TYPE_CHECKING, Any
 
 from . import _native
 from ._document import Document
@@ -18,12 +19,10 @@ from ._plan import Plan
 from ._progress import Bar
 from ._result import Result
 
-Path = Union[str, "os.PathLike[str]"]
-#: A number in SI, or a text with a unit such as "120 g".
-Quantity = Union[float, str]
-Format = Literal["csv", "parquet"]
-Language = Literal["en", "ru"]
-Method = Literal["exact", "recursive", "linear"]
+if TYPE_CHECKING:
+    from typing import Literal
+
+    from ._types import Form, Format, Language, Method, Path, Quantity
 
 
 def calibrate(
@@ -261,7 +260,7 @@ def init(
     return Document(_native.init(inputs, out, positions))
 
 
-def schema(form: Literal["experiment", "plan", "truth", "laboratory"], *, out: Path | None = None) -> Document:
+def schema(form: Form, *, out: Path | None = None) -> Document:
     """The JSON Schema of a file that people write.
 
     >>> ct.schema("experiment")["type"]

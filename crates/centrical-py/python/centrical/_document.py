@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
-from typing import Any, Union
+from typing import TYPE_CHECKING, Any
 
 
-Path = Union[str, "os.PathLike[str]"]
+if TYPE_CHECKING:
+    from ._types import Path
 
 
 class Record(dict[str, Any]):

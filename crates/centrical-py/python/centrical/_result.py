@@ -6,7 +6,7 @@ import os
 import warnings
 from collections.abc import Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union, overload
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,10 +16,9 @@ from ._documents import check_documents
 from ._table import columns_of, is_table
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from typing import Literal, overload
 
-    Array = NDArray[np.float64]
-Source = Union[str, "os.PathLike[str]"]
+    from ._types import Array, Language, Path, Quantity
 
 
 class Parameter(NamedTuple):
@@ -155,14 +154,19 @@ class Result:
         """Largest specific force on each axis that :meth:`compensate` gives [m/s^2]."""
         return self.native.range
 
-    @overload
-    def compensate(
-        self, readings: Array, out: Array | None = None, uncertainty: Literal[False] = False
-    ) -> Array: ...
-    @overload
-    def compensate(self, readings: Array, out: Array | None = None, *, uncertainty: Literal[True]) -> tuple[Array, Array]: ...
-    @overload
-    def compensate(self, readings: Any, out: Array | None = None, uncertainty: bool = False) -> Any: ...
+    if TYPE_CHECKING:
+
+        @overload
+        def compensate(
+            self, readings: Array, out: Array | None = None, uncertainty: Literal[False] = False
+        ) -> Array: ...
+        @overload
+        def compensate(
+            self, readings: Array, out: Array | None = None, *, uncertainty: Literal[True]
+        ) -> tuple[Array, Array]: ...
+        @overload
+        def compensate(self, readings: Any, out: Array | None = None, uncertainty: bool = False) -> Any: ...
+
     def compensate(self, readings: Any, out: Any = None, uncertainty: bool = False) -> Any:
         """From readings to specific force [m/s^2], exact to rounding.
 
@@ -217,15 +221,15 @@ class Result:
     def report(
         self,
         *,
-        html: Source | None = None,
-        history: Source | None = None,
-        pdf: Source | None = None,
-        before: Source | None = None,
-        dcc: Source | None = None,
-        code: Source | None = None,
-        range: float | str | None = None,
-        laboratory: Source | None = None,
-        language: Literal["en", "ru"] = "en",
+        html: Path | None = None,
+        history: Path | None = None,
+        pdf: Path | None = None,
+        before: Path | None = None,
+        dcc: Path | None = None,
+        code: Path | None = None,
+        range: Quantity | None = None,
+        laboratory: Path | None = None,
+        language: Language = "en",
     ) -> Document:
         """Writes documents of the result, as :func:`centrical.report` does of its file.
 
@@ -245,7 +249,7 @@ class Result:
             )
         return Document(text)
 
-    def to_json(self, path: Source | None = None) -> str:
+    def to_json(self, path: Path | None = None) -> str:
         """The text of ``result.json``, byte for byte; written to ``path`` if one is given, whole or not at all."""
         if path is not None:
             self.native.write(path)
@@ -308,7 +312,7 @@ class Result:
         return _from_json, (self.native.to_json(),)
 
 
-def read_result(path: Source) -> Result:
+def read_result(path: Path) -> Result:
     """Reads a ``result.json``.
 
     >>> ct.calibrate(example).to_json(folder / "result.json") == ct.read_result(folder / "result.json").to_json()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Union
+from typing import TYPE_CHECKING, Any
 
 from . import _commands
 from ._document import Document
@@ -12,7 +12,8 @@ from ._noise import Noise
 from ._result import Result
 from ._watch import Watch, watch
 
-Path = Union[str, "os.PathLike[str]"]
+if TYPE_CHECKING:
+    from ._types import Method, Path
 
 
 class Session:
@@ -34,7 +35,7 @@ class Session:
             error.errno, error.filename = 2, self.path
             raise error
 
-    def calibrate(self, method: _commands.Method = "exact", hold_out: Any = (), **options: Any) -> Result:
+    def calibrate(self, method: Method = "exact", hold_out: Any = (), **options: Any) -> Result:
         """See :func:`centrical.calibrate`."""
         return _commands.calibrate(self.path, method=method, hold_out=hold_out, **options)
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator
-from typing import Union
+from typing import TYPE_CHECKING
 
 from . import _native
 from ._document import Document
 from ._result import Result
 
-Path = Union[str, "os.PathLike[str]"]
+if TYPE_CHECKING:
+    from ._types import Path
 
 
 class Watch(Iterator[Document]):
