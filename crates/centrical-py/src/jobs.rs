@@ -4,6 +4,7 @@ pub mod assess;
 pub mod calibrate;
 pub mod compare;
 pub mod compensate;
+pub mod in_memory;
 pub mod init;
 pub mod models;
 pub mod montecarlo;

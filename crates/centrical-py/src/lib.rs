@@ -27,6 +27,8 @@ mod _native {
     #[pymodule_export]
     use crate::jobs::compensate::compensate;
     #[pymodule_export]
+    use crate::jobs::in_memory::{calibrate_arrays, plateau_columns};
+    #[pymodule_export]
     use crate::jobs::init::init;
     #[pymodule_export]
     use crate::jobs::models::models;

@@ -17,6 +17,7 @@ True
 import numpy as _numpy  # noqa: F401
 
 from . import _native
+from ._array_session import ArraySession
 from ._commands import (
     assess,
     calibrate,
@@ -45,6 +46,7 @@ from ._watch import Watch, watch
 set_threads = _native.set_threads
 
 __all__ = [
+    "ArraySession",
     "Document",
     "FileError",
     "InputError",

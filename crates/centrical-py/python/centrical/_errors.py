@@ -75,3 +75,10 @@ def input_error(
     error.errno = code
     error.filename = file
     return error
+
+
+def no_session(path: str) -> InputError:
+    """The exception for a session that is not there."""
+    expected = "an experiment file, or the folder with its experiment.toml"
+    message = f"{path}: found no such file, expected {expected}"
+    return input_error(message, path, None, "no such file", expected, errno.ENOENT)

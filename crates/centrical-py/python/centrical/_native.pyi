@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 _Path = Union[str, os.PathLike[str]]
 _Quantity = Union[float, str]
 _Shown = Union[Callable[[int, int], None], None]
+_Column = NDArray[np.float64]
+_Recorded = tuple[_Column, list[_Column], Union[list[_Column], None], Union[_Column, None]]
 
 __all__ = [
     "CalibrationResult",
     "Watcher",
     "assess",
     "calibrate",
+    "calibrate_arrays",
     "compare",
     "compensate",
     "init",
@@ -24,6 +27,7 @@ __all__ = [
     "noise",
     "observe",
     "plan",
+    "plateau_columns",
     "reduce",
     "report",
     "schema",
@@ -95,6 +99,16 @@ def calibrate(
     language: str,
     shown: _Shown,
 ) -> CalibrationResult: ...
+def calibrate_arrays(
+    text: str,
+    file: _Path,
+    records: Sequence[_Recorded],
+    plateaus: Sequence[_Column] | None,
+    method: str,
+    hold_out: Sequence[str],
+    shown: _Shown,
+) -> CalibrationResult: ...
+def plateau_columns() -> list[str]: ...
 def compare(
     results: Sequence[CalibrationResult | _Path], years: float | None, other_units: bool, svg: _Path | None
 ) -> str: ...

@@ -6,8 +6,9 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from . import _commands
+from ._array_session import ArraySession, from_arrays
 from ._document import Document
-from ._errors import NoSuchFileError
+from ._errors import no_session
 from ._noise import Noise
 from ._result import Result
 from ._watch import Watch, watch
@@ -29,11 +30,42 @@ class Session:
     def __init__(self, path: Path) -> None:
         self.path = os.fspath(path)
         if not os.path.exists(self.path):
-            message = f"{self.path}: found no such file, expected an experiment file, or the folder with its experiment.toml"
-            expected = "an experiment file, or the folder with its experiment.toml"
-            error = NoSuchFileError(message, self.path, None, "no such file", expected)
-            error.errno, error.filename = 2, self.path
-            raise error
+            raise no_session(self.path)
+
+    @staticmethod
+    def from_arrays(
+        experiment: Path,
+        records: Any = None,
+        *,
+        telemetry: Any = None,
+        pulses: Any = None,
+        plateaus: Any = None,
+    ) -> ArraySession:
+        """A session whose records, or whose plateaus, are arrays.
+
+        Parameters
+        ----------
+        experiment
+            An experiment file, its folder, or its text. Files that it names for records are not read.
+        records
+            By the number of the mounting from 1, or in that order: ``(t, f)`` with times ``(n,)`` and readings ``(n, 3)``, in the
+            units that the experiment states for its columns (s and m/s^2 unless it does).
+        telemetry
+            By the same numbers: ``(t, speed)``, ``(n,)`` each. A mounting may lack it.
+        pulses
+            By the same numbers: times ``(n,)`` of the pulses of an index mark or an encoder.
+        plateaus
+            In place of records: a table with the columns of ``plateaus.csv``; ``angle`` is NaN while spinning.
+
+        All arrays are copied.
+
+        >>> record = np.loadtxt(example / "records" / "m01.csv", delimiter=",", skiprows=1)
+        >>> ct.Session.from_arrays(example, [(record[:, 0], record[:, 1:])]).calibrate()
+        Traceback (most recent call last):
+        ...
+        centrical._errors.InputError: ...: found 1 records in memory, expected 12, one for each mounting
+        """
+        return from_arrays(experiment, records, telemetry, pulses, plateaus)
 
     def calibrate(self, method: Method = "exact", hold_out: Any = (), **options: Any) -> Result:
         """See :func:`centrical.calibrate`."""
