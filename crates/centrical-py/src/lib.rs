@@ -3,6 +3,12 @@
 //! It is thin. A function runs one job of `centrical-session` without the interpreter lock and gives the JSON text that the
 //! command prints; the Python layer beside it, `python/centrical`, makes objects of that. No panic crosses into Python.
 
+#![allow(
+    clippy::needless_pass_by_value,
+    clippy::too_many_arguments,
+    reason = "arguments come from Python as values, and are the options of a command"
+)]
+
 mod arrays;
 mod compensation;
 mod failure;

@@ -21,6 +21,9 @@ use crate::pool;
 /// Rows from which on the interpreter lock is released.
 const MANY: usize = 512;
 
+/// A figure: name, title, caption, drawings.
+type Drawn = (&'static str, String, String, Vec<String>);
+
 /// A calibration result.
 #[pyclass(frozen, module = "centrical._native")]
 pub struct CalibrationResult {
@@ -149,7 +152,7 @@ impl CalibrationResult {
     }
 
     /// The figures of the report: name, title, caption and the drawings of each, SVG.
-    fn figures(&self, py: Python) -> PyResult<Vec<(&'static str, String, String, Vec<String>)>> {
+    fn figures(&self, py: Python) -> PyResult<Vec<Drawn>> {
         guarded(|| {
             let figures = py.detach(|| figures(&self.result, Language::English));
             Ok(figures.into_iter().map(|f| (f.name, f.title, f.caption, f.drawings)).collect())

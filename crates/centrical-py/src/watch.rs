@@ -42,7 +42,6 @@ pub struct Watcher {
 impl Watcher {
     #[new]
     #[pyo3(signature = (session, out, targets, false_alarm, hold_out, hold_out_alarms, interval, quiet, once))]
-    #[allow(clippy::too_many_arguments, clippy::fn_params_excessive_bools, reason = "the options of the command")]
     fn new(
         session: PathBuf,
         out: PathBuf,

@@ -12,7 +12,6 @@ use crate::words;
 
 /// The result of a session; into the folder `out` as well, with its report, if one is given.
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "the options of the command")]
 pub fn calibrate(
     py: Python,
     session: PathBuf,

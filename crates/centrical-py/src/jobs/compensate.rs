@@ -10,7 +10,6 @@ use crate::words::Amount;
 
 /// `centrical-compensation/1`.
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "the options of the command")]
 pub fn compensate(
     py: Python,
     result: PathBuf,

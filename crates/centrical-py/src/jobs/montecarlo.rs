@@ -10,7 +10,6 @@ use crate::words::probability;
 
 /// `centrical-montecarlo/1`.
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "the options of the command")]
 pub fn montecarlo(
     py: Python,
     subject: PathBuf,

@@ -20,7 +20,6 @@ pub enum Named {
 
 /// `centrical-noise/1`.
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "the options of the command")]
 pub fn noise(
     py: Python,
     file: PathBuf,

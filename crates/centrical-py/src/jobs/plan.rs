@@ -11,7 +11,6 @@ use crate::words::{probability, refused};
 
 /// `centrical-plan/1`.
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "the options of the command")]
 pub fn plan(
     py: Python,
     file: PathBuf,

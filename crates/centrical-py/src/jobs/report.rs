@@ -11,7 +11,6 @@ use crate::words::{Amount, language as language_of};
 
 /// `centrical-documents/1`; `name` is what it calls the result in the file `result`.
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "the options of the command")]
 pub fn report(
     py: Python,
     result: PathBuf,
