@@ -1,0 +1,81 @@
+"""Calibration of newtonometer (accelerometer) triads on precision centrifuges.
+
+Every command of the program ``centrical`` is a function here, with the same numbers to the last bit; numbers are in
+SI units, and a text such as ``"120 g"`` may stand for a quantity with a unit.
+
+>>> import centrical as ct
+>>> result = ct.Session(example).calibrate()
+>>> result.acceptable
+True
+>>> result["G1_11"].unit
+'s^2/m'
+>>> result.compensate(np.array([[9.81, 0.0, 0.0]])).shape
+(1, 3)
+"""
+
+# First: without NumPy this is an ImportError, and not a panic at the first array.
+import numpy as _numpy  # noqa: F401
+
+from . import _native
+from ._array_session import ArraySession
+from ._commands import (
+    assess,
+    calibrate,
+    compare,
+    compensate,
+    init,
+    models,
+    montecarlo,
+    noise,
+    observe,
+    plan,
+    reduce,
+    report,
+    schema,
+    simulate,
+)
+from ._document import Document, Record
+from ._errors import FileError, InputError, NoSuchFileError
+from ._noise import Noise
+from ._plan import Plan
+from ._progress import set_progress
+from ._result import Objection, Observability, Parameter, Result, read_result
+from ._session import Session
+from ._watch import Watch, watch
+
+set_threads = _native.set_threads
+
+__all__ = [
+    "ArraySession",
+    "Document",
+    "FileError",
+    "InputError",
+    "NoSuchFileError",
+    "Noise",
+    "Objection",
+    "Observability",
+    "Parameter",
+    "Plan",
+    "Record",
+    "Result",
+    "Session",
+    "Watch",
+    "assess",
+    "calibrate",
+    "compare",
+    "compensate",
+    "init",
+    "models",
+    "montecarlo",
+    "noise",
+    "observe",
+    "plan",
+    "read_result",
+    "reduce",
+    "report",
+    "schema",
+    "set_progress",
+    "set_threads",
+    "simulate",
+    "watch",
+]

@@ -1,0 +1,275 @@
+"""The commands of the program as functions; ``docs/python.md`` has the table.
+
+Each gives the document that the command prints with ``--json``. Paths are texts or ``os.PathLike``. Wrong files raise
+:class:`InputError`, wrong arguments ``ValueError`` or ``TypeError``. Ctrl-C stops a function within a fifth of a second; :func:`noise` only while
+it reads.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from . import _native
+from ._document import Document
+from ._documents import check_documents
+from ._noise import Noise, noise_of_array
+from ._plan import Plan
+from ._progress import Bar
+from ._result import Result
+
+if TYPE_CHECKING:
+    from typing import Literal
+
+    from ._types import Form, Format, Language, Method, Path, Quantity
+
+
+def calibrate(
+    session: Path,
+    *,
+    method: Method = "exact",
+    hold_out: Iterable[str] = (),
+    out: Path | None = None,
+    laboratory: Path | None = None,
+    language: Language = "en",
+) -> Result:
+    """Calibrates a unit: plateau means, fit, budget, checks.
+
+    Parameters
+    ----------
+    session
+        The folder of a session, or its ``experiment.toml``.
+    method
+        ``"exact"``: Gauss-Newton on the exact model; ``"recursive"``: the same estimates by the recursive filter;
+        ``"linear"``: the linear fit of [K5.3] alone, with its second-order error.
+    hold_out
+        Plateaus that are predicted and not fitted: ``"4:3"`` for the third of the fourth mounting.
+    out
+        A folder for ``result.json``, the report and its plots; with ``laboratory`` also the certificates.
+
+    >>> ct.calibrate(example).names[:2]
+    ('alpha_1', 'alpha_2')
+    """
+    with Bar("calibrating") as shown:
+        return Result(_native.calibrate(session, method, _texts(hold_out), out, laboratory, language, shown))
+
+
+def observe(subject: Path, combinations: Iterable[str] = ()) -> Document:
+    """Rank, undetermined combinations, causes and remedies, of a session or a plan, before or after the experiment.
+
+    ``combinations`` are sums of parameters to look at, such as ``"dR_2[A] + drho_22"``.
+
+    >>> ct.observe(example).rank
+    49
+    """
+    with Bar("observing") as shown:
+        return Document(_native.observe(subject, _texts(combinations), shown))
+
+
+def assess(
+    session: Path,
+    *,
+    coverage: float = 0.9545,
+    without_outliers: float | None = None,
+    scale_by_residuals: bool = False,
+    range: Quantity | None = None,
+) -> Document:
+    """Uncertainty budget (GUM), validity, patterns in the residuals, uncertainty of a compensated reading.
+
+    ``without_outliers`` is the family-wise error at which outlying plateaus are left out, 0.05 for instance; ``range``
+    the largest specific force of the prediction [m/s^2], by default the highest of the session.
+    """
+    with Bar("assessing") as shown:
+        return Document(_native.assess(session, coverage, without_outliers, scale_by_residuals, range, shown))
+
+
+def montecarlo(
+    subject: Path,
+    *,
+    runs: int = 10_000,
+    seed: int = 1,
+    coverage: float = 0.95,
+    linear: bool = False,
+    noise_ug: float | None = None,
+    typical: bool = False,
+) -> Document:
+    """Repeats the calibration of a session or a plan on drawn readings, and checks the stated uncertainties.
+
+    ``noise_ug`` is the white noise of the means of a plan [micro-g], in place of the plan's own; ``typical`` takes a
+    unit with errors of typical size for the true one. The same seed gives the same numbers on any number of threads.
+
+    >>> ct.montecarlo(example, runs=20, seed=7).runs
+    20
+    """
+    with Bar("calibrating") as shown:
+        return Document(_native.montecarlo(subject, runs, seed, coverage, linear, noise_ug, typical, shown))
+
+
+def models(session: Path) -> Document:
+    """Fits the model with each effect that it leaves out, and with pairs of the best: F test, BIC, hold-out."""
+    with Bar("fitting rivals") as shown:
+        return Document(_native.models(session, shown))
+
+
+def noise(
+    source: Any,
+    *,
+    plateau: str | None = None,
+    session: Path | None = None,
+    time: str | int = "t",
+    rate: Quantity | None = None,
+    readings: Sequence[str | int] = ("f1", "f2", "f3"),
+    unit: str = "m/s^2",
+    start: float = float("-inf"),
+    end: float = float("inf"),
+    estimators: Sequence[str] = ("overlapping-allan", "overlapping-hadamard"),
+    out: Path | None = None,
+) -> Noise:
+    """Deviations of the Allan family with intervals, spectrum and noise terms.
+
+    Parameters
+    ----------
+    source
+        A record, a session of which one ``plateau`` is analysed, or an array of readings, shape ``(n,)`` or ``(n, k)``,
+        which needs a ``rate``; it goes through a temporary file.
+    rate
+        Sampling rate [Hz], or a text such as ``"250 Hz"``, of readings without a column of time.
+    readings
+        Columns of a record, by their names or their numbers from 1.
+    start, end
+        The part of the record to analyse, on its own clock [s].
+    estimators
+        Names, or ``["all"]``.
+
+    >>> x = np.random.default_rng(1).normal(size=4096)
+    >>> tau, deviation = ct.noise(x, rate=100.0).deviation("oadev")
+    >>> bool(abs(deviation[0] - 1.0) < 0.05)
+    True
+    """
+    with Bar("analysing noise") as shown:
+        if hasattr(source, "__array__") or isinstance(source, (list, tuple)):
+            return noise_of_array(source, rate, unit, (start, end), list(estimators), out, shown)
+        text = _native.noise(
+            source, plateau, session, time, rate, list(readings), unit, (start, end), list(estimators), out, shown
+        )
+        return Noise(text)
+
+
+def plan(
+    file: Path,
+    *,
+    out: Path | None = None,
+    frontier: bool = False,
+    svg: Path | None = None,
+    levels: Sequence[float] | None = None,
+    certify: bool = False,
+    coverage: float = 0.9545,
+) -> Plan:
+    """The schedule with the smallest uncertainty in the time available, or the shortest that meets the goals.
+
+    ``out`` takes the schedule as a plan file for :func:`observe`, :func:`montecarlo` and :func:`simulate`; ``certify``
+    searches until the optimality gap is below 0.25 %; ``frontier`` plans for other times too.
+    """
+    with Bar("planning") as shown:
+        chosen = None if levels is None else list(levels)
+        return Plan(_native.plan(file, out, frontier, svg, chosen, certify, coverage, shown))
+
+
+def simulate(plan: Path, truth: Path, *, seed: int, out: Path, format: Format = "csv") -> Document:
+    """Writes a whole session to the folder ``out`` as a laboratory would deliver it, with ``truth.json`` beside it."""
+    with Bar("simulating") as shown:
+        return Document(_native.simulate(plan, truth, seed, out, format, shown))
+
+
+def compare(
+    results: Sequence[Path | Result],
+    *,
+    years: float | None = None,
+    other_units: bool = False,
+    svg: Path | None = None,
+) -> Document:
+    """Compares calibrations of one unit, each with the one before and the last with the first: E_n, drift, joint test.
+
+    ``years`` lie between two results, by default as the dates of their sessions say.
+
+    >>> result = ct.calibrate(example)
+    >>> ct.compare([result, result]).agree
+    True
+    """
+    natives = [result.native if isinstance(result, Result) else result for result in results]
+    return Document(_native.compare(natives, years, other_units, svg))
+
+
+def reduce(session: Path, out: Path, *, format: Format = "csv") -> Document:
+    """Converts records to a session of plateau means in the folder ``out`` that calibrates to the same numbers."""
+    with Bar("reducing") as shown:
+        return Document(_native.reduce(session, out, format, shown))
+
+
+def compensate(
+    result: Path,
+    record: Path,
+    out: Path,
+    *,
+    session: Path | None = None,
+    range: Quantity | None = None,
+    within_calibration: bool = False,
+) -> Document:
+    """Converts a record of readings to one of specific force, Parquet or CSV by the name of ``out``.
+
+    Memory does not grow with the record. ``session`` says columns and units of the record; ``range`` is the largest
+    specific force on each axis [m/s^2]; readings beyond it become NaN. For arrays: :meth:`Result.compensate`.
+    """
+    with Bar("compensating") as shown:
+        return Document(_native.compensate(result, record, out, session, range, within_calibration, shown))
+
+
+def report(
+    result: Path,
+    *,
+    html: Path | None = None,
+    history: Path | None = None,
+    pdf: Path | None = None,
+    before: Path | None = None,
+    dcc: Path | None = None,
+    code: Path | None = None,
+    range: Quantity | None = None,
+    laboratory: Path | None = None,
+    language: Language = "en",
+) -> Document:
+    """Writes the documents of a result; for one in memory: :meth:`Result.report`.
+
+    ``html``: the report; ``pdf``: the certificate; ``dcc``: the digital certificate, both with a ``laboratory``;
+    ``code``: a folder for the compensation as source code.
+    """
+    check_documents(html, history, pdf, before, dcc, code, range, laboratory)
+    text = _native.report(result, None, html, history, pdf, before, dcc, code, range, laboratory, language)
+    return Document(text)
+
+
+def init(
+    inputs: Path | Iterable[Path], *, out: Path | None = None, positions: Literal["six"] | None = None
+) -> Document:
+    """Drafts ``experiment.toml`` from records and telemetry, or folders of them; ``text`` has the draft.
+
+    >>> ct.init(example / "records").guesses > 0
+    True
+    """
+    inputs = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
+    return Document(_native.init(inputs, out, positions))
+
+
+def schema(form: Form, *, out: Path | None = None) -> Document:
+    """The JSON Schema of a file that people write.
+
+    >>> ct.schema("experiment")["type"]
+    'object'
+    """
+    return Document(_native.schema(form, out))
+
+
+def _texts(names: Iterable[str]) -> list[str]:
+    if isinstance(names, str):
+        raise TypeError(f"found the text {names!r}, expected a list of texts")
+    return list(names)

@@ -1,0 +1,176 @@
+"""The native core: each command as a function that gives the JSON text which the command prints."""
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Union, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Path = Union[str, os.PathLike[str]]
+_Quantity = Union[float, str]
+_Shown = Union[Callable[[int, int], None], None]
+_Column = NDArray[np.float64]
+_Recorded = tuple[_Column, list[_Column], Union[list[_Column], None], Union[_Column, None]]
+
+__all__ = [
+    "CalibrationResult",
+    "Watcher",
+    "assess",
+    "calibrate",
+    "calibrate_arrays",
+    "compare",
+    "compensate",
+    "init",
+    "models",
+    "montecarlo",
+    "noise",
+    "observe",
+    "plan",
+    "plateau_columns",
+    "reduce",
+    "report",
+    "schema",
+    "set_threads",
+    "simulate",
+]
+
+@final
+class CalibrationResult:
+    @staticmethod
+    def read(file: _Path) -> CalibrationResult: ...
+    @staticmethod
+    def from_json(text: bytes) -> CalibrationResult: ...
+    def to_json(self) -> bytes: ...
+    def write(self, file: _Path) -> None: ...
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def units(self) -> list[str]: ...
+    @property
+    def groups(self) -> list[str]: ...
+    @property
+    def values(self) -> NDArray[np.float64]: ...
+    @property
+    def uncertainties(self) -> NDArray[np.float64]: ...
+    @property
+    def covariance(self) -> NDArray[np.float64]: ...
+    @property
+    def objections(self) -> list[tuple[str, str]]: ...
+    @property
+    def range(self) -> float: ...
+    def text(self, width: int) -> str: ...
+    def figures(self) -> list[tuple[str, str, str, list[str]]]: ...
+    def compensate(self, readings: Any, out: Any = None) -> tuple[Any, int]: ...
+    def uncertainty(self, forces: Any) -> NDArray[np.float64]: ...
+
+@final
+class Watcher(Iterator[tuple[str, str | CalibrationResult | None]]):
+    def __new__(
+        cls,
+        session: _Path,
+        out: _Path,
+        targets: Sequence[str],
+        false_alarm: float,
+        hold_out: Sequence[str],
+        hold_out_alarms: bool,
+        interval: float,
+        quiet: float,
+        once: bool,
+    ) -> Watcher: ...
+    def __iter__(self) -> Watcher: ...
+    def __next__(self) -> tuple[str, str | CalibrationResult | None]: ...
+    def close(self) -> None: ...
+
+def assess(
+    session: _Path,
+    coverage: float,
+    without_outliers: float | None,
+    scale_by_residuals: bool,
+    range: _Quantity | None,
+    shown: _Shown,
+) -> str: ...
+def calibrate(
+    session: _Path,
+    method: str,
+    hold_out: Sequence[str],
+    out: _Path | None,
+    laboratory: _Path | None,
+    language: str,
+    shown: _Shown,
+) -> CalibrationResult: ...
+def calibrate_arrays(
+    text: str,
+    file: _Path,
+    records: Sequence[_Recorded],
+    plateaus: Sequence[_Column] | None,
+    method: str,
+    hold_out: Sequence[str],
+    shown: _Shown,
+) -> CalibrationResult: ...
+def plateau_columns() -> list[str]: ...
+def compare(
+    results: Sequence[CalibrationResult | _Path], years: float | None, other_units: bool, svg: _Path | None
+) -> str: ...
+def compensate(
+    result: _Path,
+    record: _Path,
+    out: _Path,
+    session: _Path | None,
+    range: _Quantity | None,
+    within_calibration: bool,
+    shown: _Shown,
+) -> str: ...
+def init(inputs: Sequence[_Path], out: _Path | None, positions: str | None) -> str: ...
+def models(session: _Path, shown: _Shown) -> str: ...
+def montecarlo(
+    subject: _Path,
+    runs: int,
+    seed: int,
+    coverage: float,
+    linear: bool,
+    noise: float | None,
+    typical: bool,
+    shown: _Shown,
+) -> str: ...
+def noise(
+    file: _Path,
+    plateau_name: str | None,
+    session: _Path | None,
+    time: str | int,
+    rate: _Quantity | None,
+    readings: Sequence[str | int],
+    unit: str,
+    window: tuple[float, float],
+    estimators: Sequence[str],
+    out: _Path | None,
+    shown: _Shown,
+) -> str: ...
+def observe(file: _Path, combinations: Sequence[str], shown: _Shown) -> str: ...
+def plan(
+    file: _Path,
+    out: _Path | None,
+    frontier: bool,
+    svg: _Path | None,
+    levels: Sequence[float] | None,
+    certify: bool,
+    coverage: float,
+    shown: _Shown,
+) -> str: ...
+def reduce(session: _Path, out: _Path, format: str, shown: _Shown) -> str: ...
+def report(
+    result: _Path,
+    name: _Path | None,
+    html: _Path | None,
+    history: _Path | None,
+    pdf: _Path | None,
+    before: _Path | None,
+    dcc: _Path | None,
+    code: _Path | None,
+    range: _Quantity | None,
+    laboratory: _Path | None,
+    language: str,
+) -> str: ...
+def schema(form: str, out: _Path | None) -> str: ...
+def set_threads(count: int) -> None: ...
+def simulate(plan: _Path, truth: _Path, seed: int, out: _Path, format: str, shown: _Shown) -> str: ...

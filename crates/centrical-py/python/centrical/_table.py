@@ -1,0 +1,75 @@
+"""Tables with named columns as rows of three."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+NAMES = ("f1", "f2", "f3")
+
+
+def is_table(thing: Any) -> bool:
+    """Whether something has named columns."""
+    return isinstance(thing, Mapping) or hasattr(thing, "__arrow_c_stream__") or hasattr(thing, "columns")
+
+
+def columns_of(table: Any) -> NDArray[np.float64]:
+    """The columns f1, f2, f3 as an array of shape ``(n, 3)``: always a copy.
+
+    >>> from centrical._table import columns_of
+    >>> columns_of({"t": [0.0], "f1": [1.0], "f2": [2.0], "f3": [3.0]})
+    array([[1., 2., 3.]])
+    """
+    columns = columns_named(table, NAMES, "readings")
+    lengths = [len(column) for column in columns]
+    if len(set(lengths)) > 1:
+        raise ValueError(f"readings: found columns of {lengths} rows, expected as many of each")
+    rows = np.empty((lengths[0], 3))
+    for axis, column in enumerate(columns):
+        rows[:, axis] = column
+    return rows
+
+
+def columns_named(table: Any, names: Sequence[str], argument: str) -> list[NDArray[np.float64]]:
+    """The columns of these names, of numbers."""
+    readable = _readable(table, argument)
+    return [_column(readable, name, names, argument) for name in names]
+
+
+def names_of(table: Any) -> list[str]:
+    """The names of the columns of a table."""
+    readable = _readable(table, "table")
+    return list(readable.column_names if hasattr(readable, "column_names") else getattr(readable, "columns", readable))
+
+
+def _readable(table: Any, argument: str) -> Any:
+    """Something whose columns are found by name."""
+    if isinstance(table, Mapping) or hasattr(table, "__getitem__"):
+        return table
+    try:
+        import pyarrow  # type: ignore[import-not-found, import-untyped, unused-ignore]
+    except ImportError:
+        name = type(table).__name__
+        raise TypeError(
+            f"{argument}: found {name}, an Arrow stream without columns by name, expected a table, or pyarrow to read it"
+        ) from None
+    return pyarrow.table(table)
+
+
+def _column(table: Any, name: str, names: Sequence[str], argument: str) -> NDArray[np.float64]:
+    try:
+        column = np.asarray(table[name])
+    except (KeyError, IndexError) as missing:
+        raise ValueError(f"{argument}: found no column {name!r}, expected {', '.join(names)}") from missing
+    except Exception as other:
+        # Every library has its own exception for a column that is not there.
+        raise ValueError(f"{argument}: column {name!r} cannot be read ({other}), expected {', '.join(names)}") from other
+    if column.ndim != 1 or column.dtype.kind not in "fiu":
+        found = f"shape {column.shape} of {column.dtype}"
+        raise TypeError(f"{argument}, column {name}: found {found}, expected numbers, shape (n,)")
+    return column.astype(np.float64, copy=False)

@@ -1,0 +1,18 @@
+"""Types of arguments, for type checkers and readers: nothing imports this at run time."""
+
+from __future__ import annotations
+
+import os
+from typing import Literal, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Path = Union[str, "os.PathLike[str]"]
+#: A number in SI, or a text with a unit such as "120 g".
+Quantity = Union[float, str]
+Format = Literal["csv", "parquet"]
+Form = Literal["experiment", "plan", "truth", "laboratory"]
+Language = Literal["en", "ru"]
+Method = Literal["exact", "recursive", "linear"]

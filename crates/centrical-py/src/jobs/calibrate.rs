@@ -1,0 +1,49 @@
+//! `calibrate`: from a session folder to calibrated parameters.
+
+use std::path::{Path, PathBuf};
+
+use centrical_report::{read_issuer, write_all_documents};
+use centrical_session::{Session, calibrate_without, claim_folder, refuse_inputs};
+use pyo3::prelude::*;
+
+use crate::progress::{self, Shown};
+use crate::result::CalibrationResult;
+use crate::words;
+
+/// The result of a session; into the folder `out` as well, with its report, if one is given.
+#[pyfunction]
+pub fn calibrate(
+    py: Python,
+    session: PathBuf,
+    method: &str,
+    hold_out: Vec<String>,
+    out: Option<PathBuf>,
+    laboratory: Option<PathBuf>,
+    language: &str,
+    shown: Shown,
+) -> PyResult<CalibrationResult> {
+    let (method, language) = (words::method(method)?, words::language(language)?);
+    let hold_out = words::plateaus("hold_out", &hold_out)?;
+    let result = progress::run(py, &shown, |work| {
+        let session = Session::read(&session)?;
+        work.expect(2 * session.record_bytes());
+        let claim = out.as_deref().map(claim_folder).transpose()?;
+        let inputs = [session.files(), laboratory.as_deref().into_iter().collect()].concat();
+        refuse_inputs(&outputs(out.as_deref()), &inputs)?;
+        let result = calibrate_without(&session, &hold_out, method, &|bytes| work.advance(bytes))?;
+        if let Some(folder) = &out {
+            result.write(&folder.join("result.json"))?;
+            let issuer = laboratory.as_deref().map(|file| read_issuer(file, &result)).transpose()?;
+            write_all_documents(&result, issuer.as_ref(), language, folder)?;
+        }
+        drop(claim);
+        Ok(result)
+    })?;
+    Ok(result.into())
+}
+
+/// The files that are written, but for plots.
+fn outputs(out: Option<&Path>) -> Vec<PathBuf> {
+    let names = ["result.json", "report.html", "certificate.pdf", "certificate.xml"];
+    out.into_iter().flat_map(|folder| names.map(|name| folder.join(name))).collect()
+}

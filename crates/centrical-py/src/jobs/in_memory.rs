@@ -1,0 +1,93 @@
+//! `Session.from_arrays`: a session whose records, or whose plateaus, are arrays.
+
+use std::path::PathBuf;
+
+use centrical_session::{
+    Method, PlateauName, PlateauTable, Record, Recorded, Reduced, Session, SpeedTrace, calibrate_reduced,
+    reduce_recorded, reduce_without_inputs,
+};
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+
+use crate::progress::{self, Shown, Work};
+use crate::result::CalibrationResult;
+use crate::words;
+
+type Column<'py> = PyReadonlyArray1<'py, f64>;
+
+/// Time, readings of newtonometers 1, 2, 3, time and speed of the telemetry, times of pulses.
+type OfMounting<'py> = (Column<'py>, [Column<'py>; 3], Option<[Column<'py>; 2]>, Option<Column<'py>>);
+
+/// Where the numbers of a session come from.
+enum Origin {
+    Records(Vec<Recorded>),
+    Plateaus(Vec<Vec<f64>>),
+}
+
+/// The result of a session with the experiment file `text`: of its records or, if they are given, of its plateaus.
+#[pyfunction]
+#[allow(clippy::too_many_arguments, reason = "what a session is made of")]
+pub fn calibrate_arrays(
+    py: Python,
+    text: String,
+    file: PathBuf,
+    records: Vec<OfMounting>,
+    plateaus: Option<Vec<Column>>,
+    method: &str,
+    hold_out: Vec<String>,
+    shown: Shown,
+) -> PyResult<CalibrationResult> {
+    let (method, hold_out) = (words::method(method)?, words::plateaus("hold_out", &hold_out)?);
+    let origin = match plateaus {
+        Some(columns) => Origin::Plateaus(columns.iter().map(numbers).collect::<PyResult<_>>()?),
+        None => Origin::Records(records.iter().map(recorded).collect::<PyResult<_>>()?),
+    };
+    let result = progress::run(py, &shown, |work| {
+        let session = Session::parse(&text, &file)?;
+        calibrated(session, origin, method, &hold_out, work)
+    })?;
+    Ok(result.into())
+}
+
+/// Names of the columns of a table of plateaus; the last may be absent.
+#[pyfunction]
+pub fn plateau_columns() -> Vec<&'static str> {
+    PlateauTable::columns().collect()
+}
+
+fn calibrated(
+    session: Session,
+    origin: Origin,
+    method: Method,
+    hold_out: &[PlateauName],
+    work: &Work,
+) -> Result<centrical_session::CalibrationResult, centrical_session::Error> {
+    let (session, mut reduced): (Session, Reduced) = match origin {
+        Origin::Plateaus(columns) => {
+            let session = session.with_plateaus(&columns)?;
+            let reduced = reduce_without_inputs(&session, &|bytes| work.advance(bytes))?;
+            (session, reduced)
+        }
+        Origin::Records(recorded) => {
+            work.expect(recorded.len() as u64);
+            let reduced = reduce_recorded(&session, recorded, &|count| work.count(count))?;
+            (session, reduced)
+        }
+    };
+    reduced.held_out = hold_out.iter().map(|name| name.set_point(&session)).collect::<Result<_, _>>()?;
+    calibrate_reduced(&session, &reduced, method, &|bytes| work.advance(bytes))
+}
+
+fn recorded((t, f, telemetry, pulses): &OfMounting) -> PyResult<Recorded> {
+    let [f1, f2, f3] = f;
+    let trace = |[t, omega]: &[Column; 2]| Ok::<_, PyErr>(SpeedTrace { t: numbers(t)?, omega: numbers(omega)? });
+    Ok(Recorded {
+        record: Record { t: numbers(t)?, f_z: [numbers(f1)?, numbers(f2)?, numbers(f3)?] },
+        telemetry: telemetry.as_ref().map(trace).transpose()?,
+        pulses: pulses.as_ref().map(numbers).transpose()?,
+    })
+}
+
+fn numbers(column: &Column) -> PyResult<Vec<f64>> {
+    Ok(column.as_slice()?.to_vec())
+}

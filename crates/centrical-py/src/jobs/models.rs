@@ -1,0 +1,19 @@
+//! `models`: which error model the data support.
+
+use std::path::PathBuf;
+
+use centrical_session::{ModelsReport, Session, select_model};
+use pyo3::prelude::*;
+
+use crate::progress::{self, Shown};
+
+/// `centrical-models/1`.
+#[pyfunction]
+pub fn models(py: Python, session: PathBuf, shown: Shown) -> PyResult<String> {
+    progress::run(py, &shown, |work| {
+        let session = Session::read(&session)?;
+        work.expect(2 * session.record_bytes());
+        let selection = select_model(&session, &|bytes| work.advance(bytes))?;
+        ModelsReport::of(&selection, &session.title).to_json()
+    })
+}

@@ -1,0 +1,42 @@
+//! `montecarlo`: the whole calibration repeated on simulated readings.
+
+use std::path::PathBuf;
+
+use centrical_session::{MonteCarloCase, MonteCarloRequest, Session, read_plan};
+use pyo3::prelude::*;
+
+use crate::progress::{self, Shown};
+use crate::words::probability;
+
+/// `centrical-montecarlo/1`.
+#[pyfunction]
+pub fn montecarlo(
+    py: Python,
+    subject: PathBuf,
+    runs: usize,
+    seed: u64,
+    coverage: f64,
+    linear: bool,
+    noise: Option<f64>,
+    typical: bool,
+    shown: Shown,
+) -> PyResult<String> {
+    let request = MonteCarloRequest { runs, seed, coverage: probability("coverage", coverage)?, linear };
+    progress::run(py, &shown, |work| {
+        let inside = subject.join("experiment.toml");
+        let file = if subject.is_dir() { &inside } else { &subject };
+        let mut case = if let Some(plan) = read_plan(file)? {
+            MonteCarloCase::planned(plan, noise)?
+        } else {
+            let session = Session::read(file)?;
+            work.expect(2 * session.record_bytes());
+            MonteCarloCase::measured(&session, &|bytes| work.advance(bytes))?
+        };
+        if typical {
+            case = case.of_typical_unit();
+        }
+        work.expect(runs as u64);
+        let monte_carlo = case.run(&request, &|count| work.count(count))?;
+        case.report(&request, &monte_carlo).to_json()
+    })
+}

@@ -1,0 +1,22 @@
+//! `reduce`: from records to a session of plateau means.
+
+use std::path::PathBuf;
+
+use centrical_session::{ReductionReport, Session, reduce_without_inputs, write_reduced};
+use pyo3::prelude::*;
+
+use crate::progress::{self, Shown};
+use crate::words;
+
+/// `centrical-reduction/1`.
+#[pyfunction]
+pub fn reduce(py: Python, session: PathBuf, out: PathBuf, format: &str, shown: Shown) -> PyResult<String> {
+    let format = words::format(format)?;
+    progress::run(py, &shown, |work| {
+        let session = Session::read(&session)?;
+        work.expect(2 * session.record_bytes());
+        let reduced = reduce_without_inputs(&session, &|bytes| work.advance(bytes))?;
+        write_reduced(&session, &reduced, format, &out)?;
+        ReductionReport::of(&session, &reduced, &out).to_json()
+    })
+}

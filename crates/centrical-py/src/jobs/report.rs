@@ -1,0 +1,47 @@
+//! `report`: the documents that a laboratory hands over, from a result.
+
+use std::path::{Path, PathBuf};
+
+use centrical_report::{DocumentRequest, write_documents};
+use centrical_session::{Dimension, DocumentKind, DocumentsReport};
+use pyo3::prelude::*;
+
+use crate::progress;
+use crate::words::{Amount, language as language_of};
+
+/// `centrical-documents/1`; `name` is what it calls the result in the file `result`.
+#[pyfunction]
+pub fn report(
+    py: Python,
+    result: PathBuf,
+    name: Option<PathBuf>,
+    html: Option<PathBuf>,
+    history: Option<PathBuf>,
+    pdf: Option<PathBuf>,
+    before: Option<PathBuf>,
+    dcc: Option<PathBuf>,
+    code: Option<PathBuf>,
+    range: Option<Amount>,
+    laboratory: Option<PathBuf>,
+    language: &str,
+) -> PyResult<String> {
+    let range = Amount::optional(range, "range", Dimension::Acceleration)?;
+    let language = language_of(language)?;
+    let request = DocumentRequest { result, html, history, pdf, before, dcc, code, range, laboratory, language };
+    progress::run(py, &None, |_| {
+        let documents = write_documents(&request)?;
+        let name = name.as_deref().unwrap_or(&request.result);
+        DocumentsReport::of(name, &documents.result, &written(&request)).to_json()
+    })
+}
+
+/// The documents that were asked for.
+fn written(request: &DocumentRequest) -> Vec<(DocumentKind, &Path)> {
+    let documents = [
+        (DocumentKind::Report, &request.html),
+        (DocumentKind::Certificate, &request.pdf),
+        (DocumentKind::DigitalCertificate, &request.dcc),
+        (DocumentKind::Code, &request.code),
+    ];
+    documents.into_iter().filter_map(|(kind, path)| Some((kind, path.as_deref()?))).collect()
+}

@@ -1,0 +1,63 @@
+//! The native core of the Python package `centrical`: each command of the program as a function, results as objects.
+//!
+//! It is thin. A function runs one job of `centrical-session` without the interpreter lock and gives the JSON text that the
+//! command prints; the Python layer beside it, `python/centrical`, makes objects of that. No panic crosses into Python.
+
+#![allow(
+    clippy::needless_pass_by_value,
+    clippy::too_many_arguments,
+    reason = "arguments come from Python as values, and are the options of a command"
+)]
+
+mod arrays;
+mod compensation;
+mod failure;
+mod jobs;
+mod pool;
+mod progress;
+mod result;
+mod watch;
+mod words;
+
+use pyo3::pymodule;
+
+/// The native core of `centrical`.
+#[pymodule(gil_used = true)]
+mod _native {
+    #[pymodule_export]
+    use crate::jobs::assess::assess;
+    #[pymodule_export]
+    use crate::jobs::calibrate::calibrate;
+    #[pymodule_export]
+    use crate::jobs::compare::compare;
+    #[pymodule_export]
+    use crate::jobs::compensate::compensate;
+    #[pymodule_export]
+    use crate::jobs::in_memory::{calibrate_arrays, plateau_columns};
+    #[pymodule_export]
+    use crate::jobs::init::init;
+    #[pymodule_export]
+    use crate::jobs::models::models;
+    #[pymodule_export]
+    use crate::jobs::montecarlo::montecarlo;
+    #[pymodule_export]
+    use crate::jobs::noise::noise;
+    #[pymodule_export]
+    use crate::jobs::observe::observe;
+    #[pymodule_export]
+    use crate::jobs::plan::plan;
+    #[pymodule_export]
+    use crate::jobs::reduce::reduce;
+    #[pymodule_export]
+    use crate::jobs::report::report;
+    #[pymodule_export]
+    use crate::jobs::schema::schema;
+    #[pymodule_export]
+    use crate::jobs::simulate::simulate;
+    #[pymodule_export]
+    use crate::pool::set_threads;
+    #[pymodule_export]
+    use crate::result::CalibrationResult;
+    #[pymodule_export]
+    use crate::watch::Watcher;
+}

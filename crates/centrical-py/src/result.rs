@@ -1,0 +1,286 @@
+//! A calibration result: its numbers as arrays, its verdict, its text, and compensation by it.
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use centrical::uncertainty::Compensated;
+use centrical_report::{Emphasis, Language, Screen, figures, terminal_table, verdict_text};
+use centrical_session::{self as session, Error, ObjectionName, SCHEMA};
+use nalgebra::Vector3;
+use numpy::{PyArray1, PyArray2, PyUntypedArrayMethods};
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use rayon::prelude::*;
+
+use crate::arrays::{self, as_rows, as_rows_mut};
+use crate::compensation::{self, Owned};
+use crate::failure::{exception, guarded, wrong_content};
+use crate::pool;
+
+/// Rows from which on the interpreter lock is released.
+const MANY: usize = 512;
+
+/// A figure: name, title, caption, drawings.
+type Drawn = (&'static str, String, String, Vec<String>);
+
+/// A calibration result.
+#[pyclass(frozen, module = "centrical._native")]
+pub struct CalibrationResult {
+    pub result: session::CalibrationResult,
+    /// Certified at its first use.
+    compensation: OnceLock<Owned>,
+}
+
+impl From<session::CalibrationResult> for CalibrationResult {
+    fn from(result: session::CalibrationResult) -> Self {
+        Self { result, compensation: OnceLock::new() }
+    }
+}
+
+#[pymethods]
+impl CalibrationResult {
+    /// Reads the file of a result.
+    #[staticmethod]
+    fn read(py: Python, file: PathBuf) -> PyResult<Self> {
+        guarded(|| {
+            let result = py.detach(|| session::CalibrationResult::read(&file));
+            result.map(Self::from).map_err(|error| exception(py, &error))
+        })
+    }
+
+    /// The result of which `text` is the JSON.
+    #[staticmethod]
+    fn from_json(py: Python, text: &[u8]) -> PyResult<Self> {
+        guarded(|| {
+            let result: Result<session::CalibrationResult, _> = py.detach(|| serde_json::from_slice(text));
+            match result {
+                Ok(result) if result.schema == SCHEMA => Ok(result.into()),
+                Ok(result) => {
+                    let found = format!("schema {:?}", result.schema);
+                    Err(wrong_content(py, "schema", &found, &format!("{SCHEMA:?}")))
+                }
+                Err(error) => {
+                    let place = format!("line {}, column {}", error.line(), error.column());
+                    Err(wrong_content(py, &place, &error.to_string(), &format!("a result of schema {SCHEMA:?}")))
+                }
+            }
+        })
+    }
+
+    /// The text of `result.json`.
+    fn to_json<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        guarded(|| {
+            let text = py.detach(|| self.result.to_json()).map_err(|error| exception(py, &error))?;
+            Ok(PyBytes::new(py, text.as_bytes()))
+        })
+    }
+
+    /// Writes `result.json`, whole or not at all.
+    fn write(&self, py: Python, file: PathBuf) -> PyResult<()> {
+        guarded(|| py.detach(|| self.result.write(&file)).map_err(|error| exception(py, &error)))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let make = py.get_type::<Self>().getattr("from_json")?;
+        Ok((make, (self.to_json(py)?,)))
+    }
+
+    /// Names of the parameters in the order of the covariance.
+    #[getter]
+    fn names(&self) -> Vec<&str> {
+        self.result.parameters.iter().map(|parameter| parameter.name.as_str()).collect()
+    }
+
+    /// Units of the parameters.
+    #[getter]
+    fn units(&self) -> Vec<&str> {
+        self.result.parameters.iter().map(|parameter| parameter.unit.as_str()).collect()
+    }
+
+    /// Groups of the parameters.
+    #[getter]
+    fn groups(&self) -> Vec<&'static str> {
+        self.result.parameters.iter().map(|parameter| parameter.group.name()).collect()
+    }
+
+    /// Estimates, NaN where the data do not determine them.
+    #[getter]
+    fn values<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_iter(py, self.result.parameters.iter().map(|parameter| parameter.value.unwrap_or(f64::NAN)))
+    }
+
+    /// Standard uncertainties, NaN where the data do not determine them.
+    #[getter]
+    fn uncertainties<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let uncertainties = self.result.parameters.iter().map(|p| p.standard_uncertainty.unwrap_or(f64::NAN));
+        PyArray1::from_iter(py, uncertainties)
+    }
+
+    /// Covariance of the estimates, NaN where the data do not determine them.
+    #[getter]
+    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let row = |row: &Vec<Option<f64>>| row.iter().map(|c| c.unwrap_or(f64::NAN)).collect();
+        let rows: Vec<Vec<f64>> = self.result.covariance.iter().map(row).collect();
+        Ok(PyArray2::from_vec2(py, &rows)?)
+    }
+
+    /// The objections to the result: name and sentence of each.
+    #[getter]
+    fn objections(&self) -> PyResult<Vec<(String, String)>> {
+        guarded(|| {
+            let objections = self.result.objections();
+            let named = |objection: &session::ResultObjection| {
+                let name = serde_json::to_value(ObjectionName::from(objection)).ok();
+                let name = name.as_ref().and_then(|name| name.as_str()).unwrap_or_default().to_owned();
+                let screen = verdict_text(std::slice::from_ref(objection));
+                let sentence = screen.lines(usize::MAX / 2, usize::MAX).into_iter().next();
+                (name, sentence.map_or_else(String::new, |line| line.rest.trim().to_owned()))
+            };
+            Ok(objections.iter().map(named).collect())
+        })
+    }
+
+    /// The verdict and the tables of the terminal, in lines of `width` characters.
+    fn text(&self, width: usize) -> PyResult<String> {
+        guarded(|| {
+            let mut screen = verdict_text(&self.result.objections());
+            screen.gap();
+            screen.add(terminal_table(&self.result));
+            Ok(lines(&screen, width))
+        })
+    }
+
+    /// The figures of the report: name, title, caption and the drawings of each, SVG.
+    fn figures(&self, py: Python) -> PyResult<Vec<Drawn>> {
+        guarded(|| {
+            let figures = py.detach(|| figures(&self.result, Language::English));
+            Ok(figures.into_iter().map(|f| (f.name, f.title, f.caption, f.drawings)).collect())
+        })
+    }
+
+    /// Largest specific force on each axis that compensation gives [m/s^2].
+    #[getter]
+    fn range(&self, py: Python) -> PyResult<f64> {
+        guarded(|| Ok(self.compensation(py)?.certificate().range))
+    }
+
+    #[pyo3(signature = (readings, out=None))]
+    /// Compensates readings `(n, 3)` [m/s^2]; the forces, and how many readings no force of the range gives.
+    fn compensate<'py>(
+        &self,
+        readings: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, PyAny>, usize)> {
+        guarded(|| {
+            let py = readings.py();
+            let compensation = self.compensation(py)?;
+            let Some(given) = out else {
+                let readings = arrays::rows("readings", readings, true)?;
+                let forces = PyArray2::zeros(py, [readings.shape()[0], 3], false);
+                let outside = between(py, compensation, &readings, &forces)?;
+                return Ok((forces.into_bound_py_any(py)?, outside));
+            };
+            let forces = arrays::rows("out", given, false)?;
+            let outside = if readings.is(given) {
+                in_place(py, compensation, &forces)?
+            } else {
+                let readings = arrays::rows("readings", readings, true)?;
+                between(py, compensation, &readings, &forces)?
+            };
+            Ok((given.clone(), outside))
+        })
+    }
+
+    /// Standard uncertainties `(n, 3)` of compensated readings at the specific forces `(n, 3)` [m/s^2].
+    fn uncertainty<'py>(&self, forces: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        guarded(|| {
+            let py = forces.py();
+            let compensated = self.compensated(py)?;
+            let forces = arrays::rows("forces", forces, true)?;
+            let uncertainties = PyArray2::zeros(py, [forces.shape()[0], 3], false);
+            let (read, mut write) = (arrays::to_read("forces", &forces)?, arrays::to_write("out", &uncertainties)?);
+            let (Ok(from), Ok(to)) = (read.as_slice(), write.as_slice_mut()) else { return Ok(uncertainties.clone()) };
+            let (from, to) = (as_rows(from), as_rows_mut(to));
+            py.detach(|| {
+                let set = |(f, u): (&[f64; 3], &mut [f64; 3])| *u = at_force(&compensated, *f);
+                if from.len() > MANY && pool::is_ours() {
+                    from.par_iter().zip(to).for_each(set);
+                } else {
+                    from.iter().zip(to).for_each(set);
+                }
+            });
+            drop(write);
+            Ok(uncertainties)
+        })
+    }
+}
+
+impl CalibrationResult {
+    fn compensation(&self, py: Python) -> PyResult<&Owned> {
+        if let Some(compensation) = self.compensation.get() {
+            return Ok(compensation);
+        }
+        let compensation = owned(&self.result).map_err(|error| exception(py, &error))?;
+        Ok(self.compensation.get_or_init(|| compensation))
+    }
+
+    fn compensated(&self, py: Python) -> PyResult<Compensated> {
+        let failed = |source| Error::ErrorModel { file: Path::new(IN_MEMORY).to_owned(), source };
+        let terms = self.result.error_terms().map_err(|source| exception(py, &failed(source)))?;
+        let expected = "a covariance of all coefficients of the error model";
+        Compensated::new(terms, self.result.of_unit().covariance)
+            .ok_or_else(|| wrong_content(py, "covariance", "another shape", expected))
+    }
+}
+
+/// What messages call a result that was read from no file.
+const IN_MEMORY: &str = "result";
+
+fn owned(result: &session::CalibrationResult) -> Result<Owned, Error> {
+    let file = || Path::new(IN_MEMORY).to_owned();
+    let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
+    let range = result.compensation_range(&terms);
+    range.and_then(|range| Owned::new(terms, range)).map_err(|source| Error::NotInvertible { file: file(), source })
+}
+
+fn between(py: Python, compensation: &Owned, readings: &arrays::Rows, forces: &arrays::Rows) -> PyResult<usize> {
+    let (from, to) = (readings.shape()[0], forces.shape()[0]);
+    if from != to {
+        let message = format!("out: found shape ({to}, 3), expected ({from}, 3) as of the readings");
+        return Err(pyo3::exceptions::PyValueError::new_err(message));
+    }
+    if from == 0 {
+        return Ok(0);
+    }
+    let (read, mut write) = (arrays::to_read("readings", readings)?, arrays::to_write("out", forces)?);
+    let (from, to) = (as_rows(read.as_slice()?), as_rows_mut(write.as_slice_mut()?));
+    if from.len() < MANY {
+        return Ok(compensation::rows_to(compensation, from, to, false));
+    }
+    let is_parallel = pool::is_ours();
+    Ok(py.detach(|| compensation::rows_to(compensation, from, to, is_parallel)))
+}
+
+fn in_place(py: Python, compensation: &Owned, forces: &arrays::Rows) -> PyResult<usize> {
+    let mut write = arrays::to_write("out", forces)?;
+    let f = as_rows_mut(write.as_slice_mut()?);
+    let is_parallel = pool::is_ours();
+    if f.len() < MANY {
+        return Ok(compensation::rows(compensation, f, false));
+    }
+    Ok(py.detach(|| compensation::rows(compensation, f, is_parallel)))
+}
+
+fn at_force(compensated: &Compensated, f: [f64; 3]) -> [f64; 3] {
+    let is_number = f.iter().all(|f| f.is_finite());
+    let covariance = if is_number { compensated.covariance(&Vector3::from(f)) } else { None };
+    covariance.map_or([f64::NAN; 3], |covariance| covariance.diagonal().map(|v| v.max(0.0).sqrt()).into())
+}
+
+/// A text for the terminal, its marks in plain words.
+fn lines(screen: &Screen, width: usize) -> String {
+    let plain = |mark: Option<(Emphasis, String)>| mark.map_or_else(String::new, |(_, mark)| mark);
+    let lines = screen.lines(width, usize::MAX).into_iter();
+    lines.map(|line| session::harmless(&format!("{}{}\n", plain(line.mark), line.rest)).into_owned()).collect()
+}

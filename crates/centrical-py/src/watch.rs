@@ -1,0 +1,204 @@
+//! A session folder that is watched: plateaus as they come, on a thread of its own.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use centrical_report::write_history_plot;
+use centrical_session::{
+    self as session, Error, Following, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder, refuse_inputs,
+};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+use crate::failure::exception;
+use crate::pool;
+use crate::result::CalibrationResult;
+use crate::words;
+
+/// How soon a signal is noticed.
+const SLICE: Duration = Duration::from_millis(50);
+
+/// What happens to a session that is watched.
+enum Event {
+    Plateau(String),
+    Waiting(String),
+    End(Result<Option<Box<session::CalibrationResult>>, Error>),
+}
+
+/// A session that is watched. Its iteration gives pairs: `("plateau", line of JSON)`, `("waiting", note)`, and at last
+/// `("complete", result)` or `("stopped", None)`.
+#[pyclass(frozen, module = "centrical._native")]
+pub struct Watcher {
+    events: Mutex<Option<Receiver<Event>>>,
+    stop: Arc<AtomicBool>,
+    thread: Mutex<Option<JoinHandle<()>>>,
+}
+
+#[pymethods]
+impl Watcher {
+    #[new]
+    #[pyo3(signature = (session, out, targets, false_alarm, hold_out, hold_out_alarms, interval, quiet, once))]
+    fn new(
+        session: PathBuf,
+        out: PathBuf,
+        targets: Vec<String>,
+        false_alarm: f64,
+        hold_out: Vec<String>,
+        hold_out_alarms: bool,
+        interval: f64,
+        quiet: f64,
+        once: bool,
+    ) -> PyResult<Self> {
+        pool::claim()?;
+        let request = WatchRequest {
+            out,
+            false_alarm: words::probability("false_alarm", false_alarm)?,
+            hold_out: words::plateaus("hold_out", &hold_out)?,
+            hold_out_alarms,
+            groups: targets,
+            interval: seconds("interval", interval)?,
+            quiet: seconds("quiet", quiet)?,
+            once,
+        };
+        let (sender, events) = channel();
+        let stop = Arc::new(AtomicBool::new(false));
+        let raised = Arc::clone(&stop);
+        let follow = move || {
+            let end = follow(&session, &request, &raised, &sender);
+            // Nobody receives it after the watcher was closed.
+            let _ = sender.send(Event::End(end));
+        };
+        let thread = thread::Builder::new().name("centrical watch".to_owned()).spawn(follow);
+        let thread = thread.map_err(|error| PyRuntimeError::new_err(format!("found no further thread: {error}")))?;
+        Ok(Self { events: Mutex::new(Some(events)), stop, thread: Mutex::new(Some(thread)) })
+    }
+
+    fn __iter__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __next__(&self, py: Python) -> PyResult<Option<(&'static str, Py<PyAny>)>> {
+        let taken = self.events.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let Some(mut events) = taken else { return Ok(None) };
+        loop {
+            let event;
+            (events, event) = py.detach(move || {
+                let event = events.recv_timeout(SLICE);
+                (events, event)
+            });
+            let event = match event {
+                Ok(Event::End(end)) => return self.ended(py, end).map(Some),
+                Ok(Event::Plateau(line)) => ("plateau", text(py, &line)),
+                Ok(Event::Waiting(note)) => ("waiting", text(py, &note)),
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Err(interruption) = py.check_signals() {
+                        self.close(py);
+                        return Err(interruption);
+                    }
+                    continue;
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    self.close(py);
+                    return Err(PyRuntimeError::new_err(
+                        "a defect of centrical, please report it: a watch that panicked",
+                    ));
+                }
+            };
+            *self.events.lock().unwrap_or_else(PoisonError::into_inner) = Some(events);
+            return Ok(Some(event));
+        }
+    }
+
+    /// Ends the watch; its state on disk is whole, and another one resumes from it.
+    fn close(&self, py: Python) {
+        self.stop.store(true, Ordering::Relaxed);
+        let thread = self.thread.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(thread) = thread {
+            // A panic of it has been seen already, by the end of its messages.
+            let _ = py.detach(|| thread.join());
+        }
+    }
+}
+
+impl Watcher {
+    fn ended(
+        &self,
+        py: Python,
+        end: Result<Option<Box<session::CalibrationResult>>, Error>,
+    ) -> PyResult<(&'static str, Py<PyAny>)> {
+        self.close(py);
+        match end {
+            Ok(Some(result)) => Ok(("complete", Py::new(py, CalibrationResult::from(*result))?.into_any())),
+            Ok(None) => Ok(("stopped", py.None())),
+            Err(error) => Err(exception(py, &error)),
+        }
+    }
+}
+
+impl Drop for Watcher {
+    fn drop(&mut self) {
+        // The thread ends by itself; it is not waited for, as this may be the end of the interpreter.
+        self.stop.store(true, Ordering::Relaxed);
+    }
+}
+
+fn follow(
+    session: &std::path::Path,
+    request: &WatchRequest,
+    stop: &AtomicBool,
+    events: &Sender<Event>,
+) -> Result<Option<Box<session::CalibrationResult>>, Error> {
+    let session = Session::read(session)?;
+    let _claim = claim_folder(&request.out)?;
+    let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "result.json"];
+    refuse_inputs(&outputs.map(|name| request.out.join(name)), &session.files())?;
+    let model = session.model()?;
+    let mut following = Following::resume(request, &session, &model)?;
+    let mut reported = Ok(());
+    let end = following.run(stop, &mut |event| {
+        let has_gone = match message(&event) {
+            Ok(event) => event.is_some_and(|event| events.send(event).is_err()),
+            Err(error) => {
+                reported = std::mem::replace(&mut reported, Ok(())).and(Err(error));
+                false
+            }
+        };
+        if has_gone {
+            stop.store(true, Ordering::Relaxed);
+        }
+    })?;
+    write_history_plot(&model, &request.out)?;
+    reported?;
+    Ok(match end {
+        WatchEnd::Stopped { .. } => None,
+        WatchEnd::Complete(result) => Some(result),
+    })
+}
+
+/// The event for the other thread; a plateau as its line of the history.
+fn message(event: &WatchEvent) -> Result<Option<Event>, Error> {
+    match event {
+        WatchEvent::Waiting(note) => Ok(Some(Event::Waiting((*note).to_owned()))),
+        WatchEvent::Plateau(progress) => {
+            let last = progress.plateaus.last();
+            let entry = last.map(|last| last.entry(progress.plateaus.len(), progress.model, &progress.now));
+            entry.map(|entry| entry.line().map(Event::Plateau)).transpose()
+        }
+    }
+}
+
+fn text(py: Python, text: &str) -> Py<PyAny> {
+    pyo3::types::PyString::new(py, text).into_any().unbind()
+}
+
+fn seconds(argument: &str, value: f64) -> PyResult<Duration> {
+    // A day: longer is no waiting.
+    if (0.0..=86400.0).contains(&value) {
+        return Ok(Duration::from_secs_f64(value));
+    }
+    Err(PyValueError::new_err(format!("{argument}: found {value}, expected seconds from 0 to 86400")))
+}

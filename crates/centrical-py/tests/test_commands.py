@@ -1,0 +1,218 @@
+"""Every command has its function, and its document the same bytes."""
+
+import inspect
+import os
+import re
+import shutil
+import subprocess
+
+import centrical as ct
+import pytest
+
+
+@pytest.fixture(scope="module")
+def program(root):
+    """The program, built by the same job; without it the comparisons are left out."""
+    named = os.environ.get("CENTRICAL_PROGRAM") or shutil.which("centrical")
+    for folder in (os.environ.get("CARGO_TARGET_DIR", root / "target"),):
+        built = os.path.join(folder, "release", "centrical")
+        named = named or (built if os.path.exists(built) else None)
+    if named is None:
+        pytest.skip("the program is not built: cargo build --release")
+
+    def run(*arguments):
+        done = subprocess.run([named, *map(str, arguments), "--json"], capture_output=True, cwd=root)
+        assert done.returncode in (0, 1), done.stderr.decode()
+        return done.stdout.decode()
+
+    return run
+
+
+@pytest.fixture(autouse=True)
+def at_the_root(root, monkeypatch):
+    monkeypatch.chdir(root)
+
+
+SESSION = "examples/ta-200"
+PLAN = "examples/plans/four-positions.toml"
+
+
+@pytest.fixture(scope="module")
+def result_file(result, tmp_path_factory):
+    file = tmp_path_factory.mktemp("result") / "result.json"
+    result.to_json(file)
+    return file
+
+
+def test_calibrate(program):
+    for method, option in (("exact", []), ("recursive", ["--method", "recursive"]), ("linear", ["--linear"])):
+        assert ct.calibrate(SESSION, method=method).to_json() == program("calibrate", SESSION, *option), method
+    held_out = program("calibrate", SESSION, "--hold-out", "4:3", "--hold-out", "1:1")
+    assert ct.Session(SESSION).calibrate(hold_out=["4:3", "1:1"]).to_json() == held_out
+
+
+def test_calibrate_into_a_folder(program, tmp_path, root):
+    laboratory = f"{SESSION}/laboratory.toml"
+    ct.calibrate(SESSION, out=tmp_path / "python", laboratory=laboratory, language="ru")
+    program("calibrate", SESSION, "--out", tmp_path / "command", "--laboratory", laboratory, "--language", "ru")
+    names = [sorted(str(f.relative_to(tmp_path / side)) for f in (tmp_path / side).rglob("*") if f.is_file()) for side in ("python", "command")]
+    assert names[0] == names[1] and "certificate.pdf" in names[0]
+    for name in names[0]:
+        assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "command" / name).read_bytes(), name
+
+
+def test_observe(program):
+    assert ct.observe(SESSION).to_json() == program("observe", SESSION)
+    combination = "dR_2[A] + drho_22"
+    assert ct.observe(PLAN, [combination]).to_json() == program("observe", PLAN, "--combination", combination)
+
+
+def test_assess(program):
+    assert ct.assess(SESSION).to_json() == program("assess", SESSION)
+    options = {"coverage": 0.99, "without_outliers": 0.05, "scale_by_residuals": True, "range": "12 g"}
+    command = ["--coverage", "0.99", "--without-outliers", "0.05", "--scale-by-residuals", "--range", "12"]
+    assert ct.assess(SESSION, **options).to_json() == program("assess", SESSION, *command)
+
+
+def test_montecarlo(program):
+    given = ct.montecarlo(SESSION, runs=50, seed=7)
+    assert given.to_json() == program("montecarlo", SESSION, "--runs", "50", "--seed", "7")
+    given = ct.montecarlo(PLAN, runs=50, linear=True, noise_ug=10.0, typical=True, coverage=0.9)
+    options = ["--runs", "50", "--linear", "--noise", "10", "--typical", "--coverage", "0.9"]
+    assert given.to_json() == program("montecarlo", PLAN, *options)
+
+
+def test_models(program):
+    assert ct.models(SESSION).to_json() == program("models", SESSION)
+
+
+def test_noise(program, tmp_path):
+    given = ct.noise(SESSION, plateau="2:1", out=tmp_path / "python")
+    assert given.to_json() == program("noise", SESSION, "--plateau", "2:1", "--out", tmp_path / "command")
+    for file in (tmp_path / "command").iterdir():
+        assert file.read_bytes() == (tmp_path / "python" / file.name).read_bytes()
+    record = f"{SESSION}/records/m01.csv"
+    given = ct.noise(record, session=SESSION, estimators=["all"])
+    assert given.to_json() == program("noise", record, "--session", SESSION, "--estimators", "all")
+
+
+def test_plan(program, tmp_path):
+    file = "examples/03_plan/plan.toml"
+    given = ct.plan(file, out=tmp_path / "python.toml")
+    assert given.to_json() == program("plan", file, "--out", tmp_path / "command.toml")
+    assert (tmp_path / "python.toml").read_bytes() == (tmp_path / "command.toml").read_bytes()
+    assert len(given.schedule["speed"]) == sum(len(m.plateaus) for m in given.mountings)
+    with pytest.raises(ValueError, match="frontier"):
+        ct.plan(file, svg=tmp_path / "x.svg")
+
+
+def test_simulate(program, truth, tmp_path):
+    truth = truth(20, 15)
+    given = ct.simulate(SESSION, truth, seed=3, out=tmp_path / "python", format="parquet")
+    said = program("simulate", SESSION, "--truth", truth, "--seed", "3", "--out", tmp_path / "command", "--format", "parquet")
+    assert given.to_json().replace("/python", "/command") == said
+    record = "records/m01.parquet"
+    assert (tmp_path / "python" / record).read_bytes() == (tmp_path / "command" / record).read_bytes()
+
+
+def test_compare(program, result, result_file, tmp_path):
+    other = tmp_path / "other.json"
+    other.write_text(result.to_json().replace('"date": "', '"date": "2', 1))
+    given = ct.compare([result_file, other], years=2.0, svg=tmp_path / "drift.svg")
+    assert given.to_json() == program("compare", result_file, other, "--years", "2")
+    assert (tmp_path / "drift.svg").read_text().startswith("<svg")
+    assert ct.compare([result, ct.read_result(result_file)], years=1.0).agree
+    with pytest.raises(ValueError, match="found 1, expected two or more"):
+        ct.compare([result])
+
+
+def test_reduce(program, tmp_path):
+    given = ct.reduce(SESSION, tmp_path / "python")
+    said = program("reduce", SESSION, "--out", tmp_path / "command")
+    assert given.to_json().replace("/python", "/command") == said
+    for file in (tmp_path / "command").iterdir():
+        assert file.read_bytes() == (tmp_path / "python" / file.name).read_bytes()
+    assert ct.calibrate(tmp_path / "python").values.tolist() == ct.calibrate(SESSION).values.tolist()
+
+
+def test_compensate(program, result_file, tmp_path):
+    record = f"{SESSION}/records/m01.csv"
+    given = ct.compensate(result_file, record, tmp_path / "python.parquet", session=SESSION, range="120 g")
+    options = ["--session", SESSION, "--range", "120 g"]
+    said = program("compensate", result_file, record, "--out", tmp_path / "command.parquet", *options)
+    assert given.to_json().replace("/python", "/command") == said
+    assert (tmp_path / "python.parquet").read_bytes() == (tmp_path / "command.parquet").read_bytes()
+
+
+def test_report(program, result_file, tmp_path):
+    given = ct.report(result_file, html=tmp_path / "python.html", code=tmp_path / "code", range="120 g")
+    said = program("report", result_file, "--html", tmp_path / "command.html", "--code", tmp_path / "code", "--range", "120 g")
+    assert given.to_json().replace("/python", "/command") == said
+    assert (tmp_path / "python.html").read_bytes() == (tmp_path / "command.html").read_bytes()
+    for wrong in ({"pdf": "x.pdf"}, {"dcc": "x.xml"}, {"history": "h"}, {"range": 1.0}, {"before": "b"}):
+        with pytest.raises(ValueError, match=f"^{next(iter(wrong))}: found no"):
+            ct.report(result_file, **wrong)
+
+
+def test_init(program, tmp_path):
+    given = ct.init([f"{SESSION}/records", f"{SESSION}/telemetry"], positions="six")
+    assert given.to_json() == program("init", f"{SESSION}/records", f"{SESSION}/telemetry", "--positions", "six")
+    written = ct.init(f"{SESSION}/records", out=tmp_path / "experiment.toml")
+    assert (tmp_path / "experiment.toml").read_text() == written.text
+    with pytest.raises(ct.InputError, match="a file that exists"):
+        ct.init(f"{SESSION}/records", out=tmp_path / "experiment.toml")
+
+
+def test_schema(program):
+    for form in ("experiment", "plan", "truth", "laboratory"):
+        assert ct.schema(form).to_json() == program("schema", form)
+
+
+def test_watch(program, tmp_path):
+    reduced = tmp_path / "reduced"
+    ct.reduce(SESSION, reduced)
+    with ct.watch(reduced, tmp_path / "python", once=True, targets=["bias"]) as watched:
+        lines = [document.to_json() for document in watched]
+    assert "".join(lines) == program("watch", reduced, "--out", tmp_path / "command", "--once")
+    assert len(lines) == 108 and watched.result.acceptable
+    for name in ("watch.json", "watch-history.jsonl", "watch-history.svg", "result.json"):
+        assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "command" / name).read_bytes(), name
+    assert list(watched) == []
+
+
+def test_watch_says_what_it_waits_for(tmp_path):
+    session = tmp_path / "session"
+    shutil.copytree(SESSION, session)
+    shutil.rmtree(session / "records")
+    watched = ct.Session(session).watch(tmp_path / "out", once=True)
+    assert list(watched) == [] and watched.result is None and "m01.csv" in watched.waiting
+
+
+def test_every_command_has_its_function(root):
+    listed = re.findall(r"^        Command::(\w+)\(", (root / "crates/centrical-cli/src/main.rs").read_text(), re.MULTILINE)
+    commands = {name.lower() for name in listed} - {"completions", "man"}
+    assert len(commands) == 15
+    page = (root / "docs/python.md").read_text()
+    for name in commands:
+        assert inspect.isfunction(getattr(ct, name)) and getattr(ct, name).__doc__, name
+        assert f"| `{name} " in page and f"| `ct.{name}(" in page, name
+
+
+def test_arguments_are_checked():
+    for call in (
+        lambda: ct.calibrate(SESSION, method="best"),
+        lambda: ct.calibrate(SESSION, hold_out=["four"]),
+        lambda: ct.calibrate(SESSION, language="de"),
+        lambda: ct.reduce(SESSION, "x", format="xls"),
+        lambda: ct.assess(SESSION, coverage=1.0),
+        lambda: ct.assess(SESSION, range="12 bananas"),
+        lambda: ct.noise(SESSION, estimators=["adev"]),
+        lambda: ct.noise(SESSION, rate=-1.0),
+        lambda: ct.schema("session"),
+        lambda: ct.watch(SESSION, "x", interval=-1.0),
+        lambda: ct.set_threads(0),
+    ):
+        with pytest.raises(ValueError, match="found .* expected"):
+            call()
+    with pytest.raises(TypeError, match="expected a list of texts"):
+        ct.calibrate(SESSION, hold_out="4:3")

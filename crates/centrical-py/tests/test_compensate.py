@@ -1,0 +1,211 @@
+"""Compensation of arrays: the same bits in every order, and clear refusals."""
+
+import threading
+import warnings
+
+import centrical as ct
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def expected(result):
+    def of(readings):
+        return np.concatenate([result.compensate(np.array([row])) for row in readings])
+
+    return of
+
+
+def test_all_layouts_give_the_same_bits(result, readings, expected):
+    forces = expected(readings[:50])
+    wide = np.full((50, 7), np.nan)
+    wide[:, 1:7:2] = readings[:50]
+    unaligned = np.frombuffer(b"x" + readings[:50].tobytes(), dtype=np.uint8)[1:].view(np.float64).reshape(50, 3)
+    layouts = {
+        "C": readings[:50],
+        "F": np.asfortranarray(readings[:50]),
+        "strided": wide[:, 1:7:2],
+        "reversed": readings[:50][::-1].copy()[::-1],
+        "unaligned": unaligned,
+    }
+    for name, array in layouts.items():
+        before = array.copy()
+        assert np.array_equal(result.compensate(array), forces), name
+        out = np.empty((50, 3))
+        assert result.compensate(array, out) is out and np.array_equal(out, forces), name
+        assert np.array_equal(array, before), name
+
+
+def test_one_thread_or_all(result, readings, expected):
+    many = np.tile(readings, (100, 1))
+    assert np.array_equal(result.compensate(many), np.tile(result.compensate(readings), (100, 1)))
+    assert np.array_equal(result.compensate(readings)[:20], expected(readings[:20]))
+
+
+def test_in_place(result, readings):
+    forces = result.compensate(readings)
+    own = readings.copy()
+    assert result.compensate(own, out=own) is own
+    assert np.array_equal(own, forces)
+
+
+def test_the_model_gives_the_readings_back(result, readings):
+    forces = result.compensate(readings)
+    terms = result.document.model.error_model
+    again = forces.copy()
+    for term in terms:
+        monomial = np.prod(forces ** np.array(term.powers), axis=1)
+        again[:, term.axis - 1] += result[term.name].value * monomial
+    assert np.allclose(again, readings, rtol=0, atol=1e-12)
+
+
+def test_empty_and_one(result):
+    assert result.compensate(np.empty((0, 3))).shape == (0, 3)
+    out = np.empty((0, 3))
+    assert result.compensate(np.empty((0, 3)), out) is out
+    assert result.compensate(np.array([[9.8, 0.0, 0.0]])).shape == (1, 3)
+
+
+def test_nan_stays_and_is_not_counted(result, readings):
+    readings[3, 1] = np.nan
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        forces = result.compensate(readings)
+        own = readings.copy()
+        result.compensate(own, out=own)
+    assert np.isnan(forces[3]).all() and np.isfinite(np.delete(forces, 3, axis=0)).all()
+    assert np.array_equal(own, forces, equal_nan=True)
+
+
+def test_out_of_range_is_counted(result, readings):
+    readings[[2, 7]] = 1e9
+    readings[5, 0] = np.inf
+    readings[6, 0] = np.nan
+    for out in (None, np.empty_like(readings), readings):
+        with pytest.warns(RuntimeWarning, match="^3 readings that no force within") as seen:
+            forces = result.compensate(readings, out)
+        assert len(seen) == 1 and seen[0].filename == __file__
+        assert np.flatnonzero(np.isnan(forces[:, 0])).tolist() == [2, 5, 6, 7]
+        if out is not readings:
+            continue
+    assert result.range > 300
+
+
+BASE = np.zeros((4, 3))
+READ_ONLY = np.zeros((4, 3))
+READ_ONLY.setflags(write=False)
+MISUSE = {
+    "list": (([[1.0, 2.0, 3.0]],), TypeError, "found list, expected a NumPy array of float64"),
+    "none": ((None,), TypeError, "found NoneType"),
+    "float32": ((np.zeros((4, 3), np.float32),), TypeError, "float32.*expected float64"),
+    "int": ((np.zeros((4, 3), int),), TypeError, "int64.*expected float64"),
+    "complex": ((np.zeros((4, 3), complex),), TypeError, "complex128"),
+    "big endian": ((np.zeros((4, 3), ">f8"),), TypeError, ">f8.*expected float64"),
+    "object": ((np.zeros((4, 3), object),), TypeError, "object"),
+    "transposed": ((np.zeros((3, 4)),), ValueError, r"readings: found shape \(3, 4\), expected \(n, 3\)"),
+    "vector": ((np.zeros(3),), ValueError, r"readings: found shape \(3,\), expected \(n, 3\)"),
+    "cube": ((np.zeros((2, 3, 3)),), ValueError, r"readings: found shape \(2, 3, 3\)"),
+    "scalar": ((np.array(1.0),), ValueError, r"readings: found shape \(\)"),
+    "out too short": ((BASE, np.zeros((3, 3))), ValueError, r"out: found shape \(3, 3\), expected \(4, 3\)"),
+    "out transposed": ((BASE, np.zeros((3, 4))), ValueError, r"out: found shape \(3, 4\)"),
+    "out Fortran": ((BASE, np.zeros((4, 3), order="F")), ValueError, "out: found strides .* expected an aligned array in C order"),
+    "out strided": ((BASE, np.zeros((4, 6))[:, ::2]), ValueError, "out: found strides"),
+    "out float32": ((BASE, np.zeros((4, 3), np.float32)), TypeError, "out: found dtype float32"),
+    "out read-only": ((BASE, READ_ONLY), ValueError, "out: found a read-only array, expected a writable one"),
+    "out a list": ((BASE, [[0.0] * 3] * 4), TypeError, "out: found list"),
+}
+
+
+@pytest.mark.parametrize("case", MISUSE)
+def test_misuse(result, case):
+    arguments, kind, text = MISUSE[case]
+    with pytest.raises(kind, match=text):
+        result.compensate(*arguments)
+
+
+def test_memory_in_part_shared_is_refused(result):
+    whole = np.zeros((5, 3))
+    with pytest.raises(ValueError, match="shared with readings"):
+        result.compensate(whole[:4], whole[1:])
+    assert not whole.any()
+
+
+def test_read_only_readings_are_fine(result, readings):
+    forces = result.compensate(readings)
+    readings.setflags(write=False)
+    assert np.array_equal(result.compensate(readings), forces)
+    with pytest.raises(ValueError, match="read-only"):
+        result.compensate(readings, out=readings)
+
+
+def test_other_threads(result, readings):
+    many = np.tile(readings, (50, 1))
+    forces = result.compensate(many)
+    wrong = []
+
+    def work():
+        for _ in range(5):
+            if not np.array_equal(result.compensate(many), forces):
+                wrong.append(1)
+
+    threads = [threading.Thread(target=work) for _ in range(8)]
+    [thread.start() for thread in threads]
+    [thread.join() for thread in threads]
+    assert not wrong
+
+
+def test_uncertainty(result, readings):
+    forces, deviations = result.compensate(readings, uncertainty=True)
+    assert deviations.shape == forces.shape and (deviations > 0).all()
+    # df/dp = -J^-1 of the monomials, by differences of the inverse itself.
+    names = [term.name for term in result.document.model.error_model]
+    places = [result.names.index(name) for name in names]
+    covariance = result.covariance[np.ix_(places, places)]
+    f = forces[0]
+    gain = np.eye(3)
+    by_coefficient = np.zeros((3, len(names)))
+    for k, term in enumerate(result.document.model.error_model):
+        powers = np.array(term.powers)
+        by_coefficient[term.axis - 1, k] = np.prod(f**powers)
+        for j in np.flatnonzero(powers):
+            less = powers - (np.arange(3) == j)
+            gain[term.axis - 1, j] += result[term.name].value * powers[j] * np.prod(f**less)
+    df = np.linalg.solve(gain, by_coefficient)
+    assert np.allclose(deviations[0], np.sqrt(np.diag(df @ covariance @ df.T)), rtol=1e-9)
+    own = readings.copy()
+    forces, again = result.compensate(own, own, uncertainty=True)
+    assert forces is own and np.array_equal(again, deviations)
+
+
+def test_tables(result, readings):
+    forces = result.compensate(readings)
+    columns = {name: readings[:, axis].copy() for axis, name in enumerate(("f1", "f2", "f3"))}
+    tables = [columns]
+    for name, make in (("pandas", "DataFrame"), ("polars", "DataFrame"), ("pyarrow", "table")):
+        try:
+            tables.append(getattr(__import__(name), make)(columns))
+        except ImportError:
+            pass
+    for table in tables:
+        got = result.compensate(table)
+        assert list(got) == ["f1", "f2", "f3"]
+        assert all(np.array_equal(got[name], forces[:, axis]) for axis, name in enumerate(got)), type(table)
+        assert result.compensate(table, uncertainty=True)[1]["f1"].shape == (1000,)
+        short = {"f1": columns["f1"], "f2": columns["f2"]}
+        with pytest.raises(ValueError, match="f3"):
+            result.compensate(short if table is columns else type(table)(short) if not hasattr(table, "drop_columns") else table.drop_columns("f3"))
+    with pytest.raises(TypeError, match="column f1"):
+        result.compensate({**columns, "f1": np.array(["x"] * 1000)})
+    with pytest.raises(ValueError, match="rows"):
+        result.compensate({**columns, "f1": columns["f1"][:9]})
+
+
+def test_an_arrow_stream_alone(result, readings):
+    pyarrow = pytest.importorskip("pyarrow")
+    columns = pyarrow.table({name: readings[:, axis] for axis, name in enumerate(("f1", "f2", "f3"))})
+
+    class Stream:
+        def __arrow_c_stream__(self, requested_schema=None):
+            return columns.__arrow_c_stream__(requested_schema)
+
+    assert np.array_equal(result.compensate(Stream())["f2"], result.compensate(readings)[:, 1])
