@@ -17,19 +17,17 @@ pub fn rows_to(compensation: &Owned, readings: &[[f64; 3]], forces: &mut [[f64; 
     if readings.len() <= FEW {
         return readings.iter().zip(forces).map(|(reading, force)| one_by_one(compensation, *reading, force)).sum();
     }
-    let task = |(readings, forces): (&[[f64; 3]], &mut [[f64; 3]])| {
-        let outside = compensation.apply_rows_to(readings, forces).map_or(0, |outside| outside.count);
-        // Readings that were not numbers are not out of range.
-        if outside == 0 { 0 } else { outside - not_numbers(readings) }
-    };
-    if is_parallel && readings.len() > TASK {
-        readings.par_chunks(TASK).zip(forces.par_chunks_mut(TASK)).map(task).sum()
+    let outside = if is_parallel {
+        compensation.apply_rows_to_parallel(readings, forces)
     } else {
-        task((readings, forces))
-    }
+        compensation.apply_rows_to(readings, forces)
+    };
+    let outside = outside.map_or(0, |outside| outside.count);
+    // Readings that were not numbers are not out of range.
+    if outside == 0 { 0 } else { outside - not_numbers(readings) }
 }
 
-/// The same in place.
+/// The same in place, where readings that are not numbers have to be counted beforehand.
 pub fn rows(compensation: &Owned, f: &mut [[f64; 3]], is_parallel: bool) -> usize {
     let task = |f: &mut [[f64; 3]]| {
         let missing = not_numbers(f);

@@ -26,19 +26,6 @@ impl<T: AsRef<[Term]>> Compensation<T> {
         Ok(self.sweep_to(readings, forces))
     }
 
-    /// [`Compensation::apply_rows`] on all threads of the current rayon pool. The same bytes for any number of them.
-    #[cfg(feature = "std")]
-    pub fn apply_rows_parallel(&self, f: &mut [[f64; 3]]) -> Outside
-    where
-        T: Sync,
-    {
-        use super::outside::TASK;
-        use rayon::prelude::*;
-        let tasks = f.par_chunks_mut(TASK).enumerate();
-        let outside = tasks.map(|(n, f)| self.apply_rows(f).after(n * TASK));
-        outside.reduce(Outside::default, Outside::and)
-    }
-
     /// [`Compensation::apply_rows_to`] on all threads of the current rayon pool. The same bytes for any number of them.
     ///
     /// # Errors
