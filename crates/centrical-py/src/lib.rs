@@ -3,6 +3,7 @@
 //! It is thin. A function runs one job of `centrical-session` without the interpreter lock and gives the JSON text that the
 //! command prints; the Python layer beside it, `python/centrical`, makes objects of that. No panic crosses into Python.
 
+#![allow(clippy::missing_errors_doc, reason = "the docstrings of the Python layer say what is raised")]
 #![allow(
     clippy::needless_pass_by_value,
     clippy::too_many_arguments,
@@ -23,41 +24,41 @@ use pyo3::pymodule;
 
 /// The native core of `centrical`.
 #[pymodule(gil_used = true)]
-mod _native {
+pub mod _native {
     #[pymodule_export]
-    use crate::jobs::assess::assess;
+    pub use crate::jobs::assess::assess;
     #[pymodule_export]
-    use crate::jobs::calibrate::calibrate;
+    pub use crate::jobs::calibrate::calibrate;
     #[pymodule_export]
-    use crate::jobs::compare::compare;
+    pub use crate::jobs::compare::compare;
     #[pymodule_export]
-    use crate::jobs::compensate::compensate;
+    pub use crate::jobs::compensate::compensate;
     #[pymodule_export]
-    use crate::jobs::in_memory::{calibrate_arrays, plateau_columns};
+    pub use crate::jobs::in_memory::{calibrate_arrays, plateau_columns};
     #[pymodule_export]
-    use crate::jobs::init::init;
+    pub use crate::jobs::init::init;
     #[pymodule_export]
-    use crate::jobs::models::models;
+    pub use crate::jobs::models::models;
     #[pymodule_export]
-    use crate::jobs::montecarlo::montecarlo;
+    pub use crate::jobs::montecarlo::montecarlo;
     #[pymodule_export]
-    use crate::jobs::noise::noise;
+    pub use crate::jobs::noise::noise;
     #[pymodule_export]
-    use crate::jobs::observe::observe;
+    pub use crate::jobs::observe::observe;
     #[pymodule_export]
-    use crate::jobs::plan::plan;
+    pub use crate::jobs::plan::plan;
     #[pymodule_export]
-    use crate::jobs::reduce::reduce;
+    pub use crate::jobs::reduce::reduce;
     #[pymodule_export]
-    use crate::jobs::report::report;
+    pub use crate::jobs::report::report;
     #[pymodule_export]
-    use crate::jobs::schema::schema;
+    pub use crate::jobs::schema::schema;
     #[pymodule_export]
-    use crate::jobs::simulate::simulate;
+    pub use crate::jobs::simulate::simulate;
     #[pymodule_export]
-    use crate::pool::set_threads;
+    pub use crate::pool::set_threads;
     #[pymodule_export]
-    use crate::result::CalibrationResult;
+    pub use crate::result::CalibrationResult;
     #[pymodule_export]
-    use crate::watch::Watcher;
+    pub use crate::watch::Watcher;
 }

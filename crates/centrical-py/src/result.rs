@@ -27,6 +27,7 @@ type Drawn = (&'static str, String, String, Vec<String>);
 /// A calibration result.
 #[pyclass(frozen, module = "centrical._native")]
 pub struct CalibrationResult {
+    /// What `result.json` holds.
     pub result: session::CalibrationResult,
     /// Certified at its first use.
     compensation: OnceLock<Owned>,
