@@ -298,7 +298,8 @@ class Result:
 
     def _repr_html_(self) -> str:
         figures = "".join(
-            f"<details><summary>{escape(title)}</summary>{''.join(drawings)}<p>{escape(caption)}</p></details>"
+            f"<details><summary>{escape(title)}</summary><div style='max-width: 36em'>{''.join(drawings)}"
+            f"<p>{escape(caption)}</p></div></details>"
             for _, title, caption, drawings in self.native.figures()
         )
         return f"<pre>{escape(self.summary())}</pre>{figures}"
