@@ -1,5 +1,8 @@
-"""The example session, and a folder for each test."""
+"""The example session, the program, and a truth to simulate."""
 
+import os
+import shutil
+import subprocess
 from pathlib import Path
 
 import centrical as ct
@@ -25,6 +28,24 @@ def root():
 @pytest.fixture(scope="session")
 def result():
     return ct.calibrate(EXAMPLE)
+
+
+@pytest.fixture(scope="session")
+def program(root):
+    """The program, built by the same job; without it the comparisons are left out."""
+    named = os.environ.get("CENTRICAL_PROGRAM") or shutil.which("centrical")
+    for folder in (os.environ.get("CARGO_TARGET_DIR", root / "target"),):
+        built = os.path.join(folder, "release", "centrical")
+        named = named or (built if os.path.exists(built) else None)
+    if named is None:
+        pytest.skip("the program is not built: cargo build --release")
+
+    def run(*arguments):
+        done = subprocess.run([named, *map(str, arguments), "--json"], capture_output=True, cwd=root)
+        assert done.returncode in (0, 1), done.stderr.decode()
+        return done.stdout.decode()
+
+    return run
 
 
 @pytest.fixture(scope="session")

@@ -1,31 +1,11 @@
 """Every command has its function, and its document the same bytes."""
 
 import inspect
-import os
 import re
 import shutil
-import subprocess
 
 import centrical as ct
 import pytest
-
-
-@pytest.fixture(scope="module")
-def program(root):
-    """The program, built by the same job; without it the comparisons are left out."""
-    named = os.environ.get("CENTRICAL_PROGRAM") or shutil.which("centrical")
-    for folder in (os.environ.get("CARGO_TARGET_DIR", root / "target"),):
-        built = os.path.join(folder, "release", "centrical")
-        named = named or (built if os.path.exists(built) else None)
-    if named is None:
-        pytest.skip("the program is not built: cargo build --release")
-
-    def run(*arguments):
-        done = subprocess.run([named, *map(str, arguments), "--json"], capture_output=True, cwd=root)
-        assert done.returncode in (0, 1), done.stderr.decode()
-        return done.stdout.decode()
-
-    return run
 
 
 @pytest.fixture(autouse=True)
