@@ -49,7 +49,6 @@ pub mod plan;
 mod progress;
 /// Reduction of continuous records to plateau means.
 pub mod reduction;
-mod simd;
 /// Simulation of records.
 pub mod simulate;
 /// Stability analysis of a record: deviations of the Allan family, spectrum, noise terms.

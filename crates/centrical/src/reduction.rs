@@ -34,6 +34,7 @@ mod locate;
 mod mistake;
 mod plateau;
 mod record;
+mod simd;
 mod speed;
 mod steady;
 mod survey;
@@ -92,7 +93,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::simd::lanes::tests::on_all;
+    use crate::reduction::simd::lanes::tests::on_all;
     use crate::statistics::Random;
 
     const RATE: f64 = 250.0;

@@ -5,7 +5,7 @@
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use crate::simd::lanes::{dot, product, subtract, widest};
+use crate::reduction::simd::lanes::{dot, product, subtract, widest};
 
 /// Columns of a design: two of the revolution, settling, constant.
 pub(super) const TERMS: usize = 4;

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use super::samples::CELLS;
 use super::strips::Sums;
+use crate::reduction::simd::lanes::product as dot;
 use crate::reduction::triangle::{TERMS, Triangle};
-use crate::simd::lanes::product as dot;
 
 /// Sums over the good samples of each cell.
 #[derive(Debug, Clone)]

@@ -11,9 +11,9 @@ use crate::reduction::error::ReductionError;
 use crate::reduction::locate::{Shape, Window};
 use crate::reduction::plateau::LeftOut;
 use crate::reduction::record::RecordSlice;
+use crate::reduction::simd::lanes::subtract_all;
 use crate::reduction::survey::Blocks;
 use crate::reduction::triangle::Triangle;
-use crate::simd::lanes::subtract_all;
 use crate::statistics::{MAD, cut, median, whole};
 
 /// Equal intervals of a window, for the slow part of the noise.

@@ -7,8 +7,8 @@ use pulp::{Simd, WithSimd};
 
 use super::samples::Samples;
 use super::stuck::{longest_run, may_be_longer, stuck_on_any_axis};
+use crate::reduction::simd::lanes::{dot, largest, range, subtract, widest};
 use crate::reduction::triangle::{TERMS, Triangle};
-use crate::simd::lanes::{dot, largest, range, subtract, widest};
 
 /// Most samples of a strip.
 const STRIP: usize = 512;

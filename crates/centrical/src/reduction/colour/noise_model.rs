@@ -13,7 +13,7 @@ use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::reduction::average::{CELLS, Cells, PlateauFit, ReducedMounting, Weights};
-use crate::simd::lanes::{dot, widest};
+use crate::reduction::simd::lanes::{dot, widest};
 use crate::statistics::whole;
 
 /// Cosines of nearly the same frequency are pooled: groups per octave.

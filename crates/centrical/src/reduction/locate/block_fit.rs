@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
 use super::shape::Shape;
+use crate::reduction::simd::lanes::{subtract, subtract_all, widest};
 use crate::reduction::survey::Blocks;
 use crate::reduction::triangle::{Rows, TERMS, Triangle};
-use crate::simd::lanes::{subtract, subtract_all, widest};
 use crate::statistics::{MAD, median};
 
 /// Blocks that are orthogonalised once for all ranges.

@@ -12,9 +12,9 @@ use pulp::{Simd, WithSimd};
 
 use super::path::LAYER;
 use crate::reduction::plateau::ScheduledPlateau;
+use crate::reduction::simd::elementary::{exp, ln};
+use crate::reduction::simd::lanes::widest;
 use crate::reduction::survey::Blocks;
-use crate::simd::elementary::{exp, ln};
-use crate::simd::lanes::widest;
 use crate::statistics::{MAD, median, whole};
 
 /// Share of blocks on a plateau that show something else: a knock, a burst of spikes.

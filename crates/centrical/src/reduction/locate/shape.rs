@@ -2,8 +2,8 @@
 
 use pulp::{Simd, WithSimd};
 
-use crate::simd::elementary::{cos_sin, exp};
-use crate::simd::lanes::widest;
+use crate::reduction::simd::elementary::{cos_sin, exp};
+use crate::reduction::simd::lanes::widest;
 
 /// Time constants after which the settling is below the rounding of a reading.
 pub(super) const FADED: f64 = 40.0;

@@ -16,8 +16,8 @@ use super::block_fit::{BlockFit, Levels, spread};
 use super::shape::{FADED, Settling, Shape};
 use crate::reduction::error::ReductionError;
 use crate::reduction::plateau::ScheduledPlateau;
+use crate::reduction::simd::lanes::{dot, widest};
 use crate::reduction::survey::Blocks;
-use crate::simd::lanes::{dot, widest};
 use crate::statistics::{cut, median};
 
 /// The windows of one mounting.

@@ -5,7 +5,7 @@ use pulp::{Simd, WithSimd};
 
 use super::grid::SAMPLES;
 use crate::reduction::record::RecordSlice;
-use crate::simd::lanes::{LANES, joined, range, sum, widest};
+use crate::reduction::simd::lanes::{LANES, joined, range, sum, widest};
 use crate::statistics::{MAD, cut, median};
 
 /// The samples of one block of time, condensed.
