@@ -32,11 +32,26 @@ pub fn effective_degrees_of_freedom(contributions: &[(f64, Degrees)]) -> Degrees
 /// `coverage`, in (0, 1) (GUM, G.3.2 and table G.2). Degrees are used as they are, not truncated to an integer.
 pub fn coverage_factor(coverage: f64, degrees: Degrees) -> f64 {
     let upper = 0.5 + 0.5 * coverage;
+    let z = || Normal::standard().inverse_cdf(upper);
     match degrees {
+        Degrees::Finite(nu) if nu > MANY => nearly_normal(z(), nu),
         Degrees::Finite(nu) => StudentsT::new(0.0, 1.0, nu).map_or(f64::NAN, |t| t.inverse_cdf(upper)),
-        Degrees::Infinite => Normal::standard().inverse_cdf(upper),
+        Degrees::Infinite => z(),
     }
 }
+
+/// Quantile of t from that of the normal law, the first terms of R. A. Fisher's and E. A. Cornish's expansion (Technometrics 2, 1960).
+fn nearly_normal(z: f64, nu: f64) -> f64 {
+    let terms = [
+        (z.powi(3) + z) / 4.0,
+        (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0,
+        (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / 384.0,
+    ];
+    terms.into_iter().rfold(0.0, |sum, term| (sum + term) / nu) + z
+}
+
+/// Degrees beyond which the expansion has eight digits and more. The iteration for t loses digits there, and does not end beyond 1e7.
+const MANY: f64 = 1e3;
 
 /// Probability that chi^2 with `nu` degrees of freedom exceeds `chi_squared`; 1 without any degree, 0 if it is no finite
 /// number.

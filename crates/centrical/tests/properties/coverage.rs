@@ -2,6 +2,7 @@
 
 use centrical::PairRelation;
 use centrical::TypeB;
+use centrical::uncertainty::{Degrees, coverage_factor};
 use centrical::uncertainty::{Method, MonteCarlo};
 
 use crate::uncertainty::{Case, STATED};
@@ -79,4 +80,18 @@ fn intervals_cover() {
 #[ignore = "long: 80,000 calibrations and 20,000 linear ones"]
 fn intervals_cover_over_four_times_ten_thousand_runs() {
     check(40_000, &Tolerance { coverage: 0.007, bias: 0.05, spread: 0.03, weighted_square: 0.5 });
+}
+
+/// The factor falls with the degrees of freedom, without a step, to that of the normal law; it does so at once, for any number of them.
+#[test]
+fn coverage_factors_of_very_many_degrees() {
+    for coverage in [0.5, 0.6827, 0.95, 0.9973] {
+        let normal = coverage_factor(coverage, Degrees::Infinite);
+        let factors =
+            (0..400).map(|n| coverage_factor(coverage, Degrees::Finite(10_f64.powf(2.5 + 0.05 * f64::from(n)))));
+        let factors: Vec<f64> = factors.collect();
+        // The expansion from 1e3 degrees on and the iteration below have eight digits.
+        assert!(factors.windows(2).all(|pair| pair[0] >= pair[1] - 1e-7), "{factors:?}");
+        assert!(factors.iter().all(|factor| (factor - normal).abs() < 2e-2) && factors[399] == normal);
+    }
 }
