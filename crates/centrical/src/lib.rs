@@ -40,6 +40,8 @@
 
 /// Estimation from plateau means.
 pub mod fit;
+/// Many calibrations: a unit over the years, units beside each other, a machine over its sessions.
+pub mod history;
 mod linalg;
 mod model;
 /// What an experiment can see, why not more, and what would help.

@@ -36,13 +36,19 @@ impl Compensated {
         Matrix3::from_fn(|i, j| rows[i][j])
     }
 
+    /// Change of the compensated reading by a change of each coefficient, `-(d f'/d f)^-1 m_t(f) e_axis(t)`, at the specific force
+    /// `f_z` [m/s^2]; a column for each coefficient. `None` where the error model cannot be inverted.
+    pub fn sensitivity(&self, f_z: &Vector3<f64>) -> Option<Matrix3xX<f64>> {
+        let f = (*f_z).into();
+        let monomial = |i: usize, term: &Term| if term.axis == i { -term.monomial.value(f) } else { 0.0 };
+        let by_coefficient = Matrix3xX::from_fn(self.terms.len(), |i, t| monomial(i, &self.terms[t]));
+        self.gain(f_z).lu().solve(&by_coefficient)
+    }
+
     /// Covariance of the compensated reading at the specific force `f_z` [m^2/s^4]; `None` where the error model cannot be
     /// inverted.
     pub fn covariance(&self, f_z: &Vector3<f64>) -> Option<Matrix3<f64>> {
-        let f = (*f_z).into();
-        let monomial = |i: usize, term: &Term| if term.axis == i { term.monomial.value(f) } else { 0.0 };
-        let by_coefficient = Matrix3xX::from_fn(self.terms.len(), |i, t| monomial(i, &self.terms[t]));
-        let df = self.gain(f_z).lu().solve(&by_coefficient)?;
+        let df = self.sensitivity(f_z)?;
         Some(&df * &self.covariance * df.transpose())
     }
 

@@ -10,6 +10,7 @@ mod consistency;
 mod coverage;
 mod fit;
 mod frame;
+mod history;
 mod invariance;
 mod measurement;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]

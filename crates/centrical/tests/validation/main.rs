@@ -6,7 +6,9 @@ mod common;
 
 mod claims;
 mod conditions;
+mod control_charts;
 mod gum;
+mod history;
 mod nbs14;
 mod normalised;
 mod printed;

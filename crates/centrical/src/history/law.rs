@@ -1,0 +1,75 @@
+//! The law of a value: a mixture of normal laws.
+
+use std::f64::consts::SQRT_2;
+
+use statrs::function::erf::erfc;
+
+/// The law of a value that is estimated, or to come.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    parts: Vec<Part>,
+}
+
+/// A normal law and its weight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Part {
+    /// Weight; all sum to 1.
+    pub weight: f64,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub deviation: f64,
+}
+
+impl Part {
+    /// Probability below a bound.
+    fn below(&self, bound: f64) -> f64 {
+        0.5 * erfc((self.mean - bound) / (self.deviation * SQRT_2))
+    }
+
+    /// Probability above a bound: by symmetry, as `1 - P` would lose what is rare.
+    fn above(&self, bound: f64) -> f64 {
+        0.5 * erfc((bound - self.mean) / (self.deviation * SQRT_2))
+    }
+}
+
+impl Law {
+    /// The mixture of `parts`.
+    pub(super) fn new(parts: impl Iterator<Item = Part>) -> Self {
+        Self { parts: parts.collect() }
+    }
+
+    /// Probability that the value is below `bound`.
+    pub fn probability_below(&self, bound: f64) -> f64 {
+        self.parts.iter().map(|part| part.weight * part.below(bound)).sum()
+    }
+
+    /// Probability that the value is farther than `limit` from `centre`.
+    pub fn probability_beyond(&self, centre: f64, limit: f64) -> f64 {
+        let outside = |part: &Part| part.below(centre - limit) + part.above(centre + limit);
+        self.parts.iter().map(|part| part.weight * outside(part)).sum()
+    }
+
+    /// The value below which the law has `probability`, in (0, 1).
+    pub fn quantile(&self, probability: f64) -> f64 {
+        let ends = |sign: f64| self.parts.iter().map(move |part| part.mean + sign * FAR * part.deviation);
+        let (mut low, mut high) =
+            (ends(-1.0).fold(f64::INFINITY, f64::min), ends(1.0).fold(f64::NEG_INFINITY, f64::max));
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if self.probability_below(middle) < probability { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
+
+    /// The interval that covers the value with probability `coverage`, as much outside on either side.
+    pub fn interval(&self, coverage: f64) -> [f64; 2] {
+        [0.5 - 0.5 * coverage, 0.5 + 0.5 * coverage].map(|probability| self.quantile(probability))
+    }
+}
+
+/// Standard deviations beyond which a normal law has nothing that a double shows beside 1.
+const FAR: f64 = 9.0;
+
+/// The digits of a double.
+const HALVINGS: usize = 60;

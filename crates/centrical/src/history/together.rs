@@ -1,0 +1,47 @@
+//! All quantities of a unit together, with their full covariances.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::linalg::least_squares::LeastSquares;
+use crate::uncertainty::chi_squared_tail;
+
+/// The estimates of one session.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SessionEstimates {
+    /// Values.
+    pub values: DVector<f64>,
+    /// Covariance of the errors that belong to this session alone.
+    pub covariance: DMatrix<f64>,
+}
+
+/// Whether the unit was the same in all sessions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sameness {
+    /// `sum_i (x_i - mu)^T C_i^-1 (x_i - mu)` at the best common `mu`.
+    pub chi_squared: f64,
+    /// `p (k - 1)`.
+    pub degrees_of_freedom: usize,
+    /// Probability of so large a chi^2 if nothing but the stated errors differs.
+    pub probability: f64,
+}
+
+/// The joint test of sessions with the same quantities; `None` below two sessions, or where a covariance is not positive definite.
+pub fn sameness(sessions: &[SessionEstimates]) -> Option<Sameness> {
+    let p = sessions.first()?.values.len();
+    let (mut design, mut values) = (DMatrix::zeros(p * sessions.len(), p), DVector::zeros(p * sessions.len()));
+    let sizes = sessions[0].covariance.diagonal().map(f64::sqrt);
+    for (n, session) in sessions.iter().enumerate() {
+        // Rows of C = D R D with the correlations R: `R = L L^T`, whitened by `L^-1 D^-1`.
+        let scale = session.covariance.diagonal().map(|v| 1.0 / v.sqrt());
+        let correlation = DMatrix::from_fn(p, p, |i, j| session.covariance[(i, j)] * scale[i] * scale[j]);
+        let factor = correlation.cholesky()?.unpack();
+        let unknowns = DMatrix::from_diagonal(&sizes.component_mul(&scale));
+        let whitened = session.values.component_mul(&scale);
+        design.rows_mut(n * p, p).copy_from(&factor.solve_lower_triangular(&unknowns)?);
+        values.rows_mut(n * p, p).copy_from(&factor.solve_lower_triangular(&whitened)?);
+    }
+    let degrees_of_freedom = p * sessions.len().checked_sub(1).filter(|rest| *rest > 0)?;
+    let chi_squared = LeastSquares::new(design, sizes).redundant(&values).norm_squared();
+    let probability = chi_squared_tail(chi_squared, degrees_of_freedom);
+    Some(Sameness { chi_squared, degrees_of_freedom, probability })
+}
