@@ -92,6 +92,6 @@ fn coverage_factors_of_very_many_degrees() {
         let factors: Vec<f64> = factors.collect();
         // The expansion from 1e3 degrees on and the iteration below have eight digits.
         assert!(factors.windows(2).all(|pair| pair[0] >= pair[1] - 1e-7), "{factors:?}");
-        assert!(factors.iter().all(|factor| (factor - normal).abs() < 2e-2) && factors[399] == normal);
+        assert!(factors.iter().all(|factor| (factor - normal).abs() < 5e-2) && factors[399] == normal);
     }
 }
