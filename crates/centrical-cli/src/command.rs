@@ -5,6 +5,7 @@ pub mod calibrate;
 pub mod compare;
 pub mod compensate;
 pub mod completions;
+pub mod history;
 pub mod init;
 pub mod man;
 pub mod models;

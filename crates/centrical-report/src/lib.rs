@@ -22,7 +22,7 @@ pub use document::{
     certificate, report,
 };
 pub use evaluation::{Judged, UnitStatement, UnitVerdict};
-pub use figure::{Figure, comparison_plot, figures, frontier_plot, positions_figure};
+pub use figure::{Figure, chart_plots, comparison_plot, figures, frontier_plot, positions_figure, unit_history_plots};
 pub use files::{
     DocumentRequest, Documents, read_issuer, write_all_documents, write_documents, write_history_plot, write_noise,
 };
@@ -30,7 +30,7 @@ pub use language::Language;
 pub use number::{counted, with_uncertainty};
 pub use render::{html, pdf};
 pub use terminal::{
-    Emphasis, Line, Screen, assessment_text, comparison_text, compensation_text, monte_carlo_text, noise_table,
-    noise_warnings, observation_text, plan_text, selection_table, states_text, terminal_table, unit_text, verdict_text,
-    watch_table,
+    Emphasis, Line, Screen, assessment_text, chart_text, comparison_text, compensation_text, monte_carlo_text,
+    noise_table, noise_warnings, observation_text, plan_text, selection_table, states_text, station_history_text,
+    terminal_table, unit_history_text, unit_text, units_history_text, verdict_text, watch_table,
 };

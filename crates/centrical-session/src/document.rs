@@ -5,6 +5,7 @@ mod comparison;
 mod compensation;
 mod documents;
 mod draft;
+mod history;
 mod json;
 mod models;
 mod montecarlo;
@@ -32,6 +33,11 @@ pub(crate) use self::compensation::CompensatedFiles;
 pub use self::compensation::{COMPENSATION_SCHEMA, CompensationReport, FirstReading, ReadingsBeyond};
 pub use self::documents::{DOCUMENTS_SCHEMA, DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
 pub use self::draft::{DRAFT_SCHEMA, DraftReport, LineToFillIn};
+pub use self::history::{
+    CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession, ReadingHistory,
+    STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA,
+    UNITS_HISTORY_SCHEMA, UnitFinding, UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter,
+};
 pub use self::models::{CandidateSummary, MODELS_SCHEMA, ModelsReport, NestedTestSummary, TermSupport};
 pub(crate) use self::montecarlo::Repeated;
 pub use self::montecarlo::{MONTE_CARLO_SCHEMA, MonteCarloReport, RepeatedFit, RepeatedParameter, SquareSummary};

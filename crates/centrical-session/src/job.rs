@@ -4,6 +4,7 @@ mod assess;
 mod calibrate;
 mod compare;
 mod compensate;
+mod history;
 mod init;
 mod models;
 mod montecarlo;
@@ -20,6 +21,10 @@ pub use self::assess::{Assessment, AssessmentRequest, assess};
 pub use self::calibrate::{Problem, calibrate, calibrate_reduced, calibrate_without};
 pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
+pub use self::history::{
+    Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
+    UnitsHistoryRequest, chart, read_batches, read_calibrations, station_history, unit_history, units_history,
+};
 pub use self::init::{Draft, FillIn, InitRequest, init};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};

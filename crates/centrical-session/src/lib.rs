@@ -59,6 +59,11 @@ pub use document::{
     SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, TiltVerdict,
     ValiditySummary, WatchState, WatchedPlateau, read_history,
 };
+pub use document::{
+    CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession, ReadingHistory,
+    STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA,
+    UNITS_HISTORY_SCHEMA, UnitFinding, UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter,
+};
 pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
     ExpectedValues, Measured, MountingFiles, OutputUnit, Plan, Planning, PlateauMean, PlateauName, PlateauTable,
@@ -71,6 +76,10 @@ pub use job::{
     calibrate, calibrate_reduced, calibrate_without, compare_results, compensate, compensate_record, init, noise_of,
     plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs, select_model, settings_schema,
     simulate_session, subject, write_reduced,
+};
+pub use job::{
+    Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
+    UnitsHistoryRequest, chart, read_batches, read_calibrations, station_history, unit_history, units_history,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,

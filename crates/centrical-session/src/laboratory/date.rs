@@ -27,13 +27,32 @@ impl Date {
         Some(Self { year: date.year, month: date.month, day: date.day })
     }
 
+    /// The day in years, for the axis of a plot: 2026.76.
+    pub fn in_years(self) -> f64 {
+        let first = Self { year: self.year, month: 1, day: 1 };
+        f64::from(self.year) + self.days_since(first).map_or(0.0, f64::from) / 366.0
+    }
+
+    /// The day so many whole days later; the last day of the calendar where that is beyond it.
+    pub(crate) fn after(self, days: f64) -> Self {
+        let civil = self.civil().unwrap_or(civil::Date::MAX);
+        #[expect(clippy::cast_possible_truncation, reason = "a span of days saturates")]
+        let days = days.clamp(-4e6, 4e6) as i32;
+        let later = civil.saturating_add(jiff::Span::new().days(days));
+        let [year, month, day] =
+            [later.year(), i16::from(later.month()), i16::from(later.day())].map(i16::unsigned_abs);
+        let small = |number: u16| u8::try_from(number).unwrap_or(u8::MAX);
+        Self { year, month: small(month), day: small(day) }
+    }
+
+    fn civil(self) -> Option<civil::Date> {
+        let [month, day] = [self.month, self.day].map(|number| i8::try_from(number).ok());
+        civil::Date::new(i16::try_from(self.year).ok()?, month?, day?).ok()
+    }
+
     /// Days from an earlier day to this one; none where one of them is not in the calendar.
     pub(crate) fn days_since(self, earlier: Self) -> Option<i32> {
-        let civil = |date: Self| {
-            let [month, day] = [date.month, date.day].map(|number| i8::try_from(number).ok());
-            civil::Date::new(i16::try_from(date.year).ok()?, month?, day?).ok()
-        };
-        Some((civil(self)? - civil(earlier)?).get_days())
+        Some((self.civil()? - earlier.civil()?).get_days())
     }
 }
 

@@ -141,6 +141,21 @@ impl Rule {
     /// The rules of the Western Electric handbook.
     pub const WESTERN_ELECTRIC: [Self; 4] = [Self::Beyond, Self::TwoOfThree, Self::FourOfFive, Self::Eight];
 
+    /// The rule in words.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Beyond => "a value beyond three standard deviations",
+            Self::Nine => "nine values in a row on one side of the centre",
+            Self::SixSteady => "six values in a row rise, or fall",
+            Self::FourteenAlternating => "fourteen values in a row rise and fall in turn",
+            Self::TwoOfThree => "two of three values beyond two standard deviations on one side",
+            Self::FourOfFive => "four of five values beyond one standard deviation on one side",
+            Self::FifteenWithin => "fifteen values in a row within one standard deviation",
+            Self::EightBeyond => "eight values in a row beyond one standard deviation on either side",
+            Self::Eight => "eight values in a row on one side of the centre",
+        }
+    }
+
     /// How many values in a row it looks at.
     const fn span(self) -> usize {
         match self {

@@ -5,6 +5,8 @@
 //! more switch-on, `x^T beta + u`. Its law is the mixture of normal laws over the confidence distribution of `tau^2` (K. Nagashima et
 //! al., Statistical Methods in Medical Research 28, 2019). With `v_i = 0` that is Student's t.
 
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
 use super::between::Between;
 use super::law::{Law, Part};
 use super::line::{Curve, Line};
@@ -41,6 +43,20 @@ impl Estimated {
             Spread::Law(law) => law.interval(coverage),
         }
     }
+
+    /// Probability of an estimate as far from zero, or farther, if the true value is zero.
+    pub fn probability(&self) -> f64 {
+        let below = |law: &Law| law.probability_below(0.0);
+        match &self.spread {
+            Spread::StudentsT(nu) => student_tail(self.value / self.standard_uncertainty, *nu),
+            Spread::Law(law) => 2.0 * below(law).min(1.0 - below(law)),
+        }
+    }
+}
+
+/// Probability of a t of `nu` degrees as far from zero.
+fn student_tail(t: f64, nu: usize) -> f64 {
+    StudentsT::new(0.0, 1.0, nu as f64).map_or(f64::NAN, |law| 2.0 * law.cdf(-t.abs()))
 }
 
 /// The curve of a series, with all that is likely of its component between sessions.

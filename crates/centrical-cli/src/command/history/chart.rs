@@ -1,0 +1,79 @@
+//! `centrical history chart PARAMETER RESULT|FOLDER...`: control charts.
+
+use std::path::PathBuf;
+
+use centrical_report::{chart_plots, chart_text};
+use centrical_session::{ChartLimits, Error, RuleSet, chart, claim_folder, create_folder, refuse_inputs, write_whole};
+
+use super::choice::Choice;
+use crate::outcome::Outcome;
+use crate::printing::Printing;
+
+/// Control charts of one parameter: individuals and moving range, EWMA, CUSUM.
+///
+/// A chart gives a false signal in about one of 370 values by each of its rules: it says where to look. `history units` and `history station` say
+/// what is certain.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical history chart alpha_1 results --accepted 25 --out charts")]
+pub struct Arguments {
+    /// Name of a parameter: df_1, G0_11, alpha_1
+    parameter: String,
+    #[command(flatten)]
+    choice: Choice,
+    /// Acceptable sessions whose values give the limits
+    #[arg(short, long, default_value_t = 20, conflicts_with = "centre")]
+    accepted: usize,
+    /// Mean of the process in control [SI], in place of that of accepted sessions
+    #[arg(long, requires = "deviation", allow_hyphen_values = true)]
+    centre: Option<f64>,
+    /// Standard deviation from value to value [SI]
+    #[arg(long, requires = "centre")]
+    deviation: Option<f64>,
+    /// Rules for single values
+    #[arg(long, value_enum, default_value_t)]
+    rules: Rules,
+    /// Folder for the charts: individuals.svg, moving-ranges.svg, ewma.svg, cusum.svg
+    #[arg(short, long)]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
+enum Rules {
+    #[default]
+    Nelson,
+    WesternElectric,
+}
+
+/// Runs the command. Exit code 1 when a rule gives a signal.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let choice = &arguments.choice;
+    let limits = match (arguments.centre, arguments.deviation) {
+        (Some(centre), Some(deviation)) if centre.is_finite() && deviation > 0.0 && deviation.is_finite() => {
+            ChartLimits::Stated(centre, deviation)
+        }
+        (Some(_), Some(deviation)) => {
+            return Err(choice.refuse(format!("--deviation {deviation}"), "a finite centre and a positive deviation"));
+        }
+        _ => ChartLimits::Accepted(arguments.accepted),
+    };
+    let rules = match arguments.rules {
+        Rules::Nelson => RuleSet::Nelson,
+        Rules::WesternElectric => RuleSet::WesternElectric,
+    };
+    let report = chart(&choice.read()?, &arguments.parameter, limits, rules)
+        .map_err(|source| choice.refuse(source.found(), &source.expected()))?;
+    if let Some(folder) = &arguments.out {
+        let plots = chart_plots(&report);
+        let files: Vec<PathBuf> = plots.iter().map(|(name, _)| folder.join(format!("{name}.svg"))).collect();
+        refuse_inputs(&files, &choice.results)?;
+        create_folder(folder)?;
+        let _claim = claim_folder(folder)?;
+        for (file, (_, svg)) in files.iter().zip(&plots) {
+            write_whole(file, svg.as_bytes())?;
+        }
+    }
+    arguments.printing.show(|| chart_text(&report), || report.to_json())?;
+    Ok(Outcome::acceptable(report.signals.is_empty()))
+}

@@ -1,0 +1,73 @@
+//! Which calibrations are meant.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+
+use centrical_session::{Calibrated, Error, Place, read_calibrations};
+
+/// Results, and what they have to be of.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Choice {
+    /// Results of calibrations, or folders of them: each result.json in a folder, at any depth
+    #[arg(required = true, value_name = "RESULT|FOLDER")]
+    pub results: Vec<PathBuf>,
+    /// Model of the unit
+    #[arg(long)]
+    pub model: Option<String>,
+    /// Serial number of the unit
+    #[arg(long)]
+    pub serial: Option<String>,
+    /// Centrifuge, as its sessions call it
+    #[arg(long)]
+    pub station: Option<String>,
+}
+
+impl Choice {
+    /// The calibrations, in the order of time.
+    pub fn read(&self) -> Result<Vec<Calibrated>, Error> {
+        let all = read_calibrations(&self.results)?;
+        let is = |wanted: &Option<String>, name: &str| wanted.as_ref().is_none_or(|wanted| wanted == name);
+        let is_meant = |c: &Calibrated| {
+            is(&self.model, &c.unit_model) && is(&self.serial, &c.unit_serial) && is(&self.station, &c.station)
+        };
+        let (count, meant) = (all.len(), all.into_iter().filter(is_meant).collect::<Vec<_>>());
+        if meant.is_empty() {
+            return Err(self.refuse(format!("{count} results, none of them as asked for"), "results"));
+        }
+        Ok(meant)
+    }
+
+    /// What all have in common.
+    ///
+    /// # Errors
+    /// [`Error`] if they do not.
+    pub fn only<'a>(
+        &self,
+        calibrations: &'a [Calibrated],
+        of: impl Fn(&'a Calibrated) -> &'a str,
+        option: &str,
+    ) -> Result<(), Error> {
+        let names: BTreeSet<&str> = calibrations.iter().map(of).collect();
+        if names.len() < 2 {
+            return Ok(());
+        }
+        let listed = names.iter().take(8).map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+        let more = if names.len() > 8 { format!(" and {} more", names.len() - 8) } else { String::new() };
+        Err(self.refuse(format!("{listed}{more}"), &format!("one, by {option}")))
+    }
+
+    /// An error of the choice as a whole.
+    pub fn refuse(&self, found: String, expected: &str) -> Error {
+        Error::content(&self.results[0], Place::Whole, found, expected)
+    }
+}
+
+/// The calibrations unit by unit, each in the order of time.
+pub fn by_unit(calibrations: Vec<Calibrated>) -> Vec<Vec<Calibrated>> {
+    let mut units: BTreeMap<(String, String), Vec<Calibrated>> = BTreeMap::new();
+    for calibrated in calibrations {
+        let (model, serial) = calibrated.unit();
+        units.entry((model.to_owned(), serial.to_owned())).or_default().push(calibrated);
+    }
+    units.into_values().collect()
+}

@@ -1,0 +1,32 @@
+//! `centrical history station RESULT|FOLDER...`: one centrifuge over its sessions.
+
+use centrical_report::station_history_text;
+use centrical_session::{Error, station_history};
+
+use super::choice::Choice;
+use crate::outcome::Outcome;
+use crate::printing::Printing;
+
+/// One centrifuge over its sessions: a tilt, turn or shift that drifts or has changed.
+///
+/// The geometry is estimated in every session, and it is the machine's. What a unit brings along is left out where units came more than
+/// once.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical history station results --station 'north hall'")]
+pub struct Arguments {
+    #[command(flatten)]
+    choice: Choice,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+/// Runs the command. Exit code 1 when a parameter of the machine changes.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let choice = &arguments.choice;
+    let calibrations = choice.read()?;
+    choice.only(&calibrations, |c| c.station.as_str(), "--station")?;
+    let report = station_history(&calibrations)
+        .ok_or_else(|| choice.refuse("no calibration".to_owned(), "calibrations of one station"))?;
+    arguments.printing.show(|| station_history_text(&report), || report.to_json())?;
+    Ok(Outcome::acceptable(report.is_steady))
+}

@@ -1,0 +1,57 @@
+//! `centrical history units RESULT|FOLDER...`: units of one type beside each other.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use centrical_report::units_history_text;
+use centrical_session::{
+    CalibrationResult, Error, Laboratory, Limited, ParameterLimits, UnitsHistoryRequest, read_batches, units_history,
+};
+
+use super::choice::{Choice, by_unit};
+use crate::outcome::Outcome;
+use crate::printing::Printing;
+
+/// Units of one type beside each other: distribution, outlying units, capability, batches.
+///
+/// A unit is outlying by its robust distance from the others over all parameters together; the probability is that of any of so many sound
+/// units.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical history units results --laboratory laboratory.toml --batches batches.csv")]
+pub struct Arguments {
+    #[command(flatten)]
+    choice: Choice,
+    /// File with limits of parameters ([decision]), for Cp and Cpk
+    #[arg(short, long, value_name = "FILE")]
+    laboratory: Option<PathBuf>,
+    /// Table with the columns serial and batch, as text; batches are compared
+    #[arg(short, long, value_name = "FILE")]
+    batches: Option<PathBuf>,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+/// Runs the command. Exit code 1 when a unit is outlying, drifts or scatters, or batches differ.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let choice = &arguments.choice;
+    let calibrations = choice.read()?;
+    choice.only(&calibrations, |c| c.unit_model.as_str(), "--model")?;
+    let limits = arguments.laboratory.as_deref().map(|file| limits(file, &calibrations[0].source)).transpose()?;
+    let batches = arguments.batches.as_deref().map(read_batches).transpose()?;
+    let request = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
+    let report = units_history(&by_unit(calibrations), &request).ok_or_else(|| {
+        choice.refuse("no parameter that all determine".to_owned(), "calibrations with one in common")
+    })?;
+    arguments.printing.show(|| units_history_text(&report), || report.to_json())?;
+    Ok(Outcome::acceptable(report.is_sound))
+}
+
+/// Limits of parameters in the decision of a laboratory's file, for the units of one result.
+fn limits(file: &Path, result: &str) -> Result<ParameterLimits, Error> {
+    let (laboratory, result) = (Laboratory::read(file)?, CalibrationResult::read(Path::new(result))?);
+    let of_parameter = laboratory.limits(file, &result)?.into_iter().filter_map(|limit| match limit.of {
+        Limited::Parameter(name) => Some((name, (limit.low.map(|end| end.si), limit.high.map(|end| end.si)))),
+        Limited::CompensatedReading(_) => None,
+    });
+    Ok(of_parameter.collect::<BTreeMap<_, _>>())
+}

@@ -1,0 +1,94 @@
+//! Histories as plots: a parameter of a unit over its calibrations, control charts.
+
+use centrical_session::{ChartReport, UnitHistoryReport, UnitParameter, customary};
+
+use crate::plot::{Axis, Plot, Point, Series};
+
+/// The value of each parameter over the sessions with its expanded uncertainty (k = 2), and the forecast: name and plot.
+pub fn unit_history_plots(report: &UnitHistoryReport) -> Vec<(String, String)> {
+    report.parameters.iter().map(|p| (p.name.clone(), unit_parameter(report, p))).collect()
+}
+
+fn unit_parameter(report: &UnitHistoryReport, p: &UnitParameter) -> String {
+    let (factor, unit) = customary(&p.unit, p.group);
+    let years = |date: centrical_session::Date| date.in_years();
+    let point = |((session, value), u): ((&centrical_session::PastSession, &f64), &f64)| {
+        let ends = (factor * value - 2.0 * factor.abs() * u, factor * value + 2.0 * factor.abs() * u);
+        Point::new(years(session.date), factor * value).with_interval(ends.0, ends.1)
+    };
+    let points = report.sessions.iter().zip(&p.values).zip(&p.standard_uncertainties).map(point).collect();
+    let mut plot = Plot::new(p.name.clone(), Axis::linear("year"), Axis::linear(format!("{}, {unit}", p.name)))
+        .with(Series::markers("calibrations, k = 2", points));
+    if let Some([low, high]) = p.forecast {
+        let (low, high) = (factor * low, factor * high);
+        let at = Point::new(years(report.until), 0.5 * (low + high)).with_interval(low.min(high), low.max(high));
+        plot = plot.with(Series::markers(format!("forecast, {} %", (1e8 * report.coverage).round() / 1e6), vec![at]));
+    }
+    plot.to_svg()
+}
+
+/// Individuals, moving ranges, weighted means and cumulative sums, each a plot with its limits.
+pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, String)> {
+    let (factor, unit) = customary(&report.unit, report.group);
+    let count = report.values.len() as f64;
+    let level = |label: &str, value: f64| Series::line(label, vec![Point::new(1.0, value), Point::new(count, value)]);
+    let numbered = |values: &[f64], first: usize, factor: f64| -> Vec<Point> {
+        values.iter().enumerate().map(|(n, value)| Point::new((n + first) as f64, factor * value)).collect()
+    };
+    let x = || Axis::linear("session, in the order of time");
+    let y = |what: &str| Axis::linear(format!("{what}, {unit}"));
+    let signals = |rule: &str, values: &[f64], first: usize, factor: f64| {
+        let of = report.signals.iter().filter(|signal| signal.rule.starts_with(rule));
+        let at = of.filter_map(|signal| Some((signal.session, values.get((signal.session + 1).checked_sub(first)?)?)));
+        Series::markers("signals", at.map(|(n, value)| Point::new((n + 1) as f64, factor * value)).collect())
+    };
+    let single = if report.signals.iter().any(|signal| signal.rule.starts_with("western")) {
+        "western-electric"
+    } else {
+        "nelson"
+    };
+    let half = |sign: f64| -> Vec<Point> {
+        let ends = report.ewma_half_widths.iter().map(|half| report.centre + sign * half);
+        numbered(&ends.collect::<Vec<f64>>(), 1, factor)
+    };
+    let sums = |n: usize| report.cusum_upper[n].max(report.cusum_lower[n]);
+    let largest_sums: Vec<f64> = (0..report.values.len()).map(sums).collect();
+    vec![
+        (
+            "individuals",
+            Plot::new(format!("{}: individuals", report.name), x(), y(&report.name))
+                .with(Series::line_and_markers("values", numbered(&report.values, 1, factor)))
+                .with(level("centre", factor * report.centre))
+                .with(level("lower limit", factor * report.limits[0]))
+                .with(level("upper limit", factor * report.limits[1]))
+                .with(signals(single, &report.values, 1, factor))
+                .to_svg(),
+        ),
+        (
+            "moving-ranges",
+            Plot::new(format!("{}: moving ranges", report.name), x(), y("moving range"))
+                .with(Series::line_and_markers("ranges", numbered(&report.ranges, 2, factor.abs())))
+                .with(level("upper limit", factor.abs() * report.range_limit))
+                .with(signals("moving-range", &report.ranges, 2, factor.abs()))
+                .to_svg(),
+        ),
+        (
+            "ewma",
+            Plot::new(format!("{}: exponentially weighted means", report.name), x(), y(&report.name))
+                .with(Series::line_and_markers("means", numbered(&report.ewma, 1, factor)))
+                .with(Series::line("lower limit", half(-1.0)))
+                .with(Series::line("upper limit", half(1.0)))
+                .with(signals("ewma", &report.ewma, 1, factor))
+                .to_svg(),
+        ),
+        (
+            "cusum",
+            Plot::new(format!("{}: cumulative sums", report.name), x(), Axis::linear("standard deviations"))
+                .with(Series::line_and_markers("upwards", numbered(&report.cusum_upper, 1, 1.0)))
+                .with(Series::line_and_markers("downwards", numbered(&report.cusum_lower, 1, 1.0)))
+                .with(level("limit", report.cusum_limit))
+                .with(signals("cusum", &largest_sums, 1, 1.0))
+                .to_svg(),
+        ),
+    ]
+}

@@ -1,0 +1,15 @@
+//! Histories, one schema a file.
+
+mod chart;
+mod station;
+mod unit;
+mod units;
+
+pub use self::chart::{CHART_SCHEMA, ChartReport, ChartSignal};
+pub use self::station::{STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
+pub use self::unit::{
+    DueDate, PastSession, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport, UnitParameter,
+};
+pub use self::units::{
+    CapabilitySummary, OutlyingUnit, UNITS_HISTORY_SCHEMA, UnitFinding, UnitsHistoryReport, UnitsParameter,
+};

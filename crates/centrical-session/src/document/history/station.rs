@@ -1,0 +1,79 @@
+//! One centrifuge over its sessions, as a document: schema `centrical-station-history/1`.
+
+use centrical::Group;
+use serde::Serialize;
+
+use crate::document::json;
+use crate::document::result::Program;
+use crate::error::Error;
+use crate::laboratory::Date;
+
+/// Name of the schema's present version.
+pub const STATION_HISTORY_SCHEMA: &str = "centrical-station-history/1";
+
+/// The history of a station.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StationHistoryReport {
+    /// [`STATION_HISTORY_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// The centrifuge, as its sessions call it.
+    pub station: String,
+    /// Number of sessions.
+    pub sessions: usize,
+    /// Number of units in them.
+    pub units: usize,
+    /// First day.
+    pub first: Date,
+    /// Last day.
+    pub last: Date,
+    /// Whether no parameter of the machine changed.
+    pub is_steady: bool,
+    /// The parameters of the machine.
+    pub parameters: Vec<StationParameter>,
+}
+
+/// One parameter of the machine, SI. Tests are null below eight sessions that count.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StationParameter {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// tilt, turn, shift, ...
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub group: Group,
+    /// Sessions that determine it.
+    pub sessions: usize,
+    /// Mean over them.
+    pub mean: f64,
+    /// Standard deviation over them, with what units bring along.
+    pub scatter: f64,
+    /// Slope per year, what units bring along left out.
+    pub slope_per_year: Option<f64>,
+    /// Its standard uncertainty.
+    pub slope_uncertainty: Option<f64>,
+    /// Probability of so large a slope of a steady machine.
+    pub slope_probability: Option<f64>,
+    /// Day of the session after which the values changed most, if they changed at once.
+    pub changed_after: Option<Date>,
+    /// Mean after it less mean before.
+    pub change: Option<f64>,
+    /// Probability of so large a cumulative sum of a steady machine.
+    pub change_probability: Option<f64>,
+    /// Probability of either.
+    pub probability: Option<f64>,
+    /// Whether that is beyond 5 %, all parameters together (Holm).
+    pub changes: bool,
+}
+
+impl StationHistoryReport {
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(STATION_HISTORY_SCHEMA, self)
+    }
+}

@@ -1,0 +1,168 @@
+//! One unit over its calibrations, as a document: schema `centrical-unit-history/1`.
+
+use centrical::Group;
+use serde::Serialize;
+
+use crate::document::json;
+use crate::document::result::Program;
+use crate::error::Error;
+use crate::laboratory::Date;
+
+/// Name of the schema's present version.
+pub const UNIT_HISTORY_SCHEMA: &str = "centrical-unit-history/1";
+
+/// A calibration in a history.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PastSession {
+    /// Its file, or its key in a store.
+    pub source: String,
+    /// Model of the unit.
+    pub unit_model: String,
+    /// Serial number of the unit.
+    pub unit_serial: String,
+    /// The centrifuge.
+    pub station: String,
+    /// Day.
+    pub date: Date,
+    /// Whether no check raised an objection.
+    pub acceptable: bool,
+}
+
+/// The history of a unit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnitHistoryReport {
+    /// [`UNIT_HISTORY_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// Model of the unit.
+    pub unit_model: String,
+    /// Serial number of the unit.
+    pub unit_serial: String,
+    /// Its calibrations, in the order of time.
+    pub sessions: Vec<PastSession>,
+    /// Whether parameters may drift.
+    pub trend: bool,
+    /// Probability of all intervals.
+    pub coverage: f64,
+    /// Units whose sessions give the component between sessions.
+    pub units_together: usize,
+    /// Day of the forecasts.
+    pub until: Date,
+    /// All parameters together.
+    pub sameness: Option<SamenessSummary>,
+    /// The parameters that all calibrations determine.
+    pub parameters: Vec<UnitParameter>,
+    /// Largest specific force of the readings below [m/s^2].
+    pub range: f64,
+    /// Largest error of a compensated reading [m/s^2], if one was given.
+    pub limit: Option<f64>,
+    /// Whether a reading compensated by the last calibration is within the limit on the day after it; null without a due date.
+    pub is_within: Option<bool>,
+    /// The first due date of all readings.
+    pub due: Option<DueDate>,
+    /// Without a due date: the day up to which there is none.
+    pub due_after: Option<Date>,
+    /// Compensated readings.
+    pub readings: Vec<ReadingHistory>,
+}
+
+/// Whether the unit was the same in all sessions: all parameters together, with their full covariances.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SamenessSummary {
+    /// chi^2 of the differences from one common unit.
+    pub chi_squared: f64,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: usize,
+    /// Probability of so large a chi^2 if only the stated errors differ.
+    pub probability: f64,
+}
+
+/// One parameter over the sessions, SI.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnitParameter {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// bias, scale, misalignment, ...
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub group: Group,
+    /// Value in each session.
+    pub values: Vec<f64>,
+    /// Combined standard uncertainty in each session.
+    pub standard_uncertainties: Vec<f64>,
+    /// Standard deviation between sessions beside the stated uncertainties; null where the sessions do not determine it.
+    pub between: Option<f64>,
+    /// Its interval.
+    pub between_interval: Option<[f64; 2]>,
+    /// Scatter over the one that the stated uncertainties explain, in squares: F.
+    pub variance_ratio: Option<f64>,
+    /// Degrees of freedom of F.
+    pub degrees_of_freedom: Option<usize>,
+    /// Probability of so large an F without a component between sessions.
+    pub probability: Option<f64>,
+    /// Whether that is beyond 5 %, all parameters together (Holm).
+    pub scatters: bool,
+    /// Slope per year.
+    pub slope_per_year: Option<f64>,
+    /// Its standard uncertainty.
+    pub slope_uncertainty: Option<f64>,
+    /// Its interval.
+    pub slope_interval: Option<[f64; 2]>,
+    /// Probability of so large a slope without drift.
+    pub slope_probability: Option<f64>,
+    /// Whether that is beyond 5 %, all parameters together (Holm).
+    pub drifts: bool,
+    /// Interval of the true value after a switch-on on the day of the forecasts.
+    pub forecast: Option<[f64; 2]>,
+    /// Last less previous calibration over the expanded uncertainty (k = 2), without what both share.
+    pub e_n_previous: f64,
+    /// The same against the first.
+    pub e_n_first: f64,
+}
+
+/// A reading that the last calibration compensates.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReadingHistory {
+    /// Specific force [m/s^2].
+    pub force: [f64; 3],
+    /// Newtonometer, 1 to 3.
+    pub axis: usize,
+    /// Standard uncertainty by the last calibration [m/s^2].
+    pub stated: f64,
+    /// Standard deviation between sessions [m/s^2].
+    pub between: f64,
+    /// Its interval [m/s^2].
+    pub between_interval: [f64; 2],
+    /// Standard uncertainty after a switch-on: both together [m/s^2].
+    pub after_switch_on: f64,
+    /// When the reading leaves its limit.
+    pub due: Option<DueDate>,
+}
+
+/// The last day on which a compensated reading is within its limit with the probability asked for.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DueDate {
+    /// The day.
+    pub date: Date,
+    /// Newtonometer, 1 to 3.
+    pub axis: usize,
+    /// Specific force [m/s^2].
+    pub force: [f64; 3],
+}
+
+impl UnitHistoryReport {
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(UNIT_HISTORY_SCHEMA, self)
+    }
+
+    /// Whether a reading is within its limit, where one was given.
+    pub fn is_acceptable(&self) -> bool {
+        self.is_within != Some(false)
+    }
+}

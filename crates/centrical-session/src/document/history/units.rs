@@ -1,0 +1,123 @@
+//! Units of one type beside each other, as a document: schema `centrical-units-history/1`.
+
+use centrical::Group;
+use serde::Serialize;
+
+use crate::document::json;
+use crate::document::result::Program;
+use crate::error::Error;
+
+/// Name of the schema's present version.
+pub const UNITS_HISTORY_SCHEMA: &str = "centrical-units-history/1";
+
+/// Units of one type.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnitsHistoryReport {
+    /// [`UNITS_HISTORY_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// Model of the units.
+    pub unit_model: String,
+    /// Number of units.
+    pub units: usize,
+    /// Number of their calibrations.
+    pub sessions: usize,
+    /// Whether there are enough units to say which is outlying: ten.
+    pub is_tested: bool,
+    /// Whether no unit is outlying, drifts or scatters, and batches do not differ.
+    pub is_sound: bool,
+    /// Outlying units, the farthest first.
+    pub outlying: Vec<OutlyingUnit>,
+    /// Units that drift, or scatter more than the others.
+    pub findings: Vec<UnitFinding>,
+    /// The parameters that all calibrations determine.
+    pub parameters: Vec<UnitsParameter>,
+}
+
+/// A unit that is not like the others: family-wise 5 %.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OutlyingUnit {
+    /// Serial number.
+    pub unit_serial: String,
+    /// Robust distance over all parameters.
+    pub distance: f64,
+    /// Probability that any of so many sound units is as far off.
+    pub probability: f64,
+    /// The parameters farthest off, in robust standard deviations from the median.
+    pub most: Vec<(String, f64)>,
+}
+
+/// A unit that drifts or scatters in one parameter: family-wise 5 % over all units and parameters (Holm).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnitFinding {
+    /// drifts, scatters
+    pub kind: &'static str,
+    /// Serial number.
+    pub unit_serial: String,
+    /// The parameter.
+    pub parameter: String,
+    /// Its slope per year, SI.
+    pub slope_per_year: f64,
+    /// Standard uncertainty of the slope.
+    pub slope_uncertainty: f64,
+    /// Scatter about the line over that of the other units, in squares.
+    pub variance_ratio: f64,
+    /// Family-wise probability.
+    pub probability: f64,
+}
+
+/// One parameter over the units, SI; of each unit the mean over its calibrations.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnitsParameter {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// bias, scale, misalignment, ...
+    #[serde(serialize_with = "crate::document::words::serialize")]
+    pub group: Group,
+    /// Mean over the units.
+    pub mean: f64,
+    /// Standard deviation over the units.
+    pub deviation: f64,
+    /// Least value.
+    pub least: f64,
+    /// Median.
+    pub median: f64,
+    /// Largest value.
+    pub largest: f64,
+    /// Capability, where limits were given.
+    pub capability: Option<CapabilitySummary>,
+    /// Probability of so large a difference of the batches (Welch), where two or more were given.
+    pub batch_probability: Option<f64>,
+    /// Whether that is beyond 5 %, all parameters together (Holm).
+    pub batches_differ: bool,
+}
+
+/// Capability against limits, with intervals of 95 %.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CapabilitySummary {
+    /// Lower limit.
+    pub low: Option<f64>,
+    /// Upper limit.
+    pub high: Option<f64>,
+    /// Cp, with both limits.
+    pub cp: Option<f64>,
+    /// Its interval.
+    pub cp_interval: Option<[f64; 2]>,
+    /// Cpk.
+    pub cpk: f64,
+    /// Its interval.
+    pub cpk_interval: [f64; 2],
+}
+
+impl UnitsHistoryReport {
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(UNITS_HISTORY_SCHEMA, self)
+    }
+}

@@ -1,0 +1,17 @@
+//! Many calibrations: a unit over the years, units beside each other, a station over its sessions, control charts.
+
+mod batches;
+mod calibrated;
+mod chart;
+mod read;
+mod station;
+mod unit;
+mod units;
+
+pub use self::batches::read_batches;
+pub use self::calibrated::{Calibrated, CalibratedParameter};
+pub use self::chart::{ChartLimits, NoChart, RuleSet, chart};
+pub use self::read::read_calibrations;
+pub use self::station::station_history;
+pub use self::unit::{UnitHistoryRequest, unit_history};
+pub use self::units::{ParameterLimits, UnitsHistoryRequest, units_history};

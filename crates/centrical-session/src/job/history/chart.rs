@@ -1,0 +1,134 @@
+//! Control charts of one parameter over sessions.
+
+use centrical::history::{Control, Rule, cusum, ewma, moving_ranges, signals};
+
+use super::calibrated::Calibrated;
+use super::unit::past;
+use crate::document::{CHART_SCHEMA, ChartReport, ChartSignal, Program};
+
+/// The rules of single values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum RuleSet {
+    /// The eight rules of L. S. Nelson (1984).
+    #[default]
+    Nelson,
+    /// The four rules of the Western Electric handbook (1956).
+    WesternElectric,
+}
+
+/// Where the limits of a chart come from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ChartLimits {
+    /// From the first so many acceptable sessions.
+    Accepted(usize),
+    /// Stated: mean and standard deviation, SI.
+    Stated(f64, f64),
+}
+
+/// Why there is no chart.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NoChart {
+    /// No session determines the parameter.
+    Unknown(String),
+    /// Too few acceptable sessions for limits.
+    TooFew {
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+}
+
+impl NoChart {
+    /// What was found.
+    pub fn found(&self) -> String {
+        match self {
+            Self::Unknown(name) => format!("no session that determines {name}"),
+            Self::TooFew { found, .. } => format!("{found} acceptable sessions with values that differ"),
+        }
+    }
+
+    /// What was expected.
+    pub fn expected(&self) -> String {
+        match self {
+            Self::Unknown(_) => "the name of a parameter in the results".to_owned(),
+            Self::TooFew { expected, .. } => {
+                format!("{expected} for the limits, fewer by --accepted, or stated limits")
+            }
+        }
+    }
+}
+
+/// Weight of the newest value, and limits in standard deviations: one false signal in 370 values.
+const EWMA: (f64, f64) = (0.2, 2.86);
+
+/// Reference value and decision interval in standard deviations: one false signal in 370 values.
+const CUSUM: (f64, f64) = (0.5, 4.77);
+
+/// The charts of parameter `name` over `calibrations`, in the order of time.
+///
+/// # Errors
+/// [`NoChart`] when no session determines the parameter, or limits cannot be had.
+pub fn chart(
+    calibrations: &[Calibrated],
+    name: &str,
+    limits: ChartLimits,
+    rules: RuleSet,
+) -> Result<ChartReport, NoChart> {
+    let of: Vec<(&Calibrated, usize)> = calibrations.iter().filter_map(|c| Some((c, c.place(name)?))).collect();
+    let values: Vec<f64> = of.iter().map(|(c, place)| c.parameters[*place].value).collect();
+    let Some((first, place)) = of.first() else { return Err(NoChart::Unknown(name.to_owned())) };
+    let (control, accepted) = match limits {
+        ChartLimits::Stated(centre, deviation) => (Control { centre, deviation }, 0),
+        ChartLimits::Accepted(expected) => {
+            let acceptable = of.iter().zip(&values).filter(|((c, _), _)| c.acceptable).map(|(_, value)| *value);
+            let accepted: Vec<f64> = acceptable.take(expected).collect();
+            let control = Control::of(&accepted).filter(|_| accepted.len() == expected);
+            (control.ok_or(NoChart::TooFew { found: accepted.len(), expected })?, accepted.len())
+        }
+    };
+    let ranges = moving_ranges(&values);
+    let (means, sums) = (ewma(&values, control, EWMA.0, EWMA.1), cusum(&values, control, CUSUM.0, CUSUM.1));
+    let beyond = ranges.iter().enumerate().filter(|(_, range)| **range > control.range_limit()).map(|(n, _)| n + 1);
+    let named = |rule: &'static str, words| move |session| ChartSignal { session, rule: rule.to_owned(), words };
+    let mut all: Vec<ChartSignal> = single_values(&values, control, rules);
+    all.extend(beyond.map(named("moving-range", "a step beyond the limit of the moving range")));
+    all.extend(means.signals.iter().copied().map(named("ewma", "the weighted mean is beyond its limits")));
+    all.extend(sums.signals.iter().copied().map(named("cusum", "the cumulative sum is beyond its limit")));
+    all.sort_by_key(|signal| signal.session);
+    Ok(ChartReport {
+        schema: CHART_SCHEMA,
+        program: Program::this(),
+        name: name.to_owned(),
+        unit: first.parameters[*place].unit.clone(),
+        group: first.parameters[*place].group,
+        accepted,
+        centre: control.centre,
+        deviation: control.deviation,
+        limits: control.limits(),
+        range_limit: control.range_limit(),
+        sessions: of.iter().map(|(calibrated, _)| past(calibrated)).collect(),
+        values,
+        ranges,
+        ewma: means.means,
+        ewma_half_widths: means.half_widths,
+        cusum_upper: sums.upper,
+        cusum_lower: sums.lower,
+        cusum_limit: CUSUM.1,
+        signals: all,
+    })
+}
+
+fn single_values(values: &[f64], control: Control, rules: RuleSet) -> Vec<ChartSignal> {
+    let (name, rules) = match rules {
+        RuleSet::Nelson => ("nelson", Rule::NELSON.as_slice()),
+        RuleSet::WesternElectric => ("western-electric", Rule::WESTERN_ELECTRIC.as_slice()),
+    };
+    let number = |rule: Rule| 1 + rules.iter().position(|other| *other == rule).unwrap_or_default();
+    let signal = |(session, rule): (usize, Rule)| ChartSignal {
+        session,
+        rule: format!("{name}-{}", number(rule)),
+        words: rule.words(),
+    };
+    signals(values, control, rules).into_iter().map(signal).collect()
+}

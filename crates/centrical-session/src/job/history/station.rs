@@ -1,0 +1,78 @@
+//! One centrifuge over all its sessions: what is of the machine, and not of the units that come and go.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use centrical::history::{Reading, station_test};
+use centrical::uncertainty::family_wise;
+
+use super::calibrated::{Calibrated, years};
+use crate::document::{Program, STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
+
+/// Family-wise level of what is called a change.
+const FAMILY: f64 = 0.05;
+
+/// The history of the machine of `calibrations`, which are of one station.
+pub fn station_history(calibrations: &[Calibrated]) -> Option<StationHistoryReport> {
+    let first = calibrations.iter().map(|c| c.date).min()?;
+    let last = calibrations.iter().map(|c| c.date).max()?;
+    let units: BTreeSet<(&str, &str)> = calibrations.iter().map(Calibrated::unit).collect();
+    let number: BTreeMap<(&str, &str), usize> = units.iter().enumerate().map(|(n, unit)| (*unit, n)).collect();
+    let mut by_name: BTreeMap<(&str, &str), Vec<(&Calibrated, Reading)>> = BTreeMap::new();
+    let mut names: Vec<(&str, &str)> = Vec::new();
+    for calibrated in calibrations {
+        for parameter in calibrated.parameters.iter().filter(|p| !p.is_of_unit) {
+            let unit = number.get(&calibrated.unit()).copied().unwrap_or_default();
+            let reading = Reading { time: years(first, calibrated.date), unit, value: parameter.value };
+            let name = (parameter.name.as_str(), parameter.unit.as_str());
+            if !by_name.contains_key(&name) {
+                names.push(name);
+            }
+            by_name.entry(name).or_default().push((calibrated, reading));
+        }
+    }
+    let mut parameters: Vec<StationParameter> =
+        names.iter().filter_map(|name| parameter(*name, &by_name[name])).collect();
+    let chances: Vec<f64> = parameters.iter().map(|p| p.probability.unwrap_or(1.0)).collect();
+    for (parameter, chance) in parameters.iter_mut().zip(family_wise(&chances)) {
+        parameter.changes = parameter.probability.is_some() && chance < FAMILY;
+    }
+    Some(StationHistoryReport {
+        schema: STATION_HISTORY_SCHEMA,
+        program: Program::this(),
+        station: calibrations[0].station.clone(),
+        sessions: calibrations.len(),
+        units: units.len(),
+        first,
+        last,
+        is_steady: !parameters.iter().any(|p| p.changes),
+        parameters,
+    })
+}
+
+fn parameter((name, unit): (&str, &str), sessions: &[(&Calibrated, Reading)]) -> Option<StationParameter> {
+    let readings: Vec<Reading> = sessions.iter().map(|(_, reading)| *reading).collect();
+    let (calibrated, _) = sessions.first()?;
+    let place = calibrated.place(name)?;
+    let values = readings.iter().map(|reading| reading.value);
+    let mean = values.clone().sum::<f64>() / readings.len() as f64;
+    let scatter = (values.map(|v| (v - mean).powi(2)).sum::<f64>() / (readings.len().max(2) - 1) as f64).sqrt();
+    let test = station_test(&readings);
+    let zero = sessions.iter().map(|(calibrated, _)| calibrated.date).min()?;
+    let day = |time: f64| sessions.iter().map(|(c, _)| c.date).find(|date| years(zero, *date) == time);
+    Some(StationParameter {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        group: calibrated.parameters[place].group,
+        sessions: readings.len(),
+        mean,
+        scatter,
+        slope_per_year: test.map(|test| test.slope),
+        slope_uncertainty: test.map(|test| test.standard_uncertainty),
+        slope_probability: test.map(|test| test.slope_probability),
+        changed_after: test.and_then(|test| day(test.changed_after)),
+        change: test.map(|test| test.change),
+        change_probability: test.map(|test| test.change_probability),
+        probability: test.map(|test| test.probability()),
+        changes: false,
+    })
+}

@@ -1,0 +1,242 @@
+//! One unit over its calibrations.
+
+use centrical::history::{Between, Curve, Estimated, Evolution, Quantiles, Series, SessionEstimates, sameness};
+use centrical::uncertainty::{Compensated, family_wise};
+use centrical_compensate::Term;
+use nalgebra::{DMatrix, Vector3};
+
+use super::calibrated::{Calibrated, DAYS, series, single, years};
+use crate::document::{
+    DueDate, PastSession, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
+    UnitParameter,
+};
+use crate::laboratory::Date;
+
+/// What is asked of a unit's history.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnitHistoryRequest {
+    /// Whether parameters may drift. Without that they scatter about a constant.
+    pub trend: bool,
+    /// The day of the forecast; a year after the last calibration if absent.
+    pub until: Option<Date>,
+    /// Largest error of a compensated reading [m/s^2], for the due date.
+    pub limit: Option<f64>,
+    /// Probability of all intervals, and that of a reading within its limit at the due date.
+    pub coverage: f64,
+}
+
+/// Years after the last calibration up to which a due date is looked for.
+const HORIZON: f64 = 20.0;
+
+/// Forces at which a compensated reading is looked at, over the range.
+const PARTS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
+
+/// The history of a unit by its `calibrations`, two or more, in the order of time. With `others`, the calibrations of other units of its type, unit by
+/// unit, the component between sessions is the one that all have in common. `None` where fewer than two calibrations have a parameter in common.
+pub fn unit_history(
+    calibrations: &[Calibrated],
+    others: &[Vec<Calibrated>],
+    request: UnitHistoryRequest,
+) -> Option<UnitHistoryReport> {
+    let own: Vec<&Calibrated> = calibrations.iter().collect();
+    let last = own.last()?;
+    let names = common_names(&own);
+    if own.len() < 2 || names.is_empty() {
+        return None;
+    }
+    let zero = own[0].date;
+    let until = request.until.unwrap_or(last.date.after(DAYS));
+    let job = Job {
+        own: &own,
+        others: &others.iter().map(|unit| unit.iter().collect()).collect::<Vec<Vec<&Calibrated>>>(),
+        curve: if request.trend { Curve::Line } else { Curve::Constant },
+        zero,
+        ahead: years(zero, until),
+        quantiles: Quantiles::default(),
+        request,
+    };
+    let mut parameters: Vec<UnitParameter> = names.iter().filter_map(|name| job.parameter(name)).collect();
+    let chances: Vec<f64> = parameters.iter().map(|p| p.probability.unwrap_or(1.0)).collect();
+    for (parameter, chance) in parameters.iter_mut().zip(family_wise(&chances)) {
+        parameter.scatters = parameter.probability.is_some() && chance < FAMILY;
+    }
+    let slopes: Vec<f64> = parameters.iter().map(|p| p.slope_probability.unwrap_or(1.0)).collect();
+    for (parameter, chance) in parameters.iter_mut().zip(family_wise(&slopes)) {
+        parameter.drifts = parameter.slope_probability.is_some() && chance < FAMILY;
+    }
+    let readings = job.readings();
+    let due = readings.iter().filter_map(|r| r.due.as_ref()).min_by_key(|due| due.date).cloned();
+    Some(UnitHistoryReport {
+        schema: UNIT_HISTORY_SCHEMA,
+        program: Program::this(),
+        unit_model: last.unit_model.clone(),
+        unit_serial: last.unit_serial.clone(),
+        sessions: own.iter().map(|calibrated| past(calibrated)).collect(),
+        trend: request.trend,
+        coverage: request.coverage,
+        units_together: 1 + others.len(),
+        until,
+        sameness: job.sameness(&names),
+        parameters,
+        range: last.range,
+        limit: request.limit,
+        is_within: due.as_ref().map(|due| due.date > last.date),
+        due,
+        due_after: request.limit.map(|_| last.date.after(HORIZON * DAYS)),
+        readings,
+    })
+}
+
+/// Family-wise level of what is called a change.
+const FAMILY: f64 = 0.05;
+
+/// Parameters of the unit that all calibrations determine.
+pub fn common_names(calibrations: &[&Calibrated]) -> Vec<String> {
+    let Some(last) = calibrations.last() else { return Vec::new() };
+    let of_unit = last.parameters.iter().filter(|p| p.is_of_unit);
+    let in_all = |name: &str| calibrations.iter().all(|calibrated| calibrated.place(name).is_some());
+    of_unit.filter(|p| in_all(&p.name)).map(|p| p.name.clone()).collect()
+}
+
+pub fn past(calibrated: &Calibrated) -> PastSession {
+    PastSession {
+        source: calibrated.source.clone(),
+        unit_model: calibrated.unit_model.clone(),
+        unit_serial: calibrated.unit_serial.clone(),
+        station: calibrated.station.clone(),
+        date: calibrated.date,
+        acceptable: calibrated.acceptable,
+    }
+}
+
+struct Job<'a> {
+    own: &'a [&'a Calibrated],
+    others: &'a [Vec<&'a Calibrated>],
+    curve: Curve,
+    zero: Date,
+    ahead: f64,
+    quantiles: Quantiles,
+    request: UnitHistoryRequest,
+}
+
+impl Job<'_> {
+    fn sameness(&self, names: &[String]) -> Option<SamenessSummary> {
+        let estimates = |calibrated: &&Calibrated| {
+            let (values, covariance) = calibrated.own_estimates(names)?;
+            Some(SessionEstimates { values, covariance })
+        };
+        let sessions: Vec<SessionEstimates> = self.own.iter().map(estimates).collect::<Option<_>>()?;
+        sameness(&sessions).map(|test| SamenessSummary {
+            chi_squared: test.chi_squared,
+            degrees_of_freedom: test.degrees_of_freedom,
+            probability: test.probability,
+        })
+    }
+
+    /// The series of a combination and its component, by this unit or by all units of the type.
+    fn combination(&self, combination: &[(String, f64)]) -> Option<(Series, Option<Between>)> {
+        let own = series(self.own, combination, self.zero)?;
+        let between = if self.others.is_empty() {
+            Between::of(std::slice::from_ref(&own), self.curve, &self.quantiles, self.request.coverage)
+        } else {
+            let others = self.others.iter().filter_map(|unit| series(unit, combination, self.zero));
+            let all: Vec<Series> = std::iter::once(own.clone()).chain(others).collect();
+            Between::of(&all, self.curve, &self.quantiles, self.request.coverage)
+        };
+        Some((own, between))
+    }
+
+    fn parameter(&self, name: &str) -> Option<UnitParameter> {
+        let (own, between) = self.combination(&single(name))?;
+        let last = self.own.last()?;
+        let place = last.place(name)?;
+        let evolution = between.as_ref().and_then(|between| own.evolution(self.curve, between, &self.quantiles));
+        let slope = evolution.as_ref().and_then(Evolution::slope);
+        let count = own.points().len();
+        let e_n = |earlier: usize| {
+            let (difference, u) = own.difference(earlier, count - 1);
+            difference / (2.0 * u)
+        };
+        Some(UnitParameter {
+            name: name.to_owned(),
+            unit: last.parameters[place].unit.clone(),
+            group: last.parameters[place].group,
+            values: own.points().iter().map(|p| p.value).collect(),
+            standard_uncertainties: self
+                .own
+                .iter()
+                .filter_map(|c| c.place(name).map(|j| c.covariance[(j, j)].sqrt()))
+                .collect(),
+            between: between.as_ref().map(|b| b.variance.sqrt()),
+            between_interval: between.as_ref().map(|b| b.interval.map(f64::sqrt)),
+            variance_ratio: between.as_ref().map(Between::variance_ratio),
+            degrees_of_freedom: between.as_ref().map(|b| b.degrees_of_freedom),
+            probability: between.as_ref().map(|b| b.probability),
+            scatters: false,
+            slope_per_year: slope.as_ref().map(|slope| slope.value),
+            slope_uncertainty: slope.as_ref().map(|slope| slope.standard_uncertainty),
+            slope_interval: slope.as_ref().map(|slope| slope.interval(self.request.coverage)),
+            slope_probability: slope.as_ref().map(Estimated::probability),
+            drifts: false,
+            forecast: evolution.map(|evolution| evolution.forecast(self.ahead).interval(self.request.coverage)),
+            e_n_previous: e_n(count - 2),
+            e_n_first: e_n(0),
+        })
+    }
+
+    /// What the history means for a reading that the last calibration compensates: at forces along the axes, over the range.
+    fn readings(&self) -> Vec<ReadingHistory> {
+        let Some((last, terms)) = self.own.last().and_then(|last| Some((last, last.terms.clone()?))) else {
+            return Vec::new();
+        };
+        let (names, terms): (Vec<String>, Vec<Term>) = terms.into_iter().unzip();
+        // Only its sensitivity is asked for.
+        let covariance = DMatrix::zeros(terms.len(), terms.len());
+        let Some(compensated) = Compensated::new(terms, covariance) else { return Vec::new() };
+        let along = |axis: usize| PARTS.map(|part| Vector3::ith(axis, part * last.range));
+        let forces = std::iter::once(Vector3::zeros()).chain((0..3).flat_map(along));
+        let mut readings = Vec::new();
+        for force in forces {
+            let Some(sensitivity) = compensated.sensitivity(&force) else { continue };
+            for axis in 0..3 {
+                let row = sensitivity.row(axis);
+                let combination: Vec<(String, f64)> = names
+                    .iter()
+                    .zip(row.iter())
+                    .filter(|(_, c)| **c != 0.0)
+                    .map(|(name, c)| ((*name).clone(), *c))
+                    .collect();
+                readings.extend(self.reading(force, axis, &combination));
+            }
+        }
+        readings
+    }
+
+    fn reading(&self, force: Vector3<f64>, axis: usize, combination: &[(String, f64)]) -> Option<ReadingHistory> {
+        let (own, between) = self.combination(combination)?;
+        let between = between?;
+        let last = *self.own.last()?;
+        let places: Vec<(usize, f64)> =
+            combination.iter().map(|(name, c)| Some((last.place(name)?, *c))).collect::<Option<_>>()?;
+        let stated: f64 =
+            (places.iter()).flat_map(|(i, a)| places.iter().map(move |(j, b)| a * b * last.covariance[(*i, *j)])).sum();
+        let point = own.points().last()?;
+        let evolution = own.evolution(self.curve, &between, &self.quantiles);
+        let due = self.request.limit.zip(evolution).and_then(|(limit, evolution)| {
+            let from = point.time;
+            let time = evolution.due(point.value, limit, self.request.coverage, from, from + HORIZON)?;
+            // The day before: until then the reading is within its limit.
+            let days = ((time - from) * DAYS).floor();
+            Some(DueDate { date: last.date.after(days), axis: axis + 1, force: force.into() })
+        });
+        Some(ReadingHistory {
+            force: force.into(),
+            axis: axis + 1,
+            stated: stated.max(0.0).sqrt(),
+            between: between.variance.sqrt(),
+            between_interval: between.interval.map(f64::sqrt),
+            after_switch_on: (stated.max(0.0) + between.variance).sqrt(),
+            due,
+        })
+    }
+}

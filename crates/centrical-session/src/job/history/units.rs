@@ -1,0 +1,184 @@
+//! Units of one type beside each other.
+
+use std::collections::BTreeMap;
+
+use centrical::history::{
+    Between, Curve, FEWEST_UNITS, Quantiles, Series, batch_test, capability, distances, unit_trends,
+};
+use centrical::uncertainty::family_wise;
+use nalgebra::DMatrix;
+
+use super::calibrated::{Calibrated, series, single};
+use super::unit::common_names;
+use crate::document::{
+    CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA, UnitFinding, UnitsHistoryReport, UnitsParameter,
+};
+
+/// Limits of a parameter, SI.
+pub type ParameterLimits = BTreeMap<String, (Option<f64>, Option<f64>)>;
+
+/// What is asked of units.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct UnitsHistoryRequest {
+    /// Limits of parameters.
+    pub limits: ParameterLimits,
+    /// Batch of a unit by its serial number.
+    pub batches: BTreeMap<String, String>,
+}
+
+/// Family-wise level of what is called outlying, drifting or different.
+const FAMILY: f64 = 0.05;
+
+const COVERAGE: f64 = 0.95;
+
+/// Seed of the laws that are drawn.
+const SEED: u64 = 1;
+
+/// The history of units of one type, each with its calibrations in the order of time. `None` without a parameter that all determine.
+pub fn units_history(units: &[Vec<Calibrated>], request: &UnitsHistoryRequest) -> Option<UnitsHistoryReport> {
+    let all: Vec<&Calibrated> = units.iter().flatten().collect();
+    let names = common_names(&all);
+    let lasts: Vec<&Calibrated> = units.iter().filter_map(|unit| unit.last()).collect();
+    if names.is_empty() {
+        return None;
+    }
+    let means = means(units, &names);
+    let values = |n: usize| means.column(n).iter().copied().collect::<Vec<f64>>();
+    let parameters = names.iter().enumerate().filter_map(|(n, name)| parameter(&lasts, name, &values(n), request));
+    let mut parameters: Vec<UnitsParameter> = parameters.collect();
+    let batches: Vec<f64> = parameters.iter().map(|p| p.batch_probability.unwrap_or(1.0)).collect();
+    for (parameter, chance) in parameters.iter_mut().zip(family_wise(&batches)) {
+        parameter.batches_differ = chance < FAMILY;
+    }
+    let outlying = outlying(&lasts, &names, &means);
+    let findings = over_time(units, &lasts, &names, &all);
+    Some(UnitsHistoryReport {
+        schema: UNITS_HISTORY_SCHEMA,
+        program: Program::this(),
+        unit_model: lasts[0].unit_model.clone(),
+        units: units.len(),
+        sessions: all.len(),
+        is_tested: means.nrows() >= FEWEST_UNITS,
+        is_sound: outlying.is_empty() && findings.is_empty() && !parameters.iter().any(|p| p.batches_differ),
+        outlying,
+        findings,
+        parameters,
+    })
+}
+
+/// Mean of each parameter over the calibrations of each unit.
+fn means(units: &[Vec<Calibrated>], names: &[String]) -> DMatrix<f64> {
+    DMatrix::from_fn(units.len(), names.len(), |n, j| {
+        let values = units[n].iter().filter_map(|c| c.place(&names[j]).map(|place| c.parameters[place].value));
+        values.sum::<f64>() / units[n].len() as f64
+    })
+}
+
+fn parameter(
+    lasts: &[&Calibrated],
+    name: &str,
+    values: &[f64],
+    request: &UnitsHistoryRequest,
+) -> Option<UnitsParameter> {
+    let of = lasts[0];
+    let place = of.place(name)?;
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt();
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (low, high) = request.limits.get(name).copied().unwrap_or_default();
+    let capability = capability(values, low, high, COVERAGE).map(|found| CapabilitySummary {
+        low,
+        high,
+        cp: found.cp.map(|cp| cp.value),
+        cp_interval: found.cp.map(|cp| cp.interval),
+        cpk: found.cpk.value,
+        cpk_interval: found.cpk.interval,
+    });
+    Some(UnitsParameter {
+        name: name.to_owned(),
+        unit: of.parameters[place].unit.clone(),
+        group: of.parameters[place].group,
+        mean,
+        deviation,
+        least: sorted[0],
+        median: sorted[sorted.len() / 2],
+        largest: sorted[sorted.len() - 1],
+        capability,
+        batch_probability: batch_test(&batches(lasts, values, request)).map(|test| test.probability),
+        batches_differ: false,
+    })
+}
+
+/// Units whose robust distance no sound unit would have.
+fn outlying(lasts: &[&Calibrated], names: &[String], means: &DMatrix<f64>) -> Vec<OutlyingUnit> {
+    let Some(distances) = distances(means, SEED) else { return Vec::new() };
+    let found = lasts.iter().zip(distances).filter(|(_, distance)| distance.probability < FAMILY);
+    let mut found: Vec<OutlyingUnit> = found
+        .map(|(unit, distance)| {
+            let mut scores: Vec<(String, f64)> = names.iter().cloned().zip(distance.scores).collect();
+            scores.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+            scores.truncate(3);
+            OutlyingUnit {
+                unit_serial: unit.unit_serial.clone(),
+                distance: distance.distance,
+                probability: distance.probability,
+                most: scores,
+            }
+        })
+        .collect();
+    found.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+    found
+}
+
+/// Units that drift, or scatter more than the others, in any parameter.
+fn over_time(
+    units: &[Vec<Calibrated>],
+    lasts: &[&Calibrated],
+    names: &[String],
+    all: &[&Calibrated],
+) -> Vec<UnitFinding> {
+    let Some(zero) = all.iter().map(|c| c.date).min() else { return Vec::new() };
+    let quantiles = Quantiles::default();
+    let (mut chances, mut findings) = (Vec::new(), Vec::new());
+    for name in names {
+        let of: Vec<(usize, Series)> = (units.iter().enumerate())
+            .filter_map(|(n, unit)| Some((n, series(&unit.iter().collect::<Vec<_>>(), &single(name), zero)?)))
+            .collect();
+        let series: Vec<Series> = of.iter().map(|(_, series)| series.clone()).collect();
+        let Some(between) = Between::of(&series, Curve::Line, &quantiles, COVERAGE) else { continue };
+        for ((n, _), trend) in of.iter().zip(unit_trends(&series, between.variance, FAMILY)) {
+            let Some(trend) = trend else { continue };
+            let serial = lasts[*n].unit_serial.clone();
+            let finding = |kind, probability| UnitFinding {
+                kind,
+                unit_serial: serial.clone(),
+                parameter: name.clone(),
+                slope_per_year: trend.slope,
+                slope_uncertainty: trend.standard_uncertainty,
+                variance_ratio: trend.variance_ratio,
+                probability,
+            };
+            for (kind, probability) in [("drifts", trend.drift_probability), ("scatters", trend.scatter_probability)] {
+                chances.push(probability);
+                findings.push(finding(kind, probability));
+            }
+        }
+    }
+    let family_wise = family_wise(&chances);
+    let with_family =
+        findings.into_iter().zip(family_wise).map(|(finding, probability)| UnitFinding { probability, ..finding });
+    with_family.filter(|finding| finding.probability < FAMILY).collect()
+}
+
+/// The values of each batch of units.
+fn batches(lasts: &[&Calibrated], values: &[f64], request: &UnitsHistoryRequest) -> Vec<Vec<f64>> {
+    let mut batches: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for (unit, value) in lasts.iter().zip(values) {
+        if let Some(batch) = request.batches.get(&unit.unit_serial) {
+            batches.entry(batch).or_default().push(*value);
+        }
+    }
+    batches.into_values().collect()
+}
