@@ -1,6 +1,7 @@
 //! The documents that the program writes, one schema a file.
 
 mod assessment;
+mod compact;
 mod comparison;
 mod compensation;
 mod documents;

@@ -25,9 +25,9 @@ mod job;
 mod laboratory;
 mod quantity;
 mod record;
-mod record_writer;
 mod reduced;
 mod settings;
+mod store;
 mod truth;
 mod units;
 
@@ -87,10 +87,12 @@ pub use laboratory::{
 };
 pub use quantity::{Dimension, NotThatQuantity, Quantity};
 pub use record::{
-    Column, Columns, Input, RecordOverview, RecordReader, Scale, read_growing_record, read_pulses, read_record,
-    read_telemetry, stretch,
+    Column, Columns, Input, RecordOverview, RecordReader, RecordWriter, Scale, read_growing_record, read_pulses,
+    read_record, read_telemetry, stretch,
 };
-pub use record_writer::RecordWriter;
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
+pub use store::{
+    Added, Depth, Failure, ROWS_SCHEMA, Row, RowTerm, Rows, Selection, SharedInfluence, Status, Store, days_since_1970,
+};
 pub use truth::Truth;
 pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary};

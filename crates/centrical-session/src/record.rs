@@ -9,6 +9,7 @@ mod reader;
 mod sample_cache;
 mod times;
 mod units_found;
+mod writer;
 
 pub use self::columns::{Column, Columns, Scale};
 pub use self::input::Input;
@@ -19,3 +20,4 @@ pub(crate) use self::reader::{read_growing_pulses, read_growing_telemetry};
 pub(crate) use self::reader::{read_growing_records, read_records};
 pub(crate) use self::sample_cache::{MemoryBudget, SampleCache};
 pub(crate) use self::units_found::StatedUnits;
+pub use self::writer::RecordWriter;

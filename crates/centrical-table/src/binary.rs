@@ -12,6 +12,7 @@ mod npy_literal;
 mod parquet;
 mod parquet_pages;
 mod tdms;
+mod typed;
 
 use std::fs::File;
 use std::path::Path;
@@ -19,6 +20,7 @@ use std::path::Path;
 #[cfg(feature = "xlsx")]
 pub(crate) use self::catch_panic::catch_panic;
 pub(crate) use self::columnar::ColumnReader;
+pub use self::typed::TypedReader;
 use crate::column::Field;
 use crate::error::{Error, Place};
 

@@ -10,6 +10,7 @@ mod outputs;
 mod parquet;
 mod row_groups;
 mod text_lines;
+mod typed;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -25,6 +26,7 @@ pub use self::outputs::refuse_inputs;
 use self::parquet::{Layout, ParquetTable};
 use self::row_groups::RowGroups;
 pub use self::text_lines::Decimals;
+pub use self::typed::TypedWriter;
 use crate::error::Error;
 use crate::stamp::Stamps;
 

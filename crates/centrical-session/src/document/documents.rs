@@ -71,6 +71,21 @@ pub enum ObjectionName {
     NotDetermined,
 }
 
+impl ObjectionName {
+    /// Its word in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::NotConverged => "not-converged",
+            Self::LeftOut => "left-out",
+            Self::Residuals => "residuals",
+            Self::Outlying => "outlying",
+            Self::Patterns => "patterns",
+            Self::Speeds => "speeds",
+            Self::NotDetermined => "not-determined",
+        }
+    }
+}
+
 impl From<&ResultObjection> for ObjectionName {
     fn from(objection: &ResultObjection) -> Self {
         match objection {

@@ -39,6 +39,8 @@ pub struct Session {
     pub unit_model: String,
     /// Serial number of the unit.
     pub unit_serial: String,
+    /// Name of the station, empty if none is stated.
+    pub station: String,
     /// What the unit puts out.
     pub output_unit: OutputUnit,
     /// The experiment. Its set points are those of the plateau table where the session brings one.
@@ -177,6 +179,7 @@ impl Session {
             text: form.session.text.clone(),
             unit_model: form.unit.model.clone(),
             unit_serial: form.unit.serial.clone(),
+            station: form.centrifuge.station.clone(),
             output_unit: OutputUnit::named(&form.unit.output_unit),
             type_b: uncertainty::type_b(file, &form.uncertainty, &experiment, &error_model, &speeds)?,
             speeds,

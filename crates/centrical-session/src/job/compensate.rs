@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use crate::document::{CalibrationResult, CompensatedFiles, CompensationReport, FirstReading, ReadingsBeyond};
 use crate::error::{Error, Place};
 use crate::experiment::Session;
+use crate::record::RecordWriter;
 use crate::record::{Columns, RecordReader, stretch};
-use crate::record_writer::RecordWriter;
 
 /// What became of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

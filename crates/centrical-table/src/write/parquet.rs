@@ -150,7 +150,7 @@ fn timestamp(form: TickForm) -> LogicalType {
 }
 
 /// The library's complaint as one of writing.
-fn failed(error: ParquetError) -> io::Error {
+pub(super) fn failed(error: ParquetError) -> io::Error {
     match error {
         ParquetError::External(source) => io::Error::other(source),
         other => io::Error::other(other.to_string()),

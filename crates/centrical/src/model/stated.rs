@@ -93,6 +93,11 @@ impl Source {
         matches!(self, Self::Noise | Self::PlateauSpeed | Self::Priors)
     }
 
+    /// Whether its errors stay the same from session to session on one station: stated, and not drawn anew for every plateau.
+    pub fn is_shared(self) -> bool {
+        !self.is_weighed() && !matches!(self, Self::RestAngle | Self::Resolution)
+    }
+
     /// Its name for people.
     pub fn name(self) -> &'static str {
         match self {

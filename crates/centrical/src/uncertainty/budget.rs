@@ -187,6 +187,12 @@ impl Contribution {
         self.variance(j).sqrt()
     }
 
+    /// `S`: signed changes of the parameters by each independent influence of the source at one standard uncertainty, `p x m`
+    /// [units of the parameters].
+    pub fn changes(&self) -> &DMatrix<f64> {
+        &self.changes
+    }
+
     /// Covariance that the source leaves, `S S^T`.
     pub(crate) fn covariance(&self) -> DMatrix<f64> {
         &self.changes * self.changes.transpose()

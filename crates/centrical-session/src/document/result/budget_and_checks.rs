@@ -30,6 +30,10 @@ pub struct BudgetSource {
     pub weighed_in_fit: bool,
     /// Standard uncertainty it leaves, SI, in the order of the parameters; null where one is not estimable.
     pub standard_uncertainty: Vec<Option<f64>>,
+    /// Signed changes of the parameters, SI, by each influence of the source at one standard uncertainty: a row for each influence,
+    /// in the order of the parameters. None for sources that are drawn anew in every session, and in results of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub changes: Option<Vec<Vec<Option<f64>>>>,
 }
 
 /// Whether the residuals are those of a true model with true weights.
@@ -134,6 +138,10 @@ impl BudgetSummary {
             name: c.source,
             weighed_in_fit: c.source.is_weighed(),
             standard_uncertainty: (0..count).map(|j| known(j).map(|_| c.standard_uncertainty(j))).collect(),
+            changes: c.source.is_shared().then(|| {
+                let influence = |n| (0..count).map(|j| known(j).map(|_| c.changes()[(j, n)])).collect();
+                (0..c.changes().ncols()).map(influence).collect()
+            }),
         };
         let finite = |degrees| match degrees {
             Degrees::Finite(nu) => Some(nu),

@@ -87,6 +87,7 @@ impl SessionSummary {
             date: session.date.clone(),
             unit_model: session.unit_model.clone(),
             unit_serial: session.unit_serial.clone(),
+            station: session.station.clone(),
             text: session.text.clone(),
         }
     }

@@ -109,6 +109,9 @@ pub struct SessionSummary {
     pub unit_model: String,
     /// Serial number of the unit.
     pub unit_serial: String,
+    /// Name of the station, if the session states one.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub station: String,
     /// Free text of the session.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub text: String,

@@ -266,6 +266,9 @@ pub(crate) struct CentrifugeTable {
     pub speed_uncertainty: Quantity,
     /// Sense of positive speeds about the third arm axis: "+3" (right-handed) or "-3".
     pub rotation: String,
+    /// Name of the station, the centrifuge with its fixtures, for the history of a unit.
+    #[serde(default)]
+    pub station: String,
     /// Relative standard uncertainty of the scale of the telemetry, for its comparison with the schedule.
     pub tachometer_uncertainty: Option<Quantity>,
     /// How the speeds of plateaus are measured, where the fit is to use measured speeds.

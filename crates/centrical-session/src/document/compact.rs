@@ -1,0 +1,93 @@
+//! A result as the row of a store.
+
+use centrical::Source;
+
+use super::documents::ObjectionName;
+use super::result::{CalibrationResult, ParameterEstimate, TermSummary};
+use super::words::Word;
+use crate::store::{Row, RowTerm, SharedInfluence, Status, days_since_1970, sha256};
+
+impl CalibrationResult {
+    /// The row of the result, whose file has these `bytes`.
+    pub fn row(&self, bytes: &[u8]) -> Row {
+        let inputs: String = self.inputs.iter().map(|input| format!("{} {}\n", input.sha256, input.path)).collect();
+        let objections = self.objections();
+        let of_parameters =
+            |text: fn(&ParameterEstimate) -> String| self.parameters.iter().map(text).collect::<Vec<_>>();
+        let (combined, covariance) = (self.combined(), self.packed_covariance());
+        let shared = self.shared_influences();
+        Row {
+            key: sha256(bytes),
+            status: Status::Done,
+            unit_model: self.session.unit_model.clone(),
+            unit_serial: self.session.unit_serial.clone(),
+            title: self.session.title.clone(),
+            date: self.session.date.clone(),
+            day: days_since_1970(&self.session.date),
+            station: self.session.station.clone(),
+            program: self.program.version.clone(),
+            inputs: sha256(inputs.as_bytes()),
+            reference: self.model.reference.name().to_owned(),
+            range: self.range().to_vec(),
+            termination: self.fit.termination.word().to_owned(),
+            chi_squared: self.fit.chi_squared,
+            degrees_of_freedom: whole(self.fit.degrees_of_freedom),
+            rank: whole(self.observability.rank),
+            columns: whole(self.observability.columns),
+            acceptable: objections.is_empty(),
+            objections: objections.iter().map(|objection| ObjectionName::from(objection).word().to_owned()).collect(),
+            parameters: of_parameters(|p| p.name.clone()),
+            units: of_parameters(|p| p.unit.clone()),
+            groups: of_parameters(|p| p.group.name().to_owned()),
+            values: self.parameters.iter().map(|p| p.value.unwrap_or(f64::NAN)).collect(),
+            standard_uncertainties: combined,
+            covariance,
+            terms: self.row_terms(),
+            shared_known: shared.is_some(),
+            shared: shared.unwrap_or_default(),
+            ..Row::default()
+        }
+    }
+
+    fn combined(&self) -> Vec<f64> {
+        let combined = self.budget.as_ref().map(|budget| &budget.combined);
+        let own = |(n, p): (usize, &ParameterEstimate)| {
+            combined.and_then(|list| list.get(n).copied()).unwrap_or(p.standard_uncertainty).unwrap_or(f64::NAN)
+        };
+        self.parameters.iter().enumerate().map(own).collect()
+    }
+
+    fn packed_covariance(&self) -> Vec<f64> {
+        let rows = self.covariance.iter().enumerate();
+        rows.flat_map(|(i, row)| row.iter().take(i + 1).map(|c| c.unwrap_or(f64::NAN))).collect()
+    }
+
+    fn row_terms(&self) -> Vec<RowTerm> {
+        let term =
+            |t: &TermSummary| RowTerm { name: t.name.clone(), axis: t.axis, powers: t.powers, sign_of: t.sign_of };
+        self.model.error_model.iter().map(term).collect()
+    }
+
+    /// Largest magnitude of the specific force on each axis; of the readings in results of older programs.
+    fn range(&self) -> [f64; 3] {
+        let forces =
+            |axis: usize| self.plateaus.iter().map(move |p| p.specific_force.as_ref().unwrap_or(&p.mean)[axis].abs());
+        [0, 1, 2].map(|axis| forces(axis).fold(0.0, f64::max))
+    }
+
+    /// None if the result does not say.
+    fn shared_influences(&self) -> Option<Vec<SharedInfluence>> {
+        let mut shared = Vec::new();
+        for source in self.budget.as_ref()?.sources.iter().filter(|source| Source::is_shared(source.name)) {
+            for influence in source.changes.as_ref()? {
+                let changes = influence.iter().map(|change| change.unwrap_or(f64::NAN)).collect();
+                shared.push(SharedInfluence { source: source.name.word().to_owned(), changes });
+            }
+        }
+        Some(shared)
+    }
+}
+
+fn whole(number: usize) -> i64 {
+    i64::try_from(number).unwrap_or(i64::MAX)
+}

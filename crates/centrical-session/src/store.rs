@@ -1,0 +1,19 @@
+//! A store of calibrations: a folder with one compact row for each result, `STORE/rows/PART.parquet`, and the results themselves,
+//! `STORE/results/KEY.json`.
+//!
+//! A part is written beside and renamed, under a lock that the system releases when its process ends. A merge of parts writes the
+//! new one before it removes the old ones, and readers drop a key that they have seen. So a kill loses nothing and shows nothing twice.
+
+mod folder;
+mod part;
+mod reading;
+mod row;
+mod schema;
+mod writing;
+
+pub use self::folder::Store;
+pub use self::reading::{Rows, Selection};
+pub(crate) use self::row::sha256;
+pub use self::row::{Failure, Row, RowTerm, SharedInfluence, Status, days_since_1970};
+pub use self::schema::{Depth, ROWS_SCHEMA};
+pub use self::writing::Added;

@@ -1,0 +1,98 @@
+//! The folder of a store: where its files are, and the lock of its writers.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+use centrical_table::create_folder;
+
+use crate::error::{Error, Place};
+
+/// A store of calibrations.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Store {
+    folder: PathBuf,
+}
+
+/// The right to write into a store, until this is dropped or the process ends.
+pub(super) struct Lock {
+    _file: File,
+}
+
+impl Store {
+    /// Opens a store that is there.
+    ///
+    /// # Errors
+    /// [`Error`] if the folder is not there or is no store.
+    pub fn open(folder: &Path) -> Result<Self, Error> {
+        let store = Self { folder: folder.to_owned() };
+        if store.rows_folder().is_dir() {
+            return Ok(store);
+        }
+        let found = if folder.exists() { "no folder `rows` in it" } else { "no such folder" };
+        Err(Error::content(
+            folder,
+            Place::Whole,
+            found,
+            "a store of calibrations, as `centrical history add` makes one",
+        ))
+    }
+
+    /// Opens a store, and makes it if it is not there.
+    ///
+    /// # Errors
+    /// [`Error`] if the folder cannot be made.
+    pub fn create(folder: &Path) -> Result<Self, Error> {
+        let store = Self { folder: folder.to_owned() };
+        create_folder(&store.rows_folder())?;
+        Ok(store)
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Where the copy of a result is, if the store keeps it.
+    pub fn result_file(&self, key: &str) -> PathBuf {
+        self.results_folder().join(format!("{key}.json"))
+    }
+
+    pub(super) fn rows_folder(&self) -> PathBuf {
+        self.folder.join("rows")
+    }
+
+    pub(super) fn results_folder(&self) -> PathBuf {
+        self.folder.join("results")
+    }
+
+    /// The files of the parts, by name.
+    pub(super) fn parts(&self) -> Result<Vec<PathBuf>, Error> {
+        self.files_ending("parquet")
+    }
+
+    /// Temporary files that a process left: only a writer with the lock may ask.
+    pub(super) fn orphans(&self) -> Result<Vec<PathBuf>, Error> {
+        self.files_ending("tmp")
+    }
+
+    fn files_ending(&self, end: &str) -> Result<Vec<PathBuf>, Error> {
+        let folder = self.rows_folder();
+        let failed = |error| Error::reading(&folder, error, "the rows of a store");
+        let mut files = Vec::new();
+        for entry in fs::read_dir(&folder).map_err(failed)? {
+            files.push(entry.map_err(failed)?.path());
+        }
+        files.retain(|file| file.extension().is_some_and(|e| e == end));
+        files.sort();
+        Ok(files)
+    }
+
+    /// Waits until no other process writes into the store.
+    pub(super) fn lock(&self) -> Result<Lock, Error> {
+        let path = self.folder.join("lock");
+        let failed = |error| Error::writing(&path, error);
+        let file = File::options().create(true).append(true).open(&path).map_err(failed)?;
+        file.lock().map_err(failed)?;
+        Ok(Lock { _file: file })
+    }
+}

@@ -1,0 +1,174 @@
+//! The columns of a row in a part, and how a row becomes cells and comes from them: schema `centrical-rows/1`.
+
+use centrical_table::{Cell, Kind, TypedColumn};
+
+use super::row::{Row, RowTerm, SharedInfluence, Status};
+
+/// Name of the schema's present version.
+pub const ROWS_SCHEMA: &str = "centrical-rows/1";
+
+/// Key in the footer of a part under which the schema stands.
+pub(super) const SCHEMA_NOTE: &str = "centrical_schema";
+
+/// The schema's present version.
+pub(super) const VERSION: i64 = 1;
+
+/// How much of a row is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum Depth {
+    /// What one line of a list shows.
+    #[default]
+    Summary,
+    /// The parameters with their uncertainties and the error model too.
+    Values,
+    /// Covariances and shared influences too.
+    Whole,
+}
+
+/// A column and its place in a row.
+pub(super) struct Entry {
+    pub column: TypedColumn,
+    pub depth: Depth,
+    pub get: fn(&Row) -> Cell,
+    pub set: fn(&mut Row, Read),
+}
+
+/// The cell of a column that was read.
+#[derive(PartialEq)]
+pub(super) struct Read(pub Cell);
+
+/// The columns in the order of the file. A column may be added; none is taken away.
+#[rustfmt::skip]
+pub(super) const ENTRIES: &[Entry] = &[
+    Entry { column: TypedColumn { name: "key", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.key), set: |r, c| r.key = c.text() },
+    Entry { column: TypedColumn { name: "row_version", kind: Kind::Integer }, depth: Depth::Summary, get: |_| Cell::Integer(VERSION), set: |_, _| () },
+    Entry { column: TypedColumn { name: "status", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(r.status.word()), set: |r, c| r.status = Status::named(&c.text()) },
+    Entry { column: TypedColumn { name: "message", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.message), set: |r, c| r.failure.message = c.text() },
+    Entry { column: TypedColumn { name: "file", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.file), set: |r, c| r.failure.file = c.text() },
+    Entry { column: TypedColumn { name: "place", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.place), set: |r, c| r.failure.place = c.text() },
+    Entry { column: TypedColumn { name: "found", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.found), set: |r, c| r.failure.found = c.text() },
+    Entry { column: TypedColumn { name: "expected", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.expected), set: |r, c| r.failure.expected = c.text() },
+    Entry { column: TypedColumn { name: "unit_model", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.unit_model), set: |r, c| r.unit_model = c.text() },
+    Entry { column: TypedColumn { name: "unit_serial", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.unit_serial), set: |r, c| r.unit_serial = c.text() },
+    Entry { column: TypedColumn { name: "title", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.title), set: |r, c| r.title = c.text() },
+    Entry { column: TypedColumn { name: "date", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.date), set: |r, c| r.date = c.text() },
+    Entry { column: TypedColumn { name: "day", kind: Kind::Integer }, depth: Depth::Summary, get: |r| r.day.map_or(Cell::Null, Cell::Integer), set: |r, c| r.day = c.integer() },
+    Entry { column: TypedColumn { name: "station", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.station), set: |r, c| r.station = c.text() },
+    Entry { column: TypedColumn { name: "program", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.program), set: |r, c| r.program = c.text() },
+    Entry { column: TypedColumn { name: "inputs", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.inputs), set: |r, c| r.inputs = c.text() },
+    Entry { column: TypedColumn { name: "reference", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.reference), set: |r, c| r.reference = c.text() },
+    Entry { column: TypedColumn { name: "range", kind: Kind::Numbers }, depth: Depth::Summary, get: |r| Cell::Numbers(r.range.clone()), set: |r, c| r.range = c.numbers() },
+    Entry { column: TypedColumn { name: "termination", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.termination), set: |r, c| r.termination = c.text() },
+    Entry { column: TypedColumn { name: "chi_squared", kind: Kind::Number }, depth: Depth::Summary, get: |r| Cell::Number(r.chi_squared), set: |r, c| r.chi_squared = c.number() },
+    Entry { column: TypedColumn { name: "degrees_of_freedom", kind: Kind::Integer }, depth: Depth::Summary, get: |r| Cell::Integer(r.degrees_of_freedom), set: |r, c| r.degrees_of_freedom = c.integer().unwrap_or(0) },
+    Entry { column: TypedColumn { name: "rank", kind: Kind::Integer }, depth: Depth::Summary, get: |r| Cell::Integer(r.rank), set: |r, c| r.rank = c.integer().unwrap_or(0) },
+    Entry { column: TypedColumn { name: "columns", kind: Kind::Integer }, depth: Depth::Summary, get: |r| Cell::Integer(r.columns), set: |r, c| r.columns = c.integer().unwrap_or(0) },
+    Entry { column: TypedColumn { name: "acceptable", kind: Kind::Truth }, depth: Depth::Summary, get: |r| Cell::Truth(r.acceptable), set: |r, c| r.acceptable = c.0 == Cell::Truth(true) },
+    Entry { column: TypedColumn { name: "objections", kind: Kind::Texts }, depth: Depth::Summary, get: |r| Cell::Texts(r.objections.clone()), set: |r, c| r.objections = c.texts() },
+    Entry { column: TypedColumn { name: "shared_known", kind: Kind::Truth }, depth: Depth::Summary, get: |r| Cell::Truth(r.shared_known), set: |r, c| r.shared_known = c.0 == Cell::Truth(true) },
+    Entry { column: TypedColumn { name: "parameters", kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.parameters.clone()), set: |r, c| r.parameters = c.texts() },
+    Entry { column: TypedColumn { name: "units", kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.units.clone()), set: |r, c| r.units = c.texts() },
+    Entry { column: TypedColumn { name: "groups", kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.groups.clone()), set: |r, c| r.groups = c.texts() },
+    Entry { column: TypedColumn { name: "values", kind: Kind::Numbers }, depth: Depth::Values, get: |r| Cell::Numbers(r.values.clone()), set: |r, c| r.values = c.numbers() },
+    Entry { column: TypedColumn { name: "standard_uncertainties", kind: Kind::Numbers }, depth: Depth::Values, get: |r| Cell::Numbers(r.standard_uncertainties.clone()), set: |r, c| r.standard_uncertainties = c.numbers() },
+    Entry { column: TypedColumn { name: "terms", kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.terms.iter().map(|t| t.name.clone()).collect()), set: |r, c| r.terms = c.texts().into_iter().map(term).collect() },
+    Entry { column: TypedColumn { name: "term_axes", kind: Kind::Integers }, depth: Depth::Values, get: |r| Cell::Integers(r.terms.iter().map(|t| whole(t.axis)).collect()), set: |r, c| set_axes(r, &c.integers()) },
+    Entry { column: TypedColumn { name: "term_powers", kind: Kind::Integers }, depth: Depth::Values, get: |r| Cell::Integers(r.terms.iter().flat_map(|t| t.powers.map(i64::from)).collect()), set: |r, c| set_powers(r, &c.integers()) },
+    Entry { column: TypedColumn { name: "term_signs", kind: Kind::Integers }, depth: Depth::Values, get: |r| Cell::Integers(r.terms.iter().map(|t| t.sign_of.map_or(0, whole)).collect()), set: |r, c| set_signs(r, &c.integers()) },
+    Entry { column: TypedColumn { name: "covariance", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.covariance.clone()), set: |r, c| r.covariance = c.numbers() },
+    Entry { column: TypedColumn { name: "shared_sources", kind: Kind::Texts }, depth: Depth::Whole, get: |r| Cell::Texts(r.shared.iter().map(|s| s.source.clone()).collect()), set: |r, c| r.shared = c.texts().into_iter().map(influence).collect() },
+    Entry { column: TypedColumn { name: "shared_changes", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.shared.iter().flat_map(|s| s.changes.clone()).collect()), set: |r, c| set_changes(r, &c.numbers()) },
+];
+
+/// The columns of a part.
+pub(super) fn columns() -> Vec<TypedColumn> {
+    ENTRIES.iter().map(|entry| entry.column).collect()
+}
+
+/// The cells of a row.
+pub(super) fn cells(row: &Row) -> Vec<Cell> {
+    ENTRIES.iter().map(|entry| (entry.get)(row)).collect()
+}
+
+impl Status {
+    /// Its word in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Failed => "failed",
+        }
+    }
+
+    fn named(word: &str) -> Self {
+        if word == "failed" { Self::Failed } else { Self::Done }
+    }
+}
+
+impl Read {
+    fn text(self) -> String {
+        if let Cell::Text(text) = self.0 { text } else { String::new() }
+    }
+
+    fn number(self) -> f64 {
+        if let Cell::Number(value) = self.0 { value } else { f64::NAN }
+    }
+
+    fn integer(self) -> Option<i64> {
+        if let Cell::Integer(value) = self.0 { Some(value) } else { None }
+    }
+
+    fn texts(self) -> Vec<String> {
+        if let Cell::Texts(list) = self.0 { list } else { Vec::new() }
+    }
+
+    fn numbers(self) -> Vec<f64> {
+        if let Cell::Numbers(list) = self.0 { list } else { Vec::new() }
+    }
+
+    fn integers(self) -> Vec<i64> {
+        if let Cell::Integers(list) = self.0 { list } else { Vec::new() }
+    }
+}
+
+fn text(text: &str) -> Cell {
+    if text.is_empty() { Cell::Null } else { Cell::Text(text.to_owned()) }
+}
+
+fn whole(number: usize) -> i64 {
+    i64::try_from(number).unwrap_or(i64::MAX)
+}
+
+/// A term of which the name alone is read as yet.
+fn term(name: String) -> RowTerm {
+    RowTerm { name, axis: 0, powers: [0; 3], sign_of: None }
+}
+
+fn set_axes(row: &mut Row, axes: &[i64]) {
+    for (term, axis) in row.terms.iter_mut().zip(axes) {
+        term.axis = usize::try_from(*axis).unwrap_or(0);
+    }
+}
+
+fn set_powers(row: &mut Row, powers: &[i64]) {
+    for (term, powers) in row.terms.iter_mut().zip(powers.chunks_exact(3)) {
+        term.powers = [0, 1, 2].map(|axis: usize| u8::try_from(powers[axis]).unwrap_or(0));
+    }
+}
+
+fn set_signs(row: &mut Row, signs: &[i64]) {
+    for (term, sign) in row.terms.iter_mut().zip(signs) {
+        term.sign_of = usize::try_from(*sign).ok().filter(|sign| *sign > 0);
+    }
+}
+
+/// An influence of which the source alone is read as yet.
+fn influence(source: String) -> SharedInfluence {
+    SharedInfluence { source, changes: Vec::new() }
+}
+
+fn set_changes(row: &mut Row, changes: &[f64]) {
+    let count = changes.len() / row.shared.len().max(1);
+    for (influence, changes) in row.shared.iter_mut().zip(changes.chunks(count.max(1))) {
+        influence.changes = changes.to_vec();
+    }
+}
