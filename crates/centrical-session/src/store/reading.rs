@@ -37,7 +37,8 @@ pub struct Rows {
 }
 
 impl Selection {
-    fn takes(&self, row: &Row) -> bool {
+    /// Whether it picks a row.
+    pub(crate) fn takes(&self, row: &Row) -> bool {
         let is = |wanted: &Option<String>, found: &str| wanted.as_deref().is_none_or(|wanted| wanted == found);
         is(&self.unit_model, &row.unit_model)
             && is(&self.unit_serial, &row.unit_serial)

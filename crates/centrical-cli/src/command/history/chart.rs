@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{chart_plots, chart_text};
-use centrical_session::{ChartLimits, Error, RuleSet, chart, claim_folder, create_folder, refuse_inputs, write_whole};
+use centrical_session::{ChartLimits, Depth, Error, RuleSet, chart, claim_folder, create_folder, refuse_inputs, write_whole};
 
 use super::choice::Choice;
 use crate::outcome::Outcome;
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         Rules::Nelson => RuleSet::Nelson,
         Rules::WesternElectric => RuleSet::WesternElectric,
     };
-    let report = chart(&choice.read()?, &arguments.parameter, limits, rules)
+    let report = chart(&choice.read(Depth::Values)?, &arguments.parameter, limits, rules)
         .map_err(|source| choice.refuse(source.found(), &source.expected()))?;
     if let Some(folder) = &arguments.out {
         let plots = chart_plots(&report);

@@ -3,13 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use centrical_session::{Calibrated, Error, Place, read_calibrations};
+use centrical_session::{Calibrated, Depth, Error, Place, Selection, read_calibrations};
 
 /// Results, and what they have to be of.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Choice {
-    /// Results of calibrations, or folders of them: each result.json in a folder, at any depth
-    #[arg(required = true, value_name = "RESULT|FOLDER")]
+    /// Stores, results of calibrations, or folders of results: each result.json at any depth
+    #[arg(required = true, value_name = "STORE|RESULT|FOLDER")]
     pub results: Vec<PathBuf>,
     /// Model of the unit
     #[arg(long)]
@@ -23,18 +23,20 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// The calibrations, in the order of time.
-    pub fn read(&self) -> Result<Vec<Calibrated>, Error> {
-        let all = read_calibrations(&self.results)?;
-        let is = |wanted: &Option<String>, name: &str| wanted.as_ref().is_none_or(|wanted| wanted == name);
-        let is_meant = |c: &Calibrated| {
-            is(&self.model, &c.unit_model) && is(&self.serial, &c.unit_serial) && is(&self.station, &c.station)
+    /// The calibrations, in the order of time, read to a depth.
+    pub fn read(&self, depth: Depth) -> Result<Vec<Calibrated>, Error> {
+        let selection = Selection {
+            depth,
+            unit_model: self.model.clone(),
+            unit_serial: self.serial.clone(),
+            station: self.station.clone(),
+            ..Selection::default()
         };
-        let (count, meant) = (all.len(), all.into_iter().filter(is_meant).collect::<Vec<_>>());
-        if meant.is_empty() {
-            return Err(self.refuse(format!("{count} results, none of them as asked for"), "results"));
+        let calibrations = read_calibrations(&self.results, &selection)?;
+        if calibrations.is_empty() {
+            return Err(self.refuse("no such calibration".to_owned(), "results, as --model, --serial and --station ask for"));
         }
-        Ok(meant)
+        Ok(calibrations)
     }
 
     /// What all have in common.

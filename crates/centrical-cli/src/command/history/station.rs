@@ -1,7 +1,7 @@
 //! `centrical history station RESULT|FOLDER...`: one centrifuge over its sessions.
 
 use centrical_report::station_history_text;
-use centrical_session::{Error, station_history};
+use centrical_session::{Depth, Error, station_history};
 
 use super::choice::Choice;
 use crate::outcome::Outcome;
@@ -23,7 +23,7 @@ pub struct Arguments {
 /// Runs the command. Exit code 1 when a parameter of the machine changes.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let choice = &arguments.choice;
-    let calibrations = choice.read()?;
+    let calibrations = choice.read(Depth::Values)?;
     choice.only(&calibrations, |c| c.station.as_str(), "--station")?;
     let report = station_history(&calibrations)
         .ok_or_else(|| choice.refuse("no calibration".to_owned(), "calibrations of one station"))?;

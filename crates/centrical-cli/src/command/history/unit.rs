@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use centrical_report::{unit_history_plots, unit_history_text};
 use centrical_session::{
-    Calibrated, Date, Error, UnitHistoryRequest, claim_folder, create_folder, refuse_inputs, unit_history, write_whole,
+    Calibrated, Date, Depth, Error, UnitHistoryRequest, claim_folder, create_folder, refuse_inputs, unit_history, write_whole,
 };
 
 use super::choice::{Choice, by_unit};
@@ -52,9 +52,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let all = Choice { serial: None, ..choice.clone() };
     let is_meant = |serial: &str| choice.serial.as_ref().is_none_or(|wanted| wanted == serial);
     let (own, others): (Vec<_>, Vec<_>) = if arguments.together {
-        by_unit(all.read()?).into_iter().partition(|unit| is_meant(&unit[0].unit_serial))
+        by_unit(all.read(Depth::Whole)?).into_iter().partition(|unit| is_meant(&unit[0].unit_serial))
     } else {
-        (by_unit(choice.read()?), Vec::new())
+        (by_unit(choice.read(Depth::Whole)?), Vec::new())
     };
     let [calibrations] = own.as_slice() else {
         let serials =

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::units_history_text;
 use centrical_session::{
-    CalibrationResult, Error, Laboratory, Limited, ParameterLimits, UnitsHistoryRequest, read_batches, units_history,
+    CalibrationResult, Depth, Error, Laboratory, Limited, ParameterLimits, UnitsHistoryRequest, read_batches, units_history,
 };
 
 use super::choice::{Choice, by_unit};
@@ -34,7 +34,7 @@ pub struct Arguments {
 /// Runs the command. Exit code 1 when a unit is outlying, drifts or scatters, or batches differ.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let choice = &arguments.choice;
-    let calibrations = choice.read()?;
+    let calibrations = choice.read(Depth::Values)?;
     choice.only(&calibrations, |c| c.unit_model.as_str(), "--model")?;
     let limits = arguments.laboratory.as_deref().map(|file| limits(file, &calibrations[0].source)).transpose()?;
     let batches = arguments.batches.as_deref().map(read_batches).transpose()?;

@@ -46,6 +46,14 @@ impl CalibrationResult {
 }
 
 impl TermSummary {
+    /// The term with a value of its coefficient, and its name.
+    ///
+    /// # Errors
+    /// As [`TermSummary::monomial`].
+    pub(crate) fn with_coefficient(&self, coefficient: f64) -> Result<(String, Term), NoErrorModel> {
+        Ok((self.name.clone(), Term { axis: self.index_of(self.axis)?, monomial: self.monomial()?, coefficient }))
+    }
+
     /// What multiplies the coefficient.
     ///
     /// # Errors

@@ -1,15 +1,16 @@
 //! A calibration as its history needs it: what was determined, and which of its errors other sessions share.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
 
 use centrical::Group;
 use centrical::history::{Point, Series};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, DVector};
 
-use crate::document::{CalibrationResult, ParameterEstimate};
-use crate::error::{Error, Place, quoted};
+use crate::document::TermSummary;
 use crate::laboratory::Date;
+use crate::store::{Row, SharedInfluence};
 
 /// One calibration.
 #[derive(Debug, Clone)]
@@ -26,20 +27,24 @@ pub struct Calibrated {
     pub date: Date,
     /// Whether no check raised an objection.
     pub acceptable: bool,
-    /// The parameters that the data determine.
-    pub parameters: Vec<CalibratedParameter>,
-    /// Their covariance, SI.
-    pub covariance: DMatrix<f64>,
-    /// Change of each by an error that sessions of one station share, at one standard uncertainty, with the name of its source.
-    pub shared: Vec<(String, Vec<f64>)>,
+    /// Its parameters; calibrations of one kind share them.
+    pub parameters: Arc<Vec<CalibratedParameter>>,
+    /// Estimates, SI; NaN where the data do not determine a parameter.
+    pub values: Vec<f64>,
+    /// Combined standard uncertainties, SI.
+    pub standard_uncertainties: Vec<f64>,
+    /// Combined covariance, SI, the lower triangle by rows; empty where it was not asked for.
+    covariance: Vec<f64>,
+    /// What errors leave that sessions of one station share.
+    shared: Vec<SharedInfluence>,
     /// The error model with the names of its coefficients, if all of them are determined.
     pub terms: Option<Vec<(String, Term)>>,
-    /// Largest magnitude of a plateau's mean reading on any axis [m/s^2].
+    /// Largest magnitude of a specific force on any axis [m/s^2].
     pub range: f64,
 }
 
-/// A parameter that is determined.
-#[derive(Debug, Clone, PartialEq)]
+/// A parameter.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct CalibratedParameter {
     /// Name.
     pub name: String,
@@ -47,66 +52,43 @@ pub struct CalibratedParameter {
     pub unit: String,
     /// bias, scale, misalignment, ...
     pub group: Group,
-    /// Estimate, SI.
-    pub value: f64,
     /// Whether it belongs to the unit, and not to the machine or how the unit was mounted.
     pub is_of_unit: bool,
 }
 
+/// The lists of parameters that were met: there are a few among thousands of calibrations.
+#[derive(Debug, Default)]
+pub struct Kinds(HashSet<Arc<Vec<CalibratedParameter>>>);
+
 impl Calibrated {
-    /// The calibration in a `result.json` that is called `source`.
-    ///
-    /// # Errors
-    /// [`Error`] if its session has no day for a date.
-    pub fn of(source: &str, result: &CalibrationResult) -> Result<Self, Error> {
-        let date = result.session.date.parse().map_err(|_| {
-            let found = quoted(result.session.date.as_bytes());
-            Error::content(
-                source.as_ref(),
-                Place::Key { table: "session".to_owned(), key: "date".to_owned() },
-                found,
-                "a day such as 2026-10-05",
-            )
-        })?;
-        let determined: Vec<usize> =
-            (0..result.parameters.len()).filter(|&j| result.parameters[j].value.is_some()).collect();
-        let covariance =
-            |a: usize, b: usize| result.covariance.get(determined[a])?.get(determined[b]).copied().flatten();
-        let count = determined.len();
-        let terms = &result.model.error_model;
-        let is_of_unit =
-            |p: &ParameterEstimate| p.group == Group::ProofMass || terms.iter().any(|term| term.name == p.name);
-        let parameter = |&j: &usize| {
-            let p = &result.parameters[j];
-            CalibratedParameter {
-                name: p.name.clone(),
-                unit: p.unit.clone(),
-                group: p.group,
-                value: p.value.unwrap_or(f64::NAN),
-                is_of_unit: is_of_unit(p),
-            }
-        };
-        Ok(Self {
-            source: source.to_owned(),
-            unit_model: result.session.unit_model.clone(),
-            unit_serial: result.session.unit_serial.clone(),
-            station: String::new(),
+    /// The calibration in a row of a store, or of a result that is called `source`; `None` if its session has no day for a date.
+    pub fn of(source: String, row: Row, kinds: &mut Kinds) -> Option<Self> {
+        let date = row.date.trim().parse().ok()?;
+        let terms = row.terms.iter().map(|term| {
+            let place = row.index(&term.name)?;
+            let summary = TermSummary { name: term.name.clone(), axis: term.axis, powers: term.powers, sign_of: term.sign_of };
+            summary.with_coefficient(*row.values.get(place).filter(|value| value.is_finite())?).ok()
+        });
+        Some(Self {
+            source,
             date,
-            acceptable: result.objections().is_empty(),
-            parameters: determined.iter().map(parameter).collect(),
-            covariance: DMatrix::from_fn(count, count, |a, b| covariance(a, b).unwrap_or(f64::NAN)),
-            shared: Vec::new(),
-            terms: result
-                .error_terms()
-                .ok()
-                .map(|found| terms.iter().map(|term| term.name.clone()).zip(found).collect()),
-            range: result.calibrated_range(),
+            acceptable: row.acceptable,
+            parameters: kinds.of(&row),
+            terms: terms.map(|term| term.map(|(name, term)| (name, term))).collect(),
+            range: row.range.iter().copied().fold(0.0, f64::max),
+            unit_model: row.unit_model,
+            unit_serial: row.unit_serial,
+            station: row.station,
+            values: row.values,
+            standard_uncertainties: row.standard_uncertainties,
+            covariance: row.covariance,
+            shared: row.shared,
         })
     }
 
     /// The place of a parameter, if it is determined.
     pub fn place(&self, name: &str) -> Option<usize> {
-        self.parameters.iter().position(|p| p.name == name)
+        self.parameters.iter().position(|p| p.name == name).filter(|&j| self.values[j].is_finite())
     }
 
     /// What tells units apart.
@@ -114,15 +96,18 @@ impl Calibrated {
         (&self.unit_model, &self.unit_serial)
     }
 
+    /// Combined variance of `sum_n c_n x_n`.
+    pub fn variance(&self, combination: &[(usize, f64)]) -> f64 {
+        let pairs = combination.iter().flat_map(|(i, a)| combination.iter().map(move |(j, b)| (*i, *j, a * b)));
+        pairs.map(|(i, j, product)| product * self.covariance(i, j)).sum()
+    }
+
     /// `sum_n c_n x_n`, its variance by errors of this session alone, and its change by each shared error.
     fn combined(&self, combination: &[(usize, f64)]) -> (f64, f64, Vec<f64>) {
-        let value = combination.iter().map(|(j, c)| c * self.parameters[*j].value).sum();
-        let shared: Vec<f64> =
-            self.shared.iter().map(|(_, changes)| combination.iter().map(|(j, c)| c * changes[*j]).sum()).collect();
-        let all: f64 = (combination.iter())
-            .flat_map(|(i, a)| combination.iter().map(move |(j, b)| (i, j, a * b)))
-            .map(|(i, j, product)| product * self.covariance[(*i, *j)])
-            .sum();
+        let value = combination.iter().map(|(j, c)| c * self.values[*j]).sum();
+        let change = |influence: &SharedInfluence| combination.iter().map(|(j, c)| c * influence.changes[*j]).sum();
+        let shared: Vec<f64> = self.shared.iter().map(change).collect();
+        let all = self.variance(combination);
         // What rounding leaves of a session whose every error is shared is still no certainty.
         let own = (all - shared.iter().map(|s| s * s).sum::<f64>()).max(1e-12 * all);
         (value, own, shared)
@@ -131,11 +116,34 @@ impl Calibrated {
     /// Values of `names` and the covariance of the errors that belong to this session alone; `None` if one is not determined.
     pub fn own_estimates(&self, names: &[String]) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let places: Vec<usize> = names.iter().map(|name| self.place(name)).collect::<Option<_>>()?;
-        let shared =
-            |i: usize, j: usize| -> f64 { self.shared.iter().map(|(_, changes)| changes[i] * changes[j]).sum() };
-        let own = |a: usize, b: usize| self.covariance[(places[a], places[b])] - shared(places[a], places[b]);
-        let values = DVector::from_iterator(places.len(), places.iter().map(|&j| self.parameters[j].value));
+        let shared = |i: usize, j: usize| -> f64 { self.shared.iter().map(|of| of.changes[i] * of.changes[j]).sum() };
+        let own = |a: usize, b: usize| self.covariance(places[a], places[b]) - shared(places[a], places[b]);
+        let values = DVector::from_iterator(places.len(), places.iter().map(|&j| self.values[j]));
         Some((values, DMatrix::from_fn(places.len(), places.len(), own)))
+    }
+
+    /// Of a calibration without covariances only the variances are known.
+    fn covariance(&self, i: usize, j: usize) -> f64 {
+        let (low, high) = (i.min(j), i.max(j));
+        let variance = || if i == j { self.standard_uncertainties[i].powi(2) } else { f64::NAN };
+        self.covariance.get(high * (high + 1) / 2 + low).copied().unwrap_or_else(variance)
+    }
+}
+
+impl Kinds {
+    fn of(&mut self, row: &Row) -> Arc<Vec<CalibratedParameter>> {
+        let group = |n: usize| Group::ALL.into_iter().find(|group| row.groups.get(n).is_some_and(|name| group.name() == name));
+        let parameter = |(n, name): (usize, &String)| {
+            let group = group(n).unwrap_or(Group::Bias);
+            let is_of_unit = group == Group::ProofMass || row.terms.iter().any(|term| term.name == *name);
+            CalibratedParameter { name: name.clone(), unit: row.units.get(n).cloned().unwrap_or_default(), group, is_of_unit }
+        };
+        let parameters = Arc::new(row.parameters.iter().enumerate().map(parameter).collect::<Vec<_>>());
+        if let Some(known) = self.0.get(&parameters) {
+            return Arc::clone(known);
+        }
+        self.0.insert(Arc::clone(&parameters));
+        parameters
     }
 }
 
@@ -149,7 +157,7 @@ pub fn series(calibrations: &[&Calibrated], combination: &[(String, f64)], zero:
         let places: Vec<(usize, f64)> = combination.iter().map(at).collect::<Option<_>>()?;
         let (value, variance, shared) = calibrated.combined(&places);
         let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
-        let row = calibrated.shared.iter().zip(shared).map(|((source, _), change)| {
+        let row = calibrated.shared.iter().zip(shared).map(|(SharedInfluence { source, .. }, change)| {
             let number = seen.entry(source).or_default();
             *number += 1;
             let next = columns.len();

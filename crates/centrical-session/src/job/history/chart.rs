@@ -76,7 +76,7 @@ pub fn chart(
     rules: RuleSet,
 ) -> Result<ChartReport, NoChart> {
     let of: Vec<(&Calibrated, usize)> = calibrations.iter().filter_map(|c| Some((c, c.place(name)?))).collect();
-    let values: Vec<f64> = of.iter().map(|(c, place)| c.parameters[*place].value).collect();
+    let values: Vec<f64> = of.iter().map(|(c, place)| c.values[*place]).collect();
     let Some((first, place)) = of.first() else { return Err(NoChart::Unknown(name.to_owned())) };
     let (control, accepted) = match limits {
         ChartLimits::Stated(centre, deviation) => (Control { centre, deviation }, 0),

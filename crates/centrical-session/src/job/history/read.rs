@@ -1,43 +1,83 @@
-//! Calibrations from results and folders of results.
+//! Calibrations from results, folders of results, and stores.
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::calibrated::Calibrated;
+use super::calibrated::{Calibrated, Kinds};
 use crate::document::CalibrationResult;
-use crate::error::Error;
+use crate::error::{Error, Place, quoted};
+use crate::settings::read_result;
+use crate::store::{Row, Selection, Status, Store};
 
-/// The calibrations in `paths`, in the order of time: results, and folders in which each `result.json` at any depth is one.
+/// The calibrations in `paths` that `selection` picks, in the order of time: results; stores; other folders, in which each `result.json` at any
+/// depth is one. A result that is met twice counts once; sessions of a store without a result do not count.
 ///
 /// # Errors
-/// [`Error`] when a result cannot be read, or its session has no day for a date.
-pub fn read_calibrations(paths: &[PathBuf]) -> Result<Vec<Calibrated>, Error> {
-    let mut files = Vec::new();
+/// [`Error`] when a result or a store cannot be read, or a session has no day for a date.
+pub fn read_calibrations(paths: &[PathBuf], selection: &Selection) -> Result<Vec<Calibrated>, Error> {
+    let mut found = Found { selection, kinds: Kinds::default(), keys: HashSet::new(), calibrations: Vec::new() };
     for path in paths {
-        if path.is_dir() { results_in(path, &mut files)? } else { files.push(path.clone()) }
+        match Store::open(path) {
+            Ok(store) => found.take_store(&store)?,
+            Err(_) if path.is_dir() => found.take_folder(path)?,
+            Err(_) => found.take_result(path)?,
+        }
     }
-    let mut calibrations = Vec::with_capacity(files.len());
-    for file in &files {
-        calibrations.push(Calibrated::of(&file.display().to_string(), &CalibrationResult::read(file)?)?);
-    }
+    let mut calibrations = found.calibrations;
     calibrations.sort_by(|a, b| {
         a.date.cmp(&b.date).then_with(|| a.unit().cmp(&b.unit())).then_with(|| a.source.cmp(&b.source))
     });
     Ok(calibrations)
 }
 
-fn results_in(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Error> {
-    let failed = |source| centrical_table::Error::reading(folder, source, "a folder of results");
-    let mut entries: Vec<_> = fs::read_dir(folder).map_err(failed)?.collect::<Result<_, _>>().map_err(failed)?;
-    entries.sort_by_key(fs::DirEntry::file_name);
-    for entry in entries {
-        // The type of the entry itself: a link to a folder could lead back.
-        let kind = entry.file_type().map_err(failed)?;
-        if kind.is_dir() {
-            results_in(&entry.path(), files)?;
-        } else if entry.file_name() == "result.json" {
-            files.push(entry.path());
+struct Found<'a> {
+    selection: &'a Selection,
+    kinds: Kinds,
+    keys: HashSet<String>,
+    calibrations: Vec<Calibrated>,
+}
+
+impl Found<'_> {
+    fn take_store(&mut self, store: &Store) -> Result<(), Error> {
+        for row in store.rows(self.selection.clone())? {
+            let row = row?;
+            self.take(store.folder(), row.key.clone(), row)?;
         }
+        Ok(())
     }
-    Ok(())
+
+    fn take_folder(&mut self, folder: &Path) -> Result<(), Error> {
+        let failed = |source| centrical_table::Error::reading(folder, source, "a folder of results");
+        let mut entries: Vec<_> = fs::read_dir(folder).map_err(failed)?.collect::<Result<_, _>>().map_err(failed)?;
+        entries.sort_by_key(fs::DirEntry::file_name);
+        for entry in entries {
+            // The type of the entry itself: a link to a folder could lead back.
+            if entry.file_type().map_err(failed)?.is_dir() {
+                self.take_folder(&entry.path())?;
+            } else if entry.file_name() == "result.json" {
+                self.take_result(&entry.path())?;
+            }
+        }
+        Ok(())
+    }
+
+    fn take_result(&mut self, file: &Path) -> Result<(), Error> {
+        let text = read_result(file, "a result.json, a folder of them, or a store")?;
+        let row = CalibrationResult::parse(file, &text)?.row(text.as_bytes());
+        if self.selection.takes(&row) { self.take(file, file.display().to_string(), row) } else { Ok(()) }
+    }
+
+    fn take(&mut self, file: &Path, source: String, row: Row) -> Result<(), Error> {
+        if row.status == Status::Failed || !self.keys.insert(row.key.clone()) {
+            return Ok(());
+        }
+        let date = row.date.clone();
+        let calibrated = Calibrated::of(source, row, &mut self.kinds).ok_or_else(|| {
+            let place = Place::Key { table: "session".to_owned(), key: "date".to_owned() };
+            Error::content(file, place, quoted(date.as_bytes()), "a day such as 2026-10-05")
+        })?;
+        self.calibrations.push(calibrated);
+        Ok(())
+    }
 }

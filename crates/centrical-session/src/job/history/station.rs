@@ -20,9 +20,10 @@ pub fn station_history(calibrations: &[Calibrated]) -> Option<StationHistoryRepo
     let mut by_name: BTreeMap<(&str, &str), Vec<(&Calibrated, Reading)>> = BTreeMap::new();
     let mut names: Vec<(&str, &str)> = Vec::new();
     for calibrated in calibrations {
-        for parameter in calibrated.parameters.iter().filter(|p| !p.is_of_unit) {
+        let all = calibrated.parameters.iter().zip(&calibrated.values);
+        for (parameter, &value) in all.filter(|(p, value)| !p.is_of_unit && value.is_finite()) {
             let unit = number.get(&calibrated.unit()).copied().unwrap_or_default();
-            let reading = Reading { time: years(first, calibrated.date), unit, value: parameter.value };
+            let reading = Reading { time: years(first, calibrated.date), unit, value };
             let name = (parameter.name.as_str(), parameter.unit.as_str());
             if !by_name.contains_key(&name) {
                 names.push(name);

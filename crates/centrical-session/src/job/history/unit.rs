@@ -162,11 +162,7 @@ impl Job<'_> {
             unit: last.parameters[place].unit.clone(),
             group: last.parameters[place].group,
             values: own.points().iter().map(|p| p.value).collect(),
-            standard_uncertainties: self
-                .own
-                .iter()
-                .filter_map(|c| c.place(name).map(|j| c.covariance[(j, j)].sqrt()))
-                .collect(),
+            standard_uncertainties: self.own.iter().filter_map(|c| Some(c.standard_uncertainties[c.place(name)?])).collect(),
             between: between.as_ref().map(|b| b.variance.sqrt()),
             between_interval: between.as_ref().map(|b| b.interval.map(f64::sqrt)),
             variance_ratio: between.as_ref().map(Between::variance_ratio),
@@ -218,8 +214,7 @@ impl Job<'_> {
         let last = *self.own.last()?;
         let places: Vec<(usize, f64)> =
             combination.iter().map(|(name, c)| Some((last.place(name)?, *c))).collect::<Option<_>>()?;
-        let stated: f64 =
-            (places.iter()).flat_map(|(i, a)| places.iter().map(move |(j, b)| a * b * last.covariance[(*i, *j)])).sum();
+        let stated = last.variance(&places).max(0.0);
         let point = own.points().last()?;
         let evolution = own.evolution(self.curve, &between, &self.quantiles);
         let due = self.request.limit.zip(evolution).and_then(|(limit, evolution)| {
@@ -232,10 +227,10 @@ impl Job<'_> {
         Some(ReadingHistory {
             force: force.into(),
             axis: axis + 1,
-            stated: stated.max(0.0).sqrt(),
+            stated: stated.sqrt(),
             between: between.variance.sqrt(),
             between_interval: between.interval.map(f64::sqrt),
-            after_switch_on: (stated.max(0.0) + between.variance).sqrt(),
+            after_switch_on: (stated + between.variance).sqrt(),
             due,
         })
     }

@@ -69,7 +69,7 @@ pub fn units_history(units: &[Vec<Calibrated>], request: &UnitsHistoryRequest) -
 /// Mean of each parameter over the calibrations of each unit.
 fn means(units: &[Vec<Calibrated>], names: &[String]) -> DMatrix<f64> {
     DMatrix::from_fn(units.len(), names.len(), |n, j| {
-        let values = units[n].iter().filter_map(|c| c.place(&names[j]).map(|place| c.parameters[place].value));
+        let values = units[n].iter().filter_map(|c| c.place(&names[j]).map(|place| c.values[place]));
         values.sum::<f64>() / units[n].len() as f64
     })
 }

@@ -1,0 +1,53 @@
+//! One station over its sessions.
+
+use centrical_session::{StationHistoryReport, customary};
+
+use crate::terminal::screen::{Emphasis, Screen};
+use crate::terminal::symbols::legend;
+use crate::terminal::table::{Align, Cell, Table};
+use super::chance::chance;
+use crate::number::{counted, two_digits, with_uncertainty};
+
+/// A station over its sessions.
+pub fn station_history_text(report: &StationHistoryReport) -> Screen {
+    let mut screen = Screen::default();
+    let (emphasis, mark, words) = if report.is_steady {
+        (Emphasis::Acceptable, "STEADY", "no parameter of the machine drifts or has changed")
+    } else {
+        (Emphasis::NotAcceptable, "NOT STEADY", "the parameters are marked below; family-wise 5 %")
+    };
+    screen.marked(emphasis, mark, words);
+    screen.gap();
+    let name = if report.station.is_empty() { "without a name" } else { &report.station };
+    let counts = format!("{} of {}", counted(report.sessions, "session"), counted(report.units, "unit"));
+    screen.head("STATION", &format!("{name}: {counts}, {} to {}", report.first, report.last));
+    let columns = [
+        ("", Align::Left),
+        ("unit", Align::Left),
+        ("mean", Align::Right),
+        ("per year", Align::Right),
+        ("change", Align::Right),
+        ("after", Align::Left),
+        ("probability", Align::Right),
+        ("", Align::Words),
+    ];
+    let mut table = Table::new(2, columns);
+    for p in &report.parameters {
+        let (factor, unit) = customary(&p.unit, p.group);
+        let estimate = |value: f64, u: f64| Cell::estimate(with_uncertainty(factor * value, factor.abs() * u));
+        let slope = p.slope_per_year.zip(p.slope_uncertainty);
+        table.row([
+            p.name.as_str().into(),
+            unit.into(),
+            estimate(p.mean, p.scatter),
+            slope.map_or_else(Cell::default, |(slope, u)| estimate(slope, u)),
+            p.change.map_or_else(String::new, |change| two_digits(factor * change)).into(),
+            p.changed_after.map_or_else(String::new, |day| day.to_string()).into(),
+            p.probability.map_or_else(|| "too few".to_owned(), chance).into(),
+            if p.changes { "CHANGES" } else { "" }.into(),
+        ]);
+    }
+    screen.table(table);
+    legend(&mut screen, report.parameters.iter().map(|p| (p.name.as_str(), p.group)));
+    screen
+}

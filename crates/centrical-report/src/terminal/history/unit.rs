@@ -1,0 +1,199 @@
+//! One unit over its calibrations.
+
+use centrical_session::{DueDate, MICRO_G, ReadingHistory, STANDARD_GRAVITY as G, UnitHistoryReport, UnitParameter, customary};
+
+use crate::terminal::screen::{Emphasis, Screen};
+use crate::terminal::symbols::legend;
+use crate::terminal::table::{Align, Cell, Table};
+use super::chance::chance;
+use crate::number::{counted, two_digits, unsigned_zero, with_uncertainty};
+
+/// A unit over its calibrations.
+pub fn unit_history_text(report: &UnitHistoryReport) -> Screen {
+    let mut screen = Screen::default();
+    verdict(&mut screen, report);
+    screen.gap();
+    let UnitHistoryReport { unit_model, unit_serial, sessions, .. } = report;
+    screen.head("UNIT", &format!("{unit_model}, serial {unit_serial}: {}", counted(sessions.len(), "calibration")));
+    let mut table = Table::new(
+        1,
+        [("", Align::Left), ("date", Align::Left), ("station", Align::Left), ("", Align::Left), ("", Align::Words)],
+    );
+    for (n, session) in sessions.iter().enumerate() {
+        let verdict = if session.acceptable { "" } else { "NOT ACCEPTABLE" };
+        let date = session.date.to_string();
+        table.row([
+            (n + 1).to_string().into(),
+            date.into(),
+            session.station.as_str().into(),
+            verdict.into(),
+            session.source.as_str().into(),
+        ]);
+    }
+    screen.table(table);
+    screen.gap();
+    parameters(&mut screen, report);
+    screen.gap();
+    readings(&mut screen, report);
+    legend(&mut screen, report.parameters.iter().map(|p| (p.name.as_str(), p.group)));
+    screen
+}
+
+fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
+    let percent = percent(report.coverage);
+    let within = |limit: f64| format!("within {} µg with a probability of {percent}", two_digits(limit / MICRO_G));
+    match (&report.due, report.limit, report.due_after) {
+        (Some(due), Some(limit), _) if report.is_acceptable() => {
+            let within = within(limit);
+            let words = format!(
+                "{}: until then a compensated reading is {within} after each switch-on; first to leave: {}",
+                due.date,
+                place(due)
+            );
+            screen.marked(Emphasis::Acceptable, "DUE", &words);
+        }
+        (Some(due), Some(limit), _) => {
+            let words = format!(
+                "a compensated reading is not {} after the next switch-on; first: {}",
+                within(limit),
+                place(due)
+            );
+            screen.marked(Emphasis::NotAcceptable, "OVERDUE", &words);
+        }
+        (None, Some(limit), Some(day)) if !report.readings.is_empty() => {
+            let words =
+                format!("after {day}: until then every compensated reading is {} after each switch-on", within(limit));
+            screen.marked(Emphasis::Acceptable, "DUE", &words);
+        }
+        _ => {}
+    }
+    if let Some(test) = report.sameness {
+        let words = format!(
+            "chi^2 = {:.1} with {} degrees of freedom; as large by the stated uncertainties alone with a probability of {}",
+            test.chi_squared,
+            test.degrees_of_freedom,
+            chance(test.probability)
+        );
+        let (emphasis, mark) =
+            if test.probability < 0.01 { (Emphasis::Warning, "DIFFERS") } else { (Emphasis::Acceptable, "THE SAME") };
+        screen.marked(emphasis, mark, &words);
+    }
+    if report.sessions.len() < 3 {
+        screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");
+    }
+}
+
+/// A probability in percent: 95 %, 95.45 %.
+fn percent(probability: f64) -> String {
+    format!("{} %", (1e8 * probability).round() / 1e6)
+}
+
+fn place(due: &DueDate) -> String {
+    format!("newtonometer {} at {} g", due.axis, force(due.force))
+}
+
+fn force(f: [f64; 3]) -> String {
+    format!("({})", f.map(|f| unsigned_zero(format!("{:.0}", f / G))).join(", "))
+}
+
+fn parameters(screen: &mut Screen, report: &UnitHistoryReport) {
+    let together = match report.units_together {
+        1 => String::new(),
+        units => format!(", common to {units} units"),
+    };
+    let kind = if report.trend { "about a line in time" } else { "about a constant" };
+    screen.head(
+        "PARAMETERS",
+        &format!(
+            "last ± its standard uncertainty; standard deviation between sessions beside the stated one, {kind}{together}, with its \
+             interval of {}; F of the scatter; drift per year ± standard uncertainty; E_n (k = 2) against the calibration before and the first",
+            percent(report.coverage)
+        ),
+    );
+    let columns = [
+        ("", Align::Left),
+        ("unit", Align::Left),
+        ("last", Align::Right),
+        ("between", Align::Right),
+        ("interval", Align::Left),
+        ("F", Align::Right),
+        ("per year", Align::Right),
+        ("E_n", Align::Right),
+        ("first", Align::Right),
+        ("", Align::Words),
+    ];
+    let mut table = Table::new(2, columns);
+    for p in &report.parameters {
+        table.row(parameter(p));
+    }
+    screen.table(table);
+}
+
+fn parameter(p: &UnitParameter) -> [Cell; 10] {
+    let (factor, unit) = customary(&p.unit, p.group);
+    let estimate = |value: f64, u: f64| Cell::estimate(with_uncertainty(factor * value, factor.abs() * u));
+    let last = p.values.last().zip(p.standard_uncertainties.last());
+    let shown = |value: f64| two_digits(factor.abs() * value);
+    let between = p.between.map_or_else(String::new, shown);
+    let interval =
+        p.between_interval.map_or_else(String::new, |[low, high]| format!("{} to {}", shown(low), shown(high)));
+    let slope = p.slope_per_year.zip(p.slope_uncertainty);
+    let mark = match (p.drifts, p.scatters) {
+        (true, _) => "DRIFTS",
+        (false, true) => "SCATTERS",
+        (false, false) => "",
+    };
+    let e_n = |e_n: f64| unsigned_zero(format!("{e_n:.2}"));
+    [
+        p.name.as_str().into(),
+        unit.into(),
+        last.map_or_else(Cell::default, |(value, u)| estimate(*value, *u)),
+        between.into(),
+        interval.into(),
+        p.variance_ratio.map_or_else(String::new, |f| format!("{f:.1}")).into(),
+        slope.map_or_else(Cell::default, |(value, u)| estimate(value, u)),
+        e_n(p.e_n_previous).into(),
+        e_n(p.e_n_first).into(),
+        mark.into(),
+    ]
+}
+
+fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
+    if report.readings.is_empty() {
+        return;
+    }
+    screen.head(
+        "AFTER A SWITCH-ON",
+        "standard uncertainty of a reading compensated by the last calibration, µg: stated, between sessions, and both; the worst of each newtonometer",
+    );
+    let columns = [
+        ("newtonometer", Align::Left),
+        ("force, g", Align::Left),
+        ("stated", Align::Right),
+        ("between", Align::Right),
+        ("both", Align::Right),
+        ("due", Align::Left),
+    ];
+    let mut table = Table::new(1, columns);
+    for axis in 1..=3 {
+        let of_axis = || report.readings.iter().filter(|r| r.axis == axis);
+        let at_rest = of_axis().find(|r| r.force == [0.0; 3]);
+        let worst = of_axis().max_by(|a, b| a.after_switch_on.total_cmp(&b.after_switch_on));
+        for r in at_rest.into_iter().chain(worst) {
+            table.row(reading(r));
+        }
+    }
+    screen.table(table);
+}
+
+fn reading(r: &ReadingHistory) -> [Cell; 6] {
+    let micro_g = |value: f64| Cell::from(two_digits(value / MICRO_G));
+    [
+        r.axis.to_string().into(),
+        force(r.force).into(),
+        micro_g(r.stated),
+        micro_g(r.between),
+        micro_g(r.after_switch_on),
+        r.due.as_ref().map_or_else(String::new, |due| due.date.to_string()).into(),
+    ]
+}
