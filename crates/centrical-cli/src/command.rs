@@ -16,5 +16,6 @@ pub mod plan;
 pub mod reduce;
 pub mod report;
 pub mod schema;
+pub mod series;
 pub mod simulate;
 pub mod watch;

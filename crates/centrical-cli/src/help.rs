@@ -8,7 +8,7 @@ use clap::Command;
 pub const GROUPS: [(&str, &[&str]); 5] = [
     ("Prepare", &["init", "schema", "observe", "plan", "simulate"]),
     ("Measure", &["watch", "reduce", "noise"]),
-    ("Calibrate", &["calibrate", "models", "assess", "montecarlo", "compare"]),
+    ("Calibrate", &["calibrate", "series", "history", "models", "assess", "montecarlo", "compare"]),
     ("Use", &["report", "compensate"]),
     ("This program", &["completions", "man"]),
 ];

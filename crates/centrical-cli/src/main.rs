@@ -44,6 +44,7 @@ enum Command {
     Montecarlo(command::montecarlo::Arguments),
     Models(command::models::Arguments),
     Compare(command::compare::Arguments),
+    Series(command::series::Arguments),
     History(command::history::Arguments),
     Noise(command::noise::Arguments),
     Observe(command::observe::Arguments),
@@ -69,6 +70,7 @@ fn main() -> ExitCode {
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::NotAcceptable) => ExitCode::from(1),
+        Ok(Outcome::SomeFailed) => ExitCode::from(2),
         Err(error) => {
             say(&format!("centrical: {error}\n"));
             ExitCode::from(2)
@@ -88,6 +90,7 @@ fn run(command: Command) -> Result<Outcome, Error> {
         Command::Montecarlo(arguments) => command::montecarlo::run(&arguments),
         Command::Models(arguments) => command::models::run(&arguments),
         Command::Compare(arguments) => command::compare::run(&arguments),
+        Command::Series(arguments) => command::series::run(&arguments),
         Command::History(arguments) => command::history::run(&arguments),
         Command::Noise(arguments) => command::noise::run(&arguments),
         Command::Observe(arguments) => command::observe::run(&arguments),

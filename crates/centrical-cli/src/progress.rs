@@ -37,6 +37,15 @@ pub fn calibrations(count: usize, printing: Printing) -> ProgressBar {
     bar
 }
 
+/// A bar over `count` sessions on standard error.
+pub fn sessions(count: usize, quiet: bool) -> ProgressBar {
+    let bar = bar(count as u64, Printing { json: false, quiet });
+    if let Ok(style) = ProgressStyle::with_template("calibrating {bar:30} {pos}/{len} sessions, {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}
+
 /// Moves a bar by what was done.
 pub fn on(bar: &ProgressBar) -> impl Fn(u64) -> ControlFlow<()> + Sync {
     |done| {

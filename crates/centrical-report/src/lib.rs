@@ -30,7 +30,7 @@ pub use language::Language;
 pub use number::{counted, with_uncertainty};
 pub use render::{html, pdf};
 pub use terminal::{
-    Emphasis, Line, Screen, assessment_text, chart_text, comparison_text, compensation_text, monte_carlo_text,
-    noise_table, noise_warnings, observation_text, plan_text, selection_table, states_text, station_history_text,
-    terminal_table, unit_history_text, unit_text, units_history_text, verdict_text, watch_table,
+    Emphasis, Line, Screen, assessment_text, chart_text, comparison_text, compensation_text, history_list_text,
+    monte_carlo_text, noise_table, noise_warnings, observation_text, plan_text, selection_table, states_text,
+    station_history_text, terminal_table, unit_history_text, unit_text, units_history_text, verdict_text, watch_table,
 };

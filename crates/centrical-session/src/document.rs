@@ -7,6 +7,7 @@ mod compensation;
 mod documents;
 mod draft;
 mod history;
+mod history_list;
 mod json;
 mod models;
 mod montecarlo;
@@ -16,6 +17,7 @@ mod plan;
 mod prediction;
 mod reduction;
 mod result;
+mod series;
 mod simulation;
 mod steadiness;
 mod truth;
@@ -39,6 +41,7 @@ pub use self::history::{
     STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA,
     UNITS_HISTORY_SCHEMA, UnitFinding, UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter,
 };
+pub use self::history_list::{HISTORY_LIST_SCHEMA, HistoryLine, HistoryList};
 pub use self::models::{CandidateSummary, MODELS_SCHEMA, ModelsReport, NestedTestSummary, TermSupport};
 pub(crate) use self::montecarlo::Repeated;
 pub use self::montecarlo::{MONTE_CARLO_SCHEMA, MonteCarloReport, RepeatedFit, RepeatedParameter, SquareSummary};
@@ -60,6 +63,7 @@ pub use self::result::{
     RivalSummary, SCHEMA, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary,
     ValiditySummary,
 };
+pub use self::series::{SERIES_SCHEMA, SeriesSummary};
 pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};
 pub use self::steadiness::{
     DriftSummary, LeftOutSummary, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary, TiltVerdict,

@@ -13,6 +13,7 @@ mod observe;
 mod plan;
 mod reduce;
 mod reduced_session;
+mod series;
 mod settings_schema;
 mod simulate;
 mod watch;
@@ -25,6 +26,7 @@ pub use self::history::{
     Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
     UnitsHistoryRequest, chart, read_batches, read_calibrations, station_history, unit_history, units_history,
 };
+pub use self::history::{add_result, add_results, list_store};
 pub use self::init::{Draft, FillIn, InitRequest, init};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
@@ -33,6 +35,7 @@ pub use self::observe::subject;
 pub use self::plan::{PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, read_plan, read_planning};
 pub use self::reduce::{Recorded, reduce, reduce_recorded, reduce_without_inputs};
 pub use self::reduced_session::write_reduced;
+pub use self::series::{SeriesRequest, calibrate_series};
 pub use self::settings_schema::{SettingsForm, settings_schema};
 pub use self::simulate::simulate_session;
 pub use self::watch::{Following, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest};

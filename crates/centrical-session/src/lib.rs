@@ -42,10 +42,11 @@ pub use document::{
     ASSESSMENT_SCHEMA, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport, COMPARISON_SCHEMA,
     COMPENSATION_SCHEMA, CandidateSummary, ComparedResultSummary, ComparisonReport, CompensatedUncertainty,
     CompensationReport, DOCUMENTS_SCHEMA, DRAFT_SCHEMA, DifferenceSummary, DocumentKind, DocumentsReport, DraftReport,
-    FirstReading, ImprovementSummary, LeftOutPlateau, LineToFillIn, MODELS_SCHEMA, MONTE_CARLO_SCHEMA, ModelsReport,
-    MonteCarloReport, NestedTestSummary, ObjectionName, PairComparison, REDUCTION_SCHEMA, ReadingsBeyond,
-    ReducedPlateauSummary, ReductionReport, RepeatedFit, RepeatedParameter, SIMULATION_SCHEMA, SimulationReport,
-    SquareSummary, TermSupport, WithoutOutliers, WrittenDocument,
+    FirstReading, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList, ImprovementSummary, LeftOutPlateau, LineToFillIn,
+    MODELS_SCHEMA, MONTE_CARLO_SCHEMA, ModelsReport, MonteCarloReport, NestedTestSummary, ObjectionName,
+    PairComparison, REDUCTION_SCHEMA, ReadingsBeyond, ReducedPlateauSummary, ReductionReport, RepeatedFit,
+    RepeatedParameter, SERIES_SCHEMA, SIMULATION_SCHEMA, SeriesSummary, SimulationReport, SquareSummary, TermSupport,
+    WithoutOutliers, WrittenDocument,
 };
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
@@ -72,10 +73,10 @@ pub use experiment::{
 pub use job::{
     Assessment, AssessmentRequest, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn, FirstOutside,
     Following, InitRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Recorded, Series,
-    SettingsForm, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, assess,
-    calibrate, calibrate_reduced, calibrate_without, compare_results, compensate, compensate_record, init, noise_of,
-    plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs, select_model, settings_schema,
-    simulate_session, subject, write_reduced,
+    SeriesRequest, SettingsForm, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest,
+    add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series, calibrate_without,
+    compare_results, compensate, compensate_record, init, list_store, noise_of, plan, read_plan, read_planning, reduce,
+    reduce_recorded, reduce_without_inputs, select_model, settings_schema, simulate_session, subject, write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
@@ -92,7 +93,8 @@ pub use record::{
 };
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use store::{
-    Added, Depth, Failure, ROWS_SCHEMA, Row, RowTerm, Rows, Selection, SharedInfluence, Status, Store, days_since_1970,
+    Added, Depth, Failure, ROWS_SCHEMA, Row, RowTable, RowTerm, Rows, Selection, SharedInfluence, Status, Store,
+    days_since_1970,
 };
 pub use truth::Truth;
 pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary};

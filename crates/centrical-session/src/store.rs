@@ -9,6 +9,7 @@ mod part;
 mod reading;
 mod row;
 mod schema;
+mod table;
 mod writing;
 
 pub use self::folder::Store;
@@ -16,4 +17,5 @@ pub use self::reading::{Rows, Selection};
 pub(crate) use self::row::sha256;
 pub use self::row::{Failure, Row, RowTerm, SharedInfluence, Status, days_since_1970};
 pub use self::schema::{Depth, ROWS_SCHEMA};
+pub use self::table::RowTable;
 pub use self::writing::Added;

@@ -6,8 +6,8 @@ use centrical_report::{
     Screen, UnitStatement, read_issuer, states_text, terminal_table, unit_text, verdict_text, write_all_documents,
 };
 use centrical_session::{
-    CalibrationResult, Error, Method, Place, PlateauName, ResultObjection, Session, calibrate_without, claim_folder,
-    refuse_inputs,
+    CalibrationResult, Error, Method, Place, PlateauName, ResultObjection, Session, add_result, calibrate_without,
+    claim_folder, refuse_inputs,
 };
 
 use crate::command::report::{Documents, is_within_limits};
@@ -26,6 +26,9 @@ pub struct Arguments {
     /// folder; with --json no file]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Add the result to a store of calibrations, made if absent
+    #[arg(long, value_name = "DIR")]
+    store: Option<PathBuf>,
     #[command(flatten)]
     printing: Printing,
     #[command(flatten)]
@@ -77,6 +80,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     bar.finish_and_clear();
     if let Some(file) = &file {
         result.write(file)?;
+    }
+    if let Some(store) = &arguments.store {
+        add_result(store, &result)?;
     }
     let issuer = laboratory.map(|file| read_issuer(file, &result)).transpose()?;
     if let Some(folder) = out {

@@ -1,7 +1,9 @@
-//! `centrical history ...`: many calibrations.
+//! `centrical history ...`: many calibrations, a subcommand a file.
 
+mod add;
 mod chart;
 mod choice;
+mod list;
 mod station;
 mod unit;
 mod units;
@@ -10,7 +12,7 @@ use centrical_session::Error;
 
 use crate::outcome::Outcome;
 
-/// Many calibrations: a unit over the years, units beside each other, a station over its sessions, control charts.
+/// Keep calibrations in a store; a unit over the years, units beside each other, a station over its sessions, control charts.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     #[command(subcommand)]
@@ -19,6 +21,8 @@ pub struct Arguments {
 
 #[derive(Debug, clap::Subcommand)]
 enum Command {
+    Add(add::Arguments),
+    List(list::Arguments),
     Unit(unit::Arguments),
     Units(units::Arguments),
     Station(station::Arguments),
@@ -28,6 +32,8 @@ enum Command {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     match &arguments.command {
+        Command::Add(arguments) => add::run(arguments),
+        Command::List(arguments) => list::run(arguments),
         Command::Unit(arguments) => unit::run(arguments),
         Command::Units(arguments) => units::run(arguments),
         Command::Station(arguments) => station::run(arguments),

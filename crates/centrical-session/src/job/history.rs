@@ -1,16 +1,20 @@
-//! Many calibrations: a unit over the years, units beside each other, a station over its sessions, control charts.
+//! Many calibrations: stores of them, a unit over the years, units beside each other, a station over its sessions, control charts.
 
+mod add;
 mod batches;
 mod calibrated;
 mod chart;
+mod list;
 mod read;
 mod station;
 mod unit;
 mod units;
 
+pub use self::add::{add_result, add_results};
 pub use self::batches::read_batches;
 pub use self::calibrated::{Calibrated, CalibratedParameter};
 pub use self::chart::{ChartLimits, NoChart, RuleSet, chart};
+pub use self::list::list_store;
 pub use self::read::read_calibrations;
 pub use self::station::station_history;
 pub use self::unit::{UnitHistoryRequest, unit_history};

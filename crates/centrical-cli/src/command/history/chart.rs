@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use centrical_report::{chart_plots, chart_text};
-use centrical_session::{ChartLimits, Depth, Error, RuleSet, chart, claim_folder, create_folder, refuse_inputs, write_whole};
+use centrical_session::{
+    ChartLimits, Depth, Error, RuleSet, chart, claim_folder, create_folder, refuse_inputs, write_whole,
+};
 
 use super::choice::Choice;
 use crate::outcome::Outcome;

@@ -34,7 +34,9 @@ impl Choice {
         };
         let calibrations = read_calibrations(&self.results, &selection)?;
         if calibrations.is_empty() {
-            return Err(self.refuse("no such calibration".to_owned(), "results, as --model, --serial and --station ask for"));
+            return Err(
+                self.refuse("no such calibration".to_owned(), "results, as --model, --serial and --station ask for")
+            );
         }
         Ok(calibrations)
     }

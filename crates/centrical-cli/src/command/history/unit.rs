@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use centrical_report::{unit_history_plots, unit_history_text};
 use centrical_session::{
-    Calibrated, Date, Depth, Error, UnitHistoryRequest, claim_folder, create_folder, refuse_inputs, unit_history, write_whole,
+    Calibrated, Date, Depth, Error, UnitHistoryRequest, claim_folder, create_folder, refuse_inputs, unit_history,
+    write_whole,
 };
 
 use super::choice::{Choice, by_unit};

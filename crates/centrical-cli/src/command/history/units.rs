@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::units_history_text;
 use centrical_session::{
-    CalibrationResult, Depth, Error, Laboratory, Limited, ParameterLimits, UnitsHistoryRequest, read_batches, units_history,
+    CalibrationResult, Depth, Error, Laboratory, Limited, ParameterLimits, UnitsHistoryRequest, read_batches,
+    units_history,
 };
 
 use super::choice::{Choice, by_unit};

@@ -2,9 +2,9 @@
 
 use centrical_session::{ChartReport, customary};
 
+use crate::number::{counted, with_uncertainty};
 use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::table::{Align, Table};
-use crate::number::{counted, with_uncertainty};
 
 /// Control charts.
 pub fn chart_text(report: &ChartReport) -> Screen {

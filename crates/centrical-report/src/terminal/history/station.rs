@@ -2,11 +2,11 @@
 
 use centrical_session::{StationHistoryReport, customary};
 
+use super::chance::chance;
+use crate::number::{counted, two_digits, with_uncertainty};
 use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
-use super::chance::chance;
-use crate::number::{counted, two_digits, with_uncertainty};
 
 /// A station over its sessions.
 pub fn station_history_text(report: &StationHistoryReport) -> Screen {

@@ -1,12 +1,14 @@
 //! One unit over its calibrations.
 
-use centrical_session::{DueDate, MICRO_G, ReadingHistory, STANDARD_GRAVITY as G, UnitHistoryReport, UnitParameter, customary};
+use centrical_session::{
+    DueDate, MICRO_G, ReadingHistory, STANDARD_GRAVITY as G, UnitHistoryReport, UnitParameter, customary,
+};
 
+use super::chance::chance;
+use crate::number::{counted, two_digits, unsigned_zero, with_uncertainty};
 use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
-use super::chance::chance;
-use crate::number::{counted, two_digits, unsigned_zero, with_uncertainty};
 
 /// A unit over its calibrations.
 pub fn unit_history_text(report: &UnitHistoryReport) -> Screen {

@@ -2,11 +2,11 @@
 
 use centrical_session::{UnitsHistoryReport, customary};
 
+use super::chance::chance;
+use crate::number::{counted, with_uncertainty};
 use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
-use super::chance::chance;
-use crate::number::{counted, with_uncertainty};
 
 /// Units of one type beside each other.
 pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {

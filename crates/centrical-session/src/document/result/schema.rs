@@ -398,8 +398,15 @@ impl CalibrationResult {
     /// # Errors
     /// [`Error`] when the file is not there or is not a result of this schema.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let text = read_result(path, "a result.json")?;
-        let result: Self = from_json(path, 1, &text, &format!("a result of schema {SCHEMA:?}"))?;
+        Self::parse(path, &read_result(path, "a result.json")?)
+    }
+
+    /// The result of a file with this `text`. Messages name `path`.
+    ///
+    /// # Errors
+    /// As [`CalibrationResult::read`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, Error> {
+        let result: Self = from_json(path, 1, text, &format!("a result of schema {SCHEMA:?}"))?;
         if result.schema == SCHEMA {
             Ok(result)
         } else {

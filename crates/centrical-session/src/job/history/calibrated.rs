@@ -66,7 +66,8 @@ impl Calibrated {
         let date = row.date.trim().parse().ok()?;
         let terms = row.terms.iter().map(|term| {
             let place = row.index(&term.name)?;
-            let summary = TermSummary { name: term.name.clone(), axis: term.axis, powers: term.powers, sign_of: term.sign_of };
+            let summary =
+                TermSummary { name: term.name.clone(), axis: term.axis, powers: term.powers, sign_of: term.sign_of };
             summary.with_coefficient(*row.values.get(place).filter(|value| value.is_finite())?).ok()
         });
         Some(Self {
@@ -132,11 +133,17 @@ impl Calibrated {
 
 impl Kinds {
     fn of(&mut self, row: &Row) -> Arc<Vec<CalibratedParameter>> {
-        let group = |n: usize| Group::ALL.into_iter().find(|group| row.groups.get(n).is_some_and(|name| group.name() == name));
+        let group =
+            |n: usize| Group::ALL.into_iter().find(|group| row.groups.get(n).is_some_and(|name| group.name() == name));
         let parameter = |(n, name): (usize, &String)| {
             let group = group(n).unwrap_or(Group::Bias);
             let is_of_unit = group == Group::ProofMass || row.terms.iter().any(|term| term.name == *name);
-            CalibratedParameter { name: name.clone(), unit: row.units.get(n).cloned().unwrap_or_default(), group, is_of_unit }
+            CalibratedParameter {
+                name: name.clone(),
+                unit: row.units.get(n).cloned().unwrap_or_default(),
+                group,
+                is_of_unit,
+            }
         };
         let parameters = Arc::new(row.parameters.iter().enumerate().map(parameter).collect::<Vec<_>>());
         if let Some(known) = self.0.get(&parameters) {

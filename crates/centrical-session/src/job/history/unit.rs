@@ -162,7 +162,11 @@ impl Job<'_> {
             unit: last.parameters[place].unit.clone(),
             group: last.parameters[place].group,
             values: own.points().iter().map(|p| p.value).collect(),
-            standard_uncertainties: self.own.iter().filter_map(|c| Some(c.standard_uncertainties[c.place(name)?])).collect(),
+            standard_uncertainties: self
+                .own
+                .iter()
+                .filter_map(|c| Some(c.standard_uncertainties[c.place(name)?]))
+                .collect(),
             between: between.as_ref().map(|b| b.variance.sqrt()),
             between_interval: between.as_ref().map(|b| b.interval.map(f64::sqrt)),
             variance_ratio: between.as_ref().map(Between::variance_ratio),

@@ -1,0 +1,93 @@
+//! `centrical series SESSION...`: many sessions on the cores of this machine.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+use centrical_session::{Error, Method, SeriesRequest, SeriesSummary, calibrate_series};
+
+use crate::interruption::asked_to_end;
+use crate::outcome::Outcome;
+use crate::output::print;
+use crate::progress;
+
+/// Calibrate many sessions, one on each core, into a store and a table.
+///
+/// A session that fails becomes a row with its message. The same command resumes after an interruption: sessions whose files have not
+/// changed are not calibrated again, and the table is the same. Exit code 2 when a session failed, 1 when a result is not acceptable.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical series examples/ta-200 --out series")]
+pub struct Arguments {
+    /// Session folders, or their experiment.toml
+    #[arg(required = true, value_name = "SESSION")]
+    sessions: Vec<PathBuf>,
+    /// Folder for the store, series.parquet and series.csv, created if absent
+    #[arg(short, long, value_name = "DIR")]
+    out: PathBuf,
+    /// Keep the rows alone, about 11 kB each, without result.json
+    #[arg(long)]
+    rows_only: bool,
+    /// How a fit is computed
+    #[arg(long, value_enum, default_value_t = SeriesMethod::Batch)]
+    method: SeriesMethod,
+    /// Sessions at a time [default: one a core]
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+    /// Print the counts as JSON
+    #[arg(short, long)]
+    json: bool,
+    /// Print nothing, and no progress; messages of errors and the exit code stay
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// How a fit is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum SeriesMethod {
+    /// All plateaus at once
+    Batch,
+    /// The recursive filter, which gives the same estimates
+    Recursive,
+    /// The linear fit of [K5.3] alone
+    Linear,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let request = SeriesRequest {
+        out: arguments.out.clone(),
+        method: match arguments.method {
+            SeriesMethod::Batch => Method::Exact,
+            SeriesMethod::Recursive => Method::Recursive,
+            SeriesMethod::Linear => Method::Linear,
+        },
+        jobs: arguments.jobs,
+        rows_only: arguments.rows_only,
+    };
+    let bar = progress::sessions(arguments.sessions.len(), arguments.quiet);
+    let asked = asked_to_end();
+    let summary = calibrate_series(&arguments.sessions, &request, &|count| {
+        bar.inc(count as u64);
+        if asked.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    bar.finish_and_clear();
+    match (arguments.json, arguments.quiet) {
+        (true, _) => print(&summary.to_json()?)?,
+        (false, false) => print(&text(&summary, arguments))?,
+        (false, true) => {}
+    }
+    Ok(Outcome::of_series(summary.failed, summary.not_acceptable))
+}
+
+fn text(summary: &SeriesSummary, arguments: &Arguments) -> String {
+    let table = arguments.out.join("series.parquet");
+    format!(
+        "{} sessions: {} acceptable, {} not acceptable, {} failed; {} known from before\nWritten to {}\n",
+        summary.sessions,
+        summary.acceptable,
+        summary.not_acceptable,
+        summary.failed,
+        summary.known,
+        table.display()
+    )
+}

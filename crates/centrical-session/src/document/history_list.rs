@@ -1,0 +1,95 @@
+//! The calibrations of a store, a line each: schema `centrical-history-list/1`.
+
+use serde::Serialize;
+
+use super::json;
+use super::result::Program;
+use crate::error::Error;
+use crate::store::{Row, Status};
+
+/// Name of the schema's present version.
+pub const HISTORY_LIST_SCHEMA: &str = "centrical-history-list/1";
+
+/// The calibrations of a store.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HistoryList {
+    /// [`HISTORY_LIST_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// Folder of the store, as it was given.
+    pub store: String,
+    /// The calibrations by unit and day.
+    pub calibrations: Vec<HistoryLine>,
+}
+
+/// One calibration.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HistoryLine {
+    /// SHA-256 of `result.json`.
+    pub key: String,
+    /// "done" or "failed".
+    pub status: &'static str,
+    /// Model of the unit.
+    pub unit_model: String,
+    /// Serial number of the unit.
+    pub unit_serial: String,
+    /// Title of the session.
+    pub title: String,
+    /// Date as the session writes it.
+    pub date: String,
+    /// Name of the station; empty if none is stated.
+    pub station: String,
+    /// Whether the result is acceptable; null of a failure.
+    pub acceptable: Option<bool>,
+    /// Names of the objections.
+    pub objections: Vec<String>,
+    /// Weighted sum of squared residuals; null of a failure.
+    pub chi_squared: Option<f64>,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: i64,
+    /// Why there is no result.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub message: Option<String>,
+}
+
+impl HistoryList {
+    /// The rows of the store in `folder`, in the order of unit, day and key.
+    pub(crate) fn new(folder: &str, mut rows: Vec<Row>) -> Self {
+        rows.sort_by(|a, b| {
+            let order = |row: &Row| (row.day, row.date.clone());
+            let of_unit = (&a.unit_model, &a.unit_serial).cmp(&(&b.unit_model, &b.unit_serial));
+            of_unit.then_with(|| order(a).cmp(&order(b))).then_with(|| a.key.cmp(&b.key))
+        });
+        let calibrations = rows.into_iter().map(HistoryLine::new).collect();
+        Self { schema: HISTORY_LIST_SCHEMA, program: Program::this(), store: folder.to_owned(), calibrations }
+    }
+
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(HISTORY_LIST_SCHEMA, self)
+    }
+}
+
+impl HistoryLine {
+    fn new(row: Row) -> Self {
+        let is_done = row.status == Status::Done;
+        Self {
+            status: row.status.word(),
+            acceptable: is_done.then_some(row.acceptable),
+            chi_squared: json::finite(row.chi_squared).filter(|_| is_done),
+            degrees_of_freedom: row.degrees_of_freedom,
+            message: (!is_done).then_some(row.failure.message),
+            key: row.key,
+            unit_model: row.unit_model,
+            unit_serial: row.unit_serial,
+            title: row.title,
+            date: row.date,
+            station: row.station,
+            objections: row.objections,
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! How a series of calibrations ended: schema `centrical-series/1`.
+
+use serde::Serialize;
+
+use super::json;
+use super::result::Program;
+use crate::error::Error;
+
+/// Name of the schema's present version.
+pub const SERIES_SCHEMA: &str = "centrical-series/1";
+
+/// How a series ended.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SeriesSummary {
+    /// [`SERIES_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// Sessions.
+    pub sessions: usize,
+    /// Those whose result was there already.
+    pub known: usize,
+    /// Those that are acceptable.
+    pub acceptable: usize,
+    /// Those that are not.
+    pub not_acceptable: usize,
+    /// Those without a result.
+    pub failed: usize,
+}
+
+impl SeriesSummary {
+    /// Of so many sessions, none of them counted yet.
+    pub(crate) fn of(sessions: usize) -> Self {
+        let program = Program::this();
+        Self { schema: SERIES_SCHEMA, program, sessions, known: 0, acceptable: 0, not_acceptable: 0, failed: 0 }
+    }
+
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(SERIES_SCHEMA, self)
+    }
+}

@@ -1,0 +1,16 @@
+//! The calibrations of a store as a list.
+
+use std::path::Path;
+
+use crate::document::HistoryList;
+use crate::error::Error;
+use crate::store::{Selection, Store};
+
+/// The calibrations that a selection picks, by unit and day.
+///
+/// # Errors
+/// [`Error`] if the folder is no store, or a part is damaged.
+pub fn list_store(folder: &Path, selection: Selection) -> Result<HistoryList, Error> {
+    let rows = Store::open(folder)?.rows(selection)?.collect::<Result<Vec<_>, _>>()?;
+    Ok(HistoryList::new(&folder.display().to_string(), rows))
+}

@@ -1,0 +1,133 @@
+//! What a series did: a line for each session, `series.jsonl`.
+//!
+//! A session is known by the SHA-256 of its files, which the calibration computes anyway. Size and time of change stand beside it, so that
+//! a file is hashed again only if one of them has changed: a session that was copied or touched is known, and one that is the same costs no
+//! reading.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use centrical::unwatched;
+use centrical_table::write_whole;
+use serde::{Deserialize, Serialize};
+
+use super::one::Done;
+use crate::document::Method;
+use crate::error::Error;
+use crate::record::Input;
+use crate::store::Status;
+
+/// The lines of earlier runs and of this one.
+pub(super) struct Ledger {
+    file: PathBuf,
+    output: File,
+    method: Method,
+    entries: BTreeMap<String, Entry>,
+}
+
+/// What became of a session.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Entry {
+    session: String,
+    program: String,
+    method: Method,
+    /// Key of its row.
+    key: String,
+    /// Whether there is no result: it is tried again then.
+    failed: bool,
+    files: Vec<Known>,
+}
+
+/// A file as it was.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Known {
+    path: PathBuf,
+    size: u64,
+    /// Time of change since 1970 [ns].
+    modified: u64,
+    sha256: String,
+}
+
+impl Ledger {
+    /// Opens the lines of earlier runs; one that a kill left in part is dropped.
+    pub fn open(file: &Path, method: Method) -> Result<Self, Error> {
+        let text = match fs::read_to_string(file) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
+            text => text.map_err(|error| Error::reading(file, error, "the lines of a series"))?,
+        };
+        let whole: Vec<&str> = text
+            .split_inclusive('\n')
+            .filter(|l| l.ends_with('\n') && serde_json::from_str::<Entry>(l).is_ok())
+            .collect();
+        if whole.concat() != text {
+            write_whole(file, whole.concat().as_bytes())?;
+        }
+        let entries = whole.iter().filter_map(|line| serde_json::from_str::<Entry>(line).ok());
+        let entries = entries.map(|entry| (entry.session.clone(), entry)).collect();
+        let output = OpenOptions::new().create(true).append(true).open(file);
+        let output = output.map_err(|error| Error::writing(file, error))?;
+        Ok(Self { file: file.to_owned(), output, method, entries })
+    }
+
+    /// Whether a session was done by this program and method from the files that it has now.
+    pub fn knows(&self, session: &Path) -> bool {
+        self.entries.get(&name(session)).is_some_and(|entry| {
+            !entry.failed
+                && entry.program == env!("CARGO_PKG_VERSION")
+                && entry.method == self.method
+                && entry.files.iter().all(Known::is_as_it_was)
+        })
+    }
+
+    /// Adds sessions whose rows are in the store.
+    pub fn add<'a>(&mut self, done: impl Iterator<Item = (&'a Path, &'a Done)>) -> Result<(), Error> {
+        let mut lines = String::new();
+        for (session, done) in done {
+            let files = done.files.iter().filter_map(|(path, sha256)| {
+                let (size, modified) = stamp(path)?;
+                Some(Known { path: path.clone(), size, modified, sha256: sha256.clone() })
+            });
+            let entry = Entry {
+                session: name(session),
+                program: env!("CARGO_PKG_VERSION").to_owned(),
+                method: self.method,
+                key: done.row.key.clone(),
+                failed: done.row.status == Status::Failed,
+                files: files.collect(),
+            };
+            let line = serde_json::to_string(&entry);
+            lines += &line.map_err(|source| Error::Json { document: "series.jsonl", source })?;
+            lines.push('\n');
+            self.entries.insert(entry.session.clone(), entry);
+        }
+        self.output.write_all(lines.as_bytes()).map_err(|error| Error::writing(&self.file, error))
+    }
+
+    /// Key of the row of a session.
+    pub fn key(&self, session: &Path) -> Option<&str> {
+        self.entries.get(&name(session)).map(|entry| entry.key.as_str())
+    }
+}
+
+impl Known {
+    fn is_as_it_was(&self) -> bool {
+        if stamp(&self.path) == Some((self.size, self.modified)) {
+            return true;
+        }
+        Input::of(Path::new(""), &self.path, &unwatched).is_ok_and(|input| input.sha256 == self.sha256)
+    }
+}
+
+/// Size and time of change [ns].
+fn stamp(path: &Path) -> Option<(u64, u64)> {
+    let metadata = fs::metadata(path).ok()?;
+    let modified = metadata.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
+    Some((metadata.len(), u64::try_from(modified.as_nanos()).ok()?))
+}
+
+fn name(session: &Path) -> String {
+    session.display().to_string()
+}

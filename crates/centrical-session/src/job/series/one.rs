@@ -1,0 +1,59 @@
+//! One session of a series: whatever becomes of it is a row.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use centrical::OnProgress;
+
+use crate::document::{CalibrationResult, Method};
+use crate::error::{Error, ErrorKind};
+use crate::experiment::Session;
+use crate::job::calibrate::calibrate;
+use crate::store::{Failure, Row};
+
+/// A session that is done.
+pub(super) struct Done {
+    /// Its row.
+    pub row: Row,
+    /// The text of its result.
+    pub result: Option<String>,
+    /// Files of the session and their SHA-256, in the order of the session; none of a failure.
+    pub files: Vec<(std::path::PathBuf, String)>,
+}
+
+/// Calibrates a session; nothing if the caller stopped it. A fault of the program inside one session is a failure of that session.
+pub(super) fn calibrated(path: &Path, method: Method, progress: OnProgress) -> Option<Done> {
+    let failed =
+        |failure| Done { row: Row::failed(&path.display().to_string(), failure), result: None, files: Vec::new() };
+    match catch_unwind(AssertUnwindSafe(|| try_calibrate(path, method, progress))) {
+        Ok(Ok(done)) => Some(done),
+        Ok(Err(error)) if error.kind() == ErrorKind::Stopped => None,
+        Ok(Err(error)) => Some(failed(failure(&error))),
+        Err(_) => {
+            let message = format!("{}: the program failed inside this session", path.display());
+            Some(failed(Failure { message, ..Failure::default() }))
+        }
+    }
+}
+
+fn try_calibrate(path: &Path, method: Method, progress: OnProgress) -> Result<Done, Error> {
+    let session = Session::read(path)?;
+    let result: CalibrationResult = calibrate(&session, method, progress)?;
+    let text = result.to_json()?;
+    let row = result.row(text.as_bytes());
+    let hashes = result.inputs.into_iter().map(|input| input.sha256);
+    let files = session.files().into_iter().map(Path::to_owned).zip(hashes).collect();
+    Ok(Done { row, result: Some(text), files })
+}
+
+fn failure(error: &Error) -> Failure {
+    let text = |text: Option<&str>| text.unwrap_or_default().to_owned();
+    let place = error.place().map(|place| place.to_string().trim_start_matches([',', ' ']).to_owned());
+    Failure {
+        message: error.to_string(),
+        file: error.file().map(|file| file.display().to_string()).unwrap_or_default(),
+        place: place.unwrap_or_default(),
+        found: text(error.found()),
+        expected: text(error.expected()),
+    }
+}

@@ -1,0 +1,73 @@
+//! The table of a series: a row for each session, in the order of their paths, whatever the order in which they were done.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::path::Path;
+
+use centrical_table::write_whole;
+
+use super::ledger::Ledger;
+use crate::document::SeriesSummary;
+use crate::error::Error;
+use crate::store::{Depth, Row, Selection, Status, Store};
+
+/// Sessions whose rows are held at a time.
+const CHUNK: usize = 4096;
+
+/// Writes `series.parquet` and `series.csv`, and counts.
+pub(super) fn write_tables(
+    out: &Path,
+    store: &Store,
+    ledger: &Ledger,
+    sessions: &BTreeSet<&Path>,
+) -> Result<SeriesSummary, Error> {
+    let keyed: Vec<(String, &str)> =
+        sessions.iter().filter_map(|s| Some((s.display().to_string(), ledger.key(s)?))).collect();
+    let mut summary = SeriesSummary::of(keyed.len());
+    let mut text = HEADER.to_owned();
+    let mut table = store.begin_table(&out.join("series.parquet"))?;
+    for chunk in keyed.chunks(CHUNK) {
+        let keys = Some(chunk.iter().map(|(_, key)| (*key).to_owned()).collect());
+        let selection = Selection { depth: Depth::Values, keys, ..Selection::default() };
+        let rows = store.rows(selection)?.map(|row| row.map(|row| (row.key.clone(), row)));
+        let rows = rows.collect::<Result<BTreeMap<String, Row>, Error>>()?;
+        let ordered: Vec<(&str, &Row)> =
+            chunk.iter().filter_map(|(session, key)| Some((session.as_str(), rows.get(*key)?))).collect();
+        for (session, row) in &ordered {
+            count(&mut summary, row);
+            line(&mut text, session, row);
+        }
+        table.add(&ordered)?;
+    }
+    table.finish()?;
+    write_whole(&out.join("series.csv"), text.as_bytes())?;
+    Ok(summary)
+}
+
+fn count(summary: &mut SeriesSummary, row: &Row) {
+    match (row.status, row.acceptable) {
+        (Status::Failed, _) => summary.failed += 1,
+        (Status::Done, true) => summary.acceptable += 1,
+        (Status::Done, false) => summary.not_acceptable += 1,
+    }
+}
+
+const HEADER: &str = "session,status,date,unit_model,unit_serial,station,acceptable,objections,chi_squared,degrees_of_freedom,key,message\n";
+
+fn line(text: &mut String, session: &str, row: &Row) {
+    let is_done = row.status == Status::Done;
+    let chi_squared = if is_done { format!("{:?}", row.chi_squared) } else { String::new() };
+    let fields = [session, row.status.word(), &row.date, &row.unit_model, &row.unit_serial, &row.station].map(quoted);
+    let acceptable = if is_done { row.acceptable.to_string() } else { String::new() };
+    let freedom = if is_done { row.degrees_of_freedom.to_string() } else { String::new() };
+    let objections = quoted(&row.objections.join(" "));
+    let message = quoted(&row.failure.message);
+    let _ =
+        writeln!(text, "{},{acceptable},{objections},{chi_squared},{freedom},{},{message}", fields.join(","), row.key);
+}
+
+/// A field as RFC 4180 has it.
+fn quoted(text: &str) -> String {
+    let is_plain = !text.contains([',', '"', '\n', '\r']);
+    if is_plain { text.to_owned() } else { format!("\"{}\"", text.replace('"', "\"\"")) }
+}

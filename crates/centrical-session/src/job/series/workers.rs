@@ -1,0 +1,118 @@
+//! The sessions of a series on threads: each has one session and computes it alone, so that no core waits for another.
+
+use std::mem;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use centrical::{OnProgress, Stopped};
+use rayon::ThreadPoolBuilder;
+
+use super::ledger::Ledger;
+use super::one::{Done, calibrated};
+use super::request::SeriesRequest;
+use crate::error::Error;
+use crate::store::Store;
+
+/// Rows that wait to be written, and how long: a kill loses no more work than that.
+const WAITING: usize = 256;
+const PERIOD: Duration = Duration::from_secs(2);
+
+/// How often the caller is asked while nothing is done.
+const ASKING: Duration = Duration::from_millis(100);
+
+/// What the threads work with.
+pub(super) struct Workers<'a> {
+    pub request: &'a SeriesRequest,
+    pub store: &'a Store,
+    pub progress: OnProgress<'a, usize>,
+}
+
+impl Workers<'_> {
+    /// Calibrates the sessions and writes their rows as they come.
+    pub fn run(&self, sessions: &[&Path], ledger: &mut Ledger) -> Result<(), Error> {
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        let jobs = self.request.jobs.unwrap_or(cores).clamp(1, sessions.len().max(1));
+        let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let (send, received) = sync_channel(2 * jobs);
+        let written = thread::scope(|scope| {
+            for _ in 0..jobs {
+                let (send, next, stop) = (send.clone(), &next, &stop);
+                scope.spawn(move || self.work(sessions, next, stop, &send));
+            }
+            drop(send);
+            let written = self.write(sessions, &received, ledger, &stop);
+            // If nothing can be written, nothing more is calibrated, and no thread waits to hand over.
+            stop.store(true, Ordering::Relaxed);
+            while received.recv().is_ok() {}
+            written
+        });
+        written
+    }
+
+    /// One thread: session after session, until there are none.
+    fn work(&self, sessions: &[&Path], next: &AtomicUsize, stop: &AtomicBool, send: &SyncSender<(usize, Done)>) {
+        let pool = ThreadPoolBuilder::new().num_threads(1).build();
+        let progress =
+            |_| if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        while progress(0_u64).is_continue() {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            let Some(session) = sessions.get(number) else { break };
+            let one = || calibrated(session, self.request.method, &progress);
+            // If no pool can be made, all threads share the one there is.
+            let done = pool.as_ref().map_or_else(|_| one(), |pool| pool.install(one));
+            if done.is_none_or(|done| send.send((number, done)).is_err()) {
+                break;
+            }
+        }
+    }
+
+    /// Writes rows and lines as sessions are done.
+    fn write(
+        &self,
+        sessions: &[&Path],
+        received: &Receiver<(usize, Done)>,
+        ledger: &mut Ledger,
+        stop: &AtomicBool,
+    ) -> Result<(), Error> {
+        let (mut waiting, mut last, mut is_stopped) = (Vec::new(), Instant::now(), false);
+        loop {
+            let (count, is_ended) = match received.recv_timeout(ASKING) {
+                Ok(done) => {
+                    waiting.push(done);
+                    (1, false)
+                }
+                Err(RecvTimeoutError::Timeout) => (0, false),
+                Err(RecvTimeoutError::Disconnected) => (0, true),
+            };
+            if (self.progress)(count).is_break() {
+                is_stopped = true;
+                stop.store(true, Ordering::Relaxed);
+            }
+            if is_ended || waiting.len() >= WAITING || last.elapsed() > PERIOD {
+                self.flush(sessions, mem::take(&mut waiting), ledger)?;
+                last = Instant::now();
+            }
+            if is_ended {
+                return if is_stopped { Err(Stopped.into()) } else { Ok(()) };
+            }
+        }
+    }
+
+    /// The rows first: a session is known only once its row is there.
+    fn flush(&self, sessions: &[&Path], mut waiting: Vec<(usize, Done)>, ledger: &mut Ledger) -> Result<(), Error> {
+        if waiting.is_empty() {
+            return Ok(());
+        }
+        let keeps = !self.request.rows_only;
+        let rows = waiting.iter_mut().map(|(_, done)| {
+            let result = done.result.take().filter(|_| keeps).map(String::into_bytes);
+            (done.row.clone(), result)
+        });
+        self.store.add_with_results(rows.collect())?;
+        ledger.add(waiting.iter().map(|(number, done)| (sessions[*number], done)))
+    }
+}
