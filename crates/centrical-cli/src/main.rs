@@ -108,10 +108,10 @@ mod tests {
 
     use super::*;
 
-    /// Commands without JSON: what they make is read by a shell and by `man`.
-    const WITHOUT_JSON: [&str; 2] = ["completions", "man"];
+    /// Commands without JSON: what they make is read by a shell and by `man`; the subcommands of `history` have their own.
+    const WITHOUT_JSON: [&str; 3] = ["completions", "history", "man"];
     /// Commands without `-q`: `watch` has another `--quiet`, `completions` prints no more than was asked for.
-    const WITHOUT_QUIET: [&str; 2] = ["completions", "watch"];
+    const WITHOUT_QUIET: [&str; 3] = ["completions", "history", "watch"];
 
     fn commands() -> Vec<clap::Command> {
         Arguments::command().get_subcommands().cloned().collect()

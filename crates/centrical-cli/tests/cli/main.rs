@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod compensate;
+mod history;
 mod init;
 mod json;
 #[cfg(unix)]

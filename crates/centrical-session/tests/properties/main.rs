@@ -6,6 +6,7 @@ mod predictions;
 mod record_writer;
 mod session_forms;
 mod stopping;
+mod store;
 mod three_files;
 mod three_recorders;
 mod two_passes;

@@ -1,0 +1,106 @@
+//! Stores of calibrations, and series of sessions: nothing is lost by a kill, and a session that fails ends nothing.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use std::thread;
+use std::time::Duration;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::program::centrical;
+use crate::session::example;
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    centrical().args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// A folder with `count` averaged sessions of units of their own, the last of which is no session.
+fn sessions(count: usize) -> (TempDir, Vec<String>) {
+    let folder = TempDir::new().unwrap();
+    let example = example();
+    assert!(run(folder.path(), &["reduce", example.to_str().unwrap(), "--out", "reduced", "-q"]).status.success());
+    let [text, table] = ["experiment.toml", "plateaus.csv"]
+        .map(|name| fs::read_to_string(folder.path().join("reduced").join(name)).unwrap());
+    let names: Vec<String> = (0..count).map(|n| format!("s{n:03}")).collect();
+    for (n, name) in names.iter().enumerate() {
+        let session = folder.path().join(name);
+        fs::create_dir(&session).unwrap();
+        let bad = if n + 1 == count { "broken\n" } else { "" };
+        let text = text.replace("serial = \"0001\"", &format!("serial = \"{n:04}\""));
+        let text = text.replace("rotation = \"+3\"", "rotation = \"+3\"\nstation = \"north\"");
+        fs::write(session.join("experiment.toml"), text + bad).unwrap();
+        fs::write(session.join("plateaus.csv"), &table).unwrap();
+    }
+    (folder, names)
+}
+
+fn series(folder: &Path, names: &[String], out: &str) -> Command {
+    let mut command = centrical();
+    command.arg("series").args(names).args(["--out", out, "--json"]).current_dir(folder);
+    command
+}
+
+fn list(folder: &Path, arguments: &[&str]) -> Vec<Value> {
+    let output = run(folder, &[&["history", "list"], arguments, &["--json"]].concat());
+    let document: Value = serde_json::from_slice(&output.stdout).expect("a document");
+    assert_eq!(document["schema"], "centrical-history-list/1");
+    document["calibrations"].as_array().unwrap().clone()
+}
+
+#[test]
+fn a_result_is_added_once_and_listed() {
+    let folder = TempDir::new().unwrap();
+    let example = example();
+    let made = run(folder.path(), &["calibrate", example.to_str().unwrap(), "--out", "a", "--store", "store", "-q"]);
+    assert!(made.status.success(), "{made:?}");
+    for _ in 0..2 {
+        let added = run(folder.path(), &["history", "add", "store", "a"]);
+        assert_eq!(String::from_utf8_lossy(&added.stdout), "0 new, 1 known\n");
+    }
+    let listed = list(folder.path(), &["store"]);
+    assert_eq!(listed.len(), 1);
+    let copy = folder.path().join("store/results").join(format!("{}.json", listed[0]["key"].as_str().unwrap()));
+    assert_eq!(fs::read(copy).unwrap(), fs::read(folder.path().join("a/result.json")).unwrap());
+    assert_eq!(listed[0]["acceptable"], true);
+    let none = run(folder.path(), &["history", "list", "nowhere"]);
+    assert_eq!(none.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&none.stderr).contains("nowhere: found no such folder, expected a store"));
+}
+
+#[test]
+fn a_series_gives_the_table_of_its_sessions_also_after_a_kill() {
+    let (folder, names) = sessions(8);
+    let whole = series(folder.path(), &names, "whole").output().unwrap();
+    assert_eq!(whole.status.code(), Some(2), "one session failed: {whole:?}");
+    let said: Value = serde_json::from_slice(&whole.stdout).unwrap();
+    assert_eq!(
+        (said["sessions"].as_u64(), said["failed"].as_u64(), said["known"].as_u64()),
+        (Some(8), Some(1), Some(0))
+    );
+    let tables =
+        |out: &str| ["series.csv", "series.parquet"].map(|name| fs::read(folder.path().join(out).join(name)).unwrap());
+    let text = String::from_utf8(tables("whole")[0].clone()).unwrap();
+    assert!(text.contains("s007,failed,") && text.contains("s007/experiment.toml, line "), "{text}");
+    // The result is that of the command.
+    let _ = run(folder.path(), &["calibrate", "s000", "--out", "one", "-q"]);
+    let own = fs::read(folder.path().join("one/result.json")).unwrap();
+    let first = list(folder.path(), &["whole", "--serial", "0000", "--station", "north"]);
+    let copy = folder.path().join("whole/results").join(format!("{}.json", first[0]["key"].as_str().unwrap()));
+    assert!(fs::read(copy).unwrap() == own);
+    for pause in [50, 300, 900, 2300] {
+        let mut killed = series(folder.path(), &names, "killed").arg("--jobs").arg("1").spawn().unwrap();
+        thread::sleep(Duration::from_millis(pause));
+        let _ = killed.kill();
+        killed.wait().unwrap();
+    }
+    let resumed = series(folder.path(), &names, "killed").output().unwrap();
+    assert_eq!(resumed.status.code(), Some(2));
+    assert!(tables("killed") == tables("whole"));
+    let again = series(folder.path(), &names, "killed").output().unwrap();
+    let said: Value = serde_json::from_slice(&again.stdout).unwrap();
+    assert_eq!(said["known"], 7);
+    assert!(tables("killed") == tables("whole"));
+    assert_eq!(list(folder.path(), &["killed"]).len(), 8);
+}

@@ -1,0 +1,176 @@
+//! A store of calibrations: nothing is lost, nothing stands twice, whoever writes.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Barrier;
+use std::thread;
+use std::time::Instant;
+
+use centrical_session::{Depth, Row, RowTerm, Selection, SharedInfluence, Store};
+use tempfile::TempDir;
+
+/// A row of `p` parameters with numbers of their own.
+fn row(n: usize, p: usize) -> Row {
+    let number = |j: usize| ((n * 7919 + j * 104_729) as f64).sin();
+    Row {
+        key: format!("{n:064x}"),
+        unit_model: "TA".to_owned(),
+        unit_serial: format!("{:04}", n % 1000),
+        date: "2026-10-05".to_owned(),
+        day: Some((n % 3000) as i64),
+        station: if n.is_multiple_of(2) { "A".to_owned() } else { String::new() },
+        range: vec![1.0, 2.0, 3.0],
+        chi_squared: number(0),
+        acceptable: true,
+        objections: if n.is_multiple_of(3) { vec!["residuals".to_owned()] } else { Vec::new() },
+        parameters: (0..p).map(|j| format!("p_{j}")).collect(),
+        units: vec!["1".to_owned(); p],
+        groups: vec!["bias".to_owned(); p],
+        values: (0..p).map(number).collect(),
+        standard_uncertainties: (0..p).map(number).collect(),
+        covariance: (0..p * (p + 1) / 2).map(number).collect(),
+        terms: vec![RowTerm { name: "p_0".to_owned(), axis: 2, powers: [1, 0, 2], sign_of: Some(3) }],
+        shared_known: true,
+        shared: vec![SharedInfluence { source: "radius".to_owned(), changes: (0..p).map(number).collect() }; 2],
+        ..Row::default()
+    }
+}
+
+fn all(store: &Store, depth: Depth) -> Vec<Row> {
+    let rows = store.rows(Selection { depth, ..Selection::default() }).unwrap();
+    let mut rows: Vec<Row> = rows.collect::<Result<_, _>>().unwrap();
+    rows.sort_by(|a, b| a.key.cmp(&b.key));
+    rows
+}
+
+fn parts(folder: &Path) -> usize {
+    fs::read_dir(folder.join("rows")).unwrap().count()
+}
+
+#[test]
+fn rows_come_back_as_they_were() {
+    let folder = TempDir::new().unwrap();
+    let store = Store::create(folder.path()).unwrap();
+    let mut rows: Vec<Row> = (0..300).map(|n| row(n, 5)).collect();
+    rows[7].covariance[0] = f64::INFINITY;
+    rows[8].day = None;
+    rows[9].shared.clear();
+    assert_eq!(store.add(rows.clone()).unwrap().new, 300);
+    assert_eq!(all(&store, Depth::Whole), rows);
+    let again = store.add(rows.clone()).unwrap();
+    assert_eq!((again.new, again.known), (0, 300));
+    let selection = Selection { unit_serial: Some("0042".to_owned()), ..Selection::default() };
+    let found: Vec<Row> = store.rows(selection).unwrap().collect::<Result<_, _>>().unwrap();
+    assert_eq!(found.iter().map(|row| row.key.as_str()).collect::<Vec<_>>(), [rows[42].key.as_str()]);
+    assert!(found[0].values.is_empty(), "a summary has no values");
+    assert_eq!(store.row(&rows[9].key).unwrap().as_ref(), Some(&rows[9]));
+    assert!(store.row("0").unwrap().is_none());
+}
+
+#[test]
+fn what_is_not_estimable_is_nothing_in_the_file_and_nan_again() {
+    let folder = TempDir::new().unwrap();
+    let store = Store::create(folder.path()).unwrap();
+    let mut one = row(1, 3);
+    one.values[1] = f64::NAN;
+    store.add(vec![one]).unwrap();
+    let read = &all(&store, Depth::Values)[0];
+    assert!(read.values[1].is_nan() && !read.values[0].is_nan());
+    assert_eq!(read.values.len(), 3);
+}
+
+#[test]
+fn small_parts_are_merged_and_a_kill_in_between_shows_nothing_twice() {
+    let folder = TempDir::new().unwrap();
+    let store = Store::create(folder.path()).unwrap();
+    for n in 0..31 {
+        store.add(vec![row(n, 2)]).unwrap();
+    }
+    assert_eq!(parts(folder.path()), 31);
+    let kept = folder.path().join("kept");
+    fs::create_dir(&kept).unwrap();
+    for entry in fs::read_dir(folder.path().join("rows")).unwrap().map(Result::unwrap) {
+        fs::copy(entry.path(), kept.join(entry.file_name())).unwrap();
+    }
+    store.add(vec![row(31, 2)]).unwrap();
+    assert_eq!(parts(folder.path()), 1);
+    // As a kill after the rename leaves it: the merged part, the old ones, and a file in the making.
+    for entry in fs::read_dir(&kept).unwrap().map(Result::unwrap) {
+        fs::copy(entry.path(), folder.path().join("rows").join(entry.file_name())).unwrap();
+    }
+    fs::write(folder.path().join("rows/x.parquet.0123456789.tmp"), "PAR1").unwrap();
+    assert_eq!(all(&store, Depth::Whole), (0..32).map(|n| row(n, 2)).collect::<Vec<_>>());
+    store.add(vec![row(5, 2)]).unwrap();
+    assert_eq!(parts(folder.path()), 1, "the next writer removes what is left");
+    assert_eq!(all(&store, Depth::Whole).len(), 32);
+}
+
+#[test]
+fn a_damaged_part_and_a_newer_one_are_errors_that_name_the_file() {
+    let folder = TempDir::new().unwrap();
+    let store = Store::create(folder.path()).unwrap();
+    store.add((0..200).map(|n| row(n, 4)).collect()).unwrap();
+    let part = fs::read_dir(folder.path().join("rows")).unwrap().next().unwrap().unwrap().path();
+    let whole = fs::read(&part).unwrap();
+    let message = |bytes: &[u8]| {
+        fs::write(&part, bytes).unwrap();
+        let rows = store.rows(Selection { depth: Depth::Whole, ..Selection::default() });
+        rows.and_then(|mut rows| rows.find_map(Result::err).map_or(Ok(()), Err)).unwrap_err().to_string()
+    };
+    assert!(message(&whole[..whole.len() / 2]).contains(".parquet: found damaged Parquet"));
+    let mut zeros = whole.clone();
+    zeros[1000..9000].fill(0);
+    assert!(message(&zeros).contains("row group"), "{}", message(&zeros));
+    let at = whole.windows(16).position(|bytes| bytes == b"centrical-rows/1").unwrap();
+    let mut newer = whole.clone();
+    newer[at + 15] = b'2';
+    assert!(message(&newer).contains("found schema \"centrical-rows/2\", expected schema \"centrical-rows/1\""));
+}
+
+#[test]
+fn sixteen_writers_at_once_lose_nothing() {
+    let folder = TempDir::new().unwrap();
+    let together = Barrier::new(16);
+    thread::scope(|scope| {
+        for writer in 0..16 {
+            let (folder, together) = (&folder, &together);
+            scope.spawn(move || {
+                let store = Store::create(folder.path()).unwrap();
+                together.wait();
+                for n in 0..20 {
+                    store.add((0..3).map(|k| row(writer * 10 + n + k, 2)).collect()).unwrap();
+                    let keys = all(&store, Depth::Summary);
+                    assert!(keys.windows(2).all(|pair| pair[0].key != pair[1].key));
+                }
+            });
+        }
+    });
+    let store = Store::open(folder.path()).unwrap();
+    assert_eq!(all(&store, Depth::Whole), (0..172).map(|n| row(n, 2)).collect::<Vec<_>>());
+}
+
+/// 10^5 rows of 49 parameters: run it alone, in release, under `time -v`.
+#[test]
+#[ignore = "a GB on the disk"]
+fn a_hundred_thousand_rows() {
+    let folder = std::env::var_os("CENTRICAL_STORE").map_or_else(|| TempDir::new().unwrap().keep(), Into::into);
+    let store = Store::create(&folder).unwrap();
+    let time = |what: &str, begun: Instant| println!("{what}: {:.2} s", begun.elapsed().as_secs_f64());
+    let begun = Instant::now();
+    for batch in 0..100 {
+        store.add((0..1000).map(|n| row(1000 * batch + n, 49)).collect()).unwrap();
+    }
+    time("100 batches of 1000", begun);
+    let begun = Instant::now();
+    store.add(vec![row(100_000, 49)]).unwrap();
+    time("one more", begun);
+    let begun = Instant::now();
+    assert_eq!(store.rows(Selection::default()).unwrap().filter(Result::is_ok).count(), 100_001);
+    time("all summaries", begun);
+    let begun = Instant::now();
+    let of_unit = Selection { depth: Depth::Whole, unit_serial: Some("0042".to_owned()), ..Selection::default() };
+    assert_eq!(store.rows(of_unit).unwrap().filter(Result::is_ok).count(), 100);
+    time("one unit, whole", begun);
+    let bytes: u64 = fs::read_dir(folder.join("rows")).unwrap().map(|e| e.unwrap().metadata().unwrap().len()).sum();
+    println!("{} bytes a row in {} parts", bytes / 100_001, parts(&folder));
+}
