@@ -28,7 +28,7 @@ pub use files::{
 };
 pub use language::Language;
 pub use number::{counted, with_uncertainty};
-pub use render::{html, pdf};
+pub use render::{HistoryPages, history_index, history_station_page, history_unit_page, html, pdf};
 pub use terminal::{
     Emphasis, Line, Screen, assessment_text, chart_text, comparison_text, compensation_text, history_list_text,
     monte_carlo_text, noise_table, noise_warnings, observation_text, plan_text, selection_table, states_text,

@@ -4,6 +4,7 @@ mod add;
 mod chart;
 mod choice;
 mod list;
+mod page;
 mod station;
 mod unit;
 mod units;
@@ -27,6 +28,7 @@ enum Command {
     Units(units::Arguments),
     Station(station::Arguments),
     Chart(chart::Arguments),
+    Page(page::Arguments),
 }
 
 /// Runs the command.
@@ -38,5 +40,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         Command::Units(arguments) => units::run(arguments),
         Command::Station(arguments) => station::run(arguments),
         Command::Chart(arguments) => chart::run(arguments),
+        Command::Page(arguments) => page::run(arguments),
     }
 }
