@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import threading
+import time
 
 import centrical as ct
 import numpy as np
@@ -18,6 +19,13 @@ def work(example):
 def compensated(pair):
     result, readings = pair
     return result.compensate(readings)
+
+
+def runs_that_take(seconds, example):
+    """Calibrations that keep this machine, fast or slow, busy for some seconds."""
+    begun = time.monotonic()
+    ct.montecarlo(example, runs=200)
+    return round(200 * seconds / (time.monotonic() - begun))
 
 
 def python(text, *arguments, **options):
@@ -94,8 +102,9 @@ def test_other_threads_run_meanwhile(example):
             count[0] += 1
 
     ticking = threading.Thread(target=tick)
+    runs = runs_that_take(0.5, example)
     ticking.start()
-    ct.montecarlo(example, runs=200)
+    ct.montecarlo(example, runs=runs)
     stop.set()
     ticking.join()
     assert count[0] > 5
@@ -157,8 +166,10 @@ def test_a_bar_on_a_terminal(example):
     import pty
 
     leader, follower = pty.openpty()
-    text = "import sys, centrical as ct; ct.montecarlo(sys.argv[1], runs=500)"
-    process = subprocess.Popen([sys.executable, "-c", text, str(example)], stderr=follower)
+    text = "import sys, centrical as ct; ct.montecarlo(sys.argv[1], runs=int(sys.argv[2]))"
+    # The bar comes after half a second.
+    runs = runs_that_take(3.0, example)
+    process = subprocess.Popen([sys.executable, "-c", text, str(example), str(runs)], stderr=follower)
     os.close(follower)
     said = b""
     try:
