@@ -15,16 +15,20 @@ pub enum Amount {
 }
 
 impl Amount {
+    /// As files and commands have it.
+    pub fn quantity(self) -> Quantity {
+        match self {
+            Self::Number(number) => Quantity::Number(number),
+            Self::Text(text) => Quantity::Text(text),
+        }
+    }
+
     /// Its value in SI.
     ///
     /// # Errors
     /// `ValueError` when it is not a quantity of that dimension.
     pub fn si(self, argument: &str, dimension: Dimension) -> PyResult<f64> {
-        let quantity = match self {
-            Self::Number(number) => Quantity::Number(number),
-            Self::Text(text) => Quantity::Text(text),
-        };
-        quantity.si(dimension).map_err(|wrong| refused(argument, wrong))
+        self.quantity().si(dimension).map_err(|wrong| refused(argument, wrong))
     }
 
     /// The value of one that need not be there.

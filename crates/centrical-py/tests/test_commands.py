@@ -81,6 +81,12 @@ def test_plan(program, tmp_path):
     given = ct.plan(file, out=tmp_path / "python.toml")
     assert given.to_json() == program("plan", file, "--out", tmp_path / "command.toml")
     assert (tmp_path / "python.toml").read_bytes() == (tmp_path / "command.toml").read_bytes()
+    for time in ("5 h", 18_000.0):
+        assert ct.plan(file, time=time).to_json() == program("plan", file, "--time", "5 h")
+    assert ct.plan(file, time="5 h").time <= 18_000.0 < given.time
+    for wrong in ("5 g", 0.5, "soon"):
+        with pytest.raises(ValueError, match="time: found .* expected"):
+            ct.plan(file, time=wrong)
     assert len(given.schedule["speed"]) == sum(len(m.plateaus) for m in given.mountings)
     with pytest.raises(ValueError, match="frontier"):
         ct.plan(file, svg=tmp_path / "x.svg")

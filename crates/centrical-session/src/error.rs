@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 pub use centrical_table::Place;
 pub(crate) use centrical_table::{quoted, shown_path};
 
+use centrical::stability::NoiseError;
 use centrical::{FitError, Stopped};
 use centrical_table::Error as TableError;
 
@@ -75,7 +76,7 @@ pub enum Error {
         /// The column.
         reading: String,
         /// What was found and what was expected.
-        source: centrical::stability::NoiseError,
+        source: NoiseError,
     },
     /// Nothing can be simulated of a truth.
     #[error("{}: {source}", shown_path(file))]
@@ -189,6 +190,14 @@ impl Error {
         match source {
             FitError::Stopped(stopped) => stopped.into(),
             source => Self::Fit { file: file.to_owned(), source },
+        }
+    }
+
+    /// The noise of a `reading` of `file` cannot be analysed, or the caller stopped the analysis.
+    pub(crate) fn noise(file: &Path, reading: &str, source: NoiseError) -> Self {
+        match source {
+            NoiseError::Stopped(stopped) => stopped.into(),
+            source => Self::Noise { file: file.to_owned(), reading: reading.to_owned(), source },
         }
     }
 

@@ -16,7 +16,7 @@ mod toml_path;
 mod uncertainty;
 mod unit;
 
-pub use self::candidates::Planning;
+pub use self::candidates::{Planning, available_time};
 pub(crate) use self::form::{Form as ExperimentForm, PlanForm};
 pub use self::plan::{ExpectedValues, Plan};
 pub use self::plateau_name::PlateauName;

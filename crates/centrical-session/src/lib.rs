@@ -68,7 +68,7 @@ pub use document::{
 pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
     ExpectedValues, Measured, MountingFiles, OutputUnit, Plan, Planning, PlateauMean, PlateauName, PlateauTable,
-    Session, SpeedSource, Speeds, read_plateaus, write_plateaus,
+    Session, SpeedSource, Speeds, available_time, read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn, FirstOutside,

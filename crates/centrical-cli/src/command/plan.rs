@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 
 use centrical_report::{frontier_plot, plan_text};
-use centrical_session::{Error, PlanRequest, USUAL_LEVELS, USUAL_TIMES, plan, unwatched, write_whole};
+use centrical_session::{
+    Error, NotThatQuantity, PlanRequest, Quantity, USUAL_LEVELS, USUAL_TIMES, available_time, plan, unwatched,
+    write_whole,
+};
 
 use super::assess::probability;
 use crate::outcome::Outcome;
@@ -16,6 +19,9 @@ use crate::printing::Printing;
 pub struct Arguments {
     /// Plan file: an experiment.toml with [candidates], [cost] and [target] in place of mountings
     plan: PathBuf,
+    /// Time available, in place of the one in the plan file: "8 h"
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    time: Option<f64>,
     /// Write the schedule as a plan file for observe, montecarlo and simulate
     #[arg(short, long, value_name = "TOML")]
     out: Option<PathBuf>,
@@ -41,6 +47,7 @@ pub struct Arguments {
 /// Runs the command. Not acceptable: a parameter of the instrument is not determined, or a goal is missed.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let request = PlanRequest {
+        time: arguments.time,
         certify: arguments.certify,
         frontier: if arguments.frontier { USUAL_TIMES.to_vec() } else { Vec::new() },
         levels: arguments.levels.clone(),
@@ -56,6 +63,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     arguments.printing.show(|| plan_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_acceptable()))
+}
+
+fn time(text: &str) -> Result<f64, NotThatQuantity> {
+    available_time(&Quantity::Text(text.to_owned()))
 }
 
 fn level(text: &str) -> Result<f64, String> {

@@ -1,8 +1,8 @@
 """The commands of the program as functions; ``docs/python.md`` has the table.
 
 Each gives the document that the command prints with ``--json``. Paths are texts or ``os.PathLike``. Wrong files raise
-:class:`InputError`, wrong arguments ``ValueError`` or ``TypeError``. Ctrl-C stops a function within a fifth of a second; :func:`noise` only while
-it reads.
+:class:`InputError`, wrong arguments ``ValueError`` or ``TypeError``. Ctrl-C stops a function within a fifth of
+a second.
 """
 
 from __future__ import annotations
@@ -159,6 +159,7 @@ def noise(
 def plan(
     file: Path,
     *,
+    time: Quantity | None = None,
     out: Path | None = None,
     frontier: bool = False,
     svg: Path | None = None,
@@ -168,12 +169,13 @@ def plan(
 ) -> Plan:
     """The schedule with the smallest uncertainty in the time available, or the shortest that meets the goals.
 
+    ``time`` [s], or a text such as ``"8 h"``, takes the place of the time available that the file states.
     ``out`` takes the schedule as a plan file for :func:`observe`, :func:`montecarlo` and :func:`simulate`; ``certify``
     searches until the optimality gap is below 0.25 %; ``frontier`` plans for other times too.
     """
     with Bar("planning") as shown:
         chosen = None if levels is None else list(levels)
-        return Plan(_native.plan(file, out, frontier, svg, chosen, certify, coverage, shown))
+        return Plan(_native.plan(file, time, out, frontier, svg, chosen, certify, coverage, shown))
 
 
 def simulate(plan: Path, truth: Path, *, seed: int, out: Path, format: Format = "csv") -> Document:

@@ -149,6 +149,7 @@ def noise(
 def observe(file: _Path, combinations: Sequence[str], shown: _Shown) -> str: ...
 def plan(
     file: _Path,
+    time: _Quantity | None,
     out: _Path | None,
     frontier: bool,
     svg: _Path | None,

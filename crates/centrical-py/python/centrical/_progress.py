@@ -81,5 +81,5 @@ def _is_notebook() -> bool:
 def _in_notebook() -> Callable[[str], None]:
     from IPython.display import display  # type: ignore[import-not-found, unused-ignore]
 
-    handle = display({"text/plain": ""}, raw=True, display_id=True)
+    handle = display({"text/plain": ""}, raw=True, display_id=True)  # type: ignore[no-untyped-call, unused-ignore]
     return lambda line: handle.update({"text/plain": line}, raw=True)

@@ -3,17 +3,18 @@
 use std::path::PathBuf;
 
 use centrical_report::frontier_plot;
-use centrical_session::{self as session, PlanRequest, USUAL_LEVELS, USUAL_TIMES, write_whole};
+use centrical_session::{self as session, PlanRequest, USUAL_LEVELS, USUAL_TIMES, available_time, write_whole};
 use pyo3::prelude::*;
 
 use crate::progress::{self, Shown};
-use crate::words::{probability, refused};
+use crate::words::{Amount, probability, refused};
 
 /// `centrical-plan/1`.
 #[pyfunction]
 pub fn plan(
     py: Python,
     file: PathBuf,
+    time: Option<Amount>,
     out: Option<PathBuf>,
     frontier: bool,
     svg: Option<PathBuf>,
@@ -29,7 +30,9 @@ pub fn plan(
     if let Some(level) = levels.iter().find(|level| !(0.0..=1e6).contains(*level)) {
         return Err(refused("levels", format!("found {level}, expected multiples of Omega*^2, zero or more")));
     }
+    let available = |time: Amount| available_time(&time.quantity()).map_err(|wrong| refused("time", wrong));
     let request = PlanRequest {
+        time: time.map(available).transpose()?,
         certify,
         frontier: if frontier { USUAL_TIMES.to_vec() } else { Vec::new() },
         levels,

@@ -12,13 +12,17 @@ use super::schedule::{FASTEST, duration};
 use super::session::{Session, named_extensions, read_text};
 use super::toml_path::TomlPath;
 use crate::error::{Error, quoted};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::{Dimension, NotThatQuantity, Quantity};
 use crate::settings::from_toml;
 
 /// Beyond these no centrifuge has time, and no search either.
 const MOST_PLATEAUS: usize = 20_000;
 const MOST_DURATIONS: usize = 10;
 const MOST_REPEATS: usize = 20;
+
+/// What may be available for a plan [s].
+const AVAILABLE: (f64, f64) = (1.0, 1e9);
+const AVAILABLE_TIME: &str = "a time from 1 s to 1e9 s";
 
 /// Over what a compensated reading is judged unless something else is said: the field's 200 g.
 const USUAL_RANGE: f64 = 200.0 * STANDARD_GRAVITY;
@@ -37,11 +41,12 @@ pub struct Planning {
 }
 
 impl Planning {
-    /// Reads what is to be planned, for a unit of the values that `earlier` reads in the result that the file names.
+    /// Reads what is to be planned, for a unit of the values that `earlier` reads in the result that the file names. A `time`
+    /// available [s] takes the place of the one in the file.
     ///
     /// # Errors
     /// If the file cannot be read, does not follow the form or makes no sense, or has no `[candidates]`.
-    pub fn read(path: &Path, earlier: EarlierResult) -> Result<Self, Error> {
+    pub fn read(path: &Path, time: Option<f64>, earlier: EarlierResult) -> Result<Self, Error> {
         let mut form = from_toml::<Form>(path, &read_text(path)?)?.with_schedules();
         let at = TomlPath::table(path, "candidates");
         let Some(table) = form.candidates.take() else {
@@ -52,6 +57,7 @@ impl Planning {
             return Err(at.unexpected("radii", format!("{} mountings", form.mounting.len()), expected));
         }
         form.mounting = mountings(&at, &table, &form)?;
+        form.target.time = time.map(Quantity::Number).or(form.target.time);
         let mut session = Session::without_plateaus(path, &form)?;
         session.experiment.set_points = set_points(&at, &table, &session.experiment)?;
         let expected = expected_values(path, form.plan.as_ref(), earlier)?;
@@ -77,6 +83,18 @@ impl Planning {
             PlanError::Stopped(stopped) => stopped.into(),
             source => Error::Planning { file: self.file.clone(), source },
         }
+    }
+}
+
+/// The time available for a plan [s], where it is stated beside the plan file.
+///
+/// # Errors
+/// If it is no time, or none that a plan can take.
+pub fn available_time(time: &Quantity) -> Result<f64, NotThatQuantity> {
+    let (shortest, longest) = AVAILABLE;
+    match time.si(Dimension::Time)? {
+        seconds if (shortest..=longest).contains(&seconds) => Ok(seconds),
+        _ => Err(NotThatQuantity { found: time.to_string(), expected: AVAILABLE_TIME.to_owned() }),
     }
 }
 
@@ -244,8 +262,7 @@ fn robustness(file: &Path, form: &Form) -> Result<Robustness, Error> {
 fn target(file: &Path, form: &Form, model: &MeasurementModel) -> Result<(Criterion, Option<f64>, ReadingRange), Error> {
     let at = TomlPath::table(file, "target");
     let table = &form.target;
-    let time =
-        table.time.as_ref().map(|q| at.bounded("time", q, Dimension::Time, (1.0, 1e9), "a time from 1 s to 1e9 s"));
+    let time = table.time.as_ref().map(|q| at.bounded("time", q, Dimension::Time, AVAILABLE, AVAILABLE_TIME));
     let time = time.transpose()?;
     let force = table.range.as_ref().map_or(Ok(USUAL_RANGE), |q| {
         at.bounded("range", q, Dimension::Acceleration, (1e-3, 1e7), "a specific force from 1e-3 to 1e7 m/s^2")

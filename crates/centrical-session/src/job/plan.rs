@@ -24,7 +24,7 @@ use crate::error::Error;
 /// # Errors
 /// As [`read_planning`]; [`Error::Stopped`]; when an output is an input; [`Error::Planning`] when there is no plan, or it cannot be predicted.
 pub fn plan(file: &Path, request: &PlanRequest, progress: OnProgress<()>) -> Result<PlanReport, Error> {
-    let (mut planning, inputs) = read_with_inputs(file)?;
+    let (mut planning, inputs) = read_with_inputs(file, request.time)?;
     refuse_inputs(&request.outputs, &inputs)?;
     let plan = planning.task.plan(request.certify, progress).map_err(|source| planning.failed(source))?;
     report(&planning, &plan, request, progress)

@@ -92,14 +92,17 @@ fn noise_of_a_record() {
         readings: vec![ColumnName::Name("f1".to_owned())],
         unit: "m/s^2".to_owned(),
         window: [f64::NEG_INFINITY, f64::INFINITY],
-        estimators: vec![Estimator::OverlappingAllan],
+        estimators: Estimator::ALL.to_vec(),
     };
     is_stopped(|caller| noise_of(&request, &|n| caller.asked(n)));
+    // After the record is read the caller is asked with no bytes.
+    is_stopped(|caller| noise_of(&request, &|n| if n == 0 { caller.asked(n) } else { ControlFlow::Continue(()) }));
 }
 
 #[test]
 fn a_search_for_a_plan() {
     let request = PlanRequest {
+        time: None,
         certify: false,
         frontier: vec![1.0],
         levels: vec![0.0, 1.0],

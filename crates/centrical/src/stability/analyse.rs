@@ -8,6 +8,7 @@ use super::phase::{BridgedGaps, Phase};
 use super::spectrum::{Spectrum, power_spectrum};
 use super::spikes::leave_out_spikes;
 use super::terms::{NoiseTerms, fit_noise_terms};
+use crate::progress::{OnProgress, advance};
 
 /// Level of confidence of the intervals: one standard deviation of a normal law.
 pub const CONFIDENCE: f64 = 0.683;
@@ -35,16 +36,27 @@ pub struct Analysis {
     pub terms: Result<NoiseTerms, NoiseError>,
 }
 
-/// Analyses the readings `y`, taken at the times `t` [s], with the given estimators.
+/// Analyses the readings `y`, taken at the times `t` [s], with the given estimators. `progress` is asked again and again: many times
+/// a second, however long the series.
 ///
 /// # Errors
-/// [`NoiseError`] if the readings are no series: too few, or hardly any two of them evenly spaced.
-pub fn analyse(t: &[f64], y: &[f64], estimators: &[Estimator]) -> Result<Analysis, NoiseError> {
+/// [`NoiseError`] if the readings are no series: too few, or hardly any two of them evenly spaced;
+/// [`NoiseError::Stopped`].
+pub fn analyse(
+    t: &[f64],
+    y: &[f64],
+    estimators: &[Estimator],
+    progress: OnProgress<()>,
+) -> Result<Analysis, NoiseError> {
+    advance(progress, ())?;
     let mut grid = regular_grid(t, y)?;
+    advance(progress, ())?;
     let spikes = leave_out_spikes(&mut grid.readings);
+    advance(progress, ())?;
     let phase = Phase::integrate(&grid.readings, grid.interval)?;
     let seen = || grid.readings.iter().filter(|y| y.is_finite());
     let samples = seen().count();
+    let families = estimators.iter().map(|e| Ok((*e, family(&phase, *e, progress)?)));
     Ok(Analysis {
         mean: seen().sum::<f64>() / samples as f64,
         interval: grid.interval,
@@ -52,10 +64,23 @@ pub fn analyse(t: &[f64], y: &[f64], estimators: &[Estimator]) -> Result<Analysi
         spikes,
         repeated: grid.repeated,
         gaps: phase.gaps(),
-        deviations: estimators.iter().map(|e| Ok((*e, family(&phase, *e)?))).collect::<Result<_, NoiseError>>()?,
-        spectrum: power_spectrum(&grid.readings, grid.interval, segment(grid.readings.len())),
-        terms: fit_noise_terms(&phase),
+        deviations: families.collect::<Result<_, NoiseError>>()?,
+        spectrum: unless_stopped(power_spectrum(
+            &grid.readings,
+            grid.interval,
+            segment(grid.readings.len()),
+            progress,
+        ))?,
+        terms: unless_stopped(fit_noise_terms(&phase, progress))?,
     })
+}
+
+/// What a part of the analysis gave, or why it could not; a part that was stopped stops the whole.
+fn unless_stopped<T>(outcome: Result<T, NoiseError>) -> Result<Result<T, NoiseError>, NoiseError> {
+    match outcome {
+        Err(stopped @ NoiseError::Stopped(_)) => Err(stopped),
+        outcome => Ok(outcome),
+    }
 }
 
 impl Analysis {
@@ -68,13 +93,13 @@ impl Analysis {
 /// Deviations at 1, 2, 4, ... sampling intervals, to half the record.
 ///
 /// Estimators whose work is the product of record and averaging time stop where it would take more than some seconds.
-fn family(phase: &Phase, estimator: Estimator) -> Result<Vec<Deviation>, NoiseError> {
+fn family(phase: &Phase, estimator: Estimator, progress: OnProgress<()>) -> Result<Vec<Deviation>, NoiseError> {
     /// Operations that take some seconds.
     const WORK: usize = 1 << 32;
     let is_product = matches!(estimator, Estimator::ModifiedTotal | Estimator::TimeTotal | Estimator::HadamardTotal);
     let longest = if is_product { WORK / phase.points().len() } else { usize::MAX };
     let factors: Vec<usize> = phase.octaves(2).into_iter().filter(|m| *m <= longest).collect();
-    deviations(phase, estimator, &factors, CONFIDENCE)
+    deviations(phase, estimator, &factors, CONFIDENCE, progress)
 }
 
 /// Length of the spectrum's segments: a power of two such that about 16 of them fit half overlapping; a density then has

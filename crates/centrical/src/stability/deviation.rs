@@ -7,6 +7,7 @@ use super::error::NoiseError;
 use super::estimator::Estimator;
 use super::phase::Phase;
 use super::power_law::PowerLaw;
+use crate::progress::{OnProgress, Watch};
 
 /// One point of a stability plot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,14 +40,16 @@ pub struct Deviation {
 /// The true variance is within `edf s^2 / chi^2_(1-p) .. edf s^2 / chi^2_p`, p = (1 - confidence) / 2 [SP 1065,
 /// eq. 45]. Degrees of freedom and bias follow from the power law identified at each tau; gaps cost freedom in
 /// proportion to the terms they cost. Factors too long for the record are left out of the answer.
+/// `progress` is asked again and again.
 ///
 /// # Errors
-/// [`NoiseError::BadConfidence`].
+/// [`NoiseError::BadConfidence`], or [`NoiseError::Stopped`].
 pub fn deviations(
     phase: &Phase,
     estimator: Estimator,
     factors: &[usize],
     confidence: f64,
+    progress: OnProgress<()>,
 ) -> Result<Vec<Deviation>, NoiseError> {
     if !(confidence > 0.0 && confidence < 1.0) {
         return Err(NoiseError::BadConfidence { found: confidence });
@@ -54,10 +57,12 @@ pub fn deviations(
     let mut factors = factors.to_vec();
     factors.sort_unstable();
     factors.dedup();
+    let watch = Watch::new(progress);
     let mut law = PowerLaw::White;
     let mut deviations = Vec::with_capacity(factors.len());
     for m in factors {
-        let Some(raw) = estimator.variance(phase, m) else { continue };
+        let raw = watch.found(estimator.watched_variance(phase, m, &watch))?;
+        let Some(raw) = raw else { continue };
         let identified = PowerLaw::identify(phase, m, estimator.order());
         law = identified.unwrap_or(law);
         let points = phase.points().len();

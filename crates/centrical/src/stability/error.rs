@@ -1,5 +1,7 @@
 use thiserror::Error;
 
+use crate::progress::Stopped;
+
 /// The reasons why the noise of a record cannot be analysed.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NoiseError {
@@ -77,4 +79,7 @@ pub enum NoiseError {
     /// The variances cannot be described by noise terms.
     #[error("no sum of quantisation, white, flicker and random-walk noise describes the record")]
     Indescribable,
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }

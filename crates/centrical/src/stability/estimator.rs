@@ -3,6 +3,7 @@
 use super::phase::Phase;
 use super::total;
 use super::variance::{RawVariance, mean_square};
+use crate::progress::{Watch, unwatched};
 
 /// A deviation of the Allan family.
 ///
@@ -78,21 +79,26 @@ impl Estimator {
 
     /// The variance at averaging factor `m`; `None` if the record, less its gaps, has no term that long.
     pub fn variance(self, phase: &Phase, m: usize) -> Option<RawVariance> {
+        self.watched_variance(phase, m, &Watch::new(&unwatched))
+    }
+
+    /// The same; what it gives after it was stopped means nothing.
+    pub(super) fn watched_variance(self, phase: &Phase, m: usize, watch: &Watch) -> Option<RawVariance> {
         let tau = m as f64 * phase.tau0();
         let phase_unit = |variance: RawVariance| RawVariance { value: variance.value * tau * tau / 3.0, ..variance };
         match self {
             _ if m == 0 => None,
-            Self::Allan => differences(phase, m, 2, m),
-            Self::OverlappingAllan => differences(phase, m, 2, 1),
-            Self::ModifiedAllan => modified(phase, m),
-            Self::Time => modified(phase, m).map(phase_unit),
-            Self::Hadamard => differences(phase, m, 3, m),
-            Self::OverlappingHadamard => differences(phase, m, 3, 1),
-            Self::Total => total::total(phase, m),
-            Self::ModifiedTotal => total::modified_total(phase, m),
-            Self::TimeTotal => total::modified_total(phase, m).map(phase_unit),
-            Self::HadamardTotal if m == 1 => differences(phase, m, 3, 1),
-            Self::HadamardTotal => total::hadamard_total(phase, m),
+            Self::Allan => differences(phase, m, 2, m, watch),
+            Self::OverlappingAllan => differences(phase, m, 2, 1, watch),
+            Self::ModifiedAllan => modified(phase, m, watch),
+            Self::Time => modified(phase, m, watch).map(phase_unit),
+            Self::Hadamard => differences(phase, m, 3, m, watch),
+            Self::OverlappingHadamard => differences(phase, m, 3, 1, watch),
+            Self::Total => total::total(phase, m, watch),
+            Self::ModifiedTotal => total::modified_total(phase, m, watch),
+            Self::TimeTotal => total::modified_total(phase, m, watch).map(phase_unit),
+            Self::HadamardTotal if m == 1 => differences(phase, m, 3, 1, watch),
+            Self::HadamardTotal => total::hadamard_total(phase, m, watch),
         }
     }
 
@@ -111,14 +117,14 @@ impl Estimator {
 }
 
 /// `<D^2> / (2 tau^2)` for the second, `<D^2> / (6 tau^2)` for the third difference, terms `stride` apart.
-fn differences(phase: &Phase, m: usize, order: usize, stride: usize) -> Option<RawVariance> {
+fn differences(phase: &Phase, m: usize, order: usize, stride: usize, watch: &Watch) -> Option<RawVariance> {
     let x = phase.points();
     let span = order * m;
     let seen = (0..x.len().checked_sub(span)?).step_by(stride).filter(|&i| phase.is_seen(i, i + span));
     let (sum, terms) = if order == 2 {
-        mean_square(seen.map(|i| x[i + 2 * m] - 2.0 * x[i + m] + x[i]))
+        mean_square(seen.map(|i| x[i + 2 * m] - 2.0 * x[i + m] + x[i]), watch)
     } else {
-        mean_square(seen.map(|i| x[i + 3 * m] - 3.0 * (x[i + 2 * m] - x[i + m]) - x[i]))
+        mean_square(seen.map(|i| x[i + 3 * m] - 3.0 * (x[i + 2 * m] - x[i + m]) - x[i]), watch)
     }?;
     let tau = m as f64 * phase.tau0();
     let norm = if order == 2 { 2.0 } else { 6.0 };
@@ -126,7 +132,7 @@ fn differences(phase: &Phase, m: usize, order: usize, stride: usize) -> Option<R
 }
 
 /// `<(sum of m D2)^2> / (2 m^2 tau^2)`, the sum sliding along the record.
-fn modified(phase: &Phase, m: usize) -> Option<RawVariance> {
+fn modified(phase: &Phase, m: usize, watch: &Watch) -> Option<RawVariance> {
     let x = phase.points();
     let possible = (x.len() + 1).checked_sub(3 * m).filter(|&terms| terms > 0)?;
     let mut sum: f64 = (0..m).map(|i| x[i + 2 * m] - 2.0 * x[i + m] + x[i]).sum();
@@ -137,7 +143,7 @@ fn modified(phase: &Phase, m: usize) -> Option<RawVariance> {
         }
         phase.is_seen(i, i + 3 * m - 1).then_some(now)
     });
-    let (square, terms) = mean_square(sums)?;
+    let (square, terms) = mean_square(sums, watch)?;
     let scale = (m * m) as f64 * phase.tau0();
     Some(RawVariance { value: square / (2.0 * scale * scale), terms, possible })
 }

@@ -4,6 +4,7 @@ use realfft::RealFftPlanner;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::error::NoiseError;
+use crate::progress::{OnProgress, advance};
 use crate::statistics::median;
 
 /// One-sided power spectral density of a record.
@@ -116,11 +117,17 @@ impl Spectrum {
 ///
 /// Degrees of freedom: `2 K / (1 + 2 rho^2 (K - 1) / K)`, rho = 1/6 the correlation of neighbouring windows for
 /// white readings (P. D. Welch, IEEE Trans. Audio Electroacoust. 15, 1967). K counts segments side by side; runs
-/// broken by gaps only add freedom.
+/// broken by gaps only add freedom. `progress` is asked at each segment.
 ///
 /// # Errors
-/// [`NoiseError`] if `tau0` is not positive, `length` is below 8, or no segment of that length is whole enough.
-pub fn power_spectrum(readings: &[f64], tau0: f64, length: usize) -> Result<Spectrum, NoiseError> {
+/// [`NoiseError`] if `tau0` is not positive, `length` is below 8, or no segment of that length is whole enough;
+/// [`NoiseError::Stopped`].
+pub fn power_spectrum(
+    readings: &[f64],
+    tau0: f64,
+    length: usize,
+    progress: OnProgress<()>,
+) -> Result<Spectrum, NoiseError> {
     const SHORTEST: usize = 8;
     const OVERLAP_CORRELATION: f64 = 1.0 / 6.0;
     if !(tau0.is_finite() && tau0 > 0.0) {
@@ -135,6 +142,7 @@ pub fn power_spectrum(readings: &[f64], tau0: f64, length: usize) -> Result<Spec
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
     let mut output = transform.make_output_vec();
     for start in (0..=readings.len().saturating_sub(length)).step_by(length / 2) {
+        advance(progress, ())?;
         let Some((mut segment, power)) =
             readings.get(start..start + length).and_then(|segment| windowed(segment, &window))
         else {

@@ -11,6 +11,7 @@ use super::log_fit::LogFit;
 use super::log_moments::MomentModel;
 use super::phase::Phase;
 use super::stochastic_terms::{STOCHASTIC, hadamard_shares};
+use crate::progress::{OnProgress, Watch, advance};
 
 /// A noise term: its two-sided spectrum and its share of the Allan variance.
 ///
@@ -142,20 +143,22 @@ impl NoiseTerms {
 /// records); else its upper bound is where chi-squared has risen by 1.645^2.
 ///
 /// The ramp is the least-squares slope of the readings, with the uncertainty that the fitted noise gives a slope; it
-/// is determined if it exceeds three times what the other terms, undetermined ones at their upper bounds, explain.
+/// is determined if it exceeds three times what the other terms, undetermined ones at their upper bounds, explain. `progress` is asked
+/// again and again.
 ///
 /// # Errors
 /// [`NoiseError::TooShort`] below 64 readings, [`NoiseError::TooManyGaps`] if gaps leave variances at fewer than four
 /// averaging times, [`NoiseError::Constant`] if a variance vanishes, [`NoiseError::Indescribable`] if no sum of
-/// the terms comes near them.
-pub fn fit_noise_terms(phase: &Phase) -> Result<NoiseTerms, NoiseError> {
+/// the terms comes near them; [`NoiseError::Stopped`].
+pub fn fit_noise_terms(phase: &Phase, progress: OnProgress<()>) -> Result<NoiseTerms, NoiseError> {
     /// Three standard deviations, squared.
     const SHOWN: f64 = 9.0;
-    let (fit, units) = prepare(phase)?;
+    let (fit, units) = prepare(phase, progress)?;
     let model = fit.best().ok_or(NoiseError::Indescribable)?;
     let deviations = fit.standard_deviations(&model).ok_or(NoiseError::Indescribable)?;
     let mut coefficients = [Coefficient::NotDetermined { upper_bound: f64::INFINITY }; 5];
     for k in 0..STOCHASTIC {
+        advance(progress, ())?;
         let cost = fit.cost_of_absence(&model, k).ok_or(NoiseError::Indescribable)?;
         let unit = units[k].sqrt();
         coefficients[k] = if cost >= SHOWN {
@@ -179,7 +182,7 @@ pub fn fit_noise_terms(phase: &Phase) -> Result<NoiseTerms, NoiseError> {
 
 /// The Hadamard variances of the record, in units of the first of them and of tau0, and those units of the squared
 /// Q, N, B, K: `s^2 (tau0^2, tau0, 1, 1 / tau0)`.
-fn prepare(phase: &Phase) -> Result<(LogFit, [f64; STOCHASTIC]), NoiseError> {
+fn prepare(phase: &Phase, progress: OnProgress<()>) -> Result<(LogFit, [f64; STOCHASTIC]), NoiseError> {
     const SHORTEST: usize = 64;
     /// Intervals the longest tau leaves: fewer and the third differences have hardly two degrees of freedom.
     const INTERVALS: usize = 5;
@@ -187,11 +190,12 @@ fn prepare(phase: &Phase) -> Result<(LogFit, [f64; STOCHASTIC]), NoiseError> {
     if readings < SHORTEST {
         return Err(NoiseError::TooShort { found: readings, expected: SHORTEST });
     }
-    let variances: Vec<_> = phase
+    let watch = Watch::new(progress);
+    let variances = phase
         .octaves(INTERVALS)
         .into_iter()
-        .filter_map(|m| Some((m, Estimator::OverlappingHadamard.variance(phase, m)?)))
-        .collect();
+        .filter_map(|m| Some((m, Estimator::OverlappingHadamard.watched_variance(phase, m, &watch)?)));
+    let variances: Vec<_> = watch.found(variances.collect())?;
     if variances.len() < STOCHASTIC {
         return Err(NoiseError::TooManyGaps { missing: phase.gaps().missing, readings });
     }

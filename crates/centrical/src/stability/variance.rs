@@ -1,5 +1,7 @@
 //! A variance as the estimators compute it: the mean of the squares of its terms.
 
+use crate::progress::Watch;
+
 /// A variance as computed, before any correction of its bias.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RawVariance {
@@ -12,8 +14,8 @@ pub struct RawVariance {
 }
 
 /// Mean of the squares and their number; `None` without values. Summed by blocks, so that rounding grows with the number
-/// of blocks only.
-pub(super) fn mean_square(values: impl Iterator<Item = f64>) -> Option<(f64, usize)> {
+/// of blocks only. It ends early when it is stopped.
+pub(super) fn mean_square(values: impl Iterator<Item = f64>, watch: &Watch) -> Option<(f64, usize)> {
     const BLOCK: usize = 4096;
     let (mut total, mut block, mut terms) = (0.0, 0.0, 0);
     for value in values {
@@ -22,6 +24,9 @@ pub(super) fn mean_square(values: impl Iterator<Item = f64>) -> Option<(f64, usi
         if terms % BLOCK == 0 {
             total += block;
             block = 0.0;
+            if watch.is_stopped() {
+                break;
+            }
         }
     }
     (terms > 0).then(|| ((total + block) / terms as f64, terms))

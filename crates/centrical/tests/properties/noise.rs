@@ -1,9 +1,13 @@
 //! Noise analysis against noise of known coefficients.
 
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use centrical::stability::{
-    Coefficient, Estimator, NoiseTerm, Phase, PowerLaw, degrees_of_freedom, deviations, fit_noise_terms,
-    power_spectrum, regular_grid,
+    Coefficient, Estimator, NoiseError, NoiseTerm, Phase, PowerLaw, analyse, degrees_of_freedom, deviations,
+    fit_noise_terms, power_spectrum, regular_grid,
 };
+use centrical::{Stopped, unwatched};
 
 use super::noise_source::Recipe;
 
@@ -25,7 +29,7 @@ struct Tally {
 fn tally(recipe: &Recipe) -> ([Tally; 5], usize) {
     let (mut tallies, mut consistent): ([Tally; 5], usize) = Default::default();
     for seed in 0..SEEDS {
-        let fit = fit_noise_terms(&phase(recipe, READINGS, seed)).unwrap();
+        let fit = fit_noise_terms(&phase(recipe, READINGS, seed), &unwatched).unwrap();
         consistent += usize::from(fit.is_consistent());
         for ((tally, coefficient), truth) in tallies.iter_mut().zip(fit.coefficients).zip(recipe.coefficients()) {
             match coefficient {
@@ -123,7 +127,7 @@ fn confidence_intervals_cover() {
         for estimator in estimators {
             let mut covered = [0; 2];
             for seed in 0..4 * SEEDS {
-                let found = deviations(&phase(&recipe, 1024, seed), estimator, &[16, 32], LEVEL).unwrap();
+                let found = deviations(&phase(&recipe, 1024, seed), estimator, &[16, 32], LEVEL, &unwatched).unwrap();
                 for (covered, point) in covered.iter_mut().zip(found) {
                     let truth = term.allan_variance(1.0, point.tau).sqrt();
                     *covered += usize::from(point.lower <= truth && truth <= point.upper);
@@ -188,8 +192,8 @@ fn gaps_do_not_move_the_deviations() {
     assert_eq!(gapped.gaps().missing, missing);
     for estimator in [Estimator::OverlappingAllan, Estimator::ModifiedAllan, Estimator::OverlappingHadamard] {
         let factors = whole.octaves(8);
-        let expected = deviations(&whole, estimator, &factors, 0.683).unwrap();
-        let found = deviations(&gapped, estimator, &factors, 0.997).unwrap();
+        let expected = deviations(&whole, estimator, &factors, 0.683, &unwatched).unwrap();
+        let found = deviations(&gapped, estimator, &factors, 0.997, &unwatched).unwrap();
         assert_eq!(expected.len(), found.len());
         for (expected, found) in expected.iter().zip(found) {
             assert!(found.lower < expected.value && expected.value < found.upper, "{estimator:?}: {found:?}");
@@ -202,7 +206,7 @@ fn gaps_do_not_move_the_deviations() {
 fn the_spectrum_of_white_readings_is_flat_and_its_integral_the_variance() {
     let recipe = Recipe { white: 1e-3, ..Recipe::default() };
     let readings = recipe.readings(1 << 16, TAU0, 5);
-    let spectrum = power_spectrum(&readings, TAU0, 1024).unwrap();
+    let spectrum = power_spectrum(&readings, TAU0, 1024, &unwatched).unwrap();
     assert_eq!(spectrum.segments, 127);
     let (lower, upper) = spectrum.interval(0.95).unwrap();
     // One-sided: twice N^2. The ends of the band have half the freedom and the mean is taken off.
@@ -220,7 +224,7 @@ fn a_line_stands_at_its_frequency_with_its_power() {
     let (frequency, amplitude) = (12.5, 0.3);
     let readings: Vec<f64> =
         (0..1 << 14).map(|k| amplitude * (std::f64::consts::TAU * frequency * TAU0 * f64::from(k)).sin()).collect();
-    let spectrum = power_spectrum(&readings, TAU0, 2048).unwrap();
+    let spectrum = power_spectrum(&readings, TAU0, 2048, &unwatched).unwrap();
     let peak =
         (0..spectrum.density.len()).max_by(|&a, &b| spectrum.density[a].total_cmp(&spectrum.density[b])).unwrap();
     assert_eq!(spectrum.frequency[peak], frequency);
@@ -246,18 +250,18 @@ fn readings_phase_and_time_stamps_agree() {
 
 #[test]
 fn what_cannot_be_analysed_is_an_error() {
-    assert!(fit_noise_terms(&Phase::integrate(&[1.0; 100], TAU0).unwrap()).is_err());
-    assert!(fit_noise_terms(&Phase::integrate(&[1.0, 2.0, 3.0], TAU0).unwrap()).is_err());
+    assert!(fit_noise_terms(&Phase::integrate(&[1.0; 100], TAU0).unwrap(), &unwatched).is_err());
+    assert!(fit_noise_terms(&Phase::integrate(&[1.0, 2.0, 3.0], TAU0).unwrap(), &unwatched).is_err());
     let every_other: Vec<f64> = (0..1000).map(|k| if k % 2 == 0 { f64::NAN } else { f64::from(k % 7) }).collect();
     assert_eq!(
-        fit_noise_terms(&Phase::integrate(&every_other, TAU0).unwrap()).unwrap_err().to_string(),
+        fit_noise_terms(&Phase::integrate(&every_other, TAU0).unwrap(), &unwatched).unwrap_err().to_string(),
         "found 499 of 999 readings missing, expected stretches of which a tenth is missing at most"
     );
-    assert!(power_spectrum(&[1.0; 100], TAU0, 200).is_err());
-    assert!(power_spectrum(&[f64::NAN; 100], TAU0, 16).is_err());
+    assert!(power_spectrum(&[1.0; 100], TAU0, 200, &unwatched).is_err());
+    assert!(power_spectrum(&[f64::NAN; 100], TAU0, 16, &unwatched).is_err());
     let phase = Phase::integrate(&[1.0, 2.0, 3.0], TAU0).unwrap();
-    assert!(deviations(&phase, Estimator::Allan, &[1], 1.0).is_err());
-    assert!(deviations(&phase, Estimator::ModifiedTotal, &[0, 5, 99], 0.5).unwrap().is_empty());
+    assert!(deviations(&phase, Estimator::Allan, &[1], 1.0, &unwatched).is_err());
+    assert!(deviations(&phase, Estimator::ModifiedTotal, &[0, 5, 99], 0.5, &unwatched).unwrap().is_empty());
 }
 
 /// Records that no noise term describes are analysed all the same, and the misfit shows in chi-squared.
@@ -265,7 +269,7 @@ fn what_cannot_be_analysed_is_an_error() {
 fn what_is_no_such_noise_shows_as_misfit() {
     let hum = |k: i32| (f64::from(k) * 0.3).sin() + 1e-2 * (f64::from(k) * 1.7).cos();
     let readings: Vec<f64> = (0..5000).map(hum).collect();
-    assert!(!fit_noise_terms(&Phase::integrate(&readings, TAU0).unwrap()).unwrap().is_consistent());
+    assert!(!fit_noise_terms(&Phase::integrate(&readings, TAU0).unwrap(), &unwatched).unwrap().is_consistent());
 }
 
 /// Coefficients scale as their units say.
@@ -274,7 +278,7 @@ fn coefficients_follow_the_units_of_reading_and_time() {
     let recipe = Recipe { quantisation: 2e-4, white: 1e-3, random_walk: 5e-3, ..Recipe::default() };
     let readings = recipe.readings(READINGS, TAU0, 4);
     let scaled: Vec<f64> = readings.iter().map(|y| 1e12 * y).collect();
-    let fit = |readings: &[f64], tau0| fit_noise_terms(&Phase::integrate(readings, tau0).unwrap()).unwrap();
+    let fit = |readings: &[f64], tau0| fit_noise_terms(&Phase::integrate(readings, tau0).unwrap(), &unwatched).unwrap();
     let (plain, scaled) = (fit(&readings, TAU0), fit(&scaled, 4.0 * TAU0));
     for (term, factor) in [(NoiseTerm::Quantisation, 4e12), (NoiseTerm::White, 2e12), (NoiseTerm::RandomWalk, 5e11)] {
         let (
@@ -296,7 +300,7 @@ fn lines_are_found_with_their_amplitude() {
     let mut readings = recipe.readings(16_384, TAU0, 7);
     let rate = std::f64::consts::TAU * 0.123_4;
     readings.iter_mut().enumerate().for_each(|(k, y)| *y += 5e-3 * (rate * k as f64).sin());
-    let spectrum = power_spectrum(&readings, TAU0, 2048).unwrap();
+    let spectrum = power_spectrum(&readings, TAU0, 2048, &unwatched).unwrap();
     let lines = spectrum.lines();
     assert_eq!(lines.len(), 1, "{lines:?}");
     assert!((lines[0].frequency * TAU0 - 0.123_4).abs() < 1.0 / 2048.0);
@@ -306,7 +310,7 @@ fn lines_are_found_with_their_amplitude() {
     let found: usize = (0..200)
         .map(|seed| {
             let recipe = if seed % 2 == 0 { &red } else { &recipe };
-            power_spectrum(&recipe.readings(8192, TAU0, 100 + seed), TAU0, 512).unwrap().lines().len()
+            power_spectrum(&recipe.readings(8192, TAU0, 100 + seed), TAU0, 512, &unwatched).unwrap().lines().len()
         })
         .sum();
     assert!(found <= 2, "{found} lines in noise");
@@ -316,11 +320,35 @@ fn lines_are_found_with_their_amplitude() {
 #[test]
 fn bands_of_white_noise_have_its_density() {
     let readings = Recipe { white: 1e-3, ..Recipe::default() }.readings(65_536, TAU0, 8);
-    let spectrum = power_spectrum(&readings, TAU0, 4096).unwrap();
+    let spectrum = power_spectrum(&readings, TAU0, 4096, &unwatched).unwrap();
     let bands = spectrum.bands(2.0);
     assert!(bands.len() > 15 && bands.is_sorted_by(|a, b| a.frequency < b.frequency));
     for band in bands.iter().filter(|band| band.frequency > 8.0 / (4096.0 * TAU0)) {
         // One-sided: twice N^2. Some 30 segments and 4 bins and more: 15 % is three standard deviations.
         assert!((band.density / 2e-6 - 1.0).abs() < 0.25, "{band:?}");
+    }
+}
+
+/// At whichever of its questions the caller stops it, within a pass over the readings or between two.
+#[test]
+fn an_analysis_ends_when_it_is_stopped() {
+    let n = 5000;
+    let t: Vec<f64> = (0..n).map(|k| k as f64 * TAU0).collect();
+    let y = Recipe { white: 1.0, ..Recipe::default() }.readings(n, TAU0, 1);
+    let calls = AtomicUsize::new(0);
+    let analysed = |at: usize| {
+        calls.store(0, Ordering::Relaxed);
+        let asked = |()| {
+            let call = calls.fetch_add(1, Ordering::Relaxed) + 1;
+            if call >= at { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        analyse(&t, &y, &[Estimator::OverlappingAllan, Estimator::ModifiedTotal], &asked)
+    };
+    assert!(analysed(usize::MAX).is_ok());
+    let all = calls.load(Ordering::Relaxed);
+    assert!(all > 200, "{all} questions");
+    for at in (1..=4).chain((5..all).step_by(all / 15)).chain([all]) {
+        assert_eq!(analysed(at).err(), Some(NoiseError::Stopped(Stopped)), "question {at} of {all}");
+        assert!(calls.load(Ordering::Relaxed) <= at + 1);
     }
 }

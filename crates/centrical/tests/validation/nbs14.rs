@@ -1,6 +1,7 @@
 //! The NBS data sets: nine readings of NBS Monograph 140, Annex 8.E, and Riley's 1000 pseudo-random readings.
 
 use centrical::stability::{Deviation, Estimator, Phase, PowerLaw, degrees_of_freedom, deviations};
+use centrical::unwatched;
 
 const RILEY: &str = include_str!("nbs14/riley_tables.csv");
 const STABLE32: &str = include_str!("nbs14/stable32.csv");
@@ -40,7 +41,7 @@ fn assert_printed(what: &str, computed: f64, printed: &str, units: f64) {
 }
 
 fn single(phase: &Phase, estimator: Estimator, m: usize) -> Deviation {
-    deviations(phase, estimator, &[m], ONE_SIGMA).unwrap()[0]
+    deviations(phase, estimator, &[m], ONE_SIGMA, &unwatched).unwrap()[0]
 }
 
 fn standard_deviation(readings: &[f64], m: usize) -> f64 {

@@ -1,5 +1,6 @@
 //! Noise of a record: stability deviations, spectrum and noise terms of every column of readings.
 
+use centrical::OnProgress;
 use centrical::reduction::staircase;
 use centrical::stability::{CONFIDENCE, Estimator, analyse};
 use rayon::prelude::*;
@@ -8,15 +9,16 @@ use super::series::Series;
 use crate::document::{NoiseAnalysis, ReadingNoise};
 use crate::error::Error;
 
-/// Analyses the readings of a file by the estimators.
+/// Analyses the readings of a file by the estimators. `progress` is asked again and again, with no bytes.
 ///
 /// # Errors
-/// [`Error::Noise`] if a column is no series of readings: too few, or hardly any two of them evenly spaced.
-pub fn analyse_noise(series: &Series, estimators: &[Estimator]) -> Result<NoiseAnalysis, Error> {
+/// [`Error::Noise`] if a column is no series of readings: too few, or hardly any two of them evenly spaced;
+/// [`Error::Stopped`].
+pub fn analyse_noise(series: &Series, estimators: &[Estimator], progress: OnProgress) -> Result<NoiseAnalysis, Error> {
     let columns = series.columns.par_iter();
     let analysed = columns.map(|(name, unit, values)| {
-        let failed = |source| Error::Noise { file: series.file.clone(), reading: name.clone(), source };
-        let noise = analyse(&series.t, values, estimators).map_err(failed)?;
+        let failed = |source| Error::noise(&series.file, name, source);
+        let noise = analyse(&series.t, values, estimators, &|()| progress(0)).map_err(failed)?;
         Ok::<_, Error>(ReadingNoise {
             name: name.clone(),
             unit: unit.clone(),

@@ -38,7 +38,7 @@ pub struct NoiseRequest {
 }
 
 /// Analyses the noise of a record or of a plateau of a session, which is named then. `progress` is called with the number of bytes
-/// read, from any thread.
+/// read, from any thread, and with none while they are analysed.
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
@@ -50,7 +50,7 @@ pub fn noise_of(request: &NoiseRequest, progress: OnProgress) -> Result<(NoiseAn
             estimators.push(*estimator);
         }
     }
-    Ok((analyse_noise(&series, &estimators)?, plateau))
+    Ok((analyse_noise(&series, &estimators, progress)?, plateau))
 }
 
 fn series(request: &NoiseRequest, progress: OnProgress) -> Result<(Series, Option<PlateauName>), Error> {

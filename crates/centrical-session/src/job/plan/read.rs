@@ -20,17 +20,17 @@ pub fn read_plan(path: &Path) -> Result<Option<Plan>, Error> {
 /// # Errors
 /// As [`Planning::read`] and [`CalibrationResult::read`].
 pub fn read_planning(path: &Path) -> Result<Planning, Error> {
-    read_with_inputs(path).map(|(planning, _)| planning)
+    read_with_inputs(path, None).map(|(planning, _)| planning)
 }
 
-/// The same with the files that were read.
-pub(super) fn read_with_inputs(path: &Path) -> Result<(Planning, Vec<PathBuf>), Error> {
+/// The same with the files that were read; a `time` available [s] takes the place of the one in the file.
+pub(super) fn read_with_inputs(path: &Path, time: Option<f64>) -> Result<(Planning, Vec<PathBuf>), Error> {
     let inputs = RefCell::new(vec![path.to_owned()]);
     let earlier = |result: &Path| {
         inputs.borrow_mut().push(result.to_owned());
         values(result)
     };
-    let planning = Planning::read(path, &earlier)?;
+    let planning = Planning::read(path, time, &earlier)?;
     Ok((planning, inputs.take()))
 }
 

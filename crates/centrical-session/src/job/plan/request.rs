@@ -11,6 +11,8 @@ pub const USUAL_TIMES: [f64; 8] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0];
 /// The parts of a plan that are asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanRequest {
+    /// Time available [s], in place of the one in the plan file.
+    pub time: Option<f64>,
     /// Whether to search until every set of mountings is decided on.
     pub certify: bool,
     /// Times of the frontier over that of the plan; empty for no frontier.
