@@ -1,5 +1,6 @@
 """Compensation of arrays: the same bits in every order, and clear refusals."""
 
+import pickle
 import threading
 import warnings
 
@@ -209,3 +210,29 @@ def test_an_arrow_stream_alone(result, readings):
             return columns.__arrow_c_stream__(requested_schema)
 
     assert np.array_equal(result.compensate(Stream())["f2"], result.compensate(readings)[:, 1])
+
+
+def test_a_table_out(result, readings):
+    columns = result.compensate({name: readings[:, axis] for axis, name in enumerate(("f1", "f2", "f3"))})
+    with pytest.raises(TypeError, match="found a change"):
+        columns["f4"] = columns["f1"]
+    again = pickle.loads(pickle.dumps(columns))
+    assert type(again) is ct.Columns and np.array_equal(again["f3"], columns["f3"])
+
+
+@pytest.mark.parametrize("package, make, options", [("pandas", "DataFrame", {"copy": False}), ("polars", "DataFrame", {}), ("pyarrow", "table", {})])
+def test_tables_of_others_share_its_memory(result, readings, package, make, options):
+    columns = result.compensate({name: readings[:, axis] for axis, name in enumerate(("f1", "f2", "f3"))})
+    table = getattr(pytest.importorskip(package), make)(columns, **options)
+    assert table.shape == (1000, 3)
+    for name, column in columns.items():
+        taken = table[name].chunk(0).to_numpy() if package == "pyarrow" else table[name].to_numpy()
+        assert np.array_equal(taken, column) and np.shares_memory(taken, column)
+
+
+def test_the_arrow_stream_of_a_table(result, readings):
+    pyarrow = pytest.importorskip("pyarrow")
+    readings[0] = np.nan
+    columns = result.compensate({name: readings[:, axis] for axis, name in enumerate(("f1", "f2", "f3"))})
+    table = pyarrow.RecordBatchReader.from_stream(columns).read_all()
+    assert table["f1"].null_count == 0 and np.shares_memory(table["f1"].chunk(0).to_numpy(), columns["f1"])

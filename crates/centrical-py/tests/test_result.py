@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import sys
 
 import centrical as ct
 import numpy as np
@@ -104,3 +105,27 @@ def test_parts_are_pickled(result):
         again = pickle.loads(pickle.dumps(thing))
         assert type(again) is type(thing)
     assert pickle.loads(pickle.dumps(result.document)).to_json() == result.to_json()
+
+
+def test_figures_on_axes(result):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    axes = result.plot("residuals")
+    drawn = np.array([line.get_ydata() for line in axes.lines[:3]]).T * 9.80665e-6
+    assert np.allclose(drawn, [plateau.residual for plateau in result.document.plateaus], rtol=1e-12)
+    (image,) = result.plot("correlation", ax=matplotlib.figure.Figure().subplots()).images
+    assert np.allclose(np.diag(image.get_array()), 1.0) and image.get_array().shape == (49, 49)
+    analysis = ct.noise(np.random.default_rng(1).normal(size=4096), rate=100.0)
+    tau, deviation = analysis.deviation("oadev")
+    curve = analysis.plot().lines[0]
+    assert np.array_equal(curve.get_xdata(), tau) and np.array_equal(curve.get_ydata(), deviation)
+
+
+def test_figures_without_matplotlib(result, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert result.plot("residuals")._repr_svg_().startswith("<svg")
+    assert result.plot("before")._repr_html_().count('class="plot panel"') == 3
+    with pytest.raises(ValueError, match="name: found 'x', expected one of"):
+        result.plot("x")
+    with pytest.raises(ImportError, match="matplotlib"):
+        ct.noise(np.random.default_rng(1).normal(size=4096), rate=100.0).plot()

@@ -18,6 +18,7 @@ import numpy as _numpy  # noqa: F401
 
 from . import _native
 from ._array_session import ArraySession
+from ._columns import Columns
 from ._commands import (
     assess,
     calibrate,
@@ -38,6 +39,7 @@ from ._document import Document, Record
 from ._errors import FileError, InputError, NoSuchFileError
 from ._noise import Noise
 from ._plan import Plan
+from ._plot import Drawing
 from ._progress import set_progress
 from ._result import Objection, Observability, Parameter, Result, read_result
 from ._session import Session
@@ -47,7 +49,9 @@ set_threads = _native.set_threads
 
 __all__ = [
     "ArraySession",
+    "Columns",
     "Document",
+    "Drawing",
     "FileError",
     "InputError",
     "NoSuchFileError",

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _native
 from ._document import Document
+from ._plot import plot_noise
 from ._progress import Shown
 
 if TYPE_CHECKING:
@@ -43,6 +44,10 @@ class Noise(Document):
                 rows = curve.deviations
                 return np.array([row.tau for row in rows]), np.array([row.value for row in rows])
         raise ValueError(f"estimator: found {estimator!r}, expected one of {', '.join(c.estimator for c in curves)}")
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the deviations with their intervals on ``ax``, or on new axes of Matplotlib, which are given."""
+        return plot_noise(self, ax)
 
 
 def noise_of_array(

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _native
+from ._columns import columns_of_rows
 from ._document import Document, Record, escape
 from ._documents import check_documents
+from ._plot import plot_result
 from ._table import columns_of, is_table
 
 if TYPE_CHECKING:
@@ -184,7 +186,7 @@ class Result:
 
         Returns
         -------
-        The forces, shape ``(n, 3)``; of a table a dict of the columns f1, f2, f3. With ``uncertainty`` a pair.
+        The forces, shape ``(n, 3)``; of a table :class:`Columns` f1, f2, f3, a table again. With ``uncertainty`` a pair.
         Readings with a NaN stay NaN. Those that no force in :attr:`range` gives become NaN, with a warning.
 
         Raises
@@ -212,11 +214,11 @@ class Result:
         forces, outside = self.native.compensate(rows, out)
         if outside:
             _warn(outside, self.native.range)
-        given = _columns(forces) if is_columns else forces
+        given = columns_of_rows(forces) if is_columns else forces
         if not uncertainty:
             return given
         deviations = self.native.uncertainty(forces)
-        return given, _columns(deviations) if is_columns else deviations
+        return given, columns_of_rows(deviations) if is_columns else deviations
 
     def report(
         self,
@@ -248,6 +250,17 @@ class Result:
                 file, "result.json", html, history, pdf, before, dcc, code, range, laboratory, language
             )
         return Document(text)
+
+    def plot(self, name: str = "residuals", ax: Any = None) -> Any:
+        """Draws a figure of the report.
+
+        ``"residuals"`` and ``"correlation"`` are drawn on ``ax``, or on new axes, where Matplotlib is installed; those axes are
+        given. Else, and for the other figures, an object that a notebook shows as SVG.
+
+        >>> ct.calibrate(example).plot("convergence")
+        <Drawing 'Uncertainty as the session goes on'>
+        """
+        return plot_result(self, name, ax)
 
     def to_json(self, path: Path | None = None) -> str:
         """The text of ``result.json``, byte for byte; written to ``path`` if one is given, whole or not at all."""
@@ -329,10 +342,6 @@ def _from_json(text: bytes) -> Result:
 def _fixed(array: Array) -> Array:
     array.setflags(write=False)
     return array
-
-
-def _columns(rows: Array) -> dict[str, Array]:
-    return {name: np.ascontiguousarray(rows[:, axis]) for axis, name in enumerate(("f1", "f2", "f3"))}
 
 
 def _warn(outside: int, range: float) -> None:
