@@ -11,7 +11,7 @@ use centrical_session::{PlanRequest, plan, unwatched};
 /// If the plan file is wrong, or no plan fits its time.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let request =
-        PlanRequest { certify: false, frontier: Vec::new(), levels: Vec::new(), coverage: 0.95, outputs: Vec::new() };
+        PlanRequest { certify: false, frontier: Vec::new(), levels: Vec::new(), time: None, coverage: 0.95, outputs: Vec::new() };
     let report = plan(Path::new("examples/03_plan/plan.toml"), &request, &unwatched)?;
 
     for mounting in &report.mountings {

@@ -50,7 +50,7 @@ pub fn history_index(list: &HistoryList, pages: &HistoryPages) -> String {
         row(&mut body, line, pages);
     }
     body.push_str("</tbody></table></div>\n");
-    let _ = write!(body, "<script>{SCRIPT}</script>\n");
+    let _ = writeln!(body, "<script>{SCRIPT}</script>");
     page("Calibrations", &body)
 }
 
@@ -107,7 +107,11 @@ fn opening(kind: &str, title: &str) -> String {
 }
 
 fn text(body: &mut String, screen: &Screen) {
-    let _ = writeln!(body, "<pre class=\"text\">{}</pre>", Escaped(&screen.text(WIDTH, usize::MAX)));
+    body.push_str("<pre class=\"text\">");
+    for line in screen.text(WIDTH, usize::MAX).lines() {
+        let _ = writeln!(body, "{}", Escaped(line));
+    }
+    body.push_str("</pre>\n");
 }
 
 /// Characters in a line: what a laboratory's screen shows beside its margins.

@@ -10,7 +10,8 @@ use crate::store::{Row, RowTerm, SharedInfluence, Status, days_since_1970, sha25
 impl CalibrationResult {
     /// The row of the result, whose file has these `bytes`.
     pub fn row(&self, bytes: &[u8]) -> Row {
-        let inputs: String = self.inputs.iter().map(|input| format!("{} {}\n", input.sha256, input.path)).collect();
+        let inputs = self.inputs.iter().flat_map(|input| [input.sha256.as_str(), " ", input.path.as_str(), "\n"]);
+        let inputs: String = inputs.collect();
         let objections = self.objections();
         let of_parameters =
             |text: fn(&ParameterEstimate) -> String| self.parameters.iter().map(text).collect::<Vec<_>>();

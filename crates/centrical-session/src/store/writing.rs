@@ -102,9 +102,10 @@ impl Store {
         while class.0 < FINAL {
             let is_of_class = |part: &Part| (class.0..class.1.min(FINAL)).contains(&part.rows());
             if parts.iter().filter(|keyed| is_of_class(&keyed.part)).count() >= MERGED {
-                let (merged, others) = parts.into_iter().partition(|keyed| is_of_class(&keyed.part));
+                let (merged, others): (Vec<Keyed>, Vec<Keyed>) =
+                    parts.into_iter().partition(|keyed| is_of_class(&keyed.part));
                 parts = others;
-                parts.push(self.merge_into_one(merged)?);
+                parts.push(self.merge_into_one(&merged)?);
             }
             class = (class.1, class.1 * MERGED as u64);
         }
@@ -112,10 +113,10 @@ impl Store {
     }
 
     /// One part in place of several: it is there before they go.
-    fn merge_into_one(&self, parts: Vec<Keyed>) -> Result<Keyed, Error> {
+    fn merge_into_one(&self, parts: &[Keyed]) -> Result<Keyed, Error> {
         let keys: HashSet<String> = parts.iter().flat_map(|keyed| keyed.keys.iter().cloned()).collect();
         let keys: Vec<String> = keys.into_iter().collect();
-        let file = part::write(&self.rows_folder(), &keys, in_order(&parts))?;
+        let file = part::write(&self.rows_folder(), &keys, in_order(parts))?;
         if let Ok(folder) = File::open(self.rows_folder()) {
             // The name of the merged part is on the disk before the others lose theirs, where the system can say so.
             let _ = folder.sync_all();

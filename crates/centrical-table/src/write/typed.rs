@@ -71,7 +71,8 @@ impl TypedWriter {
     /// [`Error::Io`] if it cannot be written.
     pub fn finish(self) -> Result<(), Error> {
         let output = self.table.into_inner().map_err(super::parquet::failed);
-        let synced = output.and_then(|output| output.into_inner().map_err(|error| error.into_error())?.sync_all());
+        let synced =
+            output.and_then(|output| output.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all());
         synced.and_then(|()| self.beside.take_place()).map_err(|error| Error::writing(&self.file, error))
     }
 }
@@ -133,49 +134,49 @@ fn write_column<'a>(
     match kind {
         Kind::Text => write::<ByteArrayType>(
             group,
-            flat(cells, |cell| match cell {
+            &flat(cells, |cell| match cell {
                 Cell::Text(text) => Some(bytes(text)),
                 _ => None,
             }),
         ),
         Kind::Number => write::<DoubleType>(
             group,
-            flat(cells, |cell| match cell {
+            &flat(cells, |cell| match cell {
                 Cell::Number(value) if !value.is_nan() => Some(*value),
                 _ => None,
             }),
         ),
         Kind::Integer => write::<Int64Type>(
             group,
-            flat(cells, |cell| match cell {
+            &flat(cells, |cell| match cell {
                 Cell::Integer(value) => Some(*value),
                 _ => None,
             }),
         ),
         Kind::Truth => write::<BoolType>(
             group,
-            flat(cells, |cell| match cell {
+            &flat(cells, |cell| match cell {
                 Cell::Truth(value) => Some(*value),
                 _ => None,
             }),
         ),
         Kind::Texts => write::<ByteArrayType>(
             group,
-            lists(cells, |cell| match cell {
+            &lists(cells, |cell| match cell {
                 Cell::Texts(list) => list.iter().map(|text| Some(bytes(text))).collect(),
                 _ => Vec::new(),
             }),
         ),
         Kind::Numbers => write::<DoubleType>(
             group,
-            lists(cells, |cell| match cell {
+            &lists(cells, |cell| match cell {
                 Cell::Numbers(list) => list.iter().map(|value| Some(*value).filter(|value| !value.is_nan())).collect(),
                 _ => Vec::new(),
             }),
         ),
         Kind::Integers => write::<Int64Type>(
             group,
-            lists(cells, |cell| match cell {
+            &lists(cells, |cell| match cell {
                 Cell::Integers(list) => list.iter().map(|value| Some(*value)).collect(),
                 _ => Vec::new(),
             }),
@@ -213,7 +214,7 @@ fn lists<'a, T>(cells: impl Iterator<Item = &'a Cell>, list: impl Fn(&Cell) -> V
 
 fn write<D: DataType>(
     group: &mut SerializedRowGroupWriter<BufWriter<File>>,
-    levels: Levels<D::T>,
+    levels: &Levels<D::T>,
 ) -> ParquetResult<()> {
     let next = group.next_column()?;
     let mut column = next.ok_or_else(|| ParquetError::General("one column more".to_owned()))?;

@@ -75,7 +75,7 @@ impl Calibrated {
             date,
             acceptable: row.acceptable,
             parameters: kinds.of(&row),
-            terms: terms.map(|term| term.map(|(name, term)| (name, term))).collect(),
+            terms: terms.collect(),
             range: row.range.iter().copied().fold(0.0, f64::max),
             unit_model: row.unit_model,
             unit_serial: row.unit_serial,

@@ -38,7 +38,7 @@ impl Workers<'_> {
         let jobs = self.request.jobs.unwrap_or(cores).clamp(1, sessions.len().max(1));
         let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
         let (send, received) = sync_channel(2 * jobs);
-        let written = thread::scope(|scope| {
+        thread::scope(|scope| {
             for _ in 0..jobs {
                 let (send, next, stop) = (send.clone(), &next, &stop);
                 scope.spawn(move || self.work(sessions, next, stop, &send));
@@ -49,8 +49,7 @@ impl Workers<'_> {
             stop.store(true, Ordering::Relaxed);
             while received.recv().is_ok() {}
             written
-        });
-        written
+        })
     }
 
     /// One thread: session after session, until there are none.
