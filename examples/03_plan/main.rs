@@ -10,8 +10,14 @@ use centrical_session::{PlanRequest, plan, unwatched};
 /// # Errors
 /// If the plan file is wrong, or no plan fits its time.
 pub fn main() -> Result<(), Box<dyn Error>> {
-    let request =
-        PlanRequest { certify: false, frontier: Vec::new(), levels: Vec::new(), time: None, coverage: 0.95, outputs: Vec::new() };
+    let request = PlanRequest {
+        certify: false,
+        frontier: Vec::new(),
+        levels: Vec::new(),
+        time: None,
+        coverage: 0.95,
+        outputs: Vec::new(),
+    };
     let report = plan(Path::new("examples/03_plan/plan.toml"), &request, &unwatched)?;
 
     for mounting in &report.mountings {

@@ -34,6 +34,8 @@ pub mod _native {
     #[pymodule_export]
     pub use crate::jobs::compensate::compensate;
     #[pymodule_export]
+    pub use crate::jobs::history::{add_to_store, history};
+    #[pymodule_export]
     pub use crate::jobs::in_memory::{calibrate_arrays, plateau_columns};
     #[pymodule_export]
     pub use crate::jobs::init::init;
@@ -53,6 +55,8 @@ pub mod _native {
     pub use crate::jobs::report::report;
     #[pymodule_export]
     pub use crate::jobs::schema::schema;
+    #[pymodule_export]
+    pub use crate::jobs::series::series;
     #[pymodule_export]
     pub use crate::jobs::simulate::simulate;
     #[pymodule_export]

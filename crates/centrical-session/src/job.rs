@@ -24,7 +24,7 @@ pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
 pub use self::history::{
     Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
-    UnitsHistoryRequest, chart, read_batches, read_calibrations, station_history, unit_history, units_history,
+    UnitsHistoryRequest, by_unit, chart, read_batches, read_calibrations, station_history, unit_history, units_history,
 };
 pub use self::history::{add_result, add_results, list_store};
 pub use self::init::{Draft, FillIn, InitRequest, init};

@@ -80,13 +80,13 @@ pub use job::{
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
-    UnitsHistoryRequest, chart, read_batches, read_calibrations, station_history, unit_history, units_history,
+    UnitsHistoryRequest, by_unit, chart, read_batches, read_calibrations, station_history, unit_history, units_history,
 };
 pub use laboratory::{
-    Address, Certificate, Condition, Contact, Customer, Date, Decision, DecisionRule, Environment, Item, Laboratory,
-    LaboratoryTable, Limit, LimitEnd, Limited, MethodTable, NotADay, Person, Standard, StatedLimit,
+    Address, Certificate, Condition, Contact, Customer, Decision, DecisionRule, Environment, Item, Laboratory,
+    LaboratoryTable, Limit, LimitEnd, Limited, MethodTable, Person, Standard, StatedLimit,
 };
-pub use quantity::{Dimension, NotThatQuantity, Quantity};
+pub use quantity::{Date, Dimension, NotADay, NotThatQuantity, Quantity};
 pub use record::{
     Column, Columns, Input, RecordOverview, RecordReader, RecordWriter, Scale, read_growing_record, read_pulses,
     read_record, read_telemetry, stretch,

@@ -3,6 +3,7 @@
 mod arrays;
 mod arrow;
 mod catch_panic;
+mod cells;
 mod columnar;
 #[cfg(feature = "hdf5")]
 mod hdf5;
@@ -19,6 +20,7 @@ use std::path::Path;
 
 #[cfg(feature = "xlsx")]
 pub(crate) use self::catch_panic::catch_panic;
+pub use self::cells::{Cell, Kind, TypedColumn};
 pub(crate) use self::columnar::ColumnReader;
 pub use self::typed::TypedReader;
 use crate::column::Field;

@@ -50,11 +50,10 @@ mod rows;
 mod sheet;
 mod stamp;
 mod text;
-mod typed;
 mod unpacking;
 mod write;
 
-pub use binary::TypedReader;
+pub use binary::{Cell, Kind, TypedColumn, TypedReader};
 pub use column::{ColumnName, Field, Rule, TableLines, UnitsFound};
 pub use document::{open_regular, read_bytes, read_document};
 pub use error::{Error, Place, quoted, shown_path};
@@ -63,7 +62,6 @@ pub use reader::{Extent, TableReader, estimate_rows, text_form};
 pub use rows::Rows;
 pub use stamp::{StampKind, Stamps};
 pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm};
-pub use typed::{Cell, Kind, TypedColumn};
 pub use write::{
     ClaimedFolder, Decimals, TableFormat, TableWriter, TypedWriter, abandon_files, claim_folder, create_folder,
     parquet_bytes, refuse_inputs, write_stream, write_table, write_whole,

@@ -15,6 +15,7 @@ use crate::outcome::Outcome;
 
 /// Keep calibrations in a store; a unit over the years, units beside each other, a station over its sessions, control charts.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical history unit store --serial 0042")]
 pub struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -10,6 +10,7 @@ mod killed;
 mod noise;
 mod observe;
 mod plan;
+mod plant;
 #[path = "../common/program.rs"]
 mod program;
 #[path = "../../../centrical/tests/common/random.rs"]

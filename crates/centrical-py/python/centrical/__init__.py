@@ -20,10 +20,12 @@ from . import _native
 from ._array_session import ArraySession
 from ._columns import Columns
 from ._commands import (
+    add_to_store,
     assess,
     calibrate,
     compare,
     compensate,
+    history,
     init,
     models,
     montecarlo,
@@ -33,6 +35,7 @@ from ._commands import (
     reduce,
     report,
     schema,
+    series,
     simulate,
 )
 from ._document import Document, Record
@@ -64,10 +67,12 @@ __all__ = [
     "Result",
     "Session",
     "Watch",
+    "add_to_store",
     "assess",
     "calibrate",
     "compare",
     "compensate",
+    "history",
     "init",
     "models",
     "montecarlo",
@@ -78,6 +83,7 @@ __all__ = [
     "reduce",
     "report",
     "schema",
+    "series",
     "set_progress",
     "set_threads",
     "simulate",

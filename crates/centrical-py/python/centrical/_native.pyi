@@ -99,6 +99,24 @@ def calibrate(
     language: str,
     shown: _Shown,
 ) -> CalibrationResult: ...
+def add_to_store(store: _Path, results: Sequence[_Path], rows_only: bool, shown: _Shown) -> tuple[int, int]: ...
+def history(
+    results: Sequence[_Path],
+    of: str,
+    chosen: tuple[str | None, str | None, str | None],
+    limit: float | str | None,
+    until: str | None,
+    confidence: float,
+    trend: bool,
+) -> str: ...
+def series(
+    sessions: Sequence[_Path],
+    out: _Path,
+    method: str,
+    jobs: int | None,
+    rows_only: bool,
+    shown: _Shown,
+) -> str: ...
 def calibrate_arrays(
     text: str,
     file: _Path,

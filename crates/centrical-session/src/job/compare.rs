@@ -6,7 +6,7 @@ use centrical::uncertainty::compare;
 
 use crate::document::{CalibrationResult, ComparisonReport, PairComparison, TermSummary};
 use crate::error::{Error, Place};
-use crate::laboratory::Date;
+use crate::quantity::Date;
 
 /// How results are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -15,7 +15,7 @@ pub use self::batches::read_batches;
 pub use self::calibrated::{Calibrated, CalibratedParameter};
 pub use self::chart::{ChartLimits, NoChart, RuleSet, chart};
 pub use self::list::list_store;
-pub use self::read::read_calibrations;
+pub use self::read::{by_unit, read_calibrations};
 pub use self::station::station_history;
 pub use self::unit::{UnitHistoryRequest, unit_history};
 pub use self::units::{ParameterLimits, UnitsHistoryRequest, units_history};

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use sha2::{Digest, Sha256};
 
-use crate::laboratory::Date;
+use crate::quantity::Date;
 
 /// Whether a calibration was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -44,7 +44,7 @@ fn the_form_is_kept() {
         (
             "rotation =",
             "rot =",
-            r"line 15, column 1: found an unknown key `rot`, expected one of `speed_uncertainty`, `rotation`, `tachometer_uncertainty`, `measured`",
+            r"line 15, column 1: found an unknown key `rot`, expected one of `speed_uncertainty`, `rotation`, `station`, `tachometer_uncertainty`, `measured`",
         ),
         (
             "pair_relation =",

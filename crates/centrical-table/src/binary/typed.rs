@@ -9,10 +9,10 @@ use parquet::errors::{ParquetError, Result as ParquetResult};
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 
 use super::catch_panic::catch_panic;
+use super::cells::{Cell, Kind, TypedColumn};
 use super::parquet_pages::{Checked, Source};
 use crate::document::open_regular;
 use crate::error::{Error, Place};
-use crate::typed::{Cell, Kind, TypedColumn};
 
 /// Values that a column of one row group may hold: above, a damaged file would fill the memory.
 const MOST: i64 = 1 << 26;

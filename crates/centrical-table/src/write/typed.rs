@@ -14,8 +14,8 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type};
 
 use super::beside::Beside;
+use crate::binary::{Cell, Kind, TypedColumn};
 use crate::error::Error;
-use crate::typed::{Cell, Kind, TypedColumn};
 
 /// Writes a table of several kinds of columns beside the file, and renames at the end: whoever looks sees the whole table or none. It is
 /// on the disk then.

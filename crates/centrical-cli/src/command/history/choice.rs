@@ -1,6 +1,6 @@
 //! Which calibrations are meant.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use centrical_session::{Calibrated, Depth, Error, Place, Selection, read_calibrations};
@@ -64,14 +64,4 @@ impl Choice {
     pub fn refuse(&self, found: String, expected: &str) -> Error {
         Error::content(&self.results[0], Place::Whole, found, expected)
     }
-}
-
-/// The calibrations unit by unit, each in the order of time.
-pub fn by_unit(calibrations: Vec<Calibrated>) -> Vec<Vec<Calibrated>> {
-    let mut units: BTreeMap<(String, String), Vec<Calibrated>> = BTreeMap::new();
-    for calibrated in calibrations {
-        let (model, serial) = calibrated.unit();
-        units.entry((model.to_owned(), serial.to_owned())).or_default().push(calibrated);
-    }
-    units.into_values().collect()
 }

@@ -5,11 +5,10 @@ use std::path::PathBuf;
 
 use centrical_report::{HistoryPages, history_index, history_station_page, history_unit_page};
 use centrical_session::{
-    Calibrated, Depth, Error, Selection, UnitHistoryRequest, claim_folder, list_store, read_calibrations,
+    Calibrated, Depth, Error, Selection, UnitHistoryRequest, by_unit, claim_folder, list_store, read_calibrations,
     refuse_inputs, station_history, unit_history, write_whole,
 };
 
-use super::choice::by_unit;
 use crate::command::compensate::acceleration;
 use crate::outcome::Outcome;
 use crate::output::print;

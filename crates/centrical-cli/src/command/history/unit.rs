@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use centrical_report::{unit_history_plots, unit_history_text};
 use centrical_session::{
-    Calibrated, Date, Depth, Error, UnitHistoryRequest, claim_folder, create_folder, refuse_inputs, unit_history,
-    write_whole,
+    Calibrated, Date, Depth, Error, UnitHistoryRequest, by_unit, claim_folder, create_folder, refuse_inputs,
+    unit_history, write_whole,
 };
 
-use super::choice::{Choice, by_unit};
+use super::choice::Choice;
 use crate::command::compensate::acceleration;
 use crate::outcome::Outcome;
 use crate::printing::Printing;

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::units_history_text;
 use centrical_session::{
-    CalibrationResult, Depth, Error, Laboratory, Limited, ParameterLimits, UnitsHistoryRequest, read_batches,
+    CalibrationResult, Depth, Error, Laboratory, Limited, ParameterLimits, UnitsHistoryRequest, by_unit, read_batches,
     units_history,
 };
 
-use super::choice::{Choice, by_unit};
+use super::choice::Choice;
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::document::json;
 use crate::document::result::Program;
 use crate::error::Error;
-use crate::laboratory::Date;
+use crate::quantity::Date;
 
 /// Name of the schema's present version.
 pub const UNIT_HISTORY_SCHEMA: &str = "centrical-unit-history/1";

@@ -9,7 +9,7 @@ use centrical_compensate::Term;
 use nalgebra::{DMatrix, DVector};
 
 use crate::document::TermSummary;
-use crate::laboratory::Date;
+use crate::quantity::Date;
 use crate::store::{Row, SharedInfluence};
 
 /// One calibration.

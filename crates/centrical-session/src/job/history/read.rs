@@ -1,6 +1,6 @@
 //! Calibrations from results, folders of results, and stores.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +29,16 @@ pub fn read_calibrations(paths: &[PathBuf], selection: &Selection) -> Result<Vec
         a.date.cmp(&b.date).then_with(|| a.unit().cmp(&b.unit())).then_with(|| a.source.cmp(&b.source))
     });
     Ok(calibrations)
+}
+
+/// The calibrations unit by unit, each in the order of time.
+pub fn by_unit(calibrations: Vec<Calibrated>) -> Vec<Vec<Calibrated>> {
+    let mut units: BTreeMap<(String, String), Vec<Calibrated>> = BTreeMap::new();
+    for calibrated in calibrations {
+        let (model, serial) = calibrated.unit();
+        units.entry((model.to_owned(), serial.to_owned())).or_default().push(calibrated);
+    }
+    units.into_values().collect()
 }
 
 struct Found<'a> {

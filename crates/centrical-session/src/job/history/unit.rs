@@ -10,7 +10,7 @@ use crate::document::{
     DueDate, PastSession, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
     UnitParameter,
 };
-use crate::laboratory::Date;
+use crate::quantity::Date;
 
 /// What is asked of a unit's history.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,0 +1,147 @@
+//! `history unit | units | station | chart | page` on a plant whose faults are known.
+
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::program::centrical;
+use crate::random::Random;
+use crate::session::example;
+
+const UNITS: usize = 14;
+const SESSIONS: usize = 4;
+
+/// Calibrations of fourteen units in four years, results of the example with other values: a bias of unit 3 drifts, a scale of unit 7 is
+/// off, and the tilt of the machine grows. Returns their folder.
+fn plant() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let made = run(folder.path(), &["calibrate", example().to_str().unwrap(), "--out", "first", "-q"]);
+    assert!(made.status.success(), "{made:?}");
+    let first: Value = serde_json::from_slice(&fs::read(folder.path().join("first/result.json")).unwrap()).unwrap();
+    fs::remove_dir_all(folder.path().join("first")).unwrap();
+    let mut random = Random::new(6);
+    for unit in 0..UNITS {
+        let own: Vec<f64> = (0..49).map(|_| 20.0 * random.normal()).collect();
+        for session in 0..SESSIONS {
+            let mut result = first.clone();
+            for (place, parameter) in result["parameters"].as_array_mut().unwrap().iter_mut().enumerate() {
+                let name = parameter["name"].as_str().unwrap().to_owned();
+                let u = parameter["standard_uncertainty"].as_f64().unwrap();
+                let years = session as f64 + unit as f64 / 20.0;
+                let planted = match (name.as_str(), unit) {
+                    ("df_1", 3) => 40.0 * years,
+                    ("G0_11", 7) => 400.0,
+                    ("alpha_1", _) => 3.0 * years,
+                    _ => 0.0,
+                };
+                let of_unit = if place >= 28 { own[place] } else { 0.0 };
+                let value = parameter["value"].as_f64().unwrap() + u * (of_unit + planted + 0.5 * random.normal());
+                parameter["value"] = json!(value);
+            }
+            result["session"]["unit_serial"] = json!(format!("{unit:04}"));
+            result["session"]["date"] = json!(format!("{}-03-{:02}", 2021 + session, 1 + unit));
+            let place = folder.path().join(format!("plant/{unit:04}/{session}"));
+            fs::create_dir_all(&place).unwrap();
+            fs::write(place.join("result.json"), result.to_string()).unwrap();
+        }
+    }
+    assert!(run(folder.path(), &["history", "add", "store", "plant"]).status.success());
+    folder
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    centrical().args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// The document of a subcommand, and its exit code.
+fn history(folder: &Path, arguments: &[&str]) -> (Value, i32) {
+    let output = run(folder, &[&["history"], arguments, &["--json"]].concat());
+    let document = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
+    (document, output.status.code().unwrap())
+}
+
+fn names<'a>(rows: &'a Value, mark: &str) -> Vec<&'a str> {
+    let marked = rows.as_array().unwrap().iter().filter(|row| row[mark] == true);
+    marked.map(|row| row["name"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn planted_faults_are_found_and_nothing_else() {
+    let folder = plant();
+    let folder = folder.path();
+
+    let (units, code) = history(folder, &["units", "store"]);
+    assert_eq!((units["units"].as_u64(), units["sessions"].as_u64(), code), (Some(14), Some(56), 1));
+    let outlying: Vec<&Value> = units["outlying"].as_array().unwrap().iter().map(|unit| &unit["unit_serial"]).collect();
+    assert!(outlying.contains(&&json!("0007")) && outlying.iter().all(|s| [json!("0007"), json!("0003")].contains(s)));
+    let findings = units["findings"].as_array().unwrap();
+    assert!(findings.iter().all(|f| f["unit_serial"] == "0003" && f["parameter"] == "df_1"), "{findings:?}");
+    assert!(findings.iter().any(|f| f["kind"] == "drifts"));
+
+    let (station, code) = history(folder, &["station", "store"]);
+    assert_eq!((names(&station["parameters"], "changes"), code), (vec!["alpha_1"], 1));
+
+    // The same from the results themselves.
+    let (unit, code) = history(folder, &["unit", "plant", "--serial", "0003", "--limit", "100000 ug"]);
+    assert_eq!((names(&unit["parameters"], "drifts"), code), (vec!["df_1"], 0));
+    let (stored, _) = history(folder, &["unit", "store", "--serial", "0003", "--limit", "100000 ug"]);
+    assert_eq!(stored["parameters"], unit["parameters"]);
+    let slope = unit["parameters"].as_array().unwrap().iter().find(|p| p["name"] == "df_1").unwrap();
+    let [low, high] = [0, 1].map(|end| slope["slope_interval"][end].as_f64().unwrap());
+    let u = slope["standard_uncertainties"][0].as_f64().unwrap();
+    assert!(low < 40.0 * u && 40.0 * u < high, "{slope}");
+    let (overdue, code) = history(folder, &["unit", "store", "--serial", "0003", "--limit", "1 ug", "--together"]);
+    assert_eq!((overdue["is_within"].as_bool(), overdue["units_together"].as_u64(), code), (Some(false), Some(14), 1));
+
+    let (chart, code) = history(folder, &["chart", "alpha_1", "store", "--out", "charts"]);
+    assert!(code == 1 && chart["signals"].as_array().unwrap().iter().any(|s| s["rule"] == "cusum"), "{code}");
+    let (calm, code) = history(folder, &["chart", "alpha_2", "store", "--centre", "0", "--deviation", "1"]);
+    assert!(code == 1 && calm["signals"].as_array().unwrap().iter().all(|s| s["rule"] == "nelson-7"));
+    for name in ["individuals", "moving-ranges", "ewma", "cusum"] {
+        assert!(fs::read_to_string(folder.join(format!("charts/{name}.svg"))).unwrap().starts_with("<svg"));
+    }
+}
+
+#[test]
+fn pages_name_every_calibration_and_no_name_becomes_markup() {
+    let folder = plant();
+    let folder = folder.path();
+    let file = folder.join("plant/0000/0/result.json");
+    let mut result: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    result["session"]["unit_serial"] = json!("<script>alert(1)</script>");
+    fs::write(&file, result.to_string()).unwrap();
+    assert!(run(folder, &["history", "add", "store", file.to_str().unwrap()]).status.success());
+    let made = run(folder, &["history", "page", "store", "--out", "pages", "--limit", "3000 ug"]);
+    assert!(made.status.success(), "{made:?}");
+    let index = fs::read_to_string(folder.join("pages/index.html")).unwrap();
+    assert_eq!(index.matches("<tr><td>").count(), UNITS * SESSIONS + 1);
+    assert!(!index.contains("<script>alert") && index.contains("&lt;script&gt;alert"));
+    assert_eq!(fs::read_dir(folder.join("pages")).unwrap().count(), 2 + UNITS);
+    let unit = fs::read_to_string(folder.join("pages/unit-4.html")).unwrap();
+    assert!(
+        unit.contains("serial 0003") && unit.contains("DRIFTS") && unit.matches("<svg").count() > 20,
+        "{}",
+        &unit[..600]
+    );
+}
+
+#[test]
+fn wrong_requests_say_what_was_expected() {
+    let folder = plant();
+    let said = |arguments: &[&str]| {
+        let output = run(folder.path(), &[&["history"], arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    assert!(said(&["unit", "store"]).contains("14 units"));
+    assert!(said(&["unit", "store", "--serial", "none"]).contains("no such calibration"));
+    assert!(said(&["unit", "store", "--serial", "0001", "--confidence", "1.5"]).contains("between 0.5 and 1"));
+    assert!(said(&["chart", "beta", "store"]).contains("no session that determines beta"));
+    assert!(said(&["chart", "df_1", "store", "--accepted", "500"]).contains("56 acceptable sessions"));
+    assert!(said(&["station", "nowhere"]).contains("nowhere"));
+    fs::write(folder.path().join("batches.csv"), "serial,batch\n0001,A,7\n").unwrap();
+    assert!(said(&["units", "store", "--batches", "batches.csv"]).contains("batches.csv, line 2"));
+}
