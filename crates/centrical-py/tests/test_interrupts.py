@@ -153,7 +153,7 @@ def test_noise_of_a_long_record(long_record):
 
 
 def test_watch(example, tmp_path):
-    with ct.watch(example, tmp_path, interval=60.0, quiet=3600.0) as watched:
+    with ct.watch(example, tmp_path, interval=60.0, quiet=1e8) as watched:
         assert interrupted(lambda: list(watched), 1.5) < AT_MOST
     # It goes on from its state.
     with ct.watch(example, tmp_path, once=True, quiet=0.0) as watched:
