@@ -153,10 +153,12 @@ def test_noise_of_a_long_record(long_record):
 
 
 def test_watch(example, tmp_path):
-    with ct.watch(example, tmp_path, interval=60.0, quiet=1e8) as watched:
+    # Files of today: old ones are complete, and the watch ends.
+    session = shutil.copytree(example, tmp_path / "session", copy_function=shutil.copyfile)
+    with ct.watch(session, tmp_path / "out", interval=60.0, quiet=3600.0) as watched:
         assert interrupted(lambda: list(watched), 1.5) < AT_MOST
     # It goes on from its state.
-    with ct.watch(example, tmp_path, once=True, quiet=0.0) as watched:
+    with ct.watch(session, tmp_path / "out", once=True, quiet=0.0) as watched:
         list(watched)
     assert watched.result.acceptable
 
