@@ -20,6 +20,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         result: folder.join("result.json"),
         html: Some(folder.join("report.html")),
         history: None,
+        past: Vec::new(),
         pdf: Some(folder.join("certificate.pdf")),
         before: None,
         dcc: Some(folder.join("certificate.xml")),

@@ -1,16 +1,16 @@
 # %% [markdown]
 # # From raw files to a certificate
-# A folder of records and telemetry becomes a calibrated unit, a certificate, and compensated readings.
+# A folder of records and telemetry becomes a calibrated unit, a certificate, and compensated readings. The paths are from the
+# root of the repository.
 
 # %%
-import sys
 from pathlib import Path
 
 import centrical as ct
 import numpy as np
 
-example = Path(__file__).resolve().parents[1] / "ta-200"
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "certificates")
+example = Path("examples/ta-200")
+out = Path("certificates")
 out.mkdir(exist_ok=True)
 
 # %% [markdown]

@@ -18,4 +18,6 @@ pub mod report;
 pub mod schema;
 pub mod series;
 pub mod simulate;
+#[cfg(feature = "serve")]
+pub mod view;
 pub mod watch;

@@ -9,7 +9,7 @@ pub const GROUPS: [(&str, &[&str]); 5] = [
     ("Prepare", &["init", "schema", "observe", "plan", "simulate"]),
     ("Measure", &["watch", "reduce", "noise"]),
     ("Calibrate", &["calibrate", "series", "history", "models", "assess", "montecarlo", "compare"]),
-    ("Use", &["report", "compensate"]),
+    ("Use", &["report", "view", "compensate"]),
     ("This program", &["completions", "man"]),
 ];
 

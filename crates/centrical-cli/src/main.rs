@@ -2,6 +2,7 @@
 //!
 //! From arguments to one job to an exit code: 0 done, 1 done but the result is not acceptable, 2 bad input or usage.
 
+mod alarm;
 mod command;
 mod format;
 mod help;
@@ -10,6 +11,8 @@ mod outcome;
 mod output;
 mod printing;
 mod progress;
+#[cfg(feature = "serve")]
+mod serving;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -50,6 +53,8 @@ enum Command {
     Observe(command::observe::Arguments),
     Plan(command::plan::Arguments),
     Watch(command::watch::Arguments),
+    #[cfg(feature = "serve")]
+    View(command::view::Arguments),
     Schema(command::schema::Arguments),
     Completions(command::completions::Arguments),
     Man(command::man::Arguments),
@@ -96,6 +101,8 @@ fn run(command: Command) -> Result<Outcome, Error> {
         Command::Observe(arguments) => command::observe::run(&arguments),
         Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Watch(arguments) => command::watch::run(&arguments),
+        #[cfg(feature = "serve")]
+        Command::View(arguments) => command::view::run(&arguments),
         Command::Schema(arguments) => command::schema::run(&arguments),
         Command::Completions(arguments) => command::completions::run(&arguments, &mut Arguments::command()),
         Command::Man(arguments) => command::man::run(&arguments, Arguments::command()),
@@ -109,9 +116,9 @@ mod tests {
     use super::*;
 
     /// Commands without JSON: what they make is read by a shell and by `man`; the subcommands of `history` have their own.
-    const WITHOUT_JSON: [&str; 3] = ["completions", "history", "man"];
+    const WITHOUT_JSON: [&str; 4] = ["completions", "history", "man", "view"];
     /// Commands without `-q`: `watch` has another `--quiet`, `completions` prints no more than was asked for.
-    const WITHOUT_QUIET: [&str; 3] = ["completions", "history", "watch"];
+    const WITHOUT_QUIET: [&str; 4] = ["completions", "history", "view", "watch"];
 
     fn commands() -> Vec<clap::Command> {
         Arguments::command().get_subcommands().cloned().collect()

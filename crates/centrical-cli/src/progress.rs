@@ -46,6 +46,16 @@ pub fn sessions(count: usize, quiet: bool) -> ProgressBar {
     bar
 }
 
+/// A count of results on standard error: how many there are shows as folders are read.
+pub fn results(quiet: bool) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(None, target);
+    if let Ok(style) = ProgressStyle::with_template("reading {pos} results, {elapsed}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
 /// Moves a bar by what was done.
 pub fn on(bar: &ProgressBar) -> impl Fn(u64) -> ControlFlow<()> + Sync {
     |done| {

@@ -34,7 +34,7 @@ pub mod _native {
     #[pymodule_export]
     pub use crate::jobs::compensate::compensate;
     #[pymodule_export]
-    pub use crate::jobs::history::{add_to_store, history};
+    pub use crate::jobs::history::{add_failure, add_to_store, history};
     #[pymodule_export]
     pub use crate::jobs::in_memory::{calibrate_arrays, plateau_columns};
     #[pymodule_export]

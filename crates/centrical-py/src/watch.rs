@@ -62,7 +62,10 @@ impl Watcher {
             groups: targets,
             interval: seconds("interval", interval)?,
             quiet: seconds("quiet", quiet)?,
+            // As the command's.
+            frozen: Duration::from_secs(10),
             once,
+            live: None,
         };
         let (sender, events) = channel();
         let stop = Arc::new(AtomicBool::new(false));
@@ -183,6 +186,9 @@ fn follow(
 fn message(event: &WatchEvent) -> Result<Option<Event>, Error> {
     match event {
         WatchEvent::Waiting(note) => Ok(Some(Event::Waiting((*note).to_owned()))),
+        WatchEvent::Frozen { file, age } => {
+            Ok(Some(Event::Waiting(format!("no new sample in {} for {:.0} s", file.display(), age.as_secs_f64()))))
+        }
         WatchEvent::Plateau(progress) => {
             let last = progress.plateaus.last();
             let entry = last.map(|last| last.entry(progress.plateaus.len(), progress.model, &progress.now));

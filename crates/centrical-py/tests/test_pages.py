@@ -4,6 +4,7 @@ import doctest
 import importlib
 import pkgutil
 import re
+import shutil
 import subprocess
 import sys
 
@@ -16,6 +17,8 @@ MODULES = ["centrical", *(f"centrical.{module.name}" for module in pkgutil.iter_
 
 @pytest.mark.parametrize("name", MODULES)
 def test_examples_in_docstrings(name, example, tmp_path):
+    if name == "centrical.fleet":
+        pytest.importorskip("obstore")
     module = importlib.import_module(name)
     names = {"ct": ct, "np": np, "example": example, "folder": tmp_path}
     outcome = doctest.testmod(module, extraglobs=names, optionflags=doctest.ELLIPSIS)
@@ -41,11 +44,35 @@ def test_examples_of_the_page(root, tmp_path, monkeypatch):
         exec(compile(block, "docs/python.md", "exec"), names)
 
 
-def test_the_example_runs(root, tmp_path):
-    script = root / "examples/06_python/calibrate.py"
-    done = subprocess.run([sys.executable, script, tmp_path], capture_output=True, text=True, cwd=root)
+@pytest.fixture
+def repository(root, tmp_path):
+    """A folder with the script of the example and its session where they are in the repository."""
+    for name in ("06_python", "ta-200"):
+        shutil.copytree(root / "examples" / name, tmp_path / "examples" / name)
+    return tmp_path
+
+
+def test_the_example_runs(repository):
+    script = repository / "examples/06_python/calibrate.py"
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, cwd=repository)
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "certificate.pdf").read_bytes().startswith(b"%PDF")
+    assert (repository / "certificates/certificate.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_the_example_runs_as_a_notebook(repository):
+    jupytext = pytest.importorskip("jupytext")
+    nbclient = pytest.importorskip("nbclient")
+    pytest.importorskip("ipykernel")
+    notebook = jupytext.read(repository / "examples/06_python/calibrate.py")
+    client = nbclient.NotebookClient(
+        notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(repository)}}
+    )
+    client.execute()
+    shown = [output for cell in notebook.cells for output in cell.get("outputs", ())]
+    assert not [output for output in shown if output.output_type == "error"]
+    pages = [output.data["text/html"] for output in shown if "text/html" in output.get("data", {})]
+    assert any("<svg" in page and "G1_11" in page for page in pages)
+    assert (repository / "certificates/certificate.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_types(root):

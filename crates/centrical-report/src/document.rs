@@ -8,6 +8,7 @@ mod objection;
 mod reading_error;
 mod report;
 mod rests_on;
+mod switch_on;
 mod symbols;
 mod tables;
 
@@ -20,3 +21,4 @@ pub use self::content::{
 pub(crate) use self::objection::{objection, rival};
 pub use self::report::report;
 pub(crate) use self::rests_on::{counts_as_exact, rests_on_sentence};
+pub(crate) use self::switch_on::switch_on_sentence;

@@ -2,6 +2,7 @@
 
 mod english;
 mod english_words;
+mod live;
 mod messages;
 mod russian;
 mod russian_words;
@@ -10,6 +11,8 @@ mod speeds;
 use centrical_session::{Date, Symbol};
 
 use self::english::ENGLISH;
+pub(crate) use self::live::LiveMessages;
+use self::live::{IN_ENGLISH, IN_RUSSIAN};
 pub(crate) use self::messages::Messages;
 use self::russian::RUSSIAN;
 use crate::number::{power_of_ten, scientific, shortest, significant, superscript, unsigned_zero, with_uncertainty};
@@ -38,6 +41,14 @@ impl Language {
         match self {
             Self::English => &ENGLISH,
             Self::Russian => &RUSSIAN,
+        }
+    }
+
+    /// What the live page says.
+    pub(crate) fn live(self) -> &'static LiveMessages {
+        match self {
+            Self::English => &IN_ENGLISH,
+            Self::Russian => &IN_RUSSIAN,
         }
     }
 

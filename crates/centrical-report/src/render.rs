@@ -3,8 +3,12 @@
 
 mod history;
 mod html;
+mod live;
 mod pdf;
+mod results;
 
 pub use self::history::{HistoryPages, history_index, history_station_page, history_unit_page};
 pub use self::html::html;
+pub use self::live::{LIVE_SCRIPT, LIVE_STYLE, live_page, live_panel};
 pub use self::pdf::pdf;
+pub use self::results::{ListedResult, compared_page, results_page};

@@ -1,5 +1,6 @@
 //! The documents that the program writes, one schema a file.
 
+mod added;
 mod assessment;
 mod compact;
 mod comparison;
@@ -24,6 +25,7 @@ mod truth;
 mod watch;
 mod words;
 
+pub use self::added::{ADDED_SCHEMA, AddedReport};
 pub(crate) use self::assessment::Assessed;
 pub use self::assessment::{
     ASSESSMENT_SCHEMA, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport, CompensatedUncertainty,
@@ -70,6 +72,7 @@ pub use self::steadiness::{
 };
 pub(crate) use self::truth::{Written, truth_json};
 pub use self::watch::{
-    HistoryEntry, HistoryEstimate, InnovationSummary, WatchState, WatchedPlateau, append_history, keep_history,
-    read_history,
+    GroupProgress, HistoryEntry, HistoryEstimate, InnovationSummary, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost,
+    LivePlateau, LiveRecord, LiveReport, LiveSpeed, LiveStatus, PlateauLabel, WatchState, WatchedPlateau,
+    append_history, keep_history, read_history, seconds_since_1970,
 };

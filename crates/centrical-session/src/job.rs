@@ -24,9 +24,10 @@ pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
 pub use self::history::{
     Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
-    UnitsHistoryRequest, by_unit, chart, read_batches, read_calibrations, station_history, unit_history, units_history,
+    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, station_history, unit_history,
+    units_history,
 };
-pub use self::history::{add_result, add_results, list_store};
+pub use self::history::{add_result, add_results, collect_results, list_store};
 pub use self::init::{Draft, FillIn, InitRequest, init};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
@@ -38,4 +39,4 @@ pub use self::reduced_session::write_reduced;
 pub use self::series::{SeriesRequest, calibrate_series};
 pub use self::settings_schema::{SettingsForm, settings_schema};
 pub use self::simulate::simulate_session;
-pub use self::watch::{Following, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest};
+pub use self::watch::{Following, LiveRequest, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest};

@@ -39,14 +39,14 @@ pub use centrical_table::{
     read_bytes, refuse_inputs, write_whole,
 };
 pub use document::{
-    ASSESSMENT_SCHEMA, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport, COMPARISON_SCHEMA,
-    COMPENSATION_SCHEMA, CandidateSummary, ComparedResultSummary, ComparisonReport, CompensatedUncertainty,
-    CompensationReport, DOCUMENTS_SCHEMA, DRAFT_SCHEMA, DifferenceSummary, DocumentKind, DocumentsReport, DraftReport,
-    FirstReading, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList, ImprovementSummary, LeftOutPlateau, LineToFillIn,
-    MODELS_SCHEMA, MONTE_CARLO_SCHEMA, ModelsReport, MonteCarloReport, NestedTestSummary, ObjectionName,
-    PairComparison, REDUCTION_SCHEMA, ReadingsBeyond, ReducedPlateauSummary, ReductionReport, RepeatedFit,
-    RepeatedParameter, SERIES_SCHEMA, SIMULATION_SCHEMA, SeriesSummary, SimulationReport, SquareSummary, TermSupport,
-    WithoutOutliers, WrittenDocument,
+    ADDED_SCHEMA, ASSESSMENT_SCHEMA, AddedReport, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport,
+    COMPARISON_SCHEMA, COMPENSATION_SCHEMA, CandidateSummary, ComparedResultSummary, ComparisonReport,
+    CompensatedUncertainty, CompensationReport, DOCUMENTS_SCHEMA, DRAFT_SCHEMA, DifferenceSummary, DocumentKind,
+    DocumentsReport, DraftReport, FirstReading, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList, ImprovementSummary,
+    LeftOutPlateau, LineToFillIn, MODELS_SCHEMA, MONTE_CARLO_SCHEMA, ModelsReport, MonteCarloReport, NestedTestSummary,
+    ObjectionName, PairComparison, REDUCTION_SCHEMA, ReadingsBeyond, ReducedPlateauSummary, ReductionReport,
+    RepeatedFit, RepeatedParameter, SERIES_SCHEMA, SIMULATION_SCHEMA, SeriesSummary, SimulationReport, SquareSummary,
+    TermSupport, WithoutOutliers, WrittenDocument,
 };
 pub use document::{
     BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
@@ -65,6 +65,10 @@ pub use document::{
     STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA,
     UNITS_HISTORY_SCHEMA, UnitFinding, UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter,
 };
+pub use document::{
+    GroupProgress, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed,
+    LiveStatus, PlateauLabel, seconds_since_1970,
+};
 pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
     ExpectedValues, Measured, MountingFiles, OutputUnit, Plan, Planning, PlateauMean, PlateauName, PlateauTable,
@@ -72,15 +76,17 @@ pub use experiment::{
 };
 pub use job::{
     Assessment, AssessmentRequest, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn, FirstOutside,
-    Following, InitRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem, Recorded, Series,
-    SeriesRequest, SettingsForm, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest,
-    add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series, calibrate_without,
-    compare_results, compensate, compensate_record, init, list_store, noise_of, plan, read_plan, read_planning, reduce,
-    reduce_recorded, reduce_without_inputs, select_model, settings_schema, simulate_session, subject, write_reduced,
+    Following, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem,
+    Recorded, Series, SeriesRequest, SettingsForm, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd, WatchEvent,
+    WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced, calibrate_series,
+    calibrate_without, collect_results, compare_results, compensate, compensate_record, init, list_store, noise_of,
+    plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs, select_model, settings_schema,
+    simulate_session, subject, write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
-    UnitsHistoryRequest, by_unit, chart, read_batches, read_calibrations, station_history, unit_history, units_history,
+    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, station_history, unit_history,
+    units_history,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Decision, DecisionRule, Environment, Item, Laboratory,

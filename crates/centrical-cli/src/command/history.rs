@@ -3,6 +3,7 @@
 mod add;
 mod chart;
 mod choice;
+mod files;
 mod list;
 mod page;
 mod station;

@@ -27,6 +27,10 @@ pub struct Arguments {
     /// Add a plot of the uncertainties during the session to the report, from the watch-history.jsonl of `watch`
     #[arg(long, value_name = "FILE", requires = "html")]
     history: Option<PathBuf>,
+    /// Earlier calibrations of the unit: results, folders of results, or a store. What they say of a reading after a switch-on
+    /// stands in the report and in the certificates
+    #[arg(long, value_name = "STORE|RESULT|FOLDER", num_args = 1..)]
+    past: Vec<PathBuf>,
     /// Write the calibration certificate (ISO/IEC 17025) to this file
     #[arg(long, value_name = "FILE", requires = "laboratory")]
     pdf: Option<PathBuf>,
@@ -85,6 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         result: arguments.result.clone(),
         html: arguments.html.clone(),
         history: arguments.history.clone(),
+        past: arguments.past.clone(),
         pdf: arguments.pdf.clone(),
         before: arguments.before.clone(),
         dcc: arguments.dcc.clone(),

@@ -9,6 +9,7 @@ use centrical_session::{Error, Method, SeriesRequest, SeriesSummary, calibrate_s
 use crate::interruption::asked_to_end;
 use crate::outcome::Outcome;
 use crate::output::print;
+use crate::printing::Printing;
 use crate::progress;
 
 /// Calibrate many sessions, one on each core, into a store and a table.
@@ -27,18 +28,17 @@ pub struct Arguments {
     /// Keep the rows alone, about 11 kB each, without result.json
     #[arg(long)]
     rows_only: bool,
+    /// Keep each session reduced, some kB: a later model is fitted to it without the records
+    #[arg(long)]
+    reduced: bool,
     /// How a fit is computed
     #[arg(long, value_enum, default_value_t = SeriesMethod::Batch)]
     method: SeriesMethod,
     /// Sessions at a time [default: one a core]
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
-    /// Print the counts as JSON
-    #[arg(short, long)]
-    json: bool,
-    /// Print nothing, and no progress; messages of errors and the exit code stay
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    printing: Printing,
 }
 
 /// How a fit is computed.
@@ -63,15 +63,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         },
         jobs: arguments.jobs,
         rows_only: arguments.rows_only,
+        reduced: arguments.reduced,
     };
-    let bar = progress::sessions(arguments.sessions.len(), arguments.quiet);
+    let bar = progress::sessions(arguments.sessions.len(), arguments.printing.quiet);
     let asked = asked_to_end();
     let summary = calibrate_series(&arguments.sessions, &request, &|count| {
         bar.inc(count as u64);
         if asked.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     bar.finish_and_clear();
-    match (arguments.json, arguments.quiet) {
+    match (arguments.printing.json, arguments.printing.quiet) {
         (true, _) => print(&summary.to_json()?)?,
         (false, false) => print(&text(&summary, arguments))?,
         (false, true) => {}

@@ -9,9 +9,17 @@ use centrical_session::{
     Error, Following, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder, refuse_inputs,
 };
 
+#[cfg(feature = "serve")]
+use centrical_live::Watched;
+#[cfg(feature = "serve")]
+use centrical_session::LiveRequest;
+
+use crate::alarm::{Alarm, frozen_text};
 use crate::interruption::asked_to_end;
 use crate::outcome::Outcome;
 use crate::output::{print, print_as_it_is, remark, say, show as show_screen};
+#[cfg(feature = "serve")]
+use crate::serving::{Serving, remain, serve};
 
 /// Monitor a session folder while the laboratory is still adding records: after each plateau the uncertainties and the
 /// benefit of the next; the calibration when the schedule is complete. After Ctrl-C it resumes when started again.
@@ -41,9 +49,18 @@ pub struct Arguments {
     /// Seconds without change after which a record counts as finished; this is not the --quiet of other commands, and has no -q
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
     quiet: f64,
+    /// Seconds without a sample after which a record counts as frozen in the midst of its schedule
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds)]
+    frozen: f64,
     /// Process what is present and exit
     #[arg(long)]
     once: bool,
+    /// Run a command of the shell when a plateau does not fit or a record is frozen; CENTRICAL_ALARM and CENTRICAL_MESSAGE say which
+    #[arg(long, value_name = "COMMAND")]
+    on_alarm: Option<String>,
+    #[cfg(feature = "serve")]
+    #[command(flatten)]
+    serving: Serving,
     /// Print a line of JSON per plateau instead of the table, as in watch-history.jsonl, and nothing else
     #[arg(short, long)]
     json: bool,
@@ -52,8 +69,14 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
+    #[cfg(feature = "serve")]
+    let mut server = arguments.serving.bind()?;
+    #[cfg(feature = "serve")]
+    let live = server.as_ref().map(|_| LiveRequest { targets: arguments.target.clone() });
+    #[cfg(not(feature = "serve"))]
+    let live = None;
     let _claim = claim_folder(&arguments.out)?;
-    let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "result.json"];
+    let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "watch-live.json", "result.json"];
     refuse_inputs(&outputs.map(|name| arguments.out.join(name)), &session.files())?;
     let model = session.model()?;
     let request = WatchRequest {
@@ -64,13 +87,19 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         groups: arguments.target.iter().map(|(group, _)| group.clone()).collect(),
         interval: Duration::from_secs_f64(arguments.interval),
         quiet: Duration::from_secs_f64(arguments.quiet),
+        frozen: Duration::from_secs_f64(arguments.frozen),
         once: arguments.once,
+        live,
     };
     let mut following = Following::resume(&request, &session, &model)?;
     let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
     remark(&states_text(&model, &order));
+    let alarm = Alarm::new(arguments.on_alarm.as_deref(), &session.file);
+    #[cfg(feature = "serve")]
+    let url = server.take().map(|server| serve(server, Watched::new(&arguments.out))).transpose()?;
     let mut shown = Ok(());
     let end = following.run(asked_to_end(), &mut |event| {
+        alarm.hear(&event);
         let outcome = if arguments.json { show_line(&event) } else { show(&event, &arguments.target) };
         if shown.is_ok() {
             shown = outcome;
@@ -99,6 +128,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             if !arguments.json {
                 show_screen(&screen)?;
             }
+            #[cfg(feature = "serve")]
+            if let Some(url) = url {
+                remain(&url);
+            }
             Ok(Outcome::acceptable(objections.is_empty()))
         }
     }
@@ -108,6 +141,10 @@ fn show(event: &WatchEvent, targets: &[(String, f64)]) -> Result<(), Error> {
     match event {
         WatchEvent::Waiting(note) => {
             say(&format!("{note}\n"));
+            Ok(())
+        }
+        WatchEvent::Frozen { file, age } => {
+            say(&format!("{}\n", frozen_text(file, *age)));
             Ok(())
         }
         WatchEvent::Plateau(progress) => {
@@ -128,6 +165,10 @@ fn show_line(event: &WatchEvent) -> Result<(), Error> {
     match event {
         WatchEvent::Waiting(note) => {
             say(&format!("{note}\n"));
+            Ok(())
+        }
+        WatchEvent::Frozen { file, age } => {
+            say(&format!("{}\n", frozen_text(file, *age)));
             Ok(())
         }
         WatchEvent::Plateau(progress) => {

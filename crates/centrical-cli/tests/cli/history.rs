@@ -1,22 +1,24 @@
 //! Stores of calibrations, and series of sessions: nothing is lost by a kill, and a session that fails ends nothing.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 use std::thread;
 use std::time::Duration;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::program::centrical;
+use crate::random::Random;
 use crate::session::example;
 
 fn run(folder: &Path, arguments: &[&str]) -> Output {
     centrical().args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// A folder with `count` averaged sessions of units of their own, the last of which is no session.
+/// A folder with `count` averaged sessions of units of their own; the last folder holds no session.
 fn sessions(count: usize) -> (TempDir, Vec<String>) {
     let folder = TempDir::new().unwrap();
     let example = example();
@@ -64,6 +66,9 @@ fn a_result_is_added_once_and_listed() {
     let copy = folder.path().join("store/results").join(format!("{}.json", listed[0]["key"].as_str().unwrap()));
     assert_eq!(fs::read(copy).unwrap(), fs::read(folder.path().join("a/result.json")).unwrap());
     assert_eq!(listed[0]["acceptable"], true);
+    let again = run(folder.path(), &["history", "add", "store", "a", "--json"]);
+    let again: Value = serde_json::from_slice(&again.stdout).unwrap();
+    assert_eq!((&again["schema"], &again["new"], &again["known"]), (&json!("centrical-added/1"), &json!(0), &json!(1)));
     let none = run(folder.path(), &["history", "list", "nowhere"]);
     assert_eq!(none.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&none.stderr).contains("nowhere: found no such folder, expected a store"));
@@ -103,4 +108,60 @@ fn a_series_gives_the_table_of_its_sessions_also_after_a_kill() {
     assert_eq!(said["known"], 7);
     assert!(tables("killed") == tables("whole"));
     assert_eq!(list(folder.path(), &["killed"]).len(), 8);
+}
+
+/// Sixteen processes add results to one store, and each is killed after a few milliseconds, whatever it does. What was added stays whole, and
+/// the same commands once more leave every result once.
+#[test]
+fn sixteen_killed_writers_lose_nothing_and_add_nothing_twice() {
+    const WRITERS: usize = 16;
+    const EACH: usize = 4;
+    let folder = TempDir::new().unwrap();
+    let made = run(folder.path(), &["calibrate", example().to_str().unwrap(), "--out", "first", "-q"]);
+    assert!(made.status.success(), "{made:?}");
+    let first = fs::read_to_string(folder.path().join("first/result.json")).unwrap();
+    let writers: Vec<String> = (0..WRITERS).map(|writer| format!("w{writer:02}")).collect();
+    for (writer, name) in writers.iter().enumerate() {
+        for n in 0..EACH {
+            let place = folder.path().join(name).join(n.to_string());
+            fs::create_dir_all(&place).unwrap();
+            // Each writer shares its last result with the next one.
+            let number = (writer * (EACH - 1) + n) % (WRITERS * (EACH - 1));
+            let text = first.replace("\"unit_serial\": \"0001\"", &format!("\"unit_serial\": \"unit-{number}\""));
+            assert_ne!(text, first);
+            fs::write(place.join("result.json"), text).unwrap();
+        }
+    }
+    let add = |name: &String| {
+        let mut command = centrical();
+        command.args(["history", "add", "store", name, "-q"]).current_dir(folder.path());
+        command
+    };
+    let mut random = Random::new(7);
+    let mut before = 0;
+    for _ in 0..3 {
+        let mut running: Vec<_> = writers.iter().map(|name| add(name).spawn().unwrap()).collect();
+        for child in &mut running {
+            thread::sleep(Duration::from_secs_f64(0.04 * random.normal().abs()));
+            // It may have ended.
+            let _ = child.kill();
+            child.wait().unwrap();
+        }
+        if folder.path().join("store").exists() {
+            let count = list(folder.path(), &["store"]).len();
+            assert!(count >= before, "{count} after {before}");
+            before = count;
+        }
+    }
+    let mut running: Vec<_> = writers.iter().map(|name| add(name).spawn().unwrap()).collect();
+    for child in &mut running {
+        assert!(child.wait().unwrap().success());
+    }
+    let listed = list(folder.path(), &["store"]);
+    let serials: BTreeSet<&str> = listed.iter().map(|c| c["unit_serial"].as_str().unwrap()).collect();
+    assert_eq!((listed.len(), serials.len()), (WRITERS * (EACH - 1), WRITERS * (EACH - 1)));
+    for calibration in &listed {
+        let copy = format!("store/results/{}.json", calibration["key"].as_str().unwrap());
+        assert!(fs::read(folder.path().join(copy)).unwrap().len() > first.len() / 2);
+    }
 }

@@ -7,6 +7,8 @@ mod init;
 mod json;
 #[cfg(unix)]
 mod killed;
+#[cfg(all(unix, feature = "serve"))]
+mod live;
 mod noise;
 mod observe;
 mod plan;
@@ -18,6 +20,9 @@ mod random;
 mod reduce;
 mod refusal;
 mod report;
+#[cfg(all(unix, feature = "serve"))]
+#[path = "../common/served.rs"]
+mod served;
 mod session;
 mod simulate;
 mod speeds;

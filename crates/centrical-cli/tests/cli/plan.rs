@@ -79,6 +79,18 @@ fn a_plan_for_little_time() {
     assert!(0.0 < number("bound") && number("bound") <= number("value"), "{} {}", number("bound"), number("value"));
 }
 
+/// A time on the command line stands for the one in the plan.
+#[test]
+fn a_time_beside_the_plan() {
+    let copy = Copy::new();
+    let stated = json(&copy, &["plan", &small(&copy, "time = \"8 h\"", "time = \"2 h\""), "--json"]);
+    let plan = small(&copy, "time = \"8 h\"", "time = \"8 h\"");
+    assert_eq!(json(&copy, &["plan", &plan, "--time", "120 min", "--json"]), stated);
+    let wrong = copy.run(&["plan", &plan, "--time", "2 kg"]);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains("2 kg"));
+}
+
 /// Goals that time reaches are met in the shortest time; goals that no time reaches are an error that says by how much; goals
 /// that type B alone misses are told.
 #[test]

@@ -147,3 +147,38 @@ fn wrong_requests_say_what_was_expected() {
     fs::write(folder.path().join("batches.csv"), "serial,batch\n0001,A,7\n").unwrap();
     assert!(said(&["units", "store", "--batches", "batches.csv"]).contains("batches.csv, line 2"));
 }
+
+/// The certificate's and the report's words on a switch-on, from the earlier calibrations of the unit alone.
+#[test]
+fn documents_say_what_the_past_means_for_a_reading() {
+    let folder = plant();
+    let result = "plant/0003/2/result.json";
+    let laboratory = example().join("laboratory.toml");
+    let made = run(
+        folder.path(),
+        &[
+            "report",
+            result,
+            "--past",
+            "store",
+            "--html",
+            "r.html",
+            "--dcc",
+            "c.xml",
+            "--laboratory",
+            laboratory.to_str().unwrap(),
+        ],
+    );
+    assert_ne!(made.status.code(), Some(2), "{made:?}");
+    let page = fs::read_to_string(folder.path().join("r.html")).unwrap();
+    assert!(page.contains("After a switch-on"));
+    // Three calibrations up to the day of this one; the fourth came later.
+    assert!(page.contains("3 (2021-03-04 – 2023-03-04)"), "the calibrations of the unit");
+    let digital = fs::read_to_string(folder.path().join("c.xml")).unwrap();
+    assert!(digital.contains("after a switch-on: u = "));
+    let alone = run(folder.path(), &["report", result, "--past", "plant/0004", "--html", "x.html"]);
+    assert_eq!(alone.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&alone.stderr).into_owned();
+    assert!(said.contains("plant/0004: found no earlier calibration of the unit, expected one or more of"), "{said}");
+    assert!(!folder.path().join("x.html").exists());
+}

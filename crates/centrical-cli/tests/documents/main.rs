@@ -2,11 +2,18 @@
 //!
 //! Needs the programs `chromium` and `pdftotext` (Debian: chromium, poppler-utils); run with `--ignored`.
 
+#[cfg(all(unix, feature = "serve"))]
+mod browser;
 mod certificate;
 mod chromium;
+#[cfg(all(unix, feature = "serve"))]
+mod live;
 mod page;
 #[path = "../common/program.rs"]
 mod program;
+#[cfg(all(unix, feature = "serve"))]
+#[path = "../common/served.rs"]
+mod served;
 
 use std::fs;
 use std::path::{Path, PathBuf};

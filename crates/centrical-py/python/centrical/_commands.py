@@ -7,7 +7,6 @@ a second.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +14,7 @@ from . import _native
 from ._document import Document
 from ._documents import check_documents
 from ._noise import Noise, noise_of_array
+from ._paths import paths
 from ._plan import Plan
 from ._progress import Bar
 from ._result import Result
@@ -216,16 +216,18 @@ def series(
     method: Method = "exact",
     jobs: int | None = None,
     rows_only: bool = False,
+    reduced: bool = False,
 ) -> Document:
     """Calibrates many sessions, one on each core, into a store in the folder ``out``, with a table of all.
 
-    A bad session becomes a row with its message. Sessions that were done before, with the same files, are not calibrated again.
+    A bad session becomes a row with its message. With ``reduced`` each session is kept reduced, some kB, in ``reduced/KEY`` by the
+    key of its row: a later model is fitted to it without the records. Sessions that were done before, with the same files, are not calibrated again.
 
     >>> ct.series([example], folder / "store").acceptable
     1
     """
     with Bar("calibrating") as shown:
-        return Document(_native.series(list(sessions), out, method, jobs, rows_only, shown))
+        return Document(_native.series(list(sessions), out, method, jobs, rows_only, reduced, shown))
 
 
 def add_to_store(store: Path, results: Path | Iterable[Path], *, rows_only: bool = False) -> tuple[int, int]:
@@ -235,9 +237,8 @@ def add_to_store(store: Path, results: Path | Iterable[Path], *, rows_only: bool
     >>> ct.add_to_store(folder / "kept", folder / "result.json")
     (1, 0)
     """
-    paths = [results] if isinstance(results, (str, os.PathLike)) else list(results)
     with Bar("adding") as shown:
-        return _native.add_to_store(store, paths, rows_only, shown)
+        return _native.add_to_store(store, paths(results), rows_only, shown)
 
 
 def history(
@@ -271,8 +272,7 @@ def history(
     >>> ct.history(folder / "store", "list").calibrations[0].unit_model
     'TA-200'
     """
-    paths = [results] if isinstance(results, (str, os.PathLike)) else list(results)
-    return Document(_native.history(paths, of, (model, serial, station), limit, until, confidence, trend))
+    return Document(_native.history(paths(results), of, (model, serial, station), limit, until, confidence, trend))
 
 
 def compensate(
@@ -298,6 +298,7 @@ def report(
     *,
     html: Path | None = None,
     history: Path | None = None,
+    past: Path | Iterable[Path] = (),
     pdf: Path | None = None,
     before: Path | None = None,
     dcc: Path | None = None,
@@ -309,10 +310,11 @@ def report(
     """Writes the documents of a result; for one in memory: :meth:`Result.report`.
 
     ``html``: the report; ``pdf``: the certificate; ``dcc``: the digital certificate, both with a ``laboratory``;
-    ``code``: a folder for the compensation as source code.
+    ``code``: a folder for the compensation as source code. ``past``: earlier calibrations of the unit, results, folders of
+    them or stores; what they say of a reading after a switch-on stands in the report and in the certificates.
     """
     check_documents(html, history, pdf, before, dcc, code, range, laboratory)
-    text = _native.report(result, None, html, history, pdf, before, dcc, code, range, laboratory, language)
+    text = _native.report(result, None, html, history, paths(past), pdf, before, dcc, code, range, laboratory, language)
     return Document(text)
 
 
@@ -324,8 +326,7 @@ def init(
     >>> ct.init(example / "records").guesses > 0
     True
     """
-    inputs = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
-    return Document(_native.init(inputs, out, positions))
+    return Document(_native.init(paths(inputs), out, positions))
 
 
 def schema(form: Form, *, out: Path | None = None) -> Document:

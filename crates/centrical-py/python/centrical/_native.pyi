@@ -18,6 +18,7 @@ __all__ = [
     "Watcher",
     "assess",
     "calibrate",
+    "add_failure",
     "add_to_store",
     "calibrate_arrays",
     "compare",
@@ -102,6 +103,7 @@ def calibrate(
     language: str,
     shown: _Shown,
 ) -> CalibrationResult: ...
+def add_failure(store: _Path, session: str, message: str, file: str, found: str, expected: str) -> bool: ...
 def add_to_store(store: _Path, results: Sequence[_Path], rows_only: bool, shown: _Shown) -> tuple[int, int]: ...
 def history(
     results: Sequence[_Path],
@@ -118,6 +120,7 @@ def series(
     method: str,
     jobs: int | None,
     rows_only: bool,
+    reduced: bool,
     shown: _Shown,
 ) -> str: ...
 def calibrate_arrays(
@@ -185,6 +188,7 @@ def report(
     name: _Path | None,
     html: _Path | None,
     history: _Path | None,
+    past: Sequence[_Path],
     pdf: _Path | None,
     before: _Path | None,
     dcc: _Path | None,

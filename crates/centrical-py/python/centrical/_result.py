@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -14,6 +14,7 @@ from . import _native
 from ._columns import columns_of_rows
 from ._document import Document, Record, escape
 from ._documents import check_documents
+from ._paths import paths
 from ._plot import plot_result
 from ._table import columns_of, is_table
 
@@ -225,6 +226,7 @@ class Result:
         *,
         html: Path | None = None,
         history: Path | None = None,
+        past: Path | Iterable[Path] = (),
         pdf: Path | None = None,
         before: Path | None = None,
         dcc: Path | None = None,
@@ -247,7 +249,7 @@ class Result:
             file = os.path.join(place, "result.json")
             self.native.write(file)
             text = _native.report(
-                file, "result.json", html, history, pdf, before, dcc, code, range, laboratory, language
+                file, "result.json", html, history, paths(past), pdf, before, dcc, code, range, laboratory, language
             )
         return Document(text)
 

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use centrical_session::{
-    Date, Depth, Dimension, Error, Place, Selection, UnitHistoryRequest, UnitsHistoryRequest, add_results, by_unit,
-    list_store, read_calibrations, station_history, unit_history, units_history,
+    Date, Depth, Dimension, Error, Failure, Place, Row, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest,
+    add_results, by_unit, list_store, read_calibrations, station_history, unit_history, units_history,
 };
 use pyo3::prelude::*;
 
@@ -22,6 +22,21 @@ pub fn add_to_store(
 ) -> PyResult<(usize, usize)> {
     let added = progress::run(py, &shown, |work| add_results(&store, &results, rows_only, &|count| work.count(count)))?;
     Ok((added.new, added.known))
+}
+
+/// Adds a session without a result to a store, a row with its message; whether it was not there.
+#[pyfunction]
+pub fn add_failure(
+    py: Python,
+    store: PathBuf,
+    session: &str,
+    message: String,
+    file: String,
+    found: String,
+    expected: String,
+) -> PyResult<bool> {
+    let row = Row::failed(session, Failure { message, file, place: String::new(), found, expected });
+    progress::run(py, &None, |_| Ok(Store::create(&store)?.add(vec![row])?.new > 0))
 }
 
 /// `centrical-history-list/1`, `centrical-unit-history/1`, `centrical-units-history/1` or `centrical-station-history/1`.
@@ -68,7 +83,7 @@ pub fn history(
         match of {
             "unit" => {
                 let [own] = units.as_slice() else { return Err(missing("calibrations of one unit")) };
-                let request = UnitHistoryRequest { trend: trend && own.len() > 2, until, limit, coverage: confidence };
+                let request = UnitHistoryRequest { trend, until, limit, coverage: confidence };
                 unit_history(own, &[], request)
                     .ok_or_else(|| missing("two calibrations of the unit or more"))?
                     .to_json()

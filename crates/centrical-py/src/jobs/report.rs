@@ -17,6 +17,7 @@ pub fn report(
     name: Option<PathBuf>,
     html: Option<PathBuf>,
     history: Option<PathBuf>,
+    past: Vec<PathBuf>,
     pdf: Option<PathBuf>,
     before: Option<PathBuf>,
     dcc: Option<PathBuf>,
@@ -27,7 +28,7 @@ pub fn report(
 ) -> PyResult<String> {
     let range = Amount::optional(range, "range", Dimension::Acceleration)?;
     let language = language_of(language)?;
-    let request = DocumentRequest { result, html, history, pdf, before, dcc, code, range, laboratory, language };
+    let request = DocumentRequest { result, html, history, past, pdf, before, dcc, code, range, laboratory, language };
     progress::run(py, &None, |_| {
         let documents = write_documents(&request)?;
         let name = name.as_deref().unwrap_or(&request.result);

@@ -17,12 +17,13 @@ pub fn series(
     method: &str,
     jobs: Option<usize>,
     rows_only: bool,
+    reduced: bool,
     shown: Shown,
 ) -> PyResult<String> {
     if sessions.is_empty() {
         return Err(words::refused("sessions", "found none, expected one or more"));
     }
-    let request = SeriesRequest { out, method: words::method(method)?, jobs, rows_only };
+    let request = SeriesRequest { out, method: words::method(method)?, jobs, rows_only, reduced };
     progress::run(py, &shown, |work| {
         work.expect(sessions.len() as u64);
         calibrate_series(&sessions, &request, &|count| work.count(count))?.to_json()

@@ -3,8 +3,8 @@
 use centrical_session::{Address, CalibrationResult, Contact, Laboratory};
 
 use super::xml::Xml;
-use crate::document::{Issuer, counts_as_exact, objection, rule};
-use crate::evaluation::{UnitStatement, UnitVerdict};
+use crate::document::{Issuer, counts_as_exact, objection, rule, switch_on_sentence};
+use crate::evaluation::UnitVerdict;
 use crate::language::Language;
 
 pub(super) fn data(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, language: Language) {
@@ -21,7 +21,7 @@ pub(super) fn data(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, l
         persons(xml, laboratory, language);
         let of = &laboratory.customer;
         contact(xml, "dcc:customer", (&of.name, &of.address, &of.contact), language);
-        statements(xml, result, issuer.unit.as_ref(), language);
+        statements(xml, result, issuer, language);
     });
 }
 
@@ -113,7 +113,7 @@ fn persons(xml: &mut Xml, laboratory: &Laboratory, language: Language) {
     });
 }
 
-fn statements(xml: &mut Xml, result: &CalibrationResult, unit: Option<&UnitStatement>, language: Language) {
+fn statements(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, language: Language) {
     let messages = language.messages();
     xml.element("dcc:statements", |xml| {
         let statement = |xml: &mut Xml, reference: &str, text: &str| {
@@ -130,7 +130,7 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, unit: Option<&UnitState
         statement(xml, "7.8.2.1 l", messages.item_only);
         statement(xml, "7.8.2.1", messages.reproduction);
         statement(xml, "7.8.4.1 c", messages.traceability_text);
-        if let Some(unit) = unit {
+        if let Some(unit) = &issuer.unit {
             xml.element_with("dcc:statement", &[("refType", "basic_conformity")], |xml| {
                 xml.leaf("dcc:norm", &unit.specification);
                 xml.content(
@@ -149,6 +149,9 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, unit: Option<&UnitState
             [(messages.counts_as_exact, counts_as_exact(result, language)), (messages.presupposed, String::new())]
         {
             let text = if text.is_empty() { name.to_owned() } else { format!("{name}: {text}") };
+            statement(xml, "7.8.4.1 a", &text);
+        }
+        if let Some(text) = issuer.past.as_ref().and_then(|past| switch_on_sentence(past, language)) {
             statement(xml, "7.8.4.1 a", &text);
         }
     });

@@ -1,6 +1,6 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
-use centrical_session::{Address, CalibrationResult, Condition, Contact, Laboratory, customary};
+use centrical_session::{Address, CalibrationResult, Condition, Contact, Laboratory, UnitHistoryReport, customary};
 
 use super::conformity::{conformity_table, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Picture, Row, Section, Table};
@@ -8,6 +8,7 @@ use super::drift::drift_facts;
 use super::objection::objection;
 use super::reading_error::error_table;
 use super::rests_on::{counts_as_exact, rests_on_sentence};
+use super::switch_on::switch_on;
 use super::symbols::nominal_output;
 use super::tables::cells;
 use crate::evaluation::{UnitStatement, by_group, equations, expanded, symbol};
@@ -23,6 +24,8 @@ pub struct Issuer {
     pub laboratory: Laboratory,
     /// What its decision says of the unit, where one was asked for.
     pub unit: Option<UnitStatement>,
+    /// What its earlier calibrations say of it, where they were given.
+    pub past: Option<UnitHistoryReport>,
     /// Its mark.
     pub logo: Option<Picture>,
 }
@@ -47,6 +50,7 @@ pub fn certificate(
         traceability(laboratory, language),
         results(result, language),
         adjustment(result, before, laboratory, language),
+        issuer.past.as_ref().map(|past| switch_on(past, language)).unwrap_or_default(),
         issuer.unit.as_ref().map(|unit| conformity_statement(unit, language)).unwrap_or_default(),
         authorisation(laboratory, language),
     ];

@@ -1,6 +1,6 @@
 //! The report of a calibration: verdict, session, parameters, budget, figures.
 
-use centrical_session::{CalibrationResult, ValiditySummary};
+use centrical_session::{CalibrationResult, UnitHistoryReport, ValiditySummary};
 
 use super::conformity::{judged_in_words, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Section, Table, TableKind, Tone};
@@ -8,6 +8,7 @@ use super::drift::drift_facts;
 use super::objection::{objection, pattern, rival};
 use super::reading_error::{error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
+use super::switch_on::switch_on;
 use super::symbols::{nominal_output, symbols};
 use super::tables::{budget, parameters};
 use crate::evaluation::{UnitStatement, UnitVerdict, by_group, equations};
@@ -15,11 +16,12 @@ use crate::figure::{Figure, figures, positions};
 use crate::language::Language;
 use crate::number::grouped;
 
-/// The report of a result: what every reader sees, then what some will open. `unit` is what a decision says of the unit, and
-/// `further` figures stand after its own.
+/// The report of a result: what every reader sees, then what some will open. `unit` is what a decision says of the unit, `past`
+/// what its earlier calibrations say, and `further` figures stand after its own.
 pub fn report(
     result: &CalibrationResult,
     unit: Option<&UnitStatement>,
+    past: Option<&UnitHistoryReport>,
     further: &[Figure],
     language: Language,
 ) -> Document {
@@ -33,6 +35,7 @@ pub fn report(
         instrument_parameters(result, language),
         plots(messages.first_plots, drawn, language),
         rests_on(result, language),
+        past.map(|past| switch_on(past, language)).unwrap_or_default(),
     ];
     let opened = [
         conduct(result, language),

@@ -307,4 +307,17 @@ pub(crate) const ENGLISH: Messages = Messages {
     chi_squared_small: "Residuals are smaller than the stated uncertainties allow: these are too large.",
     lost_parameters: "parameters of the instrument are not determined",
     speeds: "Speeds of the plateaus",
+    switch_on: "After a switch-on",
+    switch_on_text: "The uncertainties of this result apply to its session. Changes of the unit between calibrations, at \
+        switch-ons and at mountings, appear in its earlier calibrations.",
+    switch_on_note: "Standard uncertainties of a compensated reading: by this calibration, the standard deviation between \
+        calibrations with its interval of 95 %, and both together. For each newtonometer: at zero force, and where both \
+        together are largest.",
+    calibrations_of_unit: "Calibrations of the unit",
+    same_unit: "Agreement of the calibrations",
+    parameters_scatter: "More scatter than stated",
+    parameters_drift: "Drift",
+    this_calibration: "this calibration",
+    between_calibrations: "between calibrations",
+    after_switch_on: "after a switch-on",
 };

@@ -254,6 +254,16 @@ pub(crate) struct Messages {
     pub chi_squared_small: &'static str,
     pub lost_parameters: &'static str,
     pub speeds: &'static str,
+    pub switch_on: &'static str,
+    pub switch_on_text: &'static str,
+    pub switch_on_note: &'static str,
+    pub calibrations_of_unit: &'static str,
+    pub same_unit: &'static str,
+    pub parameters_scatter: &'static str,
+    pub parameters_drift: &'static str,
+    pub this_calibration: &'static str,
+    pub between_calibrations: &'static str,
+    pub after_switch_on: &'static str,
 }
 
 /// Words for what is one of several, in one language; each function names all of them.

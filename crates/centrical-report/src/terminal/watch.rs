@@ -2,10 +2,9 @@
 
 use std::f64::consts::PI;
 
-use centrical::fit::Progress;
+use centrical::MeasurementModel;
 use centrical::fit::filter::Lifetimes;
-use centrical::{Group, MeasurementModel, Parameter};
-use centrical_session::{InnovationSummary, PlateauName, Session, WatchProgress, WatchedPlateau, customary};
+use centrical_session::{GroupProgress, InnovationSummary, PlateauName, Session, WatchProgress, WatchedPlateau};
 
 use super::screen::Screen;
 use super::table::{Align, Cell, Table};
@@ -27,14 +26,14 @@ pub fn watch_table(view: &WatchProgress, targets: &Targets, all_alarms: bool) ->
             screen.say(0, &outcome(view.session, plateau));
         }
     }
-    let groups = groups(view.model);
+    let groups = view.groups(targets);
     let label = |set_point: usize| label(view.session, set_point);
     let next = view.next.as_ref().map_or(String::new(), |(next, _)| format!("with {}", label(*next)));
     let names = [("group", Align::Left), ("unit", Align::Left), ("determined", Align::Right)];
     let numbers = [("largest u", Align::Right), ("target", Align::Right), (next.as_str(), Align::Right)];
     let mut table = Table::new(2, [names[0], names[1], names[2], numbers[0], numbers[1], numbers[2]]);
-    for &group in &groups {
-        table.row(group_row(view, group, targets).map(Cell::from));
+    for group in &groups {
+        table.row(group_row(group).map(Cell::from));
     }
     screen.table(table);
     if !view.best.is_empty() {
@@ -42,10 +41,7 @@ pub fn watch_table(view: &WatchProgress, targets: &Targets, all_alarms: bool) ->
             view.best.iter().map(|gain| format!("{} (x {:.3})", label(gain.set_point), gain.factor)).collect();
         screen.head("BEST NEXT", &format!("for the compensated reading's mean uncertainty: {}", shown.join("; ")));
     }
-    let is_kept = |(name, target): &(String, f64)| {
-        groups.iter().any(|group| group.name() == name && is_met(view, *group, *target))
-    };
-    if !targets.is_empty() && targets.iter().all(is_kept) {
+    if !targets.is_empty() && groups.iter().all(|group| group.is_met != Some(false)) {
         screen.say(0, "Every target is met.");
     }
     screen
@@ -70,17 +66,6 @@ pub fn states_text(model: &MeasurementModel, order: &[usize]) -> Screen {
         );
     }
     screen
-}
-
-/// The groups of the unknowns in the order of results.
-fn groups(model: &MeasurementModel) -> Vec<Group> {
-    let mut groups: Vec<Group> = Vec::new();
-    for parameter in model.parameters() {
-        if !groups.contains(&parameter.group) {
-            groups.push(parameter.group);
-        }
-    }
-    groups
 }
 
 /// `4:3, 189.2 rpm`.
@@ -109,30 +94,11 @@ fn outcome(session: &Session, plateau: &WatchedPlateau) -> String {
     format!("{plateau}: {tested}{alarm}{}", if *held_out { ", held out" } else { "" })
 }
 
-fn group_row(view: &WatchProgress, group: Group, targets: &Targets) -> [String; 6] {
-    let of_group: Vec<&Parameter> = view.model.parameters().iter().filter(|p| p.group == group).collect();
-    let unit = of_group.first().map_or("", |p| customary(&p.unit, group).1);
-    let (determined, now) = largest(view.model, &view.now, group);
-    let next = view.next.as_ref().and_then(|(_, next)| largest(view.model, next, group).1);
-    let target = targets.iter().find(|(name, _)| name == group.name());
-    let met = target.map_or(String::new(), |(_, target)| {
-        format!("{target} {}", if is_met(view, group, *target) { "met" } else { "-" })
-    });
+fn group_row(row: &GroupProgress) -> [String; 6] {
+    let met = row
+        .target
+        .map_or(String::new(), |target| format!("{target} {}", if row.is_met == Some(true) { "met" } else { "-" }));
     let shown = |u: Option<f64>| u.map_or("-".to_owned(), two_digits);
-    let determined = format!("{determined} of {}", of_group.len());
-    [group.name().to_owned(), unit.to_owned(), determined, shown(now), met, shown(next)]
-}
-
-/// How many of a group are determined, and the largest standard uncertainty of those in the customary unit.
-fn largest(model: &MeasurementModel, progress: &Progress, group: Group) -> (usize, Option<f64>) {
-    let of_group = model.parameters().iter().zip(&progress.estimates).filter(|(p, _)| p.group == group);
-    let uncertainties = of_group.filter_map(|(p, known)| Some(customary(&p.unit, group).0 * (*known)?.1));
-    uncertainties.fold((0, None), |(count, most), u| (count + 1, Some(u.max(most.unwrap_or(0.0)))))
-}
-
-/// Whether all of a group are determined, and to its target.
-fn is_met(view: &WatchProgress, group: Group, target: f64) -> bool {
-    let (determined, largest) = largest(view.model, &view.now, group);
-    let all = view.model.parameters().iter().filter(|p| p.group == group).count();
-    determined == all && largest.is_some_and(|u| u <= target)
+    let determined = format!("{} of {}", row.determined, row.unknowns);
+    [row.group.name().to_owned(), row.unit.clone(), determined, shown(row.largest), met, shown(row.next)]
 }

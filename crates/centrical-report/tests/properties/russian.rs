@@ -84,7 +84,7 @@ fn russian_documents_have_no_english_words() {
     let allowed = format!("{} {} {own} {CITED} {}", names.join(" "), inputs.join(" "), result.schema);
     let documents = [
         certificate(&result, Some(&result), &issuer, Language::Russian),
-        report(&result, issuer.unit.as_ref(), &[], Language::Russian),
+        report(&result, issuer.unit.as_ref(), None, &[], Language::Russian),
     ];
     for document in documents {
         let text = text(&document);
@@ -93,7 +93,7 @@ fn russian_documents_have_no_english_words() {
             assert!(latin_words(&allowed).any(|known| known == word), "{word}");
         }
     }
-    let report = text(&report(&result, None, &[], Language::Russian));
+    let report = text(&report(&result, None, None, &[], Language::Russian));
     for words in [
         "рекуррентный фильтр",
         "скорости в рад/с прочитаны в об/мин",

@@ -29,7 +29,7 @@ pub struct SeriesSummary {
 }
 
 impl SeriesSummary {
-    /// Of so many sessions, none of them counted yet.
+    /// A summary before the first session is done.
     pub(crate) fn of(sessions: usize) -> Self {
         let program = Program::this();
         Self { schema: SERIES_SCHEMA, program, sessions, known: 0, acceptable: 0, not_acceptable: 0, failed: 0 }

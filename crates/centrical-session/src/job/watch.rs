@@ -1,7 +1,12 @@
 //! A session folder that is followed while it is being filled.
 
 mod arrivals;
+mod board;
 mod following;
+mod growth;
+mod progress;
 
 pub use self::arrivals::Watch;
-pub use self::following::{Following, WatchEnd, WatchEvent, WatchProgress, WatchRequest};
+pub use self::board::LiveRequest;
+pub use self::following::{Following, WatchEnd, WatchEvent, WatchRequest};
+pub use self::progress::WatchProgress;

@@ -26,7 +26,7 @@ pub struct Estimated {
 
 #[derive(Debug, Clone, PartialEq)]
 enum Spread {
-    /// Student's t of so many degrees.
+    /// Student's t with its degrees of freedom.
     StudentsT(usize),
     /// That, and what sessions share.
     Law(Law),

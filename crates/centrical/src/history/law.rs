@@ -1,6 +1,6 @@
 //! The law of a value: a mixture of normal laws.
 
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{PI, SQRT_2};
 
 use statrs::function::erf::erfc;
 
@@ -27,6 +27,11 @@ impl Part {
         0.5 * erfc((self.mean - bound) / (self.deviation * SQRT_2))
     }
 
+    fn density(&self, at: f64) -> f64 {
+        let z = (at - self.mean) / self.deviation;
+        (-0.5 * z * z).exp() / (self.deviation * (2.0 * PI).sqrt())
+    }
+
     /// Probability above a bound: by symmetry, as `1 - P` would lose what is rare.
     fn above(&self, bound: f64) -> f64 {
         0.5 * erfc((bound - self.mean) / (self.deviation * SQRT_2))
@@ -50,16 +55,34 @@ impl Law {
         self.parts.iter().map(|part| part.weight * outside(part)).sum()
     }
 
-    /// The value below which the law has `probability`, in (0, 1).
+    fn density(&self, at: f64) -> f64 {
+        self.parts.iter().map(|part| part.weight * part.density(at)).sum()
+    }
+
+    /// The value below which the law has `probability`, in (0, 1): by Newton's method within a bracket, which is halved where a
+    /// step would leave it.
     pub fn quantile(&self, probability: f64) -> f64 {
         let ends = |sign: f64| self.parts.iter().map(move |part| part.mean + sign * FAR * part.deviation);
         let (mut low, mut high) =
             (ends(-1.0).fold(f64::INFINITY, f64::min), ends(1.0).fold(f64::NEG_INFINITY, f64::max));
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if self.probability_below(middle) < probability { low = middle } else { high = middle }
+        let negligible = f64::EPSILON * (high - low);
+        let mut value = 0.5 * (low + high);
+        for _ in 0..STEPS {
+            let excess = self.probability_below(value) - probability;
+            if excess < 0.0 {
+                low = value;
+            } else {
+                high = value;
+            }
+            let newton = value - excess / self.density(value);
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            let step = (next - value).abs();
+            value = next;
+            if step <= negligible {
+                break;
+            }
         }
-        0.5 * (low + high)
+        value
     }
 
     /// The interval that covers the value with probability `coverage`, as much outside on either side.
@@ -71,5 +94,5 @@ impl Law {
 /// Standard deviations beyond which a normal law has nothing that a double shows beside 1.
 const FAR: f64 = 9.0;
 
-/// The digits of a double.
-const HALVINGS: usize = 60;
+/// Halvings alone would end by then.
+const STEPS: usize = 60;

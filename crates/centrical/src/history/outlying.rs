@@ -21,7 +21,7 @@ use crate::uncertainty::chi_squared_tail;
 pub struct UnitDistance {
     /// Robust distance `d`.
     pub distance: f64,
-    /// Probability that any of so many sound units is as far off.
+    /// Probability that the farthest of as many sound units is as far off.
     pub probability: f64,
     /// Parameter by parameter: standard deviations from the median.
     pub scores: Vec<f64>,

@@ -59,7 +59,7 @@ impl Series {
     /// what both share cancels.
     ///
     /// # Panics
-    /// If there is no such session.
+    /// If `i` or `j` is not below the number of sessions.
     pub fn difference(&self, i: usize, j: usize) -> (f64, f64) {
         let mut coefficients = vec![0.0; self.points.len()];
         coefficients[i] -= 1.0;

@@ -21,7 +21,7 @@ pub struct Sameness {
     pub chi_squared: f64,
     /// `p (k - 1)`.
     pub degrees_of_freedom: usize,
-    /// Probability of so large a chi^2 if nothing but the stated errors differs.
+    /// Probability of so large a chi^2 if the sessions differ by the stated errors alone.
     pub probability: f64,
 }
 

@@ -151,6 +151,11 @@ impl ReducedMounting {
         Self { plateaus, speeds, settling_time, clock_offset, agreement, readings }
     }
 
+    /// Number of its plateaus.
+    pub fn plateau_count(&self) -> usize {
+        self.plateaus.len()
+    }
+
     /// Time constant of the settling after a ramp [s]; `None` if the record shows no settling.
     pub fn settling_time(&self) -> Option<f64> {
         self.settling_time

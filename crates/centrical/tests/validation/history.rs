@@ -14,7 +14,7 @@ fn points(number: usize) -> Vec<Point> {
     of.map(|row| Point { time: row[1], value: row[2], variance: row[3] }).collect()
 }
 
-/// Equal to `digits` digits, of which metafor prints twelve; its iterations end earlier.
+/// Equal to `digits` digits: metafor prints twelve, and its iterations end earlier.
 #[track_caller]
 fn assert_close(what: &str, found: f64, expected: f64, digits: i32) {
     let tolerance = 10_f64.powi(-digits) * expected.abs().max(1e-3);

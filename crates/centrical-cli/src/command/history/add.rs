@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use centrical_session::{Error, add_results, unwatched};
+use centrical_session::{AddedReport, Error, add_results};
 
 use crate::outcome::Outcome;
 use crate::output::print;
+use crate::progress;
 
 /// Add results to a store, which is made if it is not there. Results that it has are left as they are.
 #[derive(Debug, clap::Args)]
@@ -19,16 +20,23 @@ pub struct Arguments {
     /// Keep the rows alone, about 11 kB each, without copies of result.json
     #[arg(long)]
     rows_only: bool,
-    /// Print nothing; messages of errors and the exit code stay
+    /// Print the counts as JSON
+    #[arg(short, long)]
+    json: bool,
+    /// Print nothing, and no progress; messages of errors and the exit code stay
     #[arg(short, long)]
     quiet: bool,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let added = add_results(&arguments.store, &arguments.results, arguments.rows_only, &unwatched)?;
-    if !arguments.quiet {
-        print(&format!("{} new, {} known\n", added.new, added.known))?;
+    let bar = progress::results(arguments.quiet);
+    let added = add_results(&arguments.store, &arguments.results, arguments.rows_only, &progress::counting(&bar))?;
+    bar.finish_and_clear();
+    match (arguments.json, arguments.quiet) {
+        (true, _) => print(&AddedReport::of(added.new, added.known).to_json()?)?,
+        (false, false) => print(&format!("{} new, {} known\n", added.new, added.known))?,
+        (false, true) => {}
     }
     Ok(Outcome::Done)
 }

@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use centrical_report::{chart_plots, chart_text};
-use centrical_session::{
-    ChartLimits, Depth, Error, RuleSet, chart, claim_folder, create_folder, refuse_inputs, write_whole,
-};
+use centrical_session::{ChartLimits, Depth, Error, RuleSet, chart};
 
 use super::choice::Choice;
+use super::files::write_files;
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 
@@ -67,14 +66,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let report = chart(&choice.read(Depth::Values)?, &arguments.parameter, limits, rules)
         .map_err(|source| choice.refuse(source.found(), &source.expected()))?;
     if let Some(folder) = &arguments.out {
-        let plots = chart_plots(&report);
-        let files: Vec<PathBuf> = plots.iter().map(|(name, _)| folder.join(format!("{name}.svg"))).collect();
-        refuse_inputs(&files, &choice.results)?;
-        create_folder(folder)?;
-        let _claim = claim_folder(folder)?;
-        for (file, (_, svg)) in files.iter().zip(&plots) {
-            write_whole(file, svg.as_bytes())?;
-        }
+        let plots = chart_plots(&report).into_iter().map(|(name, svg)| (format!("{name}.svg"), svg));
+        write_files(folder, &plots.collect::<Vec<_>>(), &choice.results)?;
     }
     arguments.printing.show(|| chart_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.signals.is_empty()))

@@ -3,12 +3,10 @@
 use std::path::PathBuf;
 
 use centrical_report::{unit_history_plots, unit_history_text};
-use centrical_session::{
-    Calibrated, Date, Depth, Error, UnitHistoryRequest, by_unit, claim_folder, create_folder, refuse_inputs,
-    unit_history, write_whole,
-};
+use centrical_session::{Calibrated, Date, Depth, Error, UnitHistoryRequest, by_unit, unit_history};
 
 use super::choice::Choice;
+use super::files::write_files;
 use crate::command::compensate::acceleration;
 use crate::outcome::Outcome;
 use crate::printing::Printing;
@@ -67,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let same_model = |unit: &Vec<Calibrated>| unit.first().is_some_and(|c| c.unit_model == calibrations[0].unit_model);
     let others: Vec<_> = others.into_iter().filter(same_model).collect();
     let request = UnitHistoryRequest {
-        trend: !arguments.without_trend && calibrations.len() > 2,
+        trend: !arguments.without_trend,
         until: arguments.until,
         limit: arguments.limit,
         coverage: arguments.confidence,
@@ -76,14 +74,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         choice.refuse(format!("{} calibration", calibrations.len()), "two or more with a parameter in common")
     })?;
     if let Some(folder) = &arguments.out {
-        let plots = unit_history_plots(&report);
-        let files: Vec<PathBuf> = plots.iter().map(|(name, _)| folder.join(format!("{name}.svg"))).collect();
-        refuse_inputs(&files, &choice.results)?;
-        create_folder(folder)?;
-        let _claim = claim_folder(folder)?;
-        for (file, (_, svg)) in files.iter().zip(&plots) {
-            write_whole(file, svg.as_bytes())?;
-        }
+        let plots = unit_history_plots(&report).into_iter().map(|(name, svg)| (format!("{name}.svg"), svg));
+        write_files(folder, &plots.collect::<Vec<_>>(), &choice.results)?;
     }
     arguments.printing.show(|| unit_history_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_acceptable()))

@@ -15,8 +15,8 @@ use crate::printing::Printing;
 
 /// Units of one type beside each other: distribution, outlying units, capability, batches.
 ///
-/// A unit is outlying by its robust distance from the others over all parameters together; the probability is that of any of so many sound
-/// units.
+/// A unit is outlying by its robust distance from the others over all parameters together. The probability stated is that of at least one
+/// such distance in a plant of sound units.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: centrical history units results --laboratory laboratory.toml --batches batches.csv")]
 pub struct Arguments {

@@ -177,13 +177,8 @@ fn readings(screen: &mut Screen, report: &UnitHistoryReport) {
         ("due", Align::Left),
     ];
     let mut table = Table::new(1, columns);
-    for axis in 1..=3 {
-        let of_axis = || report.readings.iter().filter(|r| r.axis == axis);
-        let at_rest = of_axis().find(|r| r.force == [0.0; 3]);
-        let worst = of_axis().max_by(|a, b| a.after_switch_on.total_cmp(&b.after_switch_on));
-        for r in at_rest.into_iter().chain(worst) {
-            table.row(reading(r));
-        }
+    for r in report.shown_readings() {
+        table.row(reading(r));
     }
     screen.table(table);
 }

@@ -61,7 +61,7 @@ pub struct UnitHistoryReport {
     pub is_within: Option<bool>,
     /// The first due date of all readings.
     pub due: Option<DueDate>,
-    /// Without a due date: the day up to which there is none.
+    /// The day at which the search for a due date ended.
     pub due_after: Option<Date>,
     /// Compensated readings.
     pub readings: Vec<ReadingHistory>,
@@ -159,6 +159,18 @@ impl UnitHistoryReport {
     /// [`Error::Json`] when a value has no place in JSON.
     pub fn to_json(&self) -> Result<String, Error> {
         json::document(UNIT_HISTORY_SCHEMA, self)
+    }
+
+    /// The readings to show of each newtonometer: at rest, and the one least certain after a switch-on.
+    pub fn shown_readings(&self) -> Vec<&ReadingHistory> {
+        let mut shown = Vec::new();
+        for axis in 1..=3 {
+            let of_axis = || self.readings.iter().filter(|r| r.axis == axis);
+            let at_rest = of_axis().find(|r| r.force == [0.0; 3]);
+            let worst = of_axis().max_by(|a, b| a.after_switch_on.total_cmp(&b.after_switch_on));
+            shown.extend(at_rest.into_iter().chain(worst));
+        }
+        shown
     }
 
     /// Whether a reading is within its limit, where one was given.

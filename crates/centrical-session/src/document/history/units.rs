@@ -42,7 +42,7 @@ pub struct OutlyingUnit {
     pub unit_serial: String,
     /// Robust distance over all parameters.
     pub distance: f64,
-    /// Probability that any of so many sound units is as far off.
+    /// Probability that the farthest of as many sound units is as far off.
     pub probability: f64,
     /// The parameters farthest off, in robust standard deviations from the median.
     pub most: Vec<(String, f64)>,

@@ -67,7 +67,7 @@ pub struct RestsOn {
 }
 
 impl RivalSummary {
-    pub(super) fn all(suspects: &Suspects) -> Vec<Self> {
+    pub(crate) fn all(suspects: &Suspects) -> Vec<Self> {
         let shown = suspects.shown.iter().enumerate();
         shown.map(|(n, test)| Self::new(test, n < suspects.alike)).collect()
     }

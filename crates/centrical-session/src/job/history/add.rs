@@ -1,11 +1,11 @@
 //! Results into a store.
 
-use std::fs;
 use std::mem;
 use std::path::{Path, PathBuf};
 
 use centrical::{OnProgress, advance};
 
+use super::results::collect_results;
 use crate::document::CalibrationResult;
 use crate::error::{Error, Place};
 use crate::settings::read_result;
@@ -13,9 +13,6 @@ use crate::store::{Added, Row, Store};
 
 /// Results that are read before they are added: a few hundred MB at most.
 const BATCH: usize = 256;
-
-/// Name of a result in a folder.
-const RESULT: &str = "result.json";
 
 /// Adds results to the store in `folder`, which is made if it is not there; a folder among them stands for every `result.json` in it and
 /// below. A result that is there already changes nothing. `progress` is called with the number of results read.
@@ -30,7 +27,11 @@ pub fn add_results(
 ) -> Result<Added, Error> {
     let mut files = Vec::new();
     for path in results {
-        collect(path, &mut files)?;
+        let before = files.len();
+        collect_results(path, &mut files)?;
+        if files.len() == before {
+            return Err(Error::content(path, Place::Whole, "no result.json in this folder or below", "at least one"));
+        }
     }
     let store = Store::create(folder)?;
     let mut added = Added::default();
@@ -56,37 +57,4 @@ pub fn add_result(folder: &Path, result: &CalibrationResult) -> Result<Added, Er
     let text = result.to_json()?;
     let row = result.row(text.as_bytes());
     Store::create(folder)?.add_with_results(vec![(row, Some(text.into_bytes()))])
-}
-
-/// The file, or every result in a folder and below, by name.
-fn collect(path: &Path, files: &mut Vec<PathBuf>) -> Result<(), Error> {
-    if !path.is_dir() {
-        files.push(path.to_owned());
-        return Ok(());
-    }
-    let before = files.len();
-    walk(path, files)?;
-    if files.len() == before {
-        return Err(Error::content(path, Place::Whole, "no result.json in this folder or below", "at least one"));
-    }
-    Ok(())
-}
-
-fn walk(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Error> {
-    let failed = |error| Error::reading(folder, error, "a folder of results");
-    let mut entries = Vec::new();
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let entry = entry.map_err(failed)?;
-        // A link to a folder may lead back here.
-        entries.push((entry.path(), entry.file_type().map_err(failed)?.is_dir()));
-    }
-    entries.sort();
-    for (path, is_folder) in entries {
-        if is_folder {
-            walk(&path, files)?;
-        } else if path.file_name().is_some_and(|name| name == RESULT) {
-            files.push(path);
-        }
-    }
-    Ok(())
 }

@@ -19,7 +19,7 @@ pub enum RuleSet {
 /// Where the limits of a chart come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ChartLimits {
-    /// From the first so many acceptable sessions.
+    /// From the first acceptable sessions, by their number.
     Accepted(usize),
     /// Stated: mean and standard deviation, SI.
     Stated(f64, f64),

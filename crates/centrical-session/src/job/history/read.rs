@@ -1,10 +1,10 @@
 //! Calibrations from results, folders of results, and stores.
 
 use std::collections::{BTreeMap, HashSet};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::calibrated::{Calibrated, Kinds};
+use super::results::collect_results;
 use crate::document::CalibrationResult;
 use crate::error::{Error, Place, quoted};
 use crate::settings::read_result;
@@ -20,8 +20,7 @@ pub fn read_calibrations(paths: &[PathBuf], selection: &Selection) -> Result<Vec
     for path in paths {
         match Store::open(path) {
             Ok(store) => found.take_store(&store)?,
-            Err(_) if path.is_dir() => found.take_folder(path)?,
-            Err(_) => found.take_result(path)?,
+            Err(_) => found.take_files(path)?,
         }
     }
     let mut calibrations = found.calibrations;
@@ -57,19 +56,10 @@ impl Found<'_> {
         Ok(())
     }
 
-    fn take_folder(&mut self, folder: &Path) -> Result<(), Error> {
-        let failed = |source| centrical_table::Error::reading(folder, source, "a folder of results");
-        let mut entries: Vec<_> = fs::read_dir(folder).map_err(failed)?.collect::<Result<_, _>>().map_err(failed)?;
-        entries.sort_by_key(fs::DirEntry::file_name);
-        for entry in entries {
-            // The type of the entry itself: a link to a folder could lead back.
-            if entry.file_type().map_err(failed)?.is_dir() {
-                self.take_folder(&entry.path())?;
-            } else if entry.file_name() == "result.json" {
-                self.take_result(&entry.path())?;
-            }
-        }
-        Ok(())
+    fn take_files(&mut self, path: &Path) -> Result<(), Error> {
+        let mut files = Vec::new();
+        collect_results(path, &mut files)?;
+        files.iter().try_for_each(|file| self.take_result(file))
     }
 
     fn take_result(&mut self, file: &Path) -> Result<(), Error> {

@@ -15,7 +15,7 @@ use crate::quantity::Date;
 /// What is asked of a unit's history.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnitHistoryRequest {
-    /// Whether parameters may drift. Without that they scatter about a constant.
+    /// Whether parameters may drift, which three calibrations show. Without that they scatter about a constant.
     pub trend: bool,
     /// The day of the forecast; a year after the last calibration if absent.
     pub until: Option<Date>,
@@ -44,12 +44,12 @@ pub fn unit_history(
     if own.len() < 2 || names.is_empty() {
         return None;
     }
-    let zero = own[0].date;
+    let (zero, trend) = (own[0].date, request.trend && own.len() > 2);
     let until = request.until.unwrap_or(last.date.after(DAYS));
     let job = Job {
         own: &own,
         others: &others.iter().map(|unit| unit.iter().collect()).collect::<Vec<Vec<&Calibrated>>>(),
-        curve: if request.trend { Curve::Line } else { Curve::Constant },
+        curve: if trend { Curve::Line } else { Curve::Constant },
         zero,
         ahead: years(zero, until),
         quantiles: Quantiles::default(),
@@ -72,7 +72,7 @@ pub fn unit_history(
         unit_model: last.unit_model.clone(),
         unit_serial: last.unit_serial.clone(),
         sessions: own.iter().map(|calibrated| past(calibrated)).collect(),
-        trend: request.trend,
+        trend,
         coverage: request.coverage,
         units_together: 1 + others.len(),
         until,

@@ -4,11 +4,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use centrical::OnProgress;
+use centrical_table::TableFormat;
 
-use crate::document::{CalibrationResult, Method};
+use super::request::SeriesRequest;
+use crate::document::CalibrationResult;
 use crate::error::{Error, ErrorKind};
 use crate::experiment::Session;
-use crate::job::calibrate::calibrate;
+use crate::job::calibrate::calibrate_reduced;
+use crate::job::reduce::reduce;
+use crate::job::reduced_session::write_reduced;
 use crate::store::{Failure, Row};
 
 /// A session that is done.
@@ -22,10 +26,10 @@ pub(super) struct Done {
 }
 
 /// Calibrates a session; nothing if the caller stopped it. A fault of the program inside one session is a failure of that session.
-pub(super) fn calibrated(path: &Path, method: Method, progress: OnProgress) -> Option<Done> {
+pub(super) fn calibrated(path: &Path, request: &SeriesRequest, progress: OnProgress) -> Option<Done> {
     let failed =
         |failure| Done { row: Row::failed(&path.display().to_string(), failure), result: None, files: Vec::new() };
-    match catch_unwind(AssertUnwindSafe(|| try_calibrate(path, method, progress))) {
+    match catch_unwind(AssertUnwindSafe(|| try_calibrate(path, request, progress))) {
         Ok(Ok(done)) => Some(done),
         Ok(Err(error)) if error.kind() == ErrorKind::Stopped => None,
         Ok(Err(error)) => Some(failed(failure(&error))),
@@ -36,11 +40,15 @@ pub(super) fn calibrated(path: &Path, method: Method, progress: OnProgress) -> O
     }
 }
 
-fn try_calibrate(path: &Path, method: Method, progress: OnProgress) -> Result<Done, Error> {
+fn try_calibrate(path: &Path, request: &SeriesRequest, progress: OnProgress) -> Result<Done, Error> {
     let session = Session::read(path)?;
-    let result: CalibrationResult = calibrate(&session, method, progress)?;
+    let reduced = reduce(&session, progress)?;
+    let result: CalibrationResult = calibrate_reduced(&session, &reduced, request.method, progress)?;
     let text = result.to_json()?;
     let row = result.row(text.as_bytes());
+    if request.reduced {
+        write_reduced(&session, &reduced, TableFormat::Csv, &request.out.join("reduced").join(&row.key))?;
+    }
     let hashes = result.inputs.into_iter().map(|input| input.sha256);
     let files = session.files().into_iter().map(Path::to_owned).zip(hashes).collect();
     Ok(Done { row, result: Some(text), files })

@@ -15,4 +15,6 @@ pub struct SeriesRequest {
     pub jobs: Option<usize>,
     /// Whether `result.json` is not kept.
     pub rows_only: bool,
+    /// Whether each session is kept reduced, some kB in `reduced/KEY`: a later model is fitted to it without the records.
+    pub reduced: bool,
 }

@@ -60,7 +60,7 @@ impl Workers<'_> {
         while progress(0_u64).is_continue() {
             let number = next.fetch_add(1, Ordering::Relaxed);
             let Some(session) = sessions.get(number) else { break };
-            let one = || calibrated(session, self.request.method, &progress);
+            let one = || calibrated(session, self.request, &progress);
             // If no pool can be made, all threads share the one there is.
             let done = pool.as_ref().map_or_else(|_| one(), |pool| pool.install(one));
             if done.is_none_or(|done| send.send((number, done)).is_err()) {

@@ -11,6 +11,7 @@ use centrical::reduction::{
 };
 use centrical::{Observation, SetPoint, linear};
 
+use super::growth::Growth;
 use crate::error::Error;
 use crate::experiment::{PlateauMean, Session, SpeedSource};
 use crate::record::{read_growing_pulses, read_growing_records, read_growing_telemetry};
@@ -32,6 +33,8 @@ pub struct Watch<'s> {
     come: usize,
     /// What the record of that mounting looked like the last time.
     seen: Option<Look>,
+    /// The record of that mounting, or of the one before while there is none.
+    growth: Option<Growth>,
     note: Option<String>,
 }
 
@@ -49,7 +52,16 @@ struct Look {
 impl<'s> Watch<'s> {
     /// Before the first look at the records of `session`.
     pub fn new(session: &'s Session, quiet: Duration) -> Self {
-        Self { session, quiet, finished: Vec::new(), speeds: BTreeMap::new(), come: 0, seen: None, note: None }
+        Self {
+            session,
+            quiet,
+            finished: Vec::new(),
+            speeds: BTreeMap::new(),
+            come: 0,
+            seen: None,
+            growth: None,
+            note: None,
+        }
     }
 
     /// Whether all plateaus of the schedule have come.
@@ -79,6 +91,16 @@ impl<'s> Watch<'s> {
     /// The measured speed of a plateau that has come, where speeds are measured and the telemetry or the pulses had come too.
     pub fn speed(&self, set_point: usize) -> Option<MeasuredSpeed> {
         self.speeds.get(&set_point).copied()
+    }
+
+    /// The record of the mounting on the arm as it stands, or the last one.
+    pub fn growth(&self) -> Option<&Growth> {
+        self.growth.as_ref()
+    }
+
+    /// Measured speeds of the plateaus that have come, by set point.
+    pub fn speeds(&self) -> &BTreeMap<usize, MeasuredSpeed> {
+        &self.speeds
     }
 
     /// Plateaus that have come since the last look, in the order of the schedule, each with the noise of its own and the
@@ -116,18 +138,31 @@ impl<'s> Watch<'s> {
             self.note = Some(format!("waiting for {}", file.display()));
             return Ok(false);
         };
+        match &mut self.growth {
+            Some(growth) if growth.mounting == mounting => growth.look_again(look.bytes, look.changed),
+            growth => *growth = Some(Growth::new(mounting, file, look.bytes, look.changed)),
+        }
         if self.seen == Some(look) {
             return Ok(false);
         }
         self.seen = Some(look);
         self.note = None;
         let finished = look.left_alone || look.followed;
-        let reduced = if finished { self.whole(mounting, look).map(Some) } else { self.begun(mounting) };
+        let reduced = self.read(mounting, look).and_then(|record| {
+            if let Some(growth) = &mut self.growth {
+                growth.show(&record);
+            }
+            if finished { self.whole(mounting, &record).map(Some) } else { self.begun(mounting, &record) }
+        });
         match reduced {
             Err(error) if !look.left_alone => self.note = Some(format!("not yet: {error}")),
             Err(error) => return Err(error),
             Ok(None) => {}
             Ok(Some((reduced, complete))) => {
+                let scheduled = self.schedule(mounting).len();
+                if let Some(growth) = &mut self.growth {
+                    growth.find(&reduced, scheduled);
+                }
                 self.arrive(mounting, &reduced, complete, arrivals);
                 if finished {
                     self.finished.push(reduced);
@@ -153,26 +188,28 @@ impl<'s> Watch<'s> {
         Some(Look { bytes, changed, left_alone, followed: later.any(Path::exists) })
     }
 
-    /// All plateaus of a finished mounting. Unless it has been left alone a last line without end is not read: it may have
-    /// come in part.
-    fn whole(&self, mounting: usize, look: Look) -> Result<(ReducedMounting, usize), Error> {
-        let schedule = self.schedule(mounting);
-        let record = if look.left_alone {
-            self.session.record(mounting)?
+    /// The record of a mounting. Unless it has been left alone a last line without end is not read: it may have come in part.
+    fn read(&self, mounting: usize, look: Look) -> Result<Record, Error> {
+        if look.left_alone {
+            self.session.record(mounting)
         } else {
-            read_growing_records(&self.session.record_files(mounting)?, &self.session.columns)?
-        };
-        let reduced = self.reduced(mounting, &record, &schedule).map_err(|source| self.refused(mounting, source))?;
+            read_growing_records(&self.session.record_files(mounting)?, &self.session.columns)
+        }
+    }
+
+    /// All plateaus of a finished mounting.
+    fn whole(&self, mounting: usize, record: &Record) -> Result<(ReducedMounting, usize), Error> {
+        let schedule = self.schedule(mounting);
+        let reduced = self.reduced(mounting, record, &schedule).map_err(|source| self.refused(mounting, source))?;
         Ok((reduced, schedule.len()))
     }
 
     /// The plateaus that a growing record shows, and how many of them have come to their end.
-    fn begun(&self, mounting: usize) -> Result<Option<(ReducedMounting, usize)>, Error> {
+    fn begun(&self, mounting: usize, record: &Record) -> Result<Option<(ReducedMounting, usize)>, Error> {
         let schedule = self.schedule(mounting);
-        let record = read_growing_records(&self.session.record_files(mounting)?, &self.session.columns)?;
         let mut count = schedule.len();
         while count > 0 {
-            match self.reduced(mounting, &record, &schedule[..count]) {
+            match self.reduced(mounting, record, &schedule[..count]) {
                 Ok(reduced) => return Ok(Some((reduced, over(&schedule[..count])))),
                 Err(
                     ReductionError::PlateauNotFound { index, .. }
@@ -186,7 +223,7 @@ impl<'s> Watch<'s> {
         Ok(None)
     }
 
-    /// Reduces a record with the speeds that are measured, as far as their file has come.
+    /// Reduces a record with the speeds that are measured or witnessed, as far as their file has come.
     fn reduced(
         &self,
         mounting: usize,
@@ -194,9 +231,9 @@ impl<'s> Watch<'s> {
         schedule: &[ScheduledPlateau],
     ) -> Result<ReducedMounting, ReductionError> {
         let (files, columns) = (&self.session.mountings[mounting], &self.session.columns);
-        let Some(measured) = self.session.speeds.measured else { return reduce(record, None, schedule) };
+        let measured = self.session.speeds.measured;
         // What is not there yet, or not whole, is read when the session is calibrated at its end.
-        match measured.source {
+        match measured.map_or(SpeedSource::Telemetry, |measured| measured.source) {
             SpeedSource::Telemetry => {
                 let telemetry = files.telemetry.as_ref().and_then(|file| read_growing_telemetry(file, columns).ok());
                 reduce(record, telemetry.as_ref(), schedule)
@@ -204,7 +241,7 @@ impl<'s> Watch<'s> {
             SpeedSource::Pulses => match files.pulses.as_ref().and_then(|file| read_growing_pulses(file, columns).ok())
             {
                 Some(t) => {
-                    let per_revolution = measured.pulses_per_revolution;
+                    let per_revolution = measured.map_or(1.0, |measured| measured.pulses_per_revolution);
                     reduce_counted(record, &PulseTrain { t, per_revolution }, schedule)
                 }
                 None => reduce(record, None, schedule),
@@ -215,9 +252,6 @@ impl<'s> Watch<'s> {
 
     /// Notes the measured speeds of a mounting.
     fn note_speeds(&mut self, mounting: usize, reduced: &ReducedMounting) {
-        if !self.session.speeds.is_in_files() {
-            return;
-        }
         let set_points = self.session.experiment.set_points.iter().enumerate();
         let (there, set): (Vec<usize>, Vec<f64>) =
             set_points.filter(|(_, s)| s.mounting == mounting).map(|(n, s)| (n, s.omega)).unzip();

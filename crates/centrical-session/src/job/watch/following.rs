@@ -1,7 +1,7 @@
 //! A session that is watched: every plateau is tested, taken up or held out, and kept; the calibration when all have arrived.
 
 use std::collections::HashSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -14,7 +14,11 @@ use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linea
 use nalgebra::Vector3;
 
 use super::arrivals::Watch;
-use crate::document::{CalibrationResult, Method, WatchState, WatchedPlateau, append_history, keep_history};
+use super::board::{Board, LiveRequest};
+use super::progress::WatchProgress;
+use crate::document::{
+    CalibrationResult, LiveStatus, Method, WatchState, WatchedPlateau, append_history, keep_history,
+};
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
 use crate::job::calibrate::calibrate_without;
@@ -36,8 +40,12 @@ pub struct WatchRequest {
     pub interval: Duration,
     /// Time without change after which a record counts as finished.
     pub quiet: Duration,
+    /// Time without a sample after which a record counts as frozen in the midst of its schedule.
+    pub frozen: Duration,
     /// Whether one look is enough.
     pub once: bool,
+    /// How the watch is shown in `watch-live.json`, if it is.
+    pub live: Option<LiveRequest>,
 }
 
 /// What happens while a session is watched.
@@ -47,24 +55,13 @@ pub enum WatchEvent<'a> {
     Plateau(WatchProgress<'a>),
     /// What is waited for.
     Waiting(&'a str),
-}
-
-/// What is known after a plateau.
-#[derive(Debug)]
-pub struct WatchProgress<'a> {
-    /// The session.
-    pub session: &'a Session,
-    /// The unknowns.
-    pub model: &'a MeasurementModel,
-    /// Plateaus that have arrived, in their order.
-    pub plateaus: &'a [WatchedPlateau],
-    /// What is known.
-    pub now: Progress,
-    /// The next set point of the schedule, and what will be known after it.
-    pub next: Option<(usize, Progress)>,
-    /// The most useful plateau that remains in the mounting on the arm, and that of the other mountings: by the mean
-    /// uncertainty of the compensated reading with it over that without.
-    pub best: Vec<Benefit>,
+    /// A record has stopped growing in the midst of its schedule.
+    Frozen {
+        /// Its file.
+        file: &'a Path,
+        /// Since it changed last.
+        age: Duration,
+    },
 }
 
 /// How a watch ends.
@@ -94,6 +91,8 @@ pub struct Following<'a> {
     come: Vec<bool>,
     /// Plateaus that the user holds out, as set points.
     held_out: Vec<usize>,
+    /// What is shown of it, if it is.
+    board: Option<Board<'a>>,
 }
 
 impl<'a> Following<'a> {
@@ -121,7 +120,23 @@ impl<'a> Following<'a> {
         next.take(&taken).map_err(planning)?;
         let mut come = vec![false; experiment.set_points.len()];
         state.plateaus.iter().for_each(|plateau| come[plateau.set_point] = true);
-        Ok(Self { request, session, model, follower, next, state, kept: Instant::now(), come, held_out })
+        let kept = Instant::now();
+        let mut following = Self { request, session, model, follower, next, state, kept, come, held_out, board: None };
+        following.board = following.first_board()?;
+        Ok(following)
+    }
+
+    /// What is shown before the first look, if the watch is shown.
+    fn first_board(&self) -> Result<Option<Board<'a>>, Error> {
+        let request = self.request;
+        let Some(live) = &request.live else { return Ok(None) };
+        let file = request.out.join(LIVE_FILE);
+        let mut board = Board::new(self.session, live, file, request.interval, request.frozen);
+        if let Some(standing) = self.standing()? {
+            board.show(&standing)?;
+        }
+        board.write_as(LiveStatus::Following, None)?;
+        Ok(Some(board))
     }
 
     /// Looks at the session again and again, until its schedule is complete or `stop` is raised.
@@ -129,8 +144,30 @@ impl<'a> Following<'a> {
     /// # Errors
     /// [`Error`] when a finished record is wrong, or the folder does not take the state.
     pub fn run(&mut self, stop: &AtomicBool, report: &mut dyn FnMut(WatchEvent)) -> Result<WatchEnd, Error> {
+        let mut board = self.board.take();
+        let end = self.follow(stop, report, board.as_mut());
+        if let Some(board) = &mut board {
+            match &end {
+                Ok(WatchEnd::Stopped { .. }) => board.write_as(LiveStatus::Stopped, None)?,
+                Ok(WatchEnd::Complete(result)) => {
+                    board.judge(result.objections().is_empty());
+                    board.write_as(LiveStatus::Complete, None)?;
+                }
+                // The first error is the one to return.
+                Err(error) => drop(board.write_as(LiveStatus::Failed, Some(&error.to_string()))),
+            }
+        }
+        end
+    }
+
+    fn follow(
+        &mut self,
+        stop: &AtomicBool,
+        report: &mut dyn FnMut(WatchEvent),
+        mut board: Option<&mut Board>,
+    ) -> Result<WatchEnd, Error> {
         let mut watch = Watch::new(self.session, self.request.quiet);
-        let mut note = None;
+        let (mut note, mut is_frozen) = (None, false);
         loop {
             let arrivals = watch.look()?;
             let has_come = !arrivals.is_empty();
@@ -148,6 +185,13 @@ impl<'a> Following<'a> {
             if has_come {
                 self.keep()?;
             }
+            if let Some(board) = &mut board {
+                board.pace(self.state.plateaus.len());
+                if let Some(standing) = has_come.then(|| self.standing()).transpose()?.flatten() {
+                    board.show(&standing)?;
+                }
+                board.write(&watch, LiveStatus::Following, watch.note())?;
+            }
             if watch.is_complete() {
                 return self.finish();
             }
@@ -155,6 +199,11 @@ impl<'a> Following<'a> {
                 note = watch.note().map(str::to_owned);
                 note.as_deref().into_iter().for_each(|note| report(WatchEvent::Waiting(note)));
             }
+            let frozen = watch.growth().and_then(|growth| Some((growth.file(), growth.frozen(self.request.frozen)?)));
+            if let Some((file, age)) = frozen.filter(|_| !is_frozen) {
+                report(WatchEvent::Frozen { file, age });
+            }
+            is_frozen = frozen.is_some();
             if self.request.once {
                 watch.without_quiet().iter().for_each(|note| report(WatchEvent::Waiting(note)));
                 return Ok(self.stopped());
@@ -225,6 +274,12 @@ impl<'a> Following<'a> {
     fn keep(&mut self) -> Result<(), Error> {
         self.kept = Instant::now();
         self.state.write(&self.request.out.join(STATE_FILE))
+    }
+
+    /// What is known after the last plateau that has arrived; `None` while none is taken up.
+    fn standing(&self) -> Result<Option<WatchProgress<'_>>, Error> {
+        let last = self.state.plateaus.last().filter(|_| !self.follower.taken().is_empty());
+        last.map(|last| self.progress(self.fitted(self.follower.progress())?, &last.observation())).transpose()
     }
 
     fn progress(&self, now: Progress, last: &Observation) -> Result<WatchProgress<'_>, Error> {
@@ -299,6 +354,9 @@ fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) 
 const KEPT_EACH: Duration = Duration::from_secs(1);
 
 const STATE_FILE: &str = "watch.json";
+
+/// What is seen at this moment.
+const LIVE_FILE: &str = "watch-live.json";
 
 const HISTORY_FILE: &str = "watch-history.jsonl";
 

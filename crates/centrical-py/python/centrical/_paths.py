@@ -1,0 +1,20 @@
+"""One path or several."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ._types import Path
+
+
+def paths(given: Path | Iterable[Path]) -> list[Path]:
+    """A list of one path, or of those given.
+
+    >>> from centrical._paths import paths
+    >>> paths("a.json"), paths(["a.json", "b.json"])
+    (['a.json'], ['a.json', 'b.json'])
+    """
+    return [given] if isinstance(given, (str, os.PathLike)) else list(given)

@@ -1,0 +1,103 @@
+//! What the earlier calibrations of a unit say of a reading after its next switch-on.
+
+use centrical_session::{MICRO_G, ReadingHistory, STANDARD_GRAVITY, UnitHistoryReport, UnitParameter};
+
+use super::content::{Align, Block, Table};
+use crate::evaluation::symbol;
+use crate::language::Language;
+use crate::number::unsigned_zero;
+
+/// The heading, what changed between the calibrations, and the uncertainty of compensated readings.
+pub(super) fn switch_on(history: &UnitHistoryReport, language: Language) -> Vec<Block> {
+    let messages = language.messages();
+    let mut blocks = vec![
+        Block::heading(messages.switch_on, 12),
+        Block::paragraph(messages.switch_on_text),
+        Block::facts([
+            (messages.calibrations_of_unit, calibrations(history, language)),
+            (messages.same_unit, sameness(history, language)),
+            (messages.parameters_scatter, named(history, |p| p.scatters, language)),
+            (messages.parameters_drift, named(history, |p| p.drifts, language)),
+        ]),
+    ];
+    if !history.readings.is_empty() {
+        blocks.push(Block::Table(readings(history, language)));
+        blocks.push(Block::Note(messages.switch_on_note.to_owned()));
+    }
+    blocks
+}
+
+/// The same in a sentence: the reading that is least certain. `None` without readings.
+pub(crate) fn switch_on_sentence(history: &UnitHistoryReport, language: Language) -> Option<String> {
+    let messages = language.messages();
+    let worst = history.readings.iter().max_by(|a, b| a.after_switch_on.total_cmp(&b.after_switch_on))?;
+    let [after, between] = [worst.after_switch_on, worst.between].map(|u| micro_g(u, language));
+    Some(format!(
+        "{} {}: u = {after} {ug}; {} {}, {} {} g; {}: {between} {ug}; {}: {}",
+        messages.switch_on_text,
+        messages.after_switch_on,
+        messages.newtonometer,
+        worst.axis,
+        messages.specific_force,
+        force(worst, language),
+        messages.between_calibrations,
+        messages.calibrations_of_unit,
+        calibrations(history, language),
+        ug = language.unit("ug"),
+    ))
+}
+
+/// How many, from which day to which.
+fn calibrations(history: &UnitHistoryReport, language: Language) -> String {
+    let days = history.sessions.iter().map(|session| session.date);
+    let ends = days.clone().min().zip(days.max());
+    let ends = ends.map(|(first, last)| format!(" ({} – {})", language.date(first), language.date(last)));
+    format!("{}{}", history.sessions.len(), ends.unwrap_or_default())
+}
+
+fn sameness(history: &UnitHistoryReport, language: Language) -> String {
+    history.sameness.map_or_else(String::new, |test| {
+        let (chi_squared, chance) = (language.fixed(test.chi_squared, 1), language.probability(test.probability));
+        format!("χ² = {chi_squared}; ν = {}; p = {chance}", test.degrees_of_freedom)
+    })
+}
+
+/// Symbols of the selected parameters.
+fn named(history: &UnitHistoryReport, is_meant: impl Fn(&UnitParameter) -> bool, language: Language) -> String {
+    let names: Vec<String> = history.parameters.iter().filter(|p| is_meant(p)).map(|p| symbol(&p.name)).collect();
+    if names.is_empty() { language.messages().none.to_owned() } else { names.join(", ") }
+}
+
+fn readings(history: &UnitHistoryReport, language: Language) -> Table {
+    let messages = language.messages();
+    let ug = language.unit("ug");
+    let [stated, between, after] = [messages.this_calibration, messages.between_calibrations, messages.after_switch_on]
+        .map(|m| format!("{m}, {ug}"));
+    let columns = [
+        (messages.newtonometer, 0.2, Align::Left),
+        (&format!("{}, g", messages.specific_force), 0.2, Align::Left),
+        (&stated, 0.18, Align::Right),
+        (&between, 0.24, Align::Right),
+        (&after, 0.18, Align::Right),
+    ];
+    let row = |r: &ReadingHistory| {
+        let [low, high] = r.between_interval.map(|u| micro_g(u, language));
+        vec![
+            r.axis.to_string(),
+            force(r, language),
+            micro_g(r.stated, language),
+            format!("{} ({low} … {high})", micro_g(r.between, language)),
+            micro_g(r.after_switch_on, language),
+        ]
+    };
+    Table::numbers(columns, history.shown_readings().into_iter().map(row))
+}
+
+fn micro_g(u: f64, language: Language) -> String {
+    language.significant(u / MICRO_G, 2)
+}
+
+fn force(reading: &ReadingHistory, language: Language) -> String {
+    let parts = reading.force.map(|f| language.number(&unsigned_zero(format!("{:.0}", f / STANDARD_GRAVITY))));
+    format!("({})", parts.join("; "))
+}

@@ -1,0 +1,230 @@
+//! The documents of one result.
+
+use std::path::{Path, PathBuf};
+
+use centrical::MeasurementModel;
+use centrical_session::{
+    CalibrationResult, Error, Laboratory, NoiseAnalysis, Place, UnknownUnit, claim_folder, create_folder,
+    history_up_to, read_history, refuse_inputs, write_whole,
+};
+
+use crate::codegen::{NamedTerm, compensation_source, heading};
+use crate::dcc::digital_certificate;
+use crate::document::{Attachment, Document, Issuer, certificate, report};
+use crate::evaluation::UnitStatement;
+use crate::figure::{figures, history_figure, noise_plots};
+use crate::language::Language;
+use crate::picture::read_picture;
+use crate::render::{html, pdf};
+
+/// The documents that are made of a result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DocumentRequest {
+    /// The result of a calibration.
+    pub result: PathBuf,
+    /// File for the report.
+    pub html: Option<PathBuf>,
+    /// History of a watch, shown in the report.
+    pub history: Option<PathBuf>,
+    /// Earlier calibrations of the unit, results, folders of them or stores: what they say of it stands in report and certificates.
+    pub past: Vec<PathBuf>,
+    /// File for the certificate; needs a laboratory.
+    pub pdf: Option<PathBuf>,
+    /// Result before the unit was adjusted, shown in the certificate.
+    pub before: Option<PathBuf>,
+    /// File for the digital certificate; needs a laboratory.
+    pub dcc: Option<PathBuf>,
+    /// Folder for the compensation as source code.
+    pub code: Option<PathBuf>,
+    /// Largest specific force on each axis that the source code takes [m/s^2]; the result's own range if none.
+    pub range: Option<f64>,
+    /// What the certificates say of the laboratory.
+    pub laboratory: Option<PathBuf>,
+    /// Language of the documents.
+    pub language: Language,
+}
+
+/// The result that documents were made of, and what they say of the unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Documents {
+    /// The result.
+    pub result: CalibrationResult,
+    /// What the laboratory's decision says of the unit, where one was asked for.
+    pub unit: Option<UnitStatement>,
+}
+
+/// Writes the documents and returns what they are made of.
+///
+/// # Errors
+/// [`Error`] when a file cannot be read or written, or does not go with the result.
+pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
+    let result = CalibrationResult::read(&request.result)?;
+    let has_past = !request.past.is_empty();
+    let past = has_past.then(|| history_up_to(&request.result, &result, &request.past)).transpose()?;
+    let issuer = request.laboratory.as_deref().map(|file| read_issuer(file, &result)).transpose()?;
+    let issuer = issuer.map(|issuer| Issuer { past: past.clone(), ..issuer });
+    let logo = issuer.as_ref().zip(request.laboratory.as_ref()).and_then(|(of, file)| of.laboratory.logo(file));
+    let inputs = [
+        Some(&request.result),
+        request.history.as_ref(),
+        request.before.as_ref(),
+        request.laboratory.as_ref(),
+        logo.as_ref(),
+    ];
+    let outputs = [request.html.as_ref(), request.pdf.as_ref(), request.dcc.as_ref()];
+    let listed = |files: &[Option<&PathBuf>]| files.iter().flatten().map(|file| (*file).clone()).collect::<Vec<_>>();
+    let inputs = [listed(&inputs), request.past.clone()].concat();
+    refuse_inputs(&listed(&outputs), &inputs)?;
+    let language = request.language;
+    let unit = issuer.as_ref().and_then(|issuer| issuer.unit.as_ref());
+    if let Some(file) = &request.html {
+        let history = request.history.as_deref().map(read_history).transpose()?.unwrap_or_default();
+        let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group);
+        let further = history_figure(&history, &group_of, language);
+        write_whole(file, html(&report(&result, unit, past.as_ref(), further.as_slice(), language)).as_bytes())?;
+    }
+    if let Some(issuer) = &issuer {
+        let before = request.before.as_deref().map(|file| before(file, &result, &issuer.laboratory)).transpose()?;
+        let dcc = request.dcc.as_ref().map(|_| dcc(&result, issuer, language, &request.result)).transpose()?;
+        if let Some(file) = &request.pdf {
+            write_whole(
+                file,
+                &pdf(&with_attachment(certificate(&result, before.as_ref(), issuer, language), dcc.as_deref())),
+            )?;
+        }
+        if let Some((file, dcc)) = request.dcc.as_ref().zip(dcc) {
+            write_whole(file, dcc.as_bytes())?;
+        }
+    }
+    if let Some(folder) = &request.code {
+        write_source(&result, request, &inputs, folder)?;
+    }
+    Ok(Documents { unit: issuer.and_then(|issuer| issuer.unit), result })
+}
+
+/// Writes the report and its plots to a folder, and the certificates if the data of the laboratory are given.
+///
+/// # Errors
+/// [`Error`] when the laboratory's file is wrong or the folder does not take the documents.
+pub fn write_all_documents(
+    result: &CalibrationResult,
+    issuer: Option<&Issuer>,
+    language: Language,
+    folder: &Path,
+) -> Result<(), Error> {
+    let unit = issuer.and_then(|issuer| issuer.unit.as_ref());
+    write_whole(&folder.join("report.html"), html(&report(result, unit, None, &[], language)).as_bytes())?;
+    if let Some(issuer) = issuer {
+        let dcc = dcc(result, issuer, language, &folder.join("result.json"))?;
+        let certificate = with_attachment(certificate(result, None, issuer, language), Some(&dcc));
+        write_whole(&folder.join("certificate.pdf"), &pdf(&certificate))?;
+        write_whole(&folder.join("certificate.xml"), dcc.as_bytes())?;
+    }
+    let plots = folder.join("plots");
+    create_folder(&plots)?;
+    for figure in figures(result, language) {
+        let is_one = figure.drawings.len() == 1;
+        for (n, drawing) in (1..).zip(&figure.drawings) {
+            let name = if is_one { format!("{}.svg", figure.name) } else { format!("{}-{n:02}.svg", figure.name) };
+            write_whole(&plots.join(name), drawing.as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes the analysis of noise and its plots to a folder.
+///
+/// # Errors
+/// [`Error::Io`] when the folder does not take them.
+pub fn write_noise(analysis: &NoiseAnalysis, folder: &Path) -> Result<(), Error> {
+    let _claim = claim_folder(folder)?;
+    analysis.write(&folder.join("noise.json"))?;
+    for (name, plot) in noise_plots(analysis) {
+        write_whole(&folder.join(name), plot.to_svg().as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Draws the history in a folder beside it, if it holds one.
+///
+/// # Errors
+/// [`Error`] when the history cannot be read or the folder does not take the plot.
+pub fn write_history_plot(model: &MeasurementModel, folder: &Path) -> Result<(), Error> {
+    let history = folder.join("watch-history.jsonl");
+    if !history.exists() {
+        return Ok(());
+    }
+    let parameters = model.parameters();
+    let group_of = |name: &str| parameters.find(name).map(|j| parameters[j].group);
+    if let Some(figure) = history_figure(&read_history(&history)?, &group_of, Language::English) {
+        write_whole(&folder.join("watch-history.svg"), figure.drawings.concat().as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Who issues the documents of `result`, from the laboratory's file, with what its decision says of the unit.
+///
+/// # Errors
+/// [`Error`] when the file is wrong, its limits are not those of a quantity of the result, or its picture cannot be shown.
+pub fn read_issuer(file: &Path, result: &CalibrationResult) -> Result<Issuer, Error> {
+    let laboratory = Laboratory::read(file)?;
+    let limits = laboratory.limits(file, result)?;
+    let unit = laboratory.decision.as_ref().map(|decision| UnitStatement::new(result, decision, limits));
+    let logo = laboratory.logo(file).map(|file| read_picture(&file)).transpose()?;
+    Ok(Issuer { laboratory, unit, past: None, logo })
+}
+
+/// A certificate that carries its digital form.
+fn with_attachment(certificate: Document, dcc: Option<&str>) -> Document {
+    let attachment = dcc.map(|text| Attachment {
+        name: "certificate.xml",
+        media_type: "application/xml",
+        bytes: text.as_bytes().to_vec(),
+    });
+    Document { attachment, ..certificate }
+}
+
+/// The result before an adjustment, which has to be of the same unit, and the laboratory has to say what it adjusted.
+fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Result<CalibrationResult, Error> {
+    let before = CalibrationResult::read(file)?;
+    let unit = |result: &CalibrationResult| format!("{} {}", result.session.unit_model, result.session.unit_serial);
+    let refuse = |found: String, expected: String| Err(Error::content(file, Place::Whole, found, expected));
+    if unit(&before) != unit(after) {
+        return refuse(format!("a result of {}", unit(&before)), format!("one of {}", unit(after)));
+    }
+    if laboratory.item.adjustment.is_none() {
+        let expected = "[item] adjustment in the laboratory's file, what was adjusted between the two calibrations";
+        return refuse("a result before an adjustment".to_owned(), expected.to_owned());
+    }
+    Ok(before)
+}
+
+/// The digital certificate of the result in `file`.
+fn dcc(result: &CalibrationResult, issuer: &Issuer, language: Language, file: &Path) -> Result<String, Error> {
+    digital_certificate(result, issuer, language).map_err(|UnknownUnit { found }| {
+        let expected = "a fraction of powers of m, s and rad such as s^2/m, or 1";
+        Error::content(file, Place::Whole, format!("a parameter in {found:?}"), expected)
+    })
+}
+
+/// Writes the compensation as source code.
+fn write_source(
+    result: &CalibrationResult,
+    request: &DocumentRequest,
+    inputs: &[PathBuf],
+    folder: &Path,
+) -> Result<(), Error> {
+    let file = || request.result.clone();
+    let no_model = |source| Error::ErrorModel { file: file(), source };
+    let terms = NamedTerm::of(result).map_err(no_model)?;
+    let plain = result.error_terms().map_err(no_model)?;
+    let sources = (request.range.map_or_else(|| result.compensation_range(&plain), Ok))
+        .and_then(|range| compensation_source(&heading(result), &terms, result.output.as_ref(), range))
+        .map_err(|source| Error::NotInvertible { file: file(), source })?;
+    let _claim = claim_folder(folder)?;
+    refuse_inputs(&sources.iter().map(|source| folder.join(source.name)).collect::<Vec<_>>(), inputs)?;
+    for source in sources {
+        write_whole(&folder.join(source.name), source.text.as_bytes())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,102 @@
+//! The pages of a server of finished results: their list, and two compared.
+
+use std::fmt::Write;
+
+use centrical_session::{CalibrationResult, ComparisonReport};
+
+use super::live::{languages, served};
+use crate::figure::comparison_plot;
+use crate::language::Language;
+use crate::plot::Escaped;
+use crate::terminal::comparison_text;
+
+/// A result in the list: where it lies, and what it says or why it cannot be read.
+#[derive(Debug)]
+pub struct ListedResult {
+    /// What the address of its page names it by: the same whatever else is in the list.
+    pub id: String,
+    /// Its file.
+    pub file: String,
+    /// The result, or the message of the error.
+    pub result: Result<Box<CalibrationResult>, String>,
+}
+
+/// The list of results. The page of a result is `/report/ID`, of two compared `/compare?first=ID&second=ID`.
+pub fn results_page(title: &str, results: &[ListedResult], has_live: bool, language: Language) -> String {
+    let words = language.live();
+    let mut body = format!(
+        "<header><p class=\"kind\">{}</p><h1>{}</h1><nav class=\"languages\">{}</nav></header>\n",
+        words.results,
+        Escaped(title),
+        languages(language)
+    );
+    let code = language.code();
+    if has_live {
+        let _ = writeln!(body, "<p><a href=\"/live?lang={code}\">{}</a></p>", words.live);
+    }
+    let _ = write!(
+        body,
+        "<form action=\"/compare\"><input type=\"hidden\" name=\"lang\" value=\"{code}\"><div class=\"scroll\"><table id=\"list\">\
+         <thead><tr><th scope=\"col\">{}</th><th scope=\"col\">{}</th><th scope=\"col\">{}</th><th scope=\"col\">{}</th>\
+         <th scope=\"col\">{}</th><th scope=\"col\">{}</th></tr></thead><tbody>",
+        words.compare, words.date, words.model, words.serial, words.verdict, words.file
+    );
+    for listed in results {
+        let _ = row(&mut body, listed, language);
+    }
+    let _ = writeln!(body, "</tbody></table></div><p><button>{}</button></p></form>", words.compare);
+    served(title, &body, false, language)
+}
+
+fn row(body: &mut String, listed: &ListedResult, language: Language) -> std::fmt::Result {
+    let (words, file) = (language.live(), Escaped(&listed.file));
+    let result = match &listed.result {
+        Ok(result) => result,
+        Err(message) => {
+            let (unreadable, message) = (words.unreadable, Escaped(message));
+            return writeln!(
+                body,
+                "<tr><td></td><td></td><td></td><td></td><td class=\"bad\">{unreadable}<span lang=\"en\">{message}</span></td>\
+                 <td>{file}</td></tr>"
+            );
+        }
+    };
+    let session = &result.session;
+    let is_acceptable = result.objections().is_empty();
+    let (class, verdict) = if is_acceptable { ("good", words.acceptable) } else { ("bad", words.not_acceptable) };
+    let (label, id) = (format!("{} {}", session.unit_serial, session.date), Escaped(&listed.id));
+    writeln!(
+        body,
+        "<tr><td><label><input type=\"radio\" name=\"first\" value=\"{id}\" aria-label=\"1: {0}\"> 1</label> \
+         <label><input type=\"radio\" name=\"second\" value=\"{id}\" aria-label=\"2: {0}\"> 2</label></td><td>{1}</td><td>{2}</td>\
+         <td>{3}</td><td><span class=\"{class}\">{verdict}</span> <a href=\"/report/{id}?lang={4}\">{5}</a></td><td>{file}</td></tr>",
+        Escaped(&label),
+        Escaped(&session.date),
+        Escaped(&session.unit_model),
+        Escaped(&session.unit_serial),
+        language.code(),
+        words.report
+    )
+}
+
+/// Two results compared.
+pub fn compared_page(report: &ComparisonReport, language: Language) -> String {
+    let words = language.live();
+    let (class, verdict) = if report.agree { ("good", words.agree) } else { ("bad", words.disagree) };
+    let mut body = format!(
+        "<header><p class=\"kind\">{}</p><h1 class=\"{class}\">{verdict}</h1><p><a href=\"/?lang={}\">{}</a></p></header>\n\
+         <figure>{}</figure>\n<pre class=\"text\" lang=\"en\">",
+        words.differences,
+        language.code(),
+        words.results,
+        comparison_plot(report)
+    );
+    for line in comparison_text(report).text(WIDTH, usize::MAX).lines() {
+        let _ = writeln!(body, "{}", Escaped(line));
+    }
+    body.push_str("</pre>\n");
+    served(verdict, &body, false, language)
+}
+
+/// Characters in a line.
+const WIDTH: usize = 140;

@@ -1,0 +1,38 @@
+//! What became of results that were added to a store: schema `centrical-added/1`.
+
+use serde::Serialize;
+
+use super::json;
+use super::result::Program;
+use crate::error::Error;
+
+/// Name of the schema's present version.
+pub const ADDED_SCHEMA: &str = "centrical-added/1";
+
+/// What became of results that were added to a store.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct AddedReport {
+    /// [`ADDED_SCHEMA`].
+    pub schema: &'static str,
+    /// What made it.
+    pub program: Program,
+    /// Results that were not there.
+    pub new: usize,
+    /// Results that were there.
+    pub known: usize,
+}
+
+impl AddedReport {
+    /// Of `new` results that were not there and `known` ones that were.
+    pub fn of(new: usize, known: usize) -> Self {
+        Self { schema: ADDED_SCHEMA, program: Program::this(), new, known }
+    }
+
+    /// The text of the document.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document(ADDED_SCHEMA, self)
+    }
+}
