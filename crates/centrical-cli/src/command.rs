@@ -18,6 +18,7 @@ pub mod report;
 pub mod schema;
 pub mod series;
 pub mod simulate;
+pub mod tumble;
 #[cfg(feature = "serve")]
 pub mod view;
 pub mod watch;

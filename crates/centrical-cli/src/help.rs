@@ -8,7 +8,7 @@ use clap::Command;
 pub const GROUPS: [(&str, &[&str]); 5] = [
     ("Prepare", &["init", "schema", "observe", "plan", "simulate"]),
     ("Measure", &["watch", "reduce", "noise"]),
-    ("Calibrate", &["calibrate", "series", "history", "models", "assess", "montecarlo", "compare"]),
+    ("Calibrate", &["calibrate", "tumble", "series", "history", "models", "assess", "montecarlo", "compare"]),
     ("Use", &["report", "view", "compensate"]),
     ("This program", &["completions", "man"]),
 ];

@@ -5,6 +5,7 @@
 mod alarm;
 mod command;
 mod format;
+mod given;
 mod help;
 mod interruption;
 mod outcome;
@@ -42,6 +43,7 @@ enum Command {
     Reduce(command::reduce::Arguments),
     Compensate(command::compensate::Arguments),
     Simulate(command::simulate::Arguments),
+    Tumble(command::tumble::Arguments),
     Report(command::report::Arguments),
     Assess(command::assess::Arguments),
     Montecarlo(command::montecarlo::Arguments),
@@ -90,6 +92,7 @@ fn run(command: Command) -> Result<Outcome, Error> {
         Command::Reduce(arguments) => command::reduce::run(&arguments),
         Command::Compensate(arguments) => command::compensate::run(&arguments),
         Command::Simulate(arguments) => command::simulate::run(&arguments),
+        Command::Tumble(arguments) => command::tumble::run(&arguments),
         Command::Report(arguments) => command::report::run(&arguments),
         Command::Assess(arguments) => command::assess::run(&arguments),
         Command::Montecarlo(arguments) => command::montecarlo::run(&arguments),

@@ -17,3 +17,4 @@ pub mod report;
 pub mod schema;
 pub mod series;
 pub mod simulate;
+pub mod tumble;

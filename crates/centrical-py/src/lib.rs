@@ -60,6 +60,8 @@ pub mod _native {
     #[pymodule_export]
     pub use crate::jobs::simulate::simulate;
     #[pymodule_export]
+    pub use crate::jobs::tumble::tumble;
+    #[pymodule_export]
     pub use crate::pool::set_threads;
     #[pymodule_export]
     pub use crate::result::CalibrationResult;

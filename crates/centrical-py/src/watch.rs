@@ -155,7 +155,7 @@ fn follow(
     stop: &AtomicBool,
     events: &Sender<Event>,
 ) -> Result<Option<Box<session::CalibrationResult>>, Error> {
-    let session = Session::read(session)?;
+    let session = Session::read(session)?.on_arm();
     let _claim = claim_folder(&request.out)?;
     let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "result.json"];
     refuse_inputs(&outputs.map(|name| request.out.join(name)), &session.files())?;

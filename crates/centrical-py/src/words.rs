@@ -1,7 +1,7 @@
 //! Words and quantities as arguments.
 
 use centrical_report::Language;
-use centrical_session::{Dimension, Method, PlateauName, Quantity, TableFormat};
+use centrical_session::{ColumnName, Dimension, Method, PlateauName, Quantity, TableFormat};
 use pyo3::exceptions::PyValueError;
 use pyo3::{FromPyObject, PyErr, PyResult};
 
@@ -107,4 +107,31 @@ pub fn probability(argument: &str, value: f64) -> PyResult<f64> {
 /// An argument that is wrong, and why.
 pub fn refused(argument: &str, why: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(format!("{argument}: {why}"))
+}
+
+/// A column by its name, or by its number from 1.
+#[derive(FromPyObject)]
+pub enum Named {
+    /// Its number.
+    Number(usize),
+    /// Its name.
+    Name(String),
+}
+
+/// The name of a column.
+pub fn column(argument: &str, name: Named) -> PyResult<ColumnName> {
+    match name {
+        Named::Number(0) => Err(refused(argument, "found 0, expected a number from 1 or a name")),
+        Named::Number(number) => Ok(ColumnName::Number(number)),
+        Named::Name(name) => Ok(ColumnName::Name(name)),
+    }
+}
+
+/// A sampling rate [Hz].
+pub fn sampling_rate(rate: Option<Amount>) -> PyResult<Option<f64>> {
+    let rate = Amount::optional(rate, "rate", Dimension::Frequency)?;
+    match rate.filter(|rate| rate.is_nan() || *rate <= 0.0) {
+        Some(rate) => Err(refused("rate", format!("found {rate}, expected a rate above zero"))),
+        None => Ok(rate),
+    }
 }

@@ -49,11 +49,8 @@ pub(crate) fn positions(result: &CalibrationResult, language: Language) -> Optio
         .model
         .positions
         .iter()
-        .map(|position| Position {
-            id: position.id.clone(),
-            p_zy: Matrix3::from_fn(|i, j| position.matrix[i][j]),
-            pair: position.pair.clone(),
-        })
+        .filter(|position| !position.is_free)
+        .map(|position| Position::on_arm(&position.id, Matrix3::from_fn(|i, j| position.matrix[i][j]), &position.pair))
         .collect();
     (!positions.is_empty()).then(|| {
         let drawings = position_drawings(&positions, language);

@@ -13,6 +13,7 @@ mod observe;
 mod pattern;
 mod plan;
 mod prediction;
+mod rests;
 mod rests_on;
 mod rivals;
 mod screen;

@@ -11,6 +11,7 @@ mod times;
 mod units_found;
 mod writer;
 
+pub(crate) use self::columns::named_columns;
 pub use self::columns::{Column, Columns, Scale};
 pub use self::input::Input;
 pub use self::overview::RecordOverview;

@@ -90,7 +90,7 @@ impl From<&PlateauMean> for Steadiness {
 }
 
 impl Reduced {
-    /// The plateaus as a table, from which the session is calibrated to the same numbers.
+    /// The plateaus on the arm as a table, from which the session is calibrated to the same numbers.
     pub fn table(&self, session: &Session) -> Vec<TabledPlateau> {
         let sign = session.experiment.centrifuge.rotation.sign();
         let row = |(plateau, set_point): (&ReducedPlateau, &SetPoint)| TabledPlateau {
@@ -102,7 +102,32 @@ impl Reduced {
             covariance: plateau.covariance,
             samples: plateau.samples,
         };
-        self.plateaus.iter().zip(&self.set_points(session)).map(row).collect()
+        let set_points = self.set_points(session);
+        let plateaus = self.plateaus.iter().zip(&set_points);
+        plateaus.filter(|(_, set_point)| session.experiment.is_on_arm(set_point.mounting)).map(row).collect()
+    }
+
+    /// With the rests of the session, which are averaged already, behind its plateaus.
+    pub(crate) fn with_rests(mut self, session: &Session) -> Self {
+        self.plateaus.extend(session.rests.iter().map(ReducedPlateau::from));
+        if !self.speeds.is_empty() {
+            self.speeds.resize(self.plateaus.len(), None);
+        }
+        self
+    }
+
+    /// Rests in free attitudes as rows of a table, a mounting each.
+    pub(crate) fn rests(&self) -> Vec<TabledPlateau> {
+        let row = |(mounting, plateau): (usize, &ReducedPlateau)| TabledPlateau {
+            mounting,
+            speed: 0.0,
+            speed_uncertainty: None,
+            angle: 0.0,
+            mean: plateau.mean,
+            covariance: plateau.covariance,
+            samples: plateau.samples,
+        };
+        self.plateaus.iter().enumerate().map(row).collect()
     }
 
     /// The set points of the session, with measured speeds where it measures them. A plateau that spins without a measured

@@ -103,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 }
 
 /// The files that are written, but for plots.
-fn outputs(out: Option<&Path>, result: Option<&Path>) -> Vec<PathBuf> {
+pub fn outputs(out: Option<&Path>, result: Option<&Path>) -> Vec<PathBuf> {
     let documents = ["report.html", "certificate.pdf", "certificate.xml"];
     let documents = out.into_iter().flat_map(|folder| documents.map(|name| folder.join(name)));
     result.map(Path::to_owned).into_iter().chain(documents).collect()

@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 
 use centrical_report::{Emphasis, Screen, noise_table, noise_warnings, write_noise};
-use centrical_session::{
-    ColumnName, Dimension, Error, Estimator, NoiseRequest, NotThatQuantity, PlateauName, Quantity, noise_of, unwatched,
-};
+use centrical_session::{ColumnName, Error, Estimator, NoiseRequest, PlateauName, noise_of, unwatched};
 
+use crate::given::{column_name, frequency, time};
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 
@@ -89,28 +88,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     arguments.printing.show(text, || Ok(analysis.to_json()))?;
     Ok(Outcome::acceptable(warnings.is_empty()))
-}
-
-/// A number from 1, or a name.
-fn column_name(text: &str) -> Result<ColumnName, String> {
-    match text.parse::<usize>() {
-        Ok(0) => Err("found 0, expected a number from 1 or a name".to_owned()),
-        Ok(number) => Ok(ColumnName::Number(number)),
-        Err(_) => Ok(ColumnName::Name(text.to_owned())),
-    }
-}
-
-fn frequency(text: &str) -> Result<f64, String> {
-    let rate = quantity(text, Dimension::Frequency).map_err(|wrong| wrong.to_string())?;
-    if rate > 0.0 { Ok(rate) } else { Err(format!("found {text:?}, expected a rate above zero")) }
-}
-
-fn time(text: &str) -> Result<f64, NotThatQuantity> {
-    quantity(text, Dimension::Time)
-}
-
-fn quantity(text: &str, dimension: Dimension) -> Result<f64, NotThatQuantity> {
-    Quantity::Text(text.to_owned()).si(dimension)
 }
 
 fn estimators(text: &str) -> Result<Estimators, String> {

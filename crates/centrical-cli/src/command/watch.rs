@@ -4,7 +4,7 @@ use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use centrical_report::{counted, states_text, terminal_table, verdict_text, watch_table, write_history_plot};
+use centrical_report::{Screen, counted, states_text, terminal_table, verdict_text, watch_table, write_history_plot};
 use centrical_session::{
     Error, Following, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder, refuse_inputs,
 };
@@ -69,6 +69,12 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
+    if !session.rests.is_empty() {
+        let mut screen = Screen::default();
+        screen.say(0, "The rests of [[tumble]] are not watched: `centrical calibrate` adds them.");
+        remark(&screen);
+    }
+    let session = session.on_arm();
     #[cfg(feature = "serve")]
     let mut server = arguments.serving.bind()?;
     #[cfg(feature = "serve")]

@@ -109,6 +109,8 @@ fn hostile_requests_are_refused_and_counted() {
     let copy = Copy::new();
     let served = Served::start(&mut watch(&copy, &["--quiet", "0"]));
     until("the end", || state(&served)["status"] == "complete");
+    // The plot is the last file that a watch writes.
+    until("the plot", || copy.out().join("watch-history.svg").exists());
     let before = contents(&copy.out());
     let host = format!("Host: {}", served.address);
     let asked = |head: &str| served.raw(format!("{head}\r\nConnection: close\r\n\r\n").as_bytes());

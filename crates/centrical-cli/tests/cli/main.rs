@@ -28,6 +28,7 @@ mod simulate;
 mod speeds;
 mod steadiness;
 mod trust;
+mod tumble;
 mod watch;
 mod way_in;
 mod width;

@@ -37,6 +37,7 @@ from ._commands import (
     schema,
     series,
     simulate,
+    tumble,
 )
 from ._document import Document, Record
 from ._errors import FileError, InputError, NoSuchFileError
@@ -87,5 +88,6 @@ __all__ = [
     "set_progress",
     "set_threads",
     "simulate",
+    "tumble",
     "watch",
 ]

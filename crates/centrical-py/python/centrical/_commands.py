@@ -55,6 +55,46 @@ def calibrate(
         return Result(_native.calibrate(session, method, _texts(hold_out), out, laboratory, language, shown))
 
 
+def tumble(
+    records: Path | Sequence[Path],
+    *,
+    time: str | int = "t",
+    rate: Quantity | None = None,
+    readings: Sequence[str | int] = ("f1", "f2", "f3"),
+    unit: str = "m/s^2",
+    gravity: Quantity | None = None,
+    gravity_uncertainty: Quantity | None = None,
+    terms: Iterable[str] | None = None,
+    serial: str = "",
+    date: str = "",
+    out: Path | None = None,
+) -> Result:
+    """Calibrates a unit by gravity alone, from records in which it is turned and rests again and again.
+
+    Parameters
+    ----------
+    records
+        One record or several of one unit, in any format.
+    rate
+        Sampling rate [Hz], or a text such as ``"100 Hz"``, of records without a column of time.
+    unit
+        Of the readings: of acceleration, or ``"counts"`` or ``"V"``, whose scale and bias are found.
+    gravity
+        At the place [m/s^2]; 9.80665 m/s^2, uncertain by 0.02 m/s^2, if it is not given.
+    terms
+        Of the error model, as in ``experiment.toml``; bias, scale and misalignment if there are none.
+    out
+        A folder for ``result.json``, the rests as a session, the report and its plots.
+    """
+    given = [str(name) for name in terms] if terms is not None else None
+    with Bar("finding rests") as shown:
+        return Result(
+            _native.tumble(
+                paths(records), time, rate, list(readings), unit, (gravity, gravity_uncertainty), given, serial, date, out, shown
+            )
+        )
+
+
 def observe(subject: Path, combinations: Iterable[str] = ()) -> Document:
     """Rank, undetermined combinations, causes and remedies, of a session or a plan, before or after the experiment.
 

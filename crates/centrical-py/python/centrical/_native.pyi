@@ -170,6 +170,19 @@ def noise(
     out: _Path | None,
     shown: _Shown,
 ) -> str: ...
+def tumble(
+    records: Sequence[_Path],
+    time: str | int,
+    rate: _Quantity | None,
+    readings: Sequence[str | int],
+    unit: str,
+    gravity: tuple[_Quantity | None, _Quantity | None],
+    terms: Sequence[str] | None,
+    serial: str,
+    date: str,
+    out: _Path | None,
+    shown: _Shown,
+) -> CalibrationResult: ...
 def observe(file: _Path, combinations: Sequence[str], shown: _Shown) -> str: ...
 def plan(
     file: _Path,

@@ -3,20 +3,11 @@
 use std::path::PathBuf;
 
 use centrical_report::write_noise;
-use centrical_session::{ColumnName, Dimension, Estimator, NoiseRequest, noise_of};
+use centrical_session::{Estimator, NoiseRequest, noise_of};
 use pyo3::prelude::*;
 
 use crate::progress::{self, Shown};
-use crate::words::{Amount, one_of, plateau, refused};
-
-/// A column by its name, or by its number from 1.
-#[derive(FromPyObject)]
-pub enum Named {
-    /// Its number.
-    Number(usize),
-    /// Its name.
-    Name(String),
-}
+use crate::words::{Amount, Named, column, one_of, plateau, sampling_rate};
 
 /// `centrical-noise/1`.
 #[pyfunction]
@@ -34,16 +25,12 @@ pub fn noise(
     out: Option<PathBuf>,
     shown: Shown,
 ) -> PyResult<String> {
-    let rate = Amount::optional(rate, "rate", Dimension::Frequency)?;
-    if let Some(rate) = rate.filter(|rate| rate.is_nan() || *rate <= 0.0) {
-        return Err(refused("rate", format!("found {rate}, expected a rate above zero")));
-    }
     let request = NoiseRequest {
         file,
         plateau: plateau_name.map(|name| plateau("plateau", name)).transpose()?,
         session,
         time: column("time", time)?,
-        rate,
+        rate: sampling_rate(rate)?,
         readings: readings.into_iter().map(|name| column("readings", name)).collect::<PyResult<_>>()?,
         unit,
         window,
@@ -56,14 +43,6 @@ pub fn noise(
         }
         Ok(analysis.to_json())
     })
-}
-
-fn column(argument: &str, name: Named) -> PyResult<ColumnName> {
-    match name {
-        Named::Number(0) => Err(refused(argument, "found 0, expected a number from 1 or a name")),
-        Named::Number(number) => Ok(ColumnName::Number(number)),
-        Named::Name(name) => Ok(ColumnName::Name(name)),
-    }
 }
 
 fn named(names: &[String]) -> PyResult<Vec<Estimator>> {

@@ -18,6 +18,7 @@ pub(super) fn group(group: Group) -> &'static str {
         Group::Tilt => "Tilt of the rotation axis",
         Group::Turn => "Turn of the unit",
         Group::Shift => "Shift of the unit",
+        Group::Attitude => "Attitude of a rest",
         Group::ProofMass => "Place of a proof mass",
         Group::ElasticTurn => "Elastic turn",
         Group::ArmStretch => "Stretch of the arm",

@@ -18,6 +18,7 @@ pub(super) fn group(group: Group) -> &'static str {
         Group::Tilt => "Наклон оси вращения",
         Group::Turn => "Поворот прибора",
         Group::Shift => "Смещение прибора",
+        Group::Attitude => "Наклон в покое",
         Group::ProofMass => "Положение чувствительной массы",
         Group::ElasticTurn => "Упругий поворот",
         Group::ArmStretch => "Растяжение плеча",

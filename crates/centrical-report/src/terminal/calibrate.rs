@@ -1,11 +1,13 @@
 //! A result as a table for the terminal: what a person reads first.
 
+use centrical::Group;
 use centrical_session::{
     CalibrationResult, ParameterEstimate, ResultObjection, RivalSummary, TermSummary, ValiditySummary, customary,
 };
 
 use super::drift::drift;
 use super::pattern::pattern_in_words;
+use super::rests::rests;
 use super::rests_on::rests_on_text;
 use super::rivals::lines_of;
 use super::screen::{Emphasis, Screen};
@@ -22,7 +24,10 @@ pub fn terminal_table(result: &CalibrationResult) -> Screen {
     let mut screen = Screen::default();
     heading(&mut screen, result);
     error_model(&mut screen, result);
-    mounting(&mut screen, result);
+    if result.model.has_arm() {
+        mounting(&mut screen, result);
+    }
+    rests(&mut screen, result);
     others(&mut screen, result);
     not_estimable(&mut screen, result);
     priors(&mut screen, result);
@@ -39,8 +44,9 @@ pub fn terminal_table(result: &CalibrationResult) -> Screen {
 fn heading(screen: &mut Screen, result: &CalibrationResult) {
     let session = &result.session;
     let serial = if session.unit_serial.is_empty() { "not given" } else { &session.unit_serial };
-    screen.say(0, &format!("{}, serial {serial}", session.unit_model));
-    screen.say(0, &format!("{}, {}", session.title, session.date));
+    let joined = |words: [&str; 2]| words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
+    screen.say(0, &joined([&session.unit_model, &format!("serial {serial}")]));
+    screen.say(0, &joined([&session.title, &session.date]));
     let combined = if result.stated_sources().is_empty() { "" } else { "combined " };
     screen.say(0, &format!("value ± {combined}standard uncertainty (k = 1); 1 g = 9.80665 m/s^2"));
 }
@@ -128,7 +134,8 @@ fn label_and_axis(name: &str) -> Option<(String, usize)> {
 
 /// What fits neither table: extensions of the model.
 fn others(screen: &mut Screen, result: &CalibrationResult) {
-    let is_other = |p: &&ParameterEstimate| !p.group.is_of_mounting() && !is_of_instrument(result, p);
+    let is_known = |p: &ParameterEstimate| p.group.is_of_mounting() || p.group == Group::Attitude;
+    let is_other = |p: &&ParameterEstimate| !is_known(p) && !is_of_instrument(result, p);
     let others: Vec<_> = result.parameters.iter().filter(is_other).collect();
     if others.is_empty() {
         return;

@@ -19,9 +19,14 @@ fn is_name(text: &str) -> bool {
     is_shown && !text.is_empty() && !text.contains(['[', ']'])
 }
 
-/// The positions in the order of the file.
-pub(crate) fn positions(file: &Path, tables: &[PositionTable], relation: PairRelation) -> Result<Vec<Position>, Error> {
-    if tables.is_empty() {
+/// The positions in the order of the file. There has to be one, if `needs_one`.
+pub(crate) fn positions(
+    file: &Path,
+    tables: &[PositionTable],
+    relation: PairRelation,
+    needs_one: bool,
+) -> Result<Vec<Position>, Error> {
+    if tables.is_empty() && needs_one {
         let place = TomlPath::entry(file, "position", 0);
         return Err(place.unexpected("id", "no [[position]]", "at least one position"));
     }
@@ -35,7 +40,7 @@ pub(crate) fn positions(file: &Path, tables: &[PositionTable], relation: PairRel
             return Err(at.unexpected("id", format!("{:?} a second time", table.id), "an id of its own"));
         }
         let pair = table.pair.clone().unwrap_or_else(|| table.id.clone());
-        positions.push(Position { id: table.id.clone(), p_zy: attitude(&at, table)?, pair });
+        positions.push(Position::on_arm(&table.id, attitude(&at, table)?, pair));
     }
     check_pairs(file, tables, relation)?;
     Ok(positions)

@@ -93,6 +93,10 @@ impl Plan {
 
     fn of_form(file: &Path, form: &Form, expected: &ExpectedValues) -> Result<Self, Error> {
         let mut session = Session::without_plateaus(file, form)?;
+        if !form.tumble.is_empty() {
+            let expected = "no [[tumble]] in a plan: rests are taken from records, by centrical tumble";
+            return Err(TomlPath::entry(file, "tumble", 0).unexpected("rests", "a table", expected));
+        }
         session.experiment.set_points =
             schedule::set_points(file, &form.mounting, session.experiment.centrifuge.rotation)?;
         let table = form.plan.as_ref();
@@ -120,7 +124,7 @@ impl Plan {
         let plan = normalised(
             file,
             table,
-            Normalised { pair_relation: pair_relation(file, &form.model.pair_relation)?, ..Normalised::default() },
+            Normalised { pair_relation: pair_relation(file, &form.model)?, ..Normalised::default() },
         )?;
         let mut experiment = plan.experiment();
         let (noise, duration) = noise(file, table.noise.as_ref(), table.floor.as_ref(), table.duration.as_ref())?;

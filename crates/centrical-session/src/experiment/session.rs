@@ -6,17 +6,19 @@ use std::path::{Path, PathBuf};
 use centrical::TypeB;
 use centrical::reduction::{PulseTrain, Record, SpeedTrace};
 use centrical::{
-    Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
+    Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, Mounting, PairRelation, Position, Rotation,
+    SetPoint, Site,
 };
+use nalgebra::Vector3;
 
 use super::form::{Form, ModelTable, RecordEntry, SiteTable};
-use super::plateaus::PlateauTable;
+use super::plateaus::{PlateauMean, PlateauTable, read_plateaus};
 use super::prior::{self, PriorEntry};
 use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
 use super::unit::OutputUnit;
 use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
-use crate::error::{Error, quoted};
+use crate::error::{Error, Place, quoted};
 use crate::quantity::Dimension;
 use crate::record::{Columns, read_pulses, read_records, read_telemetry};
 use crate::settings::{from_toml, read_settings};
@@ -59,6 +61,10 @@ pub struct Session {
     pub mountings: Vec<MountingFiles>,
     /// Plateaus already averaged, if the session brings them instead of records.
     pub plateaus: Option<PlateauTable>,
+    /// Rests in free attitudes, each a mounting behind the others: their means, from tables of their own.
+    pub rests: Vec<PlateauMean>,
+    /// The tables of the rests.
+    pub rest_files: Vec<PathBuf>,
     /// Duration that the schedule states for each set point, if it does [s].
     pub durations: Vec<Option<f64>>,
     priors: Vec<PriorEntry>,
@@ -101,6 +107,15 @@ impl Session {
     /// # Errors
     /// As [`Session::read`].
     pub fn parse(text: &str, file: &Path) -> Result<Self, Error> {
+        Self::parse_with(text, file, read_rests)
+    }
+
+    /// [`Session::parse`] with the rests that a table of this path holds.
+    pub(crate) fn parse_with(
+        text: &str,
+        file: &Path,
+        mut rests: impl FnMut(&Path) -> Result<Vec<PlateauMean>, Error>,
+    ) -> Result<Self, Error> {
         let form = from_toml::<Form>(file, text)?.with_schedules();
         let folder = file.parent().unwrap_or(Path::new(""));
         let mut session = Self::without_plateaus(file, &form)?;
@@ -114,7 +129,11 @@ impl Session {
             session.experiment.set_points = schedule::set_points(file, &form.mounting, rotation)?;
             session.durations = schedule::durations(file, &form.mounting)?;
         }
-        refuse_rests_alone(file, &session.experiment.set_points)?;
+        for table in &session.rest_files {
+            session.rests.extend(rests(table)?);
+        }
+        session.refuse_rests_alone()?;
+        session.add_rests();
         // Whatever is wrong with the priors is said before any record is read.
         session.model()?;
         Ok(session)
@@ -126,10 +145,49 @@ impl Session {
     /// If a row is invalid, as in a file.
     pub fn with_plateaus(mut self, columns: &[Vec<f64>]) -> Result<Self, Error> {
         let table = PlateauTable::in_memory(&self.file, columns, self.mountings.len())?;
+        self.forget_rests();
         self.experiment.set_points = table.set_points(self.experiment.centrifuge.rotation);
         (self.plateaus, self.durations) = (Some(table), Vec::new());
-        refuse_rests_alone(&self.file, &self.experiment.set_points)?;
+        self.refuse_rests_alone()?;
+        self.add_rests();
         Ok(self)
+    }
+
+    /// Adds a position, a mounting and a set point for each rest in a free attitude; where its vertical is, its mean says.
+    fn add_rests(&mut self) {
+        let experiment = &mut self.experiment;
+        for (number, rest) in (1..).zip(&self.rests) {
+            let (position, mounting) = (experiment.positions.len(), experiment.mountings.len());
+            experiment.positions.push(Position::free(format!("r{number}"), &rest.mean));
+            experiment.mountings.push(Mounting { position, arm_y: Vector3::zeros() });
+            experiment.set_points.push(SetPoint::at_rest(mounting, 0.0));
+        }
+    }
+
+    /// Takes away what [`Session::add_rests`] added.
+    fn forget_rests(&mut self) {
+        let on_arm = self.experiment.mountings_on_arm().count();
+        self.experiment.positions.retain(|position| !position.is_free);
+        self.experiment.set_points.retain(|set_point| set_point.mounting < on_arm);
+        self.experiment.mountings.truncate(on_arm);
+    }
+
+    /// The session without rests in free attitudes.
+    #[must_use]
+    pub fn on_arm(mut self) -> Self {
+        self.forget_rests();
+        (self.rests, self.rest_files) = (Vec::new(), Vec::new());
+        self
+    }
+
+    /// On an arm plateaus at rest alone show nothing of a centrifuge.
+    fn refuse_rests_alone(&self) -> Result<(), Error> {
+        let is_of_rests = !self.experiment.has_arm() && !self.rests.is_empty();
+        if !is_of_rests && self.experiment.set_points.iter().all(SetPoint::is_rest) {
+            let at = TomlPath::entry(&self.file, "mounting", 0);
+            return Err(at.unexpected("plateaus", "all plateaus at rest", "at least one plateau with a speed"));
+        }
+        Ok(())
     }
 
     /// The measurement model of the session: its experiment, error model, extensions and priors.
@@ -154,15 +212,20 @@ impl Session {
     /// Everything but the set points.
     pub(crate) fn without_plateaus(file: &Path, form: &Form) -> Result<Self, Error> {
         let folder = file.parent().unwrap_or(Path::new(""));
-        let pair_relation = pair_relation(file, &form.model.pair_relation)?;
-        let positions = attitude::positions(file, &form.position, pair_relation)?;
+        let has_arm = form.tumble.is_empty() || !form.mounting.is_empty() || !form.position.is_empty();
+        if has_arm {
+            refuse_missing_keys(file, form)?;
+        }
+        let pair_relation = pair_relation(file, &form.model)?;
+        let positions = attitude::positions(file, &form.position, pair_relation, has_arm)?;
         let mountings = schedule::mountings(file, &form.mounting, &positions)?;
-        let speeds = speeds::speeds(file, &form.centrifuge)?;
+        let centrifuge = form.centrifuge.as_ref();
+        let speeds = centrifuge.map(|table| speeds::speeds(file, table)).transpose()?.unwrap_or_default();
         let experiment = Experiment {
             site: site(file, &form.site)?,
             unit: unit::geometry(file, &form.unit)?,
             centrifuge: Centrifuge {
-                rotation: rotation(file, &form.centrifuge.rotation)?,
+                rotation: centrifuge.map_or(Ok(Rotation::Positive), |table| rotation(file, &table.rotation))?,
                 speed_uncertainty: speeds.expected_uncertainty(),
             },
             positions,
@@ -179,7 +242,7 @@ impl Session {
             text: form.session.text.clone(),
             unit_model: form.unit.model.clone(),
             unit_serial: form.unit.serial.clone(),
-            station: form.centrifuge.station.clone(),
+            station: centrifuge.map_or_else(String::new, |table| table.station.clone()),
             output_unit: OutputUnit::named(&form.unit.output_unit),
             type_b: uncertainty::type_b(file, &form.uncertainty, &experiment, &error_model, &speeds)?,
             speeds,
@@ -200,6 +263,8 @@ impl Session {
                 })
                 .collect(),
             plateaus: None,
+            rests: Vec::new(),
+            rest_files: form.tumble.iter().map(|tumble| folder.join(&tumble.rests)).collect(),
             durations: Vec::new(),
             priors: prior::entries(&form.prior),
         })
@@ -247,7 +312,7 @@ impl Session {
     /// All files of the session in the order they are named: the experiment file first.
     pub fn files(&self) -> Vec<&Path> {
         let of_mountings = self.mountings.iter().flat_map(|m| m.records().chain(&m.telemetry).chain(&m.pulses));
-        let table = self.plateaus.iter().flat_map(|table| &table.file);
+        let table = self.plateaus.iter().flat_map(|table| &table.file).chain(&self.rest_files);
         std::iter::once(&self.file).chain(table).chain(of_mountings).map(PathBuf::as_path).collect()
     }
 
@@ -266,13 +331,32 @@ impl Session {
     }
 }
 
-/// Plateaus at rest alone show nothing of a centrifuge.
-fn refuse_rests_alone(file: &Path, set_points: &[SetPoint]) -> Result<(), Error> {
-    if set_points.iter().all(SetPoint::is_rest) {
-        let at = TomlPath::entry(file, "mounting", 0);
-        return Err(at.unexpected("plateaus", "all plateaus at rest", "at least one plateau with a speed"));
+/// The rests of a table: each row is one, and none has a speed.
+fn read_rests(table: &Path) -> Result<Vec<PlateauMean>, Error> {
+    let rests = read_plateaus(table, usize::MAX)?;
+    match (1..).zip(&rests).find(|(_, rest)| rest.speed != 0.0) {
+        Some((row, rest)) => {
+            let place = Place::Row { row, column: "speed".to_owned() };
+            Err(Error::content(table, place, rest.speed.to_string(), "0 in a table of rests"))
+        }
+        None => Ok(rests),
     }
-    Ok(())
+}
+
+/// Refuses a session with an arm that says nothing of what only an arm has.
+fn refuse_missing_keys(file: &Path, form: &Form) -> Result<(), Error> {
+    let keys = [
+        ("centrifuge", "speed_uncertainty", form.centrifuge.is_some()),
+        ("unit", "proof_masses", form.unit.proof_masses.is_some()),
+        ("model", "pair_relation", form.model.pair_relation.is_some()),
+    ];
+    match keys.into_iter().find(|(.., is_there)| !is_there) {
+        Some((table, key, _)) => {
+            let expected = "one, for the unit on the arm";
+            Err(TomlPath::table(file, table).unexpected(key, "no such key", expected))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The text of the experiment file.
@@ -345,7 +429,9 @@ pub(crate) fn named_extensions(at: &TomlPath, names: &[String]) -> Result<Vec<Ex
     Ok(extensions)
 }
 
-pub(crate) fn pair_relation(file: &Path, text: &str) -> Result<PairRelation, Error> {
+/// How the shifts of a pair are related; without an arm there are none, and each is free.
+pub(crate) fn pair_relation(file: &Path, table: &ModelTable) -> Result<PairRelation, Error> {
+    let text = table.pair_relation.as_deref().unwrap_or("free");
     match text {
         "common" => Ok(PairRelation::Common),
         "opposite" => Ok(PairRelation::Opposite),

@@ -15,7 +15,7 @@ use crate::record::Scale;
 pub(crate) fn geometry(file: &Path, table: &UnitTable) -> Result<Unit, Error> {
     let at = TomlPath::table(file, "unit");
     let mut rho_z = Matrix3::zeros();
-    for (j, point) in table.proof_masses.iter().enumerate() {
+    for (j, point) in table.proof_masses.iter().flatten().enumerate() {
         rho_z.set_column(j, &at.point("proof_masses", point)?.into());
     }
     let reference = match table.reference.as_deref() {

@@ -37,10 +37,12 @@ pub fn reduce(session: &Session, progress: OnProgress) -> Result<Reduced, Error>
 /// # Errors
 /// As [`reduce`].
 pub fn reduce_without_inputs(session: &Session, progress: OnProgress) -> Result<Reduced, Error> {
-    match &session.plateaus {
-        Some(table) => Ok(Reduced::of_table(&table.rows)),
-        None => from_records(session, progress),
-    }
+    let reduced = match &session.plateaus {
+        Some(table) => Reduced::of_table(&table.rows),
+        None if session.mountings.is_empty() => Reduced::of_table(&[]),
+        None => from_records(session, progress)?,
+    };
+    Ok(reduced.with_rests(session))
 }
 
 fn from_records(session: &Session, progress: OnProgress) -> Result<Reduced, Error> {

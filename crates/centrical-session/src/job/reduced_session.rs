@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use centrical_table::{TableFormat, claim_folder, refuse_inputs, write_whole};
-use toml_edit::{InlineTable, Item, TableLike, Value, value};
+use toml_edit::{InlineTable, Item, Table, TableLike, Value, value};
 
 use crate::error::{Error, Place};
 use crate::experiment::{
@@ -14,6 +14,9 @@ use crate::settings::editable;
 
 /// Keys of a mounting that say what the table of plateaus says now.
 const REPLACED: [&str; 4] = ["record", "telemetry", "pulses", "plateaus"];
+
+/// Name of the table of rests in free attitudes.
+const RESTS: &str = "rests.csv";
 
 /// Writes the reduced session into `folder`: the table of plateaus first, and `experiment.toml`, which names it, last.
 /// Calibrating it gives the numbers that calibrating the records gives.
@@ -31,12 +34,15 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
         TableFormat::Csv => ("plateaus.csv", write_plateaus),
         TableFormat::Parquet => ("plateaus.parquet", write_plateaus_parquet),
     };
-    refuse_inputs(&[experiment_file.clone(), folder.join(name)], &session.files())?;
+    refuse_inputs(&[experiment_file.clone(), folder.join(name), folder.join(RESTS)], &session.files())?;
     let rows = reduced.table(session);
     // Speeds that single plateaus of the schedule state as measured: the table has a column for them.
     let of_plateaus = session.speeds.measured.is_none() && rows.iter().any(|row| row.speed_uncertainty.is_some());
     let text = experiment(&session.file, name, of_plateaus.then_some(session.speeds.set_uncertainty))?;
     write(&folder.join(name), &rows)?;
+    if !session.rests.is_empty() {
+        write_plateaus(&folder.join(RESTS), &session.rests)?;
+    }
     Ok(write_whole(&experiment_file, text.as_bytes())?)
 }
 
@@ -66,6 +72,11 @@ fn experiment(file: &Path, table: &str, uncertainty: Option<f64>) -> Result<Stri
         measured.insert("from", value(SpeedSource::Plateaus.name()));
     }
     document.insert("plateaus", value(table));
+    if document.contains_key("tumble") {
+        let mut tumble = Table::new();
+        tumble.insert("rests", value(RESTS));
+        document.insert("tumble", Item::ArrayOfTables([tumble].into_iter().collect()));
+    }
     Ok(document.to_string())
 }
 

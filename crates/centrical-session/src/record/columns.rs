@@ -2,6 +2,8 @@
 
 use centrical_table::{ColumnName, Field, Rule, TableLines};
 
+use crate::quantity::Dimension;
+
 /// The columns of records and telemetry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Columns {
@@ -94,6 +96,27 @@ impl Column {
     pub(crate) fn field(&self, rule: Rule) -> Field {
         Field { name: self.name.clone(), expected: format!("a number in {}", self.unit), rule }
     }
+}
+
+/// The columns of a record without a session, as they are named by hand: time in s, or samples at a rate [Hz]; and readings,
+/// whose numbers stay as they are unless `unit` is one of acceleration.
+pub(crate) fn named_columns(
+    time: &ColumnName,
+    rate: Option<f64>,
+    readings: &[ColumnName],
+    unit: &str,
+) -> (Column, Vec<Column>) {
+    let column = |name: &ColumnName, unit: &str, factor| Column {
+        name: name.clone(),
+        unit: unit.to_owned(),
+        scale: Scale::factor(factor),
+    };
+    let time = match rate {
+        Some(rate) => column(&ColumnName::Row, "samples", 1.0 / rate),
+        None => column(time, "s", 1.0),
+    };
+    let factor = Dimension::Acceleration.factor(unit).unwrap_or(1.0);
+    (time, readings.iter().map(|name| column(name, unit, factor)).collect())
 }
 
 /// Columns as fields of a table, the first of them time.

@@ -3,7 +3,10 @@
 mod columns;
 mod in_memory;
 mod predictions;
+#[path = "../../../centrical/tests/common/random.rs"]
+mod random;
 mod record_writer;
+mod rests;
 mod session_forms;
 mod stopping;
 mod store;

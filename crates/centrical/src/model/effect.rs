@@ -161,6 +161,28 @@ impl Effect {
         self.is_elastic() || is_disturbance || matches!(self, Self::SpinTurn { .. } | Self::MountingTilt { .. })
     }
 
+    /// Whether it acts through the arm, its machine or its seats: not on a rest in a free attitude, whose own attitude is
+    /// unknown.
+    pub(super) fn is_of_arm(self) -> bool {
+        match self {
+            Self::Gravity | Self::Monomial { .. } | Self::Disturbance { .. } | Self::Rounding { .. } => false,
+            Self::ElasticTurn { .. }
+            | Self::ArmTurn { .. }
+            | Self::PositionTurn { .. }
+            | Self::SpinTurn { .. }
+            | Self::MountingTurn { .. }
+            | Self::MountingTilt { .. }
+            | Self::ArmStretch { .. }
+            | Self::RadiusScale
+            | Self::SeatPlace { .. }
+            | Self::PositionShift { .. }
+            | Self::MountingShift { .. }
+            | Self::Coordinate { .. }
+            | Self::SpeedScale
+            | Self::Latitude => true,
+        }
+    }
+
     /// Whether it belongs to a position.
     pub(crate) fn is_of_position(self) -> bool {
         match self {

@@ -16,6 +16,7 @@ use super::effect::Effect;
 use super::experiment::SetPoint;
 use super::frame::{carousel, hat, rotation, rotation_rate};
 use super::measurement::{Linearisation, MeasurementModel};
+use super::parameters::OfPosition;
 use super::share::Share;
 
 impl MeasurementModel {
@@ -100,15 +101,21 @@ impl MeasurementModel {
     pub(super) fn geometry(&self, set_point: &SetPoint, x: &[f64]) -> Geometry {
         let (experiment, parameters) = (&self.experiment, &self.parameters);
         let mounting = &experiment.mountings[set_point.mounting];
-        let turn = parameters.turn_of(mounting.position);
-        let shift = parameters.shift_of(mounting.position);
-        let shift_y = Vector3::new(x[shift.column], x[shift.column + 1], 0.0) * shift.sign;
+        let pair = |column: usize| Vector3::new(x[column], x[column + 1], 0.0);
+        let (tilt, turn, shift_y) = match parameters.of_position(mounting.position) {
+            OfPosition::OnArm { turn, shift } => (
+                parameters.tilt().map_or_else(Vector3::zeros, pair),
+                Vector3::new(x[turn], x[turn + 1], x[turn + 2]),
+                pair(shift.column) * shift.sign,
+            ),
+            OfPosition::Free(attitude) => (pair(attitude), Vector3::zeros(), Vector3::zeros()),
+        };
         let mut geometry = Geometry {
             gravity: experiment.site.gravity,
             p_zy: experiment.positions[mounting.position].p_zy,
-            tilt: Vector3::new(x[0], x[1], 0.0),
+            tilt,
             up: Vector3::z(),
-            turn: Vector3::new(x[turn], x[turn + 1], x[turn + 2]),
+            turn,
             arm_y: mounting.arm_y + shift_y,
             rho_z: experiment.unit.rho_z,
             rate_squared: experiment.rate_squared(set_point),
@@ -159,6 +166,9 @@ impl MeasurementModel {
 
     /// Change of the reading by one standard uncertainty of what the plateau was set to.
     fn setting_error(&self, set_point: &SetPoint, x: &[f64], geometry: &Geometry, partials: &Partials) -> Vector3<f64> {
+        if !self.experiment.is_on_arm(set_point.mounting) {
+            return Vector3::zeros();
+        }
         if set_point.is_rest() {
             // d carousel(a) / da = carousel(a + pi/2) without the axis.
             let mut rate = carousel(set_point.angle + FRAC_PI_2);
@@ -214,14 +224,17 @@ impl MeasurementModel {
         let parameters = &self.parameters;
         let position = self.experiment.mountings[set_point.mounting].position;
         let mut columns = Vec::with_capacity(10 + monomials.len());
-        for axis in 0..2 {
-            columns.push((axis, partials.tilt.column(axis).into_owned()));
+        let (tilt, on_arm) = match parameters.of_position(position) {
+            OfPosition::OnArm { turn, shift } => (parameters.tilt(), Some((turn, shift))),
+            OfPosition::Free(attitude) => (Some(attitude), None),
+        };
+        for (column, axis) in tilt.into_iter().flat_map(|c| [(c, 0), (c + 1, 1)]) {
+            columns.push((column, partials.tilt.column(axis).into_owned()));
         }
-        for axis in 0..3 {
-            columns.push((parameters.turn_of(position) + axis, partials.turn.column(axis).into_owned()));
+        for (column, axis) in on_arm.into_iter().flat_map(|(turn, _)| (0..3).map(move |axis| (turn + axis, axis))) {
+            columns.push((column, partials.turn.column(axis).into_owned()));
         }
-        if !set_point.is_rest() {
-            let shift = parameters.shift_of(position);
+        if let Some((_, shift)) = on_arm.filter(|_| !set_point.is_rest()) {
             for axis in 0..2 {
                 columns.push((shift.column + axis, partials.arm.column(axis) * shift.sign));
             }

@@ -207,6 +207,26 @@ impl Experiment {
         &self.positions[self.mountings[set_point.mounting].position]
     }
 
+    /// Whether any position is on the arm.
+    pub fn has_arm(&self) -> bool {
+        self.positions.iter().any(|position| !position.is_free)
+    }
+
+    /// Whether a mounting is on the arm, and not a rest in a free attitude.
+    pub fn is_on_arm(&self, mounting: usize) -> bool {
+        !self.positions[self.mountings[mounting].position].is_free
+    }
+
+    /// The mountings on the arm.
+    pub fn mountings_on_arm(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.mountings.len()).filter(|&m| self.is_on_arm(m))
+    }
+
+    /// The seats: the first mounting on the arm at each place `R0`.
+    pub fn seats(&self) -> impl Iterator<Item = usize> + '_ {
+        self.mountings_on_arm().filter(|&m| self.seat_of(m) == m)
+    }
+
     /// Nominal place `R0` of a plateau, arm axes [m].
     pub fn arm_of(&self, set_point: &SetPoint) -> &Vector3<f64> {
         &self.mountings[set_point.mounting].arm_y
@@ -220,7 +240,7 @@ impl Experiment {
     /// Index of the first mounting on the same seat (same `R0`) as mounting `m`.
     pub fn seat_of(&self, m: usize) -> usize {
         let arm = self.mountings[m].arm_y;
-        self.mountings.iter().position(|other| other.arm_y == arm).unwrap_or(m)
+        self.mountings_on_arm().find(|&other| self.mountings[other].arm_y == arm).unwrap_or(m)
     }
 
     /// `Omega^2 + 2 Omega omega_E sin(latitude)` of a plateau [rad^2/s^2].

@@ -152,6 +152,7 @@ impl Extension {
             }),
             Self::Disturbance(course) => three(|axis| disturbance(axis, course)),
             Self::OneMounting(_, mounting) if mounting >= experiment.mountings.len() => Vec::new(),
+            Self::OneMounting(_, mounting) if !experiment.is_on_arm(mounting) => Vec::new(),
             Self::OneMounting(Difference::Shift, mounting) => {
                 (0..2).map(|axis| mounting_shift(axis, mounting)).collect()
             }
@@ -202,8 +203,8 @@ fn disturbance(axis: usize, follows: Course) -> Parameter {
 
 /// An unknown for each instrument axis and position.
 fn by_position(experiment: &Experiment, unknown: impl Fn(usize, usize, &str) -> Parameter) -> Vec<Parameter> {
-    let positions = experiment.positions.iter().enumerate();
-    positions
+    let on_arm = experiment.positions.iter().enumerate().filter(|(_, position)| !position.is_free);
+    on_arm
         .flat_map(|(k, position)| (0..3).map(move |axis| (axis, k, &position.id)))
         .map(|(axis, k, id)| unknown(axis, k, id))
         .collect()
@@ -216,7 +217,8 @@ fn by_mounting(
     shared: impl Fn(usize, usize) -> bool,
     unknown: impl Fn(usize, usize) -> Parameter,
 ) -> Vec<Parameter> {
-    let further = (0..experiment.mountings.len()).filter(|&m| (0..m).any(|first| shared(first, m)));
+    let on_arm = |m: &usize| experiment.is_on_arm(*m);
+    let further = experiment.mountings_on_arm().filter(|&m| (0..m).filter(on_arm).any(|first| shared(first, m)));
     further.flat_map(|m| (0..axes).map(move |axis| (axis, m))).map(|(axis, m)| unknown(axis, m)).collect()
 }
 
@@ -243,8 +245,7 @@ fn position_shifts(experiment: &Experiment) -> Vec<Parameter> {
 
 /// First mounting and radius [m] of each seat.
 fn seats(experiment: &Experiment) -> impl Iterator<Item = (usize, f64)> + '_ {
-    let mountings = 0..experiment.mountings.len();
-    mountings.filter(|&m| experiment.seat_of(m) == m).map(|m| (m, experiment.mountings[m].arm_y.x))
+    experiment.seats().map(|m| (m, experiment.mountings[m].arm_y.x))
 }
 
 /// A displacement of every seat but the first.

@@ -25,6 +25,8 @@ pub enum Group {
     Turn,
     /// Shift of the unit in a position.
     Shift,
+    /// Attitude of a rest against the vertical.
+    Attitude,
     /// Place of a proof mass.
     ProofMass,
     /// Elastic turn of the unit.
@@ -53,7 +55,7 @@ pub enum Group {
 
 impl Group {
     /// All groups.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::Bias,
         Self::Scale,
         Self::Misalignment,
@@ -65,6 +67,7 @@ impl Group {
         Self::Tilt,
         Self::Turn,
         Self::Shift,
+        Self::Attitude,
         Self::ProofMass,
         Self::ElasticTurn,
         Self::ArmStretch,
@@ -93,6 +96,7 @@ impl Group {
             Self::Tilt => "tilt",
             Self::Turn => "turn",
             Self::Shift => "shift",
+            Self::Attitude => "attitude",
             Self::ProofMass => "proof mass",
             Self::ElasticTurn => "elastic turn",
             Self::ArmStretch => "arm stretch",

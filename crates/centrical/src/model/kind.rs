@@ -22,6 +22,13 @@ pub enum Kind {
         /// Index of the position, the first of its pair, whose `dR` this is.
         position: usize,
     },
+    /// `theta_1`, `theta_2` of a rest in a free attitude: tilt of the vertical, seen from the nominal attitude [rad].
+    Attitude {
+        /// Reference axis, 0 or 1.
+        axis: usize,
+        /// Index of the position.
+        position: usize,
+    },
     /// `drho_ii`: error of the place of proof mass `i` along its own axis [m].
     ProofMass(usize),
     /// Coefficient of a term of the error model, by its index.
@@ -34,7 +41,7 @@ impl Kind {
     /// Whether it belongs to a position or to a pair of positions.
     pub(crate) fn is_of_position(self) -> bool {
         match self {
-            Self::Turn { .. } | Self::Shift { .. } => true,
+            Self::Turn { .. } | Self::Shift { .. } | Self::Attitude { .. } => true,
             Self::Effect(effect) => effect.is_of_position(),
             Self::Tilt(_) | Self::ProofMass(_) | Self::Term(_) => false,
         }

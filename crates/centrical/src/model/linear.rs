@@ -50,11 +50,13 @@ impl MeasurementModel {
         let position = self.experiment.mountings[set_point.mounting].position;
         let kind = parameters[column].kind;
         match kind {
-            Kind::Tilt(axis) => n.by_tilt(axis, set_point),
+            Kind::Tilt(axis) if self.experiment.is_on_arm(set_point.mounting) => n.by_tilt(axis, set_point),
+            Kind::Attitude { axis, position: k } if k == position => n.by_tilt(axis, set_point),
             Kind::Turn { axis, position: k } if k == position => n.by_turn(axis),
-            Kind::Shift { axis, .. } if parameters.shift_of(position).column + axis == column => {
-                n.p * n.d * Vector3::ith(axis, parameters.shift_of(position).sign)
-            }
+            Kind::Shift { axis, .. } => match parameters.shift_of(position) {
+                Some(shift) if shift.column + axis == column => n.p * n.d * Vector3::ith(axis, shift.sign),
+                _ => Vector3::zeros(),
+            },
             // sum_i e_i e_i^T M_k drho e_i
             Kind::ProofMass(axis) => Vector3::ith(axis, n.m[(axis, axis)]),
             Kind::Term(index) => {
@@ -62,8 +64,8 @@ impl MeasurementModel {
                 let term = &self.error_model.terms[index];
                 Vector3::ith(term.axis, term.monomial.value((*f0).into()))
             }
-            // Of another position or pair.
-            Kind::Turn { .. } | Kind::Shift { .. } => Vector3::zeros(),
+            // Of another position; the tilt of the arm's axis where the unit is not on the arm.
+            Kind::Turn { .. } | Kind::Attitude { .. } | Kind::Tilt(_) => Vector3::zeros(),
             Kind::Effect(effect) => by_share(n, &self.share(set_point, effect), set_point),
         }
     }

@@ -116,8 +116,8 @@ impl MeasurementModel {
             let differences = [Difference::Shift, Difference::Turn, Difference::Unit];
             differences.map(|difference| Rival::Effect(Extension::OneMounting(difference, mounting)))
         };
-        let count = self.experiment.mountings.len();
-        let mountings = (0..count).take_while(|_| count <= MOST_SINGLE).flat_map(of_mounting);
+        let count = self.experiment.mountings_on_arm().count();
+        let mountings = self.experiment.mountings_on_arm().filter(|_| count <= MOST_SINGLE).flat_map(of_mounting);
         let is_small = |rival: &Rival| rival.parameters(&self.experiment, &self.error_model).len() <= MOST_UNKNOWNS;
         let all = common.map(|(rival, _)| rival).filter(is_small).chain(mountings);
         all.filter(|rival| !rival.is_in(&self.error_model, &self.extensions)).collect()

@@ -11,12 +11,13 @@ use super::kind::Kind;
 use super::parameter::{Parameter, coefficient, parameter};
 
 /// The unknowns of an experiment in the order of `X` [K5.4]: `alpha`, `delta` by position, `dR` by pair (by
-/// position when free), `drho`, the coefficients of the error model, then the extensions as asked for.
+/// position when free), `drho`, `theta` by rest in a free attitude, the coefficients of the error model, then the extensions
+/// as asked for. Where nothing is on an arm there is no `alpha` and no `drho`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     list: Vec<Parameter>,
-    turn: Vec<usize>,
-    shift: Vec<Shared>,
+    tilt: Option<usize>,
+    of_position: Vec<OfPosition>,
     proof_mass: Option<usize>,
     terms: usize,
     extensions: usize,
@@ -29,16 +30,33 @@ pub(crate) struct Shared {
     pub sign: f64,
 }
 
+/// The columns of one position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum OfPosition {
+    /// Of a position on the arm.
+    OnArm {
+        /// First of the three columns of `delta`.
+        turn: usize,
+        /// First of the two columns of `dR`, and the sign with which they act here.
+        shift: Shared,
+    },
+    /// Of a free attitude: the first of the two columns of `theta`.
+    Free(usize),
+}
+
 impl Parameters {
     /// The unknowns of `experiment` with `error_model` and `extensions`.
     pub fn new(experiment: &Experiment, error_model: &ErrorModel, extensions: &[Extension]) -> Self {
         let mut list = Vec::new();
-        for axis in 0..2 {
+        let has_arm = experiment.has_arm();
+        let tilt = has_arm.then_some(list.len());
+        for axis in (0..2).filter(|_| has_arm) {
             list.push(parameter(format!("alpha_{}", axis + 1), "rad", Group::Tilt, Kind::Tilt(axis), 1e-3));
         }
         let turn = turns(experiment, &mut list);
         let shift = shifts(experiment, &mut list);
-        let proof_mass = (experiment.unit.reference == ReferencePoint::FirstProofMass).then(|| {
+        let has_proof_mass = has_arm && experiment.unit.reference == ReferencePoint::FirstProofMass;
+        let proof_mass = has_proof_mass.then(|| {
             let first = list.len();
             for axis in 1..3 {
                 let name = format!("drho_{0}{0}", axis + 1);
@@ -46,6 +64,15 @@ impl Parameters {
             }
             first
         });
+        let of_position = (experiment.positions.iter().enumerate())
+            .map(|(k, position)| {
+                if position.is_free {
+                    OfPosition::Free(attitude(k, &position.id, &mut list))
+                } else {
+                    OfPosition::OnArm { turn: turn[k], shift: shift[k] }
+                }
+            })
+            .collect();
         let terms = list.len();
         for (index, term) in error_model.terms.iter().enumerate() {
             list.push(Parameter { kind: Kind::Term(index), ..coefficient(term) });
@@ -54,7 +81,7 @@ impl Parameters {
         for extension in extensions {
             list.extend(extension.parameters(experiment, error_model));
         }
-        Self { list, turn, shift, proof_mass, terms, extensions: first_extension }
+        Self { list, tilt, of_position, proof_mass, terms, extensions: first_extension }
     }
 
     /// Unknowns of typical size with alternating signs: those of a unit of which nothing is known.
@@ -104,14 +131,22 @@ impl Parameters {
         self.terms
     }
 
-    /// First of the three columns of `delta` of a position.
-    pub(crate) fn turn_of(&self, position: usize) -> usize {
-        self.turn[position]
+    /// First of the two columns of `alpha`, if anything is on an arm.
+    pub(crate) fn tilt(&self) -> Option<usize> {
+        self.tilt
     }
 
-    /// First of the two columns of `dR` of a position, and the sign with which they act there.
-    pub(crate) fn shift_of(&self, position: usize) -> Shared {
-        self.shift[position]
+    /// The columns of a position.
+    pub(crate) fn of_position(&self, position: usize) -> OfPosition {
+        self.of_position[position]
+    }
+
+    /// The columns of `dR` of a position on the arm.
+    pub(crate) fn shift_of(&self, position: usize) -> Option<Shared> {
+        match self.of_position[position] {
+            OfPosition::OnArm { shift, .. } => Some(shift),
+            OfPosition::Free(_) => None,
+        }
     }
 
     /// First of the two columns `drho_22`, `drho_33`, if they are unknown.
@@ -123,7 +158,12 @@ impl Parameters {
     pub(crate) fn effects(&self) -> impl Iterator<Item = (usize, Effect)> + '_ {
         self.list.iter().enumerate().skip(self.extensions).filter_map(|(column, parameter)| match parameter.kind {
             Kind::Effect(effect) => Some((column, effect)),
-            Kind::Tilt(_) | Kind::Turn { .. } | Kind::Shift { .. } | Kind::ProofMass(_) | Kind::Term(_) => None,
+            Kind::Tilt(_)
+            | Kind::Turn { .. }
+            | Kind::Shift { .. }
+            | Kind::Attitude { .. }
+            | Kind::ProofMass(_)
+            | Kind::Term(_) => None,
         })
     }
 }
@@ -149,7 +189,7 @@ fn turns(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<usize> {
     let mut first_columns = Vec::with_capacity(experiment.positions.len());
     for (k, position) in experiment.positions.iter().enumerate() {
         first_columns.push(list.len());
-        for axis in 0..3 {
+        for axis in (0..3).filter(|_| !position.is_free) {
             let name = format!("delta_{}[{}]", axis + 1, position.id);
             list.push(parameter(name, "rad", Group::Turn, Kind::Turn { axis, position: k }, 1e-3));
         }
@@ -157,10 +197,24 @@ fn turns(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<usize> {
     first_columns
 }
 
+/// The two `theta` of a free attitude; the first of their columns.
+fn attitude(position: usize, id: &str, list: &mut Vec<Parameter>) -> usize {
+    let first = list.len();
+    for axis in 0..2 {
+        let name = format!("theta_{}[{id}]", axis + 1);
+        list.push(parameter(name, "rad", Group::Attitude, Kind::Attitude { axis, position }, 1e-3));
+    }
+    first
+}
+
 /// `dR` by pair, or by position when free; the value belongs to the pair's first position.
 fn shifts(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<Shared> {
     let mut shared: Vec<Shared> = Vec::with_capacity(experiment.positions.len());
     for (k, position) in experiment.positions.iter().enumerate() {
+        if position.is_free {
+            shared.push(Shared { column: list.len(), sign: 1.0 });
+            continue;
+        }
         let first_of_pair = match experiment.pair_relation {
             PairRelation::Free => k,
             _ => experiment.positions.iter().position(|p| p.pair == position.pair).unwrap_or(k),

@@ -1,9 +1,9 @@
 //! Mounting positions: nominal attitudes of the unit on the arm. Positions are data: any rotation
 //! matrix, any number of them; the source's six are a preset.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// One nominal attitude of the unit on the arm.
+/// One nominal attitude of the unit: on the arm, or at rest anywhere else.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Position {
     /// Name used in parameter names: `delta_1[id]`.
@@ -12,6 +12,26 @@ pub struct Position {
     pub p_zy: Matrix3<f64>,
     /// Name of the pair of positions that share `dR`, turned from each other by 180 deg about the vertical.
     pub pair: String,
+    /// Whether the unit rests here in an attitude of its own, on a table or in a hand, not on the arm: its attitude against
+    /// the vertical is unknown, `theta_1[id]`, `theta_2[id]`, and only the size of gravity is known.
+    pub is_free: bool,
+}
+
+impl Position {
+    /// A position on the arm.
+    pub fn on_arm(id: impl Into<String>, p_zy: Matrix3<f64>, pair: impl Into<String>) -> Self {
+        Self { id: id.into(), p_zy, pair: pair.into(), is_free: false }
+    }
+
+    /// A rest in an attitude of its own, where the specific force points about along `f_z` (instrument axes, of any length
+    /// but zero). Of the attitudes with this vertical it takes the one nearest to the reference axes.
+    pub fn free(id: impl Into<String>, f_z: &Vector3<f64>) -> Self {
+        let id = id.into();
+        // Opposite vectors have no shortest rotation between them; half a turn about axis 1 is one of many.
+        let half_turn = || Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
+        let p_zy = Rotation3::rotation_between(&Vector3::z(), f_z).unwrap_or_else(half_turn).into_inner();
+        Self { pair: id.clone(), id, p_zy, is_free: true }
+    }
 }
 
 /// Which way newtonometer 1 points in positions 3 and 4, which the source's text leaves open.
@@ -39,6 +59,6 @@ pub fn kozlov_2017(third: ThirdPosition) -> Vec<Position> {
     let pairs = ["A", "A", "B", "B", "C", "C"];
     (1..)
         .zip(turns.into_iter().zip(pairs))
-        .map(|(k, (p_zy, pair))| Position { id: k.to_string(), p_zy, pair: pair.to_owned() })
+        .map(|(k, (p_zy, pair))| Position::on_arm(k.to_string(), p_zy, pair))
         .collect()
 }

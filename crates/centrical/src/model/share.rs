@@ -37,6 +37,9 @@ impl MeasurementModel {
         let is_on = |seat: Option<usize>| seat.is_none_or(|seat| seat == experiment.seat_of(here));
         let only = |condition: bool, share: Share| if condition { share } else { Share::None };
         let along = |axis: usize| Vector3::ith(axis, 1.0);
+        if !experiment.is_on_arm(here) && effect.is_of_arm() {
+            return Share::None;
+        }
         match effect {
             Effect::ElasticTurn { law, axis, position: k } => {
                 only(k == position, Share::Turn(Vector3::ith(axis, law.value(omega_squared, r0_y.x))))

@@ -143,8 +143,10 @@ impl TypeB {
             add(Source::Latitude, Effect::Latitude, self.latitude);
         }
         let radii = Radii::of(self);
-        add(Source::Radius, Effect::SeatPlace { axis: 0, seat: None }, radii.common);
-        for seat in (0..experiment.mountings.len()).filter(|&m| experiment.seat_of(m) == m) {
+        if experiment.has_arm() {
+            add(Source::Radius, Effect::SeatPlace { axis: 0, seat: None }, radii.common);
+        }
+        for seat in experiment.seats() {
             add(radii.source, Effect::SeatPlace { axis: 0, seat: Some(seat) }, radii.own);
         }
         // The effect is one on the square of the speed.
@@ -154,7 +156,8 @@ impl TypeB {
                 add(Source::ProofMasses, Effect::Coordinate { coordinate, mass }, self.proof_masses);
             }
         }
-        for (position, axis) in (0..experiment.positions.len()).flat_map(|k| (0..3).map(move |axis| (k, axis))) {
+        let on_arm = (0..experiment.positions.len()).filter(|&k| !experiment.positions[k].is_free);
+        for (position, axis) in on_arm.flat_map(|k| (0..3).map(move |axis| (k, axis))) {
             add(Source::Attitude, Effect::PositionTurn { position, axis }, self.attitude);
         }
         for first in repeated_rests(experiment) {

@@ -201,7 +201,7 @@ impl Study {
     fn new_position(&self, suits: impl Fn(&Matrix3<f64>) -> bool) -> Option<Addition> {
         let p_zy = axis_attitudes().into_iter().find(suits)?;
         let id = new_id(&self.model().experiment().positions);
-        Some(Addition::Position(Position { pair: id.clone(), id, p_zy }))
+        Some(Addition::Position(Position::on_arm(id.clone(), p_zy, id)))
     }
 }
 

@@ -226,7 +226,8 @@ fn ease(kind: Kind) -> Option<u8> {
         Kind::Effect(Effect::RadiusScale | Effect::SpeedScale) => Some(3),
         Kind::Turn { .. } => Some(4),
         Kind::Effect(_) => Some(5),
-        Kind::Term(_) => None,
+        // Nothing but the unit itself shows how it lay in a hand.
+        Kind::Term(_) | Kind::Attitude { .. } => None,
     }
 }
 
@@ -250,7 +251,7 @@ fn new_positions(study: &Study) -> Vec<Position> {
     for p_zy in axis_attitudes().into_iter().chain(turned) {
         if attitudes.iter().all(|other| (other - p_zy).amax() > SAME) {
             attitudes.push(p_zy);
-            new.push(Position { id: id.clone(), p_zy, pair: id.clone() });
+            new.push(Position::on_arm(id.clone(), p_zy, id.clone()));
         }
     }
     new

@@ -7,7 +7,7 @@ mod saturation;
 mod strips;
 mod stuck;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::error::ReductionError;
 use super::locate::{ClockAgreement, ClockOffset, Located, SpeedReading, Window};
@@ -135,6 +135,7 @@ impl<'a> Averaging<'a> {
             digit: blocks.digit,
             variance: spread.component_mul(&squares) / good as f64,
             cells: Cells::gather(fitted.sums(&coefficients), &triangle, terms, width, blocks.interval),
+            noise_axes: Matrix3::identity(),
         })
     }
 
@@ -149,6 +150,12 @@ impl ReducedMounting {
     pub fn new(located: Located, plateaus: Vec<PlateauFit>) -> Self {
         let Located { speeds, settling_time, clock_offset, agreement, readings, .. } = located;
         Self { plateaus, speeds, settling_time, clock_offset, agreement, readings }
+    }
+
+    /// A record of rests, those that are steady.
+    pub(super) fn of_rests(located: Located, rests: Vec<PlateauFit>) -> Self {
+        let count = rests.len();
+        Self { speeds: vec![None; count], readings: vec![None; count], ..Self::new(located, rests) }
     }
 
     /// Number of its plateaus.

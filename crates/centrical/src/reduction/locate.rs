@@ -6,10 +6,15 @@ mod clock;
 mod evidence;
 mod hypothesis;
 mod path;
+mod rests;
 mod rotation;
 mod shape;
 mod tachometer;
 mod window;
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
 
 use super::error::ReductionError;
 use super::plateau::ScheduledPlateau;
@@ -76,6 +81,35 @@ pub fn locate(
     Ok(located)
 }
 
+/// Finds the rests of a surveyed record without a schedule: wherever the unit stood still.
+///
+/// # Errors
+/// [`ReductionError::TooShort`] if the record is too short.
+pub fn locate_rests(survey: &Survey) -> Result<Located, ReductionError> {
+    let blocks = survey.blocks()?;
+    let cores = rests::rests(&blocks);
+    let schedule = |core: &Range<usize>| ScheduledPlateau { omega: 0.0, nominal_z: blocks.level(core) };
+    let schedule: Vec<ScheduledPlateau> = cores.iter().map(schedule).collect();
+    // The block at either end may hold the onset of the motion.
+    let window = |core: &Range<usize>| {
+        let half = 0.5 * blocks.width;
+        let span = [blocks.t[core.start + 1] - half, blocks.t[core.end - 2] + half];
+        Window { span, shape: Shape { start: span[0], omega: 0.0, settling: None } }
+    };
+    let windows: Vec<Window> = cores.iter().map(window).collect();
+    Ok(Located {
+        speeds: vec![None; windows.len()],
+        readings: vec![None; windows.len()],
+        clock_offset: None,
+        agreement: None,
+        ramps: Vec::new(),
+        blocks,
+        windows,
+        settling_time: None,
+        schedule,
+    })
+}
+
 impl Located {
     /// Takes the speeds of the plateaus from a counter of revolutions, in place of those of the telemetry; its clock is found
     /// by the ramps.
@@ -107,6 +141,11 @@ impl Located {
             _ => 0.0,
         };
         self.blocks.width + interval
+    }
+
+    /// Standard deviation of a sample from one to the next [m/s^2].
+    pub(super) fn sample_noise(&self) -> &Vector3<f64> {
+        &self.blocks.sample_noise
     }
 
     /// The window of each plateau, from and to, the record's clock [s], in the order of the schedule.

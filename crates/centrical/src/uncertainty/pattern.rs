@@ -126,11 +126,11 @@ impl Calibration<'_> {
 
 /// Everything that is tested.
 fn trends(experiment: &Experiment) -> Vec<Trend> {
-    let mountings = 0..experiment.mountings.len();
+    let on_arm = (0..experiment.positions.len()).filter(|&k| !experiment.positions[k].is_free);
     let mut list = vec![Trend::Speed, Trend::Load, Trend::Time];
-    list.extend((0..experiment.positions.len()).flat_map(|k| [Trend::Position(k), Trend::SpeedInPosition(k)]));
-    list.extend(mountings.clone().filter(|&m| experiment.seat_of(m) == m).map(Trend::SpeedOnSeat));
-    list.extend(mountings.map(Trend::Mounting));
+    list.extend(on_arm.flat_map(|k| [Trend::Position(k), Trend::SpeedInPosition(k)]));
+    list.extend(experiment.seats().map(Trend::SpeedOnSeat));
+    list.extend(experiment.mountings_on_arm().map(Trend::Mounting));
     list
 }
 

@@ -10,6 +10,7 @@ mod consistency;
 mod coverage;
 mod fit;
 mod frame;
+mod free_rests;
 mod history;
 mod invariance;
 mod measurement;
@@ -23,6 +24,7 @@ mod prior;
 mod recursive;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod reduction;
+mod rests;
 mod rivals;
 mod selection;
 mod simulate;

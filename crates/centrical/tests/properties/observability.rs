@@ -74,7 +74,7 @@ fn random_positions(random: &mut Random) -> Vec<Position> {
             let tidy = p_zy.map(f64::round);
             let oblique = rotation(&Vector3::new(random.normal(), random.normal(), random.normal()));
             let p_zy = if random.below(4) == 0 { oblique } else { tidy };
-            Position { id: (k + 1).to_string(), p_zy, pair: format!("P{}", random.below(4)) }
+            Position::on_arm((k + 1).to_string(), p_zy, format!("P{}", random.below(4)))
         })
         .collect()
 }

@@ -130,7 +130,8 @@ impl ModelSummary {
 
 impl PositionSummary {
     fn new(position: &Position) -> Self {
-        Self { id: position.id.clone(), pair: position.pair.clone(), matrix: rows(&position.p_zy) }
+        let Position { id, p_zy, pair, is_free } = position;
+        Self { id: id.clone(), pair: pair.clone(), matrix: rows(p_zy), is_free: *is_free }
     }
 }
 

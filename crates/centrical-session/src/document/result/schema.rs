@@ -150,7 +150,14 @@ pub struct ModelSummary {
     pub positions: Vec<PositionSummary>,
 }
 
-/// A nominal attitude of the unit on the arm.
+impl ModelSummary {
+    /// Whether the unit was on an arm in any position.
+    pub fn has_arm(&self) -> bool {
+        self.positions.is_empty() || self.positions.iter().any(|position| !position.is_free)
+    }
+}
+
+/// A nominal attitude of the unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PositionSummary {
     /// Name, as in the names of parameters.
@@ -159,6 +166,9 @@ pub struct PositionSummary {
     pub pair: String,
     /// `P_k`, row by row: takes arm axes to instrument axes.
     pub matrix: [[f64; 3]; 3],
+    /// Whether the unit rested here in an attitude of its own, not on the arm.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_free: bool,
 }
 
 /// A term of the error model.
@@ -373,6 +383,13 @@ impl CalibrationResult {
     /// [`Error::Json`] when a value has no place in JSON.
     pub fn to_json(&self) -> Result<String, Error> {
         json::document(SCHEMA, self)
+    }
+
+    /// The plateaus that are rests in free attitudes.
+    pub fn rests(&self) -> impl Iterator<Item = &PlateauSummary> {
+        let is_free = |id: &str| self.model.positions.iter().any(|position| position.is_free && position.id == id);
+        let free: Vec<bool> = self.mountings.iter().map(|mounting| is_free(&mounting.position)).collect();
+        self.plateaus.iter().filter(move |p| p.mounting.checked_sub(1).and_then(|m| free.get(m)) == Some(&true))
     }
 
     /// The estimates that the data determine, of the coefficients of the error model alone: what belongs to the unit

@@ -35,8 +35,8 @@ pub(crate) struct Form {
     pub site: SiteTable,
     /// The unit under calibration.
     pub unit: UnitTable,
-    /// The machine.
-    pub centrifuge: CentrifugeTable,
+    /// The machine; a session of rests alone has none.
+    pub centrifuge: Option<CentrifugeTable>,
     /// The error model of the unit.
     pub model: ModelTable,
     /// Standard uncertainties of quantities that the model takes as exact (type B), by name.
@@ -54,6 +54,9 @@ pub(crate) struct Form {
     /// Installations of the unit, in the order of the session.
     #[serde(default)]
     pub mounting: Vec<MountingTable>,
+    /// Rests in any attitudes, by hand or on a table, beside the centrifuge or without one.
+    #[serde(default)]
+    pub tumble: Vec<TumbleTable>,
     /// Standard uncertainties of parameters and groups, by name.
     #[serde(default)]
     pub prior: BTreeMap<String, PriorValue>,
@@ -243,8 +246,8 @@ pub(crate) struct UnitTable {
     pub counts: Option<RawTable>,
     /// Nominal scale and bias, where the readings are volts.
     pub volts: Option<RawTable>,
-    /// Places of the three proof masses in instrument axes.
-    pub proof_masses: [[Quantity; 3]; 3],
+    /// Places of the three proof masses in instrument axes; of no meaning where nothing is on an arm.
+    pub proof_masses: Option<[[Quantity; 3]; 3]>,
     /// What the places are relative to: "first-proof-mass" (default; the first is zero) or "own-axes".
     pub reference: Option<String>,
 }
@@ -295,7 +298,8 @@ pub(crate) struct ModelTable {
     /// Name of an error model, or a list of terms.
     pub error_model: TermList,
     /// Errors of place in the two positions of a pair: "common" (of the seat), "opposite" (of the unit) or "free".
-    pub pair_relation: String,
+    /// Of no meaning where nothing is on an arm.
+    pub pair_relation: Option<String>,
     /// Effects beyond the model that are unknowns.
     #[serde(default)]
     pub extensions: Vec<String>,
@@ -359,6 +363,14 @@ pub(crate) struct MountingTable {
     /// The schedule in order.
     #[serde(default)]
     pub plateaus: Vec<PlateauEntry>,
+}
+
+/// Rests in attitudes that only gravity shows.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TumbleTable {
+    /// Path of a table of rests, such as `centrical tumble` writes: the columns of a table of plateaus.
+    pub rests: String,
 }
 
 /// The schedule common to mountings.

@@ -11,8 +11,7 @@ use super::series::Series;
 use crate::document::NoiseAnalysis;
 use crate::error::Error;
 use crate::experiment::{PlateauName, Session};
-use crate::quantity::Dimension;
-use crate::record::{Column, Columns, Scale};
+use crate::record::{Columns, named_columns};
 
 /// Which readings are analysed, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,21 +65,7 @@ fn series(request: &NoiseRequest, progress: OnProgress) -> Result<(Series, Optio
             lines = record_lines;
             (time, f.to_vec())
         }
-        None => columns(request),
+        None => named_columns(&request.time, request.rate, &request.readings, &request.unit),
     };
     Ok((Series::read(file, lines, &time, &readings, request.window, progress)?, None))
-}
-
-fn columns(request: &NoiseRequest) -> (Column, Vec<Column>) {
-    let column = |name: &ColumnName, unit: &str, factor| Column {
-        name: name.clone(),
-        unit: unit.to_owned(),
-        scale: Scale::factor(factor),
-    };
-    let time = match request.rate {
-        Some(rate) => column(&ColumnName::Row, "samples", 1.0 / rate),
-        None => column(&request.time, "s", 1.0),
-    };
-    let factor = Dimension::Acceleration.factor(&request.unit).unwrap_or(1.0);
-    (time, request.readings.iter().map(|name| column(name, &request.unit, factor)).collect())
 }

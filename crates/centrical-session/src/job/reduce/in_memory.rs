@@ -32,7 +32,7 @@ pub fn reduce_recorded(
     recorded: Vec<Recorded>,
     progress: OnProgress<usize>,
 ) -> Result<Reduced, Error> {
-    let (found, expected) = (recorded.len(), session.experiment.mountings.len());
+    let (found, expected) = (recorded.len(), session.mountings.len());
     if found != expected {
         let expected = format!("{expected}, one for each mounting");
         return Err(Error::content(&session.file, Place::Whole, format!("{found} records in memory"), expected));
@@ -45,7 +45,7 @@ pub fn reduce_recorded(
     });
     // Which error is the first does not depend on the threads.
     let mountings: Vec<Result<OfRecord, Error>> = mountings.collect();
-    pooled(session, mountings.into_iter().collect::<Result<_, _>>()?)
+    Ok(pooled(session, mountings.into_iter().collect::<Result<_, _>>()?)?.with_rests(session))
 }
 
 fn reduce_mounting(session: &Session, number: usize, recorded: Recorded) -> Result<OfRecord, Error> {

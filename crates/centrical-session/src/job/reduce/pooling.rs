@@ -25,7 +25,9 @@ pub(super) fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Redu
         agreement: m.clock_agreement(),
         interpolated: *interpolated,
     };
-    let set: Vec<f64> = session.experiment.set_points.iter().map(|set_point| set_point.omega).collect();
+    let experiment = &session.experiment;
+    let on_arm = experiment.set_points.iter().filter(|set_point| experiment.is_on_arm(set_point.mounting));
+    let set: Vec<f64> = on_arm.map(|set_point| set_point.omega).collect();
     let readings: Vec<_> = reduced.iter().flat_map(|mounting| mounting.speed_readings().iter().copied()).collect();
     let speeds = measured_speeds(&set, &readings);
     refuse_other_units(session, &speeds)?;

@@ -53,7 +53,7 @@ impl<'a> Scheduler<'a> {
 
     /// Reduces the next mounting; none after the last.
     fn reduce_next(&self, cache: &mut SampleCache) -> Option<Numbered> {
-        let count = self.session.experiment.mountings.len();
+        let count = self.session.mountings.len();
         let number = self.next.fetch_add(1, Ordering::Relaxed);
         let reduced = (number < count).then(|| reduce_mounting(self.session, number, self.progress, cache))?;
         if reduced.is_err() {
@@ -65,7 +65,7 @@ impl<'a> Scheduler<'a> {
 
     /// Samples of the longest record, if all files show them.
     fn estimate_samples(&self) -> Option<u64> {
-        let numbers = 0..self.session.experiment.mountings.len();
+        let numbers = 0..self.session.mountings.len();
         let samples = numbers.map(|number| centrical_table::estimate_rows(self.session.record_file(number).ok()?));
         samples.collect::<Option<Vec<_>>>()?.into_iter().max()
     }

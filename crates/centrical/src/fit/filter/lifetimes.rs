@@ -99,7 +99,7 @@ fn most_at_a_time(spans: &[Option<(usize, usize)>]) -> usize {
 fn grouped(model: &MeasurementModel, order: &[usize]) -> Vec<usize> {
     let experiment = model.experiment();
     let position = |s: usize| experiment.mountings[experiment.set_points[s].mounting].position;
-    let shift = |s: usize| model.parameters().shift_of(position(s)).column;
+    let shift = |s: usize| model.parameters().shift_of(position(s)).map(|shift| shift.column);
     let first = |same: &dyn Fn(usize) -> bool| order.iter().position(|&s| same(s));
     let mut grouped = order.to_vec();
     grouped.sort_by_cached_key(|&s| {
@@ -113,8 +113,10 @@ fn belongs(model: &MeasurementModel, column: usize, set_point: &SetPoint) -> boo
     let experiment = model.experiment();
     let position = experiment.mountings[set_point.mounting].position;
     match model.parameters()[column].kind {
-        Kind::Turn { position: k, .. } => k == position,
-        Kind::Shift { axis, .. } => model.parameters().shift_of(position).column + axis == column,
+        Kind::Turn { position: k, .. } | Kind::Attitude { position: k, .. } => k == position,
+        Kind::Shift { axis, .. } => {
+            model.parameters().shift_of(position).is_some_and(|shift| shift.column + axis == column)
+        }
         Kind::Effect(effect) => acts_on(experiment, effect, set_point.mounting),
         Kind::Tilt(_) | Kind::ProofMass(_) | Kind::Term(_) => true,
     }

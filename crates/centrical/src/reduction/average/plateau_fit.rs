@@ -1,9 +1,10 @@
 //! The fit of a plateau's window: the mean, the other terms, and the sums for the covariance.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::cells::Cells;
 use super::samples::CELLS;
+use crate::model::Position;
 use crate::reduction::locate::Shape;
 use crate::reduction::plateau::LeftOut;
 
@@ -25,9 +26,33 @@ pub struct PlateauFit {
     pub(in crate::reduction) settling: Vector3<f64>,
     /// Residuals and design, summed by cell.
     pub(in crate::reduction) cells: Cells,
+    /// Takes readings to the axes and the unit in which the noise is alike on all plateaus: the identity on an arm.
+    pub(in crate::reduction) noise_axes: Matrix3<f64>,
 }
 
 impl PlateauFit {
+    /// The fit of a rest in a hand or on a soft table, of readings whose white noise is `sample_noise` [m/s^2]. What trembles is
+    /// the attitude: it moves the reading across the specific force and leaves its size, and across it is in other axes of the
+    /// instrument in every attitude. So the noise is alike in axes along the force and across, and along it in units of that
+    /// white noise which falls there, `sum u_i^2 sigma_i^2` for the direction `u`.
+    pub(in crate::reduction) fn of_rest(self, sample_noise: &Vector3<f64>) -> Self {
+        let along = self.mean.normalize();
+        let noise = along.component_mul(sample_noise).norm();
+        let upright = Position::free("", &along).p_zy.transpose();
+        let noise_axes = if noise > 0.0 { upright / noise } else { upright };
+        Self { noise_axes, ..self }
+    }
+
+    /// A covariance in the axes of the noise, as one of readings.
+    pub(in crate::reduction) fn in_readings(&self, covariance: &Matrix3<f64>) -> Matrix3<f64> {
+        // The axes are a rotation and a unit.
+        let unit = self.noise_axes.row(0).norm_squared();
+        let back = self.noise_axes.transpose() / unit;
+        let covariance = back * covariance * back.transpose();
+        // Symmetric to the last digit, as a table of plateaus holds it.
+        (covariance + covariance.transpose()) * 0.5
+    }
+
     /// Derivative of the settling's law by the logarithm of its time constant, one value a cell.
     pub(in crate::reduction) fn settling_rate(&self) -> Option<Vec<f64>> {
         let settling = self.shape.settling?;

@@ -18,8 +18,9 @@ pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) ->
     // What the time constant of the settling is off by is common to the mounting: it is no drift of each of its plateaus.
     let (weights, drift) = plateau.cells.slope(plateau.settling_rate().as_deref());
     let (correction, of_correction) = step.effect(plateau);
-    let of_slope = noise.covariance(&weights, &plateau.cells).diagonal();
-    let of_noise = noise.covariance(&plateau.cells.mean_weights(), &plateau.cells);
+    let covariance = |weights: &Weights| plateau.in_readings(&noise.covariance(weights, &plateau.cells));
+    let of_slope = covariance(&weights).diagonal();
+    let of_noise = covariance(&plateau.cells.mean_weights());
     PlateauMean {
         window: plateau.window,
         samples: plateau.samples,

@@ -26,6 +26,8 @@ const STEPS: (usize, usize) = (100, 400);
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseModel {
     components: Vec<Component>,
+    /// Of rests: the part along the specific force, the third axis, by itself, in every direction alike.
+    along: Option<Vec<Component>>,
     /// Least variance of a sample on any plateau [m^2/s^4].
     quietest: Vector3<f64>,
 }
@@ -44,31 +46,26 @@ impl NoiseModel {
     ///
     /// Components are added one by one, the likeliest first, as long as Schwarz's criterion accepts them.
     pub fn pool<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> Self {
-        let plateaus: Vec<&PlateauFit> = mountings.into_iter().flat_map(|mounting| &mounting.plateaus).collect();
+        Self::of(&plateaus_of(mountings), false)
+    }
+
+    /// Estimates the noise from rests in free attitudes, in the axes of each. Along the specific force it is estimated by itself:
+    /// this part alone enters a calibration by the size of gravity, and the trembling of a hand is across.
+    pub fn pool_rests<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> Self {
+        Self::of(&plateaus_of(mountings), true)
+    }
+
+    fn of(plateaus: &[&PlateauFit], are_rests: bool) -> Self {
         let quietest = plateaus.iter().map(|plateau| plateau.variance).reduce(|a, b| a.inf(&b)).unwrap_or_default();
-        let times = correlation_times(&plateaus);
-        let groups = grouped_contrasts(&plateaus, &times);
-        let contrasts: f64 = groups.iter().map(|group| group.count).sum();
-        if contrasts == 0.0 {
-            return Self { components: Vec::new(), quietest };
+        let times = correlation_times(plateaus);
+        let groups = grouped_contrasts(plateaus, &times);
+        let along = || groups.iter().map(Group::along).collect::<Vec<Group>>();
+        Self {
+            // A density has six entries, or one.
+            components: components(&groups, &times, 6.0),
+            along: are_rests.then(|| components(&along(), &times, 1.0)),
+            quietest,
         }
-        // A density has six entries.
-        let penalty = 0.5 * 6.0 * contrasts.ln();
-        let mut fit = Fit::white(&groups);
-        loop {
-            let best = fit.with_best_time(times.len(), &groups);
-            if best.likelihood > fit.likelihood + penalty {
-                fit = best;
-            } else {
-                break;
-            }
-        }
-        fit.climb(&groups, STEPS.1);
-        let part = |(time, density): &(usize, Matrix3<f64>)| Component {
-            correlation_time: time.checked_sub(1).map(|time| times[time]),
-            density: *density,
-        };
-        Self { components: fit.parts.iter().map(part).collect(), quietest }
     }
 
     /// Variance of a sample on the quietest plateau [m^2/s^4]. Where the noise is below a digit, rounding shows its own spread
@@ -88,8 +85,47 @@ impl NoiseModel {
 
     /// Covariance of a linear functional of the samples.
     pub(super) fn covariance(&self, weights: &Weights, cells: &Cells) -> Matrix3<f64> {
-        self.components.iter().map(|part| part.density * gain(part.correlation_time, weights, cells)).sum()
+        let of = |components: &[Component]| -> Matrix3<f64> {
+            components.iter().map(|part| part.density * gain(part.correlation_time, weights, cells)).sum()
+        };
+        let mut covariance = of(&self.components);
+        if let Some(along) = &self.along {
+            // Which way the axes across point is arbitrary: no noise goes with them and along.
+            for axis in 0..2 {
+                (covariance[(axis, 2)], covariance[(2, axis)]) = (0.0, 0.0);
+            }
+            covariance[(2, 2)] = of(along)[(2, 2)];
+        }
+        covariance
     }
+}
+
+fn plateaus_of<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> Vec<&'a PlateauFit> {
+    mountings.into_iter().flat_map(|mounting| &mounting.plateaus).collect()
+}
+
+/// The components of the contrasts, added one by one as long as Schwarz's criterion accepts the `entries` of each.
+fn components(groups: &[Group], times: &[f64], entries: f64) -> Vec<Component> {
+    let contrasts: f64 = groups.iter().map(|group| group.count).sum();
+    if contrasts == 0.0 {
+        return Vec::new();
+    }
+    let penalty = 0.5 * entries * contrasts.ln();
+    let mut fit = Fit::white(groups);
+    loop {
+        let best = fit.with_best_time(times.len(), groups);
+        if best.likelihood > fit.likelihood + penalty {
+            fit = best;
+        } else {
+            break;
+        }
+    }
+    fit.climb(groups, STEPS.1);
+    let part = |(time, density): &(usize, Matrix3<f64>)| Component {
+        correlation_time: time.checked_sub(1).map(|time| times[time]),
+        density: *density,
+    };
+    fit.parts.iter().map(part).collect()
 }
 
 /// Quarter-octaves from an eighth of a cell of the shortest window to a quarter of the longest: noise slower than
@@ -195,7 +231,7 @@ fn grouped_contrasts(plateaus: &[&PlateauFit], times: &[f64]) -> Vec<Group> {
             let frequency = *number as f64 * longest / cells.width;
             let group = whole((frequency.log2() * PER_OCTAVE).round());
             let function = rate.as_ref().map(|rate| cells.free_of(cosine, rate));
-            Some((group, Contrast::of(cells, function.as_ref().unwrap_or(cosine), &markov)?))
+            Some((group, Contrast::of(plateau, function.as_ref().unwrap_or(cosine), &markov)?))
         };
         cosines.iter().filter_map(contrast).collect()
     };
@@ -219,8 +255,10 @@ fn cosine(half_periods: usize) -> Vec<f64> {
 
 impl Contrast {
     /// The part of a function that the fit does not absorb; `None` if it absorbs all of it.
-    fn of(cells: &Cells, function: &[f64], markov: &Markov) -> Option<Self> {
+    fn of(plateau: &PlateauFit, function: &[f64], markov: &Markov) -> Option<Self> {
+        let cells = &plateau.cells;
         let (weights, y) = cells.contrast(function);
+        let y = plateau.noise_axes * y;
         let white = gain(None, &weights, cells);
         let gains = || widest(Gains { markov, weights: &weights }).into_iter().map(|gain| gain / white).collect();
         (white > 0.0).then(|| Self { power: y * y.transpose() / white, gains: gains() })
@@ -235,6 +273,12 @@ impl Group {
         for (sum, gain) in self.gains[1..].iter_mut().zip(&contrast.gains) {
             *sum += gain;
         }
+    }
+
+    /// The third axis by itself, as if it were each of three independent ones a third as often.
+    fn along(&self) -> Self {
+        let power = Matrix3::identity() * self.power[(2, 2)];
+        Self { count: self.count / 3.0, power, gains: self.gains.clone() }
     }
 
     fn averaged(mut self) -> Self {

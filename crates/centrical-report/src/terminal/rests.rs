@@ -1,0 +1,37 @@
+//! Rests in free attitudes as text for the terminal.
+
+use centrical_session::{CalibrationResult, MICRO_G, PlateauSummary};
+
+use super::screen::Screen;
+use crate::number::counted;
+
+/// How many rests there are, how long they are, and how well the size of gravity is met in them.
+pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
+    let rests: Vec<&PlateauSummary> = result.rests().collect();
+    if rests.is_empty() {
+        return;
+    }
+    screen.gap();
+    screen.head("RESTS", "in attitudes that only gravity shows");
+    let lengths = rests.iter().filter_map(|rest| rest.window).map(|[from, to]| to - from);
+    let (shortest, longest) =
+        lengths.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), t| (low.min(t), high.max(t)));
+    let found = counted(rests.len(), "rest");
+    if longest > 0.0 {
+        screen.say(2, &format!("{found}, of {shortest:.1} s to {longest:.1} s"));
+    } else {
+        screen.say(2, &found);
+    }
+    let misfits: Vec<f64> = rests.iter().filter_map(|rest| misfit(rest)).collect();
+    let square: f64 = misfits.iter().map(|misfit| misfit * misfit).sum();
+    let rms = (square / misfits.len().max(1) as f64).sqrt() / MICRO_G;
+    let worst = misfits.iter().fold(0.0_f64, |most, misfit| most.max(misfit.abs())) / MICRO_G;
+    screen.say(2, &format!("size of the compensated force less gravity: {rms:.0} ug RMS, {worst:.0} ug at most"));
+}
+
+/// Residual along the specific force [m/s^2]: what its size misses of gravity.
+fn misfit(rest: &PlateauSummary) -> Option<f64> {
+    let force = rest.specific_force?;
+    let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
+    Some(force.iter().zip(rest.residual).map(|(f, residual)| f / size * residual).sum())
+}

@@ -1,0 +1,124 @@
+//! From records of a unit that was turned by hand to its calibration.
+
+use std::path::{Path, PathBuf};
+
+use centrical::reduction::{CoarseScale, PlateauMean, Record, coarse_scale, reduce_rests};
+use centrical::{OnProgress, advance};
+use centrical_table::{TableLines, refuse_inputs, write_whole};
+use nalgebra::Vector3;
+
+use super::request::TumbleRequest;
+use super::session_text::{TABLE, session_text};
+use crate::document::{CalibrationResult, Method};
+use crate::error::{Error, Place};
+use crate::experiment::{EXPERIMENT_FILE, Session, write_plateaus};
+use crate::job::calibrate::calibrate_reduced;
+use crate::job::noise::Series;
+use crate::quantity::Dimension;
+use crate::record::{Input, Scale, named_columns};
+use crate::reduced::{Reduced, ReducedPlateau};
+
+/// A calibration by rests.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tumble {
+    /// The rests as a session.
+    pub session: Session,
+    /// The text of its experiment file.
+    pub text: String,
+    /// The means of the rests.
+    pub reduced: Reduced,
+    /// What follows from them.
+    pub result: CalibrationResult,
+}
+
+/// Finds the rests of the records, averages each, and calibrates the unit by them: gravity has the same size in all. The text of
+/// the session is that of a file in `folder`. `progress` is called with the number of bytes read.
+///
+/// # Errors
+/// [`Error`] naming the file, the place, what was found and what was expected; [`Error::Stopped`].
+pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> Result<Tumble, Error> {
+    let mut records = Vec::with_capacity(request.files.len());
+    for file in &request.files {
+        records.push(record(request, file, progress)?);
+    }
+    let mut rests = rests(request, &records)?;
+    advance(progress, 0)?;
+    let coarse = if Dimension::Acceleration.factor(&request.unit).is_some() {
+        None
+    } else {
+        let coarse = coarse(request, &rests)?;
+        for record in &mut records {
+            in_si(record, &coarse);
+        }
+        rests = self::rests(request, &records)?;
+        Some(coarse)
+    };
+    let plateaus: Vec<ReducedPlateau> = rests.into_iter().map(ReducedPlateau::from).collect();
+    let text = session_text(request, coarse.as_ref());
+    let mut reduced = Reduced { plateaus, ..Reduced::of_table(&[]) };
+    let inputs = request.files.iter().map(|file| Input::of(file.parent().unwrap_or(Path::new("")), file, progress));
+    reduced.inputs = inputs.collect::<Result<_, _>>()?;
+    let session = Session::parse_with(&text, &folder.join(EXPERIMENT_FILE), |_| Ok(reduced.rests()))?;
+    let result = calibrate_reduced(&session, &reduced, Method::Exact, progress)?;
+    Ok(Tumble { session, text, reduced, result })
+}
+
+impl Tumble {
+    /// Writes the rests as a session into `folder`, which is there, and the result beside.
+    ///
+    /// # Errors
+    /// If the folder does not take the files, or a record is one of them.
+    pub fn write(&self, records: &[PathBuf], folder: &Path) -> Result<(), Error> {
+        let [table, experiment, result] = [TABLE, EXPERIMENT_FILE, "result.json"].map(|name| folder.join(name));
+        let read: Vec<&Path> = records.iter().map(PathBuf::as_path).collect();
+        refuse_inputs(&[table.clone(), experiment.clone(), result.clone()], &read)?;
+        write_plateaus(&table, &self.reduced.rests())?;
+        write_whole(&experiment, self.text.as_bytes())?;
+        self.result.write(&result)
+    }
+}
+
+/// A record as it is, in m/s^2 where its unit is one of acceleration.
+fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<Record, Error> {
+    let (time, readings) = named_columns(&request.time, request.rate, &request.readings, &request.unit);
+    let everything = [f64::NEG_INFINITY, f64::INFINITY];
+    let series = Series::read(file, TableLines::default(), &time, &readings, everything, progress)?;
+    let mut columns = series.columns.into_iter().map(|(_, _, values)| values);
+    Ok(Record { t: series.t, f_z: std::array::from_fn(|_| columns.next().unwrap_or_default()) })
+}
+
+/// The rests of all records. A single one shows nothing.
+fn rests(request: &TumbleRequest, records: &[Record]) -> Result<Vec<PlateauMean>, Error> {
+    let slices: Vec<_> = records.iter().map(Record::as_slice).collect();
+    let first = || request.files.first().cloned().unwrap_or_default();
+    let refused = |source| Error::Reduction { file: first(), mounting: 1, source: Box::new(source) };
+    let rests: Vec<PlateauMean> = reduce_rests(&slices).map_err(refused)?.into_iter().flatten().collect();
+    if rests.len() < 2 {
+        let found = format!("{} in which the unit rests", count(rests.len(), "stretch", "stretches"));
+        let expected = "a unit that is turned, left alone for a second or more, and turned again";
+        return Err(Error::content(&first(), Place::Whole, found, expected));
+    }
+    Ok(rests)
+}
+
+/// The coarse scale and bias of readings in counts or volts.
+fn coarse(request: &TumbleRequest, rests: &[PlateauMean]) -> Result<CoarseScale, Error> {
+    let means: Vec<Vector3<f64>> = rests.iter().map(|rest| rest.mean).collect();
+    coarse_scale(&means, request.gravity).ok_or_else(|| {
+        let file = request.files.first().cloned().unwrap_or_default();
+        let found =
+            format!("{} that do not show scale and bias of {}", count(rests.len(), "rest", "rests"), request.unit);
+        let expected = "rests with each axis about up and about down, six at least";
+        Error::content(&file, Place::Whole, found, expected)
+    })
+}
+
+fn in_si(record: &mut Record, CoarseScale { scale, bias }: &CoarseScale) {
+    for (axis, values) in record.f_z.iter_mut().enumerate() {
+        Scale { offset: bias[axis], factor: 1.0 / scale[axis] }.apply(values);
+    }
+}
+
+fn count(number: usize, one: &str, many: &str) -> String {
+    format!("{number} {}", if number == 1 { one } else { many })
+}

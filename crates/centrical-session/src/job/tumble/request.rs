@@ -1,0 +1,39 @@
+//! Which records, and what is to be made of them.
+
+use std::path::PathBuf;
+
+use centrical_table::ColumnName;
+
+/// Records of a unit that rested in attitudes that only gravity shows, and what is to be made of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TumbleRequest {
+    /// The records, in any format.
+    pub files: Vec<PathBuf>,
+    /// Column of time [s].
+    pub time: ColumnName,
+    /// Sampling rate of records without a column of time [Hz].
+    pub rate: Option<f64>,
+    /// Columns of newtonometers 1, 2, 3.
+    pub readings: [ColumnName; 3],
+    /// Unit of the readings: one of acceleration, `V`, or any other for counts.
+    pub unit: String,
+    /// Gravity at the place [m/s^2].
+    pub gravity: f64,
+    /// Its standard uncertainty [m/s^2].
+    pub gravity_uncertainty: f64,
+    /// Terms of the error model, as in `[model]`.
+    pub terms: Vec<String>,
+    /// Serial number of the unit.
+    pub serial: String,
+    /// Date of the records, as written.
+    pub date: String,
+}
+
+impl TumbleRequest {
+    /// Bias, scale and misalignment: what a unit shows at 1 g.
+    pub const USUAL_TERMS: [&'static str; 9] =
+        ["df_1", "df_2", "df_3", "G0_11", "G0_21", "G0_22", "G0_31", "G0_32", "G0_33"];
+
+    /// Standard uncertainty of the gravity of an unknown place on Earth [m/s^2]: rectangular from 9.764 to 9.834 m/s^2.
+    pub const GRAVITY_ANYWHERE: f64 = 0.02;
+}

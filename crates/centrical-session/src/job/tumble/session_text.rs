@@ -1,0 +1,36 @@
+//! The experiment file of rests that were found in records.
+
+use std::fmt::Write as _;
+
+use centrical::reduction::CoarseScale;
+
+use super::request::TumbleRequest;
+
+/// Name of the table of rests.
+pub(super) const TABLE: &str = "rests.csv";
+
+/// The experiment file of rests in a table beside it, of readings with this coarse scale where they are in no unit of acceleration.
+pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>) -> String {
+    let mut text = String::new();
+    let mut line = |line: String| {
+        // Writing to a String does not fail.
+        let _ = writeln!(text, "{line}");
+    };
+    let names: Vec<String> = request.files.iter().map(|file| file.display().to_string()).collect();
+    line("# Rests in attitudes that only gravity shows, found by `centrical tumble`.".to_owned());
+    line(format!("[session]\ntitle = {:?}\ndate = {:?}\n", format!("Rests of {}", names.join(", ")), request.date));
+    line(format!("[site]\ngravity = \"{:?} m/s^2\"\n", request.gravity));
+    line(format!("[uncertainty]\ngravity = \"{:?} m/s^2\"\n", request.gravity_uncertainty));
+    line(format!("[unit]\nserial = {:?}", request.serial));
+    match coarse {
+        Some(CoarseScale { scale, bias }) => {
+            let key = if request.unit == "V" { "volts" } else { "counts" };
+            line(format!("output_unit = {:?}", if key == "volts" { "V" } else { "counts" }));
+            line(format!("{key} = {{ scale = {:?}, bias = {:?} }}\n", scale.as_slice(), bias.as_slice()));
+        }
+        None => line(format!("output_unit = {:?}\n", request.unit)),
+    }
+    line(format!("[model]\nerror_model = {:?}\n", request.terms));
+    line(format!("[[tumble]]\nrests = {TABLE:?}"));
+    text
+}

@@ -1,0 +1,68 @@
+//! Records of a unit that was turned by hand or on a table: the mean of every rest, without a schedule; and the coarse scale
+//! and bias of readings that are not in units of acceleration.
+
+use nalgebra::{DMatrix, DVector, Vector3};
+
+use super::average::{ReducedMounting, average};
+use super::colour::{NoiseModel, plateau_means};
+use super::error::ReductionError;
+use super::locate::locate_rests;
+use super::plateau::PlateauMean;
+use super::record::RecordSlice;
+use super::survey::Survey;
+use crate::linalg::least_squares::LeastSquares;
+
+/// The means of the rests of some records, record by record in the order of time. The colour of the noise is pooled over all of
+/// them. A rest whose samples are not steady is left out.
+///
+/// # Errors
+/// [`ReductionError`] if a record is invalid (lengths, times) or too short.
+pub fn reduce_rests(records: &[RecordSlice]) -> Result<Vec<Vec<PlateauMean>>, ReductionError> {
+    let reduced = records.iter().map(|record| {
+        let located = locate_rests(&Survey::of(*record)?)?;
+        let fits = (0..located.windows().len()).filter_map(|rest| average(&located, rest, *record, 0).ok());
+        let rests = fits.map(|fit| fit.of_rest(located.sample_noise())).collect();
+        Ok(ReducedMounting::of_rests(located, rests))
+    });
+    let reduced: Vec<ReducedMounting> = reduced.collect::<Result<_, _>>()?;
+    let noise = NoiseModel::pool_rests(&reduced);
+    Ok(reduced.iter().map(|record| plateau_means(record, &noise)).collect())
+}
+
+/// Coarse scale and bias of three newtonometers: `reading = scale f + bias`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoarseScale {
+    /// Readings per m/s^2.
+    pub scale: Vector3<f64>,
+    /// Readings at no specific force.
+    pub bias: Vector3<f64>,
+}
+
+/// Coarse scale and bias by which the readings `means` of rests have the length of `gravity` [m/s^2]: the ellipsoid
+/// `sum_i ((c_i - bias_i) / scale_i)^2 = g^2` with axes along those of the instrument, by linear least squares. Scales are
+/// positive: gravity does not show the sign of an axis. `None` if the rests determine no such ellipsoid: each axis has to point
+/// up and down, about.
+pub fn coarse_scale(means: &[Vector3<f64>], gravity: f64) -> Option<CoarseScale> {
+    let first = *means.first()?;
+    let (low, high) = means.iter().fold((first, first), |(low, high), mean| (low.inf(mean), high.sup(mean)));
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    // Within the ellipsoid the equation `sum_i (a_i y_i^2 + b_i y_i) = 1` holds for some a > 0.
+    let row = |mean: &Vector3<f64>| {
+        let y = (mean - middle).component_div(&half);
+        [y.x * y.x, y.y * y.y, y.z * y.z, y.x, y.y, y.z]
+    };
+    let rows = DMatrix::from_row_iterator(means.len(), 6, means.iter().flat_map(row));
+    if means.len() < 6 || rows.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
+    let solution = LeastSquares::new(rows, DVector::repeat(6, 1.0)).solve(DVector::repeat(means.len(), 1.0)).x;
+    let (a, b) = (solution.fixed_rows::<3>(0).into_owned(), solution.fixed_rows::<3>(3).into_owned());
+    if a.iter().any(|a| !a.is_finite() || *a <= 0.0) {
+        return None;
+    }
+    let size = 1.0 + b.component_mul(&b).component_div(&a).sum() / 4.0;
+    Some(CoarseScale {
+        scale: half.zip_map(&a, |half, a| half * (size / a).sqrt() / gravity),
+        bias: middle - half.component_mul(&b.component_div(&a)) / 2.0,
+    })
+}

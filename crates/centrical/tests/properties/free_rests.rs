@@ -1,0 +1,208 @@
+//! Rests in attitudes that only gravity shows: the model, what they determine, and what they add to a centrifuge session.
+
+use centrical::position::ThirdPosition::AxisOneUp;
+use centrical::{
+    ErrorModel, Experiment, MeasurementModel, Mounting, Observation, PairRelation, Position, SetPoint, TypeB,
+};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::common::{Random, exact, experiment, kozlov, truth};
+
+/// Of a rest of a minute [m/s^2].
+const NOISE: f64 = 1e-4;
+
+/// The six faces, twelve edges and eight corners of a cube.
+fn cube() -> Vec<Vector3<f64>> {
+    let steps = || [-1.0, 0.0, 1.0].into_iter();
+    let all = steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| Vector3::new(x, y, z))));
+    all.filter(|direction| *direction != Vector3::zeros()).map(|direction| direction.normalize()).collect()
+}
+
+fn faces() -> Vec<Vector3<f64>> {
+    cube().into_iter().filter(|direction| direction.amax() > 0.99).collect()
+}
+
+fn random_directions(count: usize, random: &mut Random) -> Vec<Vector3<f64>> {
+    (0..count).map(|_| Vector3::from_fn(|_, _| random.normal()).normalize()).collect()
+}
+
+/// `experiment` with a rest for each direction of the specific force.
+fn with_rests(mut experiment: Experiment, directions: &[Vector3<f64>]) -> Experiment {
+    for (n, direction) in directions.iter().enumerate() {
+        let mounting = experiment.mountings.len();
+        let position = experiment.positions.len();
+        experiment.mountings.push(Mounting { position, arm_y: Vector3::zeros() });
+        experiment.positions.push(Position::free(format!("r{}", n + 1), direction));
+        experiment.set_points.push(SetPoint::at_rest(mounting, 0.0));
+    }
+    experiment
+}
+
+/// Rests without a centrifuge.
+fn rests_alone(directions: &[Vector3<f64>], terms: usize) -> MeasurementModel {
+    let mut empty = experiment(AxisOneUp, PairRelation::Common, &[1.0]);
+    empty.positions.clear();
+    empty.mountings.clear();
+    empty.set_points.clear();
+    let mut error_model = ErrorModel::kozlov_2017();
+    error_model.terms.retain(|term| usize::from(term.monomial.degree()) < terms);
+    MeasurementModel::new(with_rests(empty, directions), error_model, &[])
+}
+
+fn observed(model: &MeasurementModel, truth: &[f64], random: &mut Random) -> Vec<Observation> {
+    let set_points = model.experiment().set_points.iter().enumerate();
+    let noise = |random: &mut Random| Vector3::from_fn(|_, _| NOISE * random.normal());
+    set_points
+        .map(|(set_point, at)| Observation {
+            set_point,
+            mean: model.reading(at, truth) + noise(random),
+            covariance: Matrix3::identity() * NOISE * NOISE,
+        })
+        .collect()
+}
+
+/// Unknowns of the instrument that the rests show.
+fn shown(model: &MeasurementModel) -> Vec<String> {
+    let zero = vec![0.0; model.parameters().len()];
+    let fit = exact(model, &observed(model, &zero, &mut Random::new(1))).unwrap();
+    let seen = fit.observability();
+    let parameters = model.parameters().iter().enumerate();
+    let of_instrument = parameters.filter(|(_, p)| p.is_of_instrument());
+    of_instrument.filter(|(j, _)| seen.is_estimable(*j)).map(|(_, p)| p.name.clone()).collect()
+}
+
+#[test]
+fn the_derivatives_are_those_of_the_reading() {
+    let mut random = Random::new(5);
+    let model = kozlov(with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &cube()));
+    let x = truth(&model, 3.0, &mut random);
+    for set_point in &model.experiment().set_points {
+        let mut difference = vec![Vector3::zeros(); x.len()];
+        for (j, parameter) in model.parameters().iter().enumerate() {
+            let step = 0.1 * parameter.typical;
+            let at = |factor: f64| {
+                let mut moved = x.clone();
+                moved[j] += factor * step;
+                model.reading(set_point, &moved)
+            };
+            difference[j] = (at(1.0) - at(-1.0)) / (2.0 * step) * parameter.typical;
+        }
+        let mut columns = vec![Vector3::zeros(); x.len()];
+        for (j, column) in model.linearise(set_point, &x).columns {
+            columns[j] = column * model.parameters()[j].typical;
+        }
+        for (j, (column, difference)) in columns.iter().zip(&difference).enumerate() {
+            let name = &model.parameters()[j].name;
+            assert!((column - difference).norm() < 1e-6 * (1.0 + difference.norm()), "{name}: {column} {difference}");
+        }
+    }
+}
+
+/// The linear model is the exact one at zero.
+#[test]
+fn the_linear_model_is_the_exact_one_at_zero() {
+    let model = kozlov(with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &cube()));
+    let zero = vec![0.0; model.parameters().len()];
+    for set_point in model.experiment().set_points.iter().filter(|s| !model.experiment().is_on_arm(s.mounting)) {
+        let (linear, exact) = (model.linearise_at_zero(set_point), model.linearise(set_point, &zero));
+        assert!((linear.reading - exact.reading).norm() < 1e-12);
+        let mut difference = vec![Vector3::zeros(); zero.len()];
+        linear.columns.iter().for_each(|(j, column)| difference[*j] += column);
+        exact.columns.iter().for_each(|(j, column)| difference[*j] -= column);
+        for (j, difference) in difference.iter().enumerate() {
+            assert!(difference.norm() < 1e-9, "{}: {difference}", model.parameters()[j].name);
+        }
+    }
+}
+
+/// Six faces show bias and scale; edges misalignment too; squares need corners besides. Bias and own square are one on faces.
+#[test]
+fn what_a_cube_shows() {
+    let bias_and_scale = ["df_1", "df_2", "df_3", "G0_11", "G0_22", "G0_33"];
+    assert_eq!(shown(&rests_alone(&faces(), 2)), bias_and_scale);
+    assert_eq!(shown(&rests_alone(&cube(), 2)).len(), 9);
+    let squares = shown(&rests_alone(&faces(), 3));
+    assert_eq!(squares, ["G0_11", "G0_22", "G0_33"]);
+    // Nothing of an arm is asked for where there is none.
+    let model = rests_alone(&faces(), 2);
+    let names: Vec<&str> = model.parameters().iter().map(|p| p.name.as_str()).collect();
+    assert!(names.iter().all(|name| name.starts_with("theta") || name.starts_with("df") || name.starts_with("G0")));
+}
+
+/// The estimates of many made tumbles against their covariance, with gravity uncertain too.
+#[test]
+fn errors_are_as_large_as_stated() {
+    const RUNS: usize = 200;
+    let mut random = Random::new(8);
+    let (mut sum, mut count) = (0.0, 0);
+    for run in 0..RUNS {
+        let directions = random_directions(18 + run % 12, &mut random);
+        let model = rests_alone(&directions, 2);
+        let truth = truth(&model, 3.0, &mut random);
+        let gravity = 1e-3;
+        // Readings of a place where gravity is another.
+        let mut elsewhere = model.experiment().clone();
+        elsewhere.site.gravity += gravity * random.normal();
+        let observations = observed(&model.in_experiment(elsewhere), &truth, &mut random);
+        let model = model.with_stated(TypeB { gravity, ..TypeB::default() });
+        let fit = exact(&model, &observations).unwrap();
+        let own: Vec<usize> = (0..truth.len()).filter(|&j| model.parameters()[j].is_of_instrument()).collect();
+        let error = nalgebra::DVector::from_fn(own.len(), |a, _| fit.value(own[a]).unwrap() - truth[own[a]]);
+        let covariance =
+            nalgebra::DMatrix::from_fn(own.len(), own.len(), |a, b| fit.covariance(own[a], own[b]).unwrap());
+        sum += error.dot(&covariance.cholesky().unwrap().solve(&error));
+        count += own.len();
+    }
+    let ratio = sum / count as f64;
+    // Four standard deviations of a mean of squares.
+    assert!((ratio - 1.0).abs() < 4.0 * (2.0 / count as f64).sqrt(), "{ratio}");
+}
+
+/// In one fit with the centrifuge the rests sharpen what gravity shows: axes 2 and 3 by far, axis 1 less, since its turns and
+/// theirs are free.
+#[test]
+fn rests_sharpen_a_centrifuge_session() {
+    let session = || experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]);
+    let mut random = Random::new(3);
+    let uncertainty = |experiment: Experiment, random: &mut Random| {
+        let model = kozlov(experiment);
+        let truth = truth(&model, 1.0, random);
+        let fit = exact(&model, &observed(&model, &truth, random)).unwrap();
+        let names = ["df_1", "G0_11", "df_2", "G0_22", "df_3", "G0_33", "G0_32"];
+        names.map(|name| fit.standard_uncertainty(model.parameters().find(name).unwrap()).unwrap())
+    };
+    let alone = uncertainty(session(), &mut random);
+    let together = uncertainty(with_rests(session(), &cube()), &mut random);
+    let gains: Vec<f64> = alone.iter().zip(&together).map(|(alone, together)| alone / together).collect();
+    assert!(gains[..2].iter().all(|gain| (1.2..2.5).contains(gain)), "{gains:?}");
+    assert!(gains[2..].iter().all(|gain| *gain > 2.5), "{gains:?}");
+}
+
+/// In one fit the errors of the whole instrument are as large as stated.
+#[test]
+fn errors_of_one_fit_are_as_large_as_stated() {
+    const RUNS: usize = 40;
+    let mut session = experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]);
+    session.centrifuge.speed_uncertainty = 0.0;
+    let model = kozlov(with_rests(session, &cube()));
+    let mut random = Random::new(12);
+    let (mut sum, mut count) = (0.0, 0);
+    for _ in 0..RUNS {
+        let truth = truth(&model, 1.0, &mut random);
+        let fit = exact(&model, &observed(&model, &truth, &mut random)).unwrap();
+        let parameters = model.parameters().iter().enumerate();
+        let own: Vec<usize> = parameters.filter(|(_, p)| p.is_of_instrument()).map(|(j, _)| j).collect();
+        let error = nalgebra::DVector::from_fn(own.len(), |a, _| fit.value(own[a]).unwrap() - truth[own[a]]);
+        let covariance =
+            nalgebra::DMatrix::from_fn(own.len(), own.len(), |a, b| fit.covariance(own[a], own[b]).unwrap());
+        // In units of the uncertainties: coefficients of squares and cubes are small numbers.
+        let unit = nalgebra::DVector::from_fn(own.len(), |a, _| covariance[(a, a)].sqrt());
+        let scaled = nalgebra::DMatrix::from_fn(own.len(), own.len(), |a, b| covariance[(a, b)] / (unit[a] * unit[b]));
+        let error = error.component_div(&unit);
+        sum += error.dot(&scaled.cholesky().unwrap().solve(&error));
+        count += own.len();
+    }
+    assert_eq!(count, 21 * RUNS);
+    let ratio = sum / count as f64;
+    assert!((ratio - 1.0).abs() < 4.0 * (2.0 / count as f64).sqrt(), "{ratio}");
+}
