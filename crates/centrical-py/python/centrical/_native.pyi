@@ -37,6 +37,7 @@ __all__ = [
     "series",
     "set_threads",
     "simulate",
+    "tumble",
 ]
 
 @final
