@@ -27,6 +27,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         code: Some(folder.join("code")),
         range: None,
         laboratory: Some("examples/ta-200/laboratory.toml".into()),
+        axes: None,
         language: Language::English,
     })?;
     println!("{}: {} objections", folder.display(), documents.result.objections().len());

@@ -8,7 +8,7 @@
 
 use crate::certificate::{Certificate, START_REGION, Steps};
 use crate::error::{NotInvertible, OutOfRange};
-use crate::fused::dot_and;
+use crate::fused::{dot, dot_and};
 use crate::lanes::Lanes;
 use crate::linear::{Linear, corrected};
 use crate::machine::on_this_machine;
@@ -28,6 +28,7 @@ pub struct Compensation<T> {
     shift: Shift,
     certificate: Certificate,
     steps: Steps,
+    axes: Option<[[f64; 3]; 3]>,
 }
 
 impl<T: AsRef<[Term]>> Compensation<T> {
@@ -44,7 +45,19 @@ impl<T: AsRef<[Term]>> Compensation<T> {
         let steps = certificate.steps(0.5 * f64::EPSILON);
         let model = Model::new(terms);
         let shift = model.separable.shift(&linear.inverse);
-        Ok(Self { model, linear, shift, certificate, steps })
+        Ok(Self { model, linear, shift, certificate, steps, axes: None })
+    }
+
+    /// The same with specific forces in other axes: `c_zb`, a rotation by its rows, takes coordinates there to coordinates in
+    /// instrument axes, so that `f_b = c_zb^T f_z`. The range stays one of the instrument axes.
+    #[must_use]
+    pub fn in_axes(self, c_zb: [[f64; 3]; 3]) -> Self {
+        Self { axes: Some(c_zb), ..self }
+    }
+
+    /// The rotation to instrument axes from those of the specific forces, if these are others.
+    pub fn axes(&self) -> Option<&[[f64; 3]; 3]> {
+        self.axes.as_ref()
     }
 
     /// What was shown of the inverse.
@@ -75,7 +88,17 @@ impl<T: AsRef<[Term]>> Compensation<T> {
     /// reading, so that the lanes go into vectors and each is what it would be alone.
     #[inline(always)]
     pub(crate) fn invert<const W: usize>(&self, f: &mut Lanes<W>) {
-        if self.model.is_fast() { self.iterate::<W, true>(f) } else { self.iterate::<W, false>(f) }
+        if self.model.is_fast() {
+            self.iterate::<W, true>(f);
+        } else {
+            self.iterate::<W, false>(f);
+        }
+        if let Some(c_zb) = &self.axes {
+            for w in 0..W {
+                let f_z = f.at(w);
+                f.put(w, [0, 1, 2].map(|j| dot([c_zb[0][j], c_zb[1][j], c_zb[2][j]], f_z)));
+            }
+        }
     }
 
     /// The iteration; `FAST` when all terms fit the fast form, so that no lane asks for others.

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use centrical::uncertainty::Compensated;
+use centrical::uncertainty::{Compensated, ModelInAxes};
 use centrical_report::{Emphasis, Language, Screen, figures, terminal_table, verdict_text};
-use centrical_session::{self as session, Error, ObjectionName, SCHEMA};
+use centrical_session::{self as session, Axes, Error, ObjectionName, SCHEMA};
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyUntypedArrayMethods};
 use pyo3::IntoPyObjectExt;
@@ -193,18 +193,26 @@ impl CalibrationResult {
         })
     }
 
+    /// The result in other axes too.
+    fn in_axes(&self, py: Python, axes: &str) -> PyResult<Self> {
+        guarded(|| {
+            let stated = Axes::from(axes).of(self.result.clone(), Path::new(IN_MEMORY));
+            stated.map(Self::from).map_err(|error| exception(py, &error))
+        })
+    }
+
     /// Standard uncertainties `(n, 3)` of compensated readings at the specific forces `(n, 3)` [m/s^2].
     fn uncertainty<'py>(&self, forces: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         guarded(|| {
             let py = forces.py();
-            let compensated = self.compensated(py)?;
+            let uncertain = self.uncertain(py)?;
             let forces = arrays::rows("forces", forces, true)?;
             let uncertainties = PyArray2::zeros(py, [forces.shape()[0], 3], false);
             let (read, mut write) = (arrays::to_read("forces", &forces)?, arrays::to_write("out", &uncertainties)?);
             let (Ok(from), Ok(to)) = (read.as_slice(), write.as_slice_mut()) else { return Ok(uncertainties.clone()) };
             let (from, to) = (as_rows(from), as_rows_mut(to));
             py.detach(|| {
-                let set = |(f, u): (&[f64; 3], &mut [f64; 3])| *u = at_force(&compensated, *f);
+                let set = |(f, u): (&[f64; 3], &mut [f64; 3])| *u = uncertain.at_force(*f);
                 if from.len() > MANY && pool::is_ours() {
                     from.par_iter().zip(to).for_each(set);
                 } else {
@@ -226,11 +234,16 @@ impl CalibrationResult {
         Ok(self.compensation.get_or_init(|| compensation))
     }
 
-    fn compensated(&self, py: Python) -> PyResult<Compensated> {
+    fn uncertain(&self, py: Python) -> PyResult<Uncertain> {
         let failed = |source| Error::ErrorModel { file: Path::new(IN_MEMORY).to_owned(), source };
+        if let Some(axes) = &self.result.axes {
+            let model = axes.model(&self.result).map_err(|source| exception(py, &failed(source)))?;
+            return Ok(Uncertain::InAxes(model));
+        }
         let terms = self.result.error_terms().map_err(|source| exception(py, &failed(source)))?;
         let expected = "a covariance of all coefficients of the error model";
         Compensated::new(terms, self.result.of_unit().covariance)
+            .map(Uncertain::OfInstrument)
             .ok_or_else(|| wrong_content(py, "covariance", "another shape", expected))
     }
 }
@@ -242,7 +255,8 @@ fn owned(result: &session::CalibrationResult) -> Result<Owned, Error> {
     let file = || Path::new(IN_MEMORY).to_owned();
     let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
     let range = result.compensation_range(&terms);
-    range.and_then(|range| Owned::new(terms, range)).map_err(|source| Error::NotInvertible { file: file(), source })
+    let owned = range.and_then(|range| Owned::new(terms, range));
+    owned.map(|owned| result.in_its_axes(owned)).map_err(|source| Error::NotInvertible { file: file(), source })
 }
 
 fn between(py: Python, compensation: &Owned, readings: &arrays::Rows, forces: &arrays::Rows) -> PyResult<usize> {
@@ -273,10 +287,27 @@ fn in_place(py: Python, compensation: &Owned, forces: &arrays::Rows) -> PyResult
     Ok(py.detach(|| compensation::rows(compensation, f, is_parallel)))
 }
 
-fn at_force(compensated: &Compensated, f: [f64; 3]) -> [f64; 3] {
-    let is_number = f.iter().all(|f| f.is_finite());
-    let covariance = if is_number { compensated.covariance(&Vector3::from(f)) } else { None };
-    covariance.map_or([f64::NAN; 3], |covariance| covariance.diagonal().map(|v| v.max(0.0).sqrt()).into())
+/// What the coefficients leave in a compensated reading.
+enum Uncertain {
+    /// In the axes of the newtonometers.
+    OfInstrument(Compensated),
+    /// In the axes that the result is stated in.
+    InAxes(ModelInAxes),
+}
+
+impl Uncertain {
+    /// Standard uncertainties at the specific force `f` [m/s^2].
+    fn at_force(&self, f: [f64; 3]) -> [f64; 3] {
+        if f.iter().any(|f| !f.is_finite()) {
+            return [f64::NAN; 3];
+        }
+        let f = Vector3::from(f);
+        let covariance = match self {
+            Self::OfInstrument(compensated) => compensated.covariance(&f),
+            Self::InAxes(model) => model.covariance_at(&f),
+        };
+        covariance.map_or([f64::NAN; 3], |covariance| covariance.diagonal().map(|v| v.max(0.0).sqrt()).into())
+    }
 }
 
 /// A text for the terminal, its marks in plain words.

@@ -4,6 +4,7 @@
 //! function that runs them. All three do what [`centrical_compensate`] does, statement by statement: the same start,
 //! the same certified number of Newton steps, the same refusal out of range.
 
+mod axes;
 mod c;
 mod model;
 mod octave;
@@ -18,16 +19,22 @@ use centrical_session::{CalibrationResult, OutputSummary};
 
 use self::model::Model;
 pub use self::term::NamedTerm;
+use crate::language::Language;
 
 /// What the first comment says of a result.
 pub fn heading(result: &CalibrationResult) -> Vec<String> {
     let session = &result.session;
     let serial = if session.unit_serial.is_empty() { String::new() } else { format!(" No. {}", session.unit_serial) };
-    vec![
+    let axes = result.axes.as_ref().map(|axes| {
+        let name = (Language::English.messages().words.axes)(&axes.name);
+        format!("Specific forces in the {name}; readings and range in the axes of the newtonometers.")
+    });
+    let lines = vec![
         format!("Compensation of {}{serial}, calibrated {}.", session.unit_model, session.date),
         session.title.clone(),
         format!("Made by {} {}; not to be edited.", result.program.name, result.program.version),
-    ]
+    ];
+    lines.into_iter().chain(axes).collect()
 }
 
 /// A file of source code.
@@ -41,7 +48,8 @@ pub struct SourceFile {
 
 /// The compensation of a unit as `centrical_compensate.h`, `.c`, `.m` (MATLAB and Octave) and `.py`, for specific
 /// forces up to `range` [m/s^2] on each axis. `heading` goes into the first comment of each, a line each. With the nominal
-/// `output` of a unit in counts or volts, each also takes its raw output.
+/// `output` of a unit in counts or volts, each also takes its raw output;
+/// with `axes`, as of [`Compensation::in_axes`], specific forces are in those.
 ///
 /// # Errors
 /// [`NotInvertible`] as [`Compensation::new`].
@@ -50,9 +58,11 @@ pub fn compensation_source(
     terms: &[NamedTerm],
     output: Option<&OutputSummary>,
     range: f64,
+    axes: Option<&[[f64; 3]; 3]>,
 ) -> Result<Vec<SourceFile>, NotInvertible> {
     let plain: Vec<Term> = terms.iter().map(|named| named.term).collect();
     let compensation = Compensation::new(plain.as_slice(), range)?;
+    let compensation = axes.map_or(compensation, |c_zb| compensation.in_axes(*c_zb));
     let model = Model { heading, terms, output, plain: &plain, compensation: &compensation };
     Ok(vec![
         SourceFile { name: "centrical_compensate.h", text: c::header(&model) },

@@ -20,6 +20,7 @@ pub fn digital_certificate(
     language: Language,
 ) -> Result<String, UnknownUnit> {
     let units: Vec<Unit> = result.parameters.iter().map(|p| Unit::parse(&p.unit)).collect::<Result<_, _>>()?;
+    let mut results = Ok(());
     let mut xml = Xml::new();
     let attributes = [
         ("xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance"),
@@ -30,7 +31,8 @@ pub fn digital_certificate(
     ];
     xml.element_with("dcc:digitalCalibrationCertificate", &attributes, |xml| {
         administrative::data(xml, result, issuer, language);
-        results::list(xml, (result, &units), &issuer.laboratory, language);
+        results = results::list(xml, (result, &units), &issuer.laboratory, language);
     });
+    results?;
     Ok(xml.into_text())
 }

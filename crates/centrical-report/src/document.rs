@@ -1,5 +1,6 @@
 //! What the documents say: content as data, drawn by the renderers.
 
+mod axes;
 mod certificate;
 mod conformity;
 mod content;

@@ -19,7 +19,7 @@ pub use self::conformity::{Judged, UnitStatement, UnitVerdict};
 pub(crate) use self::criterion::criterion_unit;
 pub(crate) use self::equation::{equation, equations, monomial};
 pub(crate) use self::exact::exact;
-pub(crate) use self::expanded::{COVERAGE_PROBABILITY, Expanded, expanded, expanded_of_normal};
+pub(crate) use self::expanded::{COVERAGE_PROBABILITY, Expanded, expanded, expanded_of, expanded_of_normal};
 pub(crate) use self::group::by_group;
 pub(crate) use self::interpolated::interpolated;
 pub(crate) use self::noise::Shown;

@@ -1,6 +1,7 @@
 //! Text for the terminal: a file a command, and what several share.
 
 mod assess;
+mod axes;
 mod calibrate;
 mod compare;
 mod compensate;

@@ -227,4 +227,19 @@ pub enum NoErrorModel {
         /// Name of the coefficient.
         name: String,
     },
+    /// The turns do not show the attitude of the case.
+    #[error(
+        "found {positions} positions on an arm whose turns delta_1, delta_2, delta_3 are all determined, expected two or more: the \
+         error of one seat cannot be separated from the attitude of the case"
+    )]
+    Case {
+        /// Positions that determine all three turns.
+        positions: usize,
+    },
+    /// The error model cannot be stated in the axes asked for.
+    #[error("found {found}, expected a scale matrix whose newtonometers point along three directions")]
+    Axes {
+        /// What was found.
+        found: String,
+    },
 }

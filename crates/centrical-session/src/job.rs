@@ -1,6 +1,7 @@
 //! The whole jobs, a file a command: what the binary, a fleet's worker and a notebook all call.
 
 mod assess;
+mod axes;
 mod calibrate;
 mod compare;
 mod compensate;
@@ -20,6 +21,7 @@ mod tumble;
 mod watch;
 
 pub use self::assess::{Assessment, AssessmentRequest, assess};
+pub use self::axes::Axes;
 pub use self::calibrate::{Problem, calibrate, calibrate_reduced, calibrate_without};
 pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};

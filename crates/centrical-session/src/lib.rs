@@ -49,16 +49,16 @@ pub use document::{
     TermSupport, WithoutOutliers, WrittenDocument,
 };
 pub use document::{
-    BudgetSource, BudgetSummary, CalibrationResult, CombinationReport, ConditionReport, ConvergenceSummary,
-    CriterionName, DriftSummary, FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry,
-    HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method, ModelSummary, MountingPrediction,
-    MountingSummary, NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary,
-    ObservedParameter, OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate, PatternSummary, PlanReport,
-    PlannedMounting, PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport,
-    PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn, ResultObjection,
-    RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport, SpeedDifference,
-    SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, TiltVerdict,
-    ValiditySummary, WatchState, WatchedPlateau, read_history,
+    AxesName, AxesParameter, AxesSummary, BudgetSource, BudgetSummary, CalibrationResult, CombinationReport,
+    ConditionReport, ConvergenceSummary, CriterionName, DriftSummary, FitSummary, Follows, FrontierRow, GoalReport,
+    GroupReport, HistoryEntry, HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method,
+    ModelSummary, MountingPrediction, MountingSummary, NOISE_SCHEMA, NoiseAnalysis, OBSERVABILITY_SCHEMA,
+    ObservabilityReport, ObservabilitySummary, ObservedParameter, OutlyingPlateau, OutputSummary, PairReport,
+    ParameterEstimate, PatternSummary, PlanReport, PlannedMounting, PlannedPlateau, PlateauSummary, PositionSummary,
+    PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport,
+    RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary,
+    SessionTrend, SightReport, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject,
+    TermSummary, TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history,
 };
 pub use document::{
     CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession, ReadingHistory,
@@ -75,10 +75,10 @@ pub use experiment::{
     Session, SpeedSource, Speeds, available_time, read_plateaus, write_plateaus,
 };
 pub use job::{
-    Assessment, AssessmentRequest, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn, FirstOutside,
-    Following, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem,
-    Recorded, Series, SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd,
-    WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
+    Assessment, AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn,
+    FirstOutside, Following, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest,
+    Problem, Recorded, Series, SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch,
+    WatchEnd, WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
     calibrate_series, calibrate_without, collect_results, compare_results, compensate, compensate_record, init,
     list_store, noise_of, plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs, select_model,
     settings_schema, simulate_session, subject, tumble, write_reduced,

@@ -7,12 +7,14 @@
 //! - [`TiltComparison`]: the tilt of the axis by the once-per-revolution terms, which the fit does not use;
 //! - [`select`]: which of several models the data speak for;
 //! - [`Compensated`]: the uncertainty of a compensated reading;
+//! - [`ModelInAxes`], [`ScaleForm`]: a calibrated error model in other axes;
 //! - [`compare`]: two calibrations of one unit.
 //!
 //! Type A is what the data show: the noise of the plateau means. Type B is what they cannot show and the laboratory
 //! states ([`TypeB`]): errors of quantities that the model takes as exact, gravity or a radius, are further unknowns of the
 //! fit, zero with the stated uncertainty.
 
+mod axes;
 mod budget;
 mod comparison;
 mod compensated;
@@ -29,6 +31,7 @@ mod tilt;
 mod validity;
 mod verdict;
 
+pub use axes::{ModelInAxes, ScaleForm};
 pub use budget::{Budget, Contribution, Improvement};
 pub use comparison::{Comparison, Difference, Estimates, compare};
 pub use compensated::{Compensated, CurvePoint};

@@ -78,6 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let bar = progress::reading(&session, arguments.printing);
     let result = calibrate_without(&session, &arguments.hold_out, method, &progress::on(&bar))?;
     bar.finish_and_clear();
+    let result = arguments.documents.in_axes(result, &arguments.session)?;
     if let Some(file) = &file {
         result.write(file)?;
     }

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use centrical_report::compensation_text;
-use centrical_session::{CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate, unwatched};
+use centrical_session::{
+    Axes, CompensationRequest, Dimension, Error, NotThatQuantity, Quantity, compensate, unwatched,
+};
 
 use crate::outcome::Outcome;
 use crate::printing::Printing;
@@ -31,6 +33,9 @@ pub struct Arguments {
     /// Refuse a record with readings beyond those of the calibration, by more than a hundredth; nothing is written then
     #[arg(long)]
     within_calibration: bool,
+    /// Axes of the specific forces: lower, upper, symmetric, case, or a file with [axes] [default: those of the result]
+    #[arg(long, value_name = "AXES|FILE")]
+    axes: Option<String>,
     #[command(flatten)]
     printing: Printing,
 }
@@ -44,6 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         session: arguments.session.clone(),
         range: arguments.range,
         within_calibration: arguments.within_calibration,
+        axes: arguments.axes.as_deref().map(Axes::from),
     };
     let (compensated, certificate) = compensate(&request, &unwatched)?;
     let text = || compensation_text(&compensated, &certificate, &arguments.out);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use centrical_report::{
     DocumentRequest, Language, Screen, UnitStatement, UnitVerdict, unit_text, verdict_text, write_documents,
 };
-use centrical_session::{DocumentKind, DocumentsReport, Error};
+use centrical_session::{Axes, CalibrationResult, DocumentKind, DocumentsReport, Error};
 use clap::ValueEnum;
 
 use crate::command::compensate::acceleration;
@@ -60,9 +60,22 @@ pub struct Documents {
     /// unit; a unit that is not within them ends with exit code 1
     #[arg(long, value_name = "FILE")]
     pub laboratory: Option<PathBuf>,
+    /// Axes to state the error model and specific forces in too: lower, upper, symmetric, case, or a file with [axes]
+    #[arg(long, value_name = "AXES|FILE")]
+    pub axes: Option<String>,
     /// Language of the documents
     #[arg(long, value_enum, default_value = "en")]
     pub language: LanguageName,
+}
+
+impl Documents {
+    /// `result`, which is called `name` in messages, in the axes asked for.
+    pub fn in_axes(&self, result: CalibrationResult, name: &Path) -> Result<CalibrationResult, Error> {
+        match &self.axes {
+            Some(axes) => Axes::from(axes.as_str()).of(result, name),
+            None => Ok(result),
+        }
+    }
 }
 
 /// A language by its code.
@@ -96,6 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         code: arguments.code.clone(),
         range: arguments.range,
         laboratory: arguments.documents.laboratory.clone(),
+        axes: arguments.documents.axes.as_deref().map(Axes::from),
         language: arguments.documents.language.into(),
     })?;
     let (result, unit) = (documents.result, documents.unit);

@@ -81,7 +81,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let laboratory = arguments.documents.laboratory.as_deref();
     let read: Vec<&Path> = request.files.iter().map(PathBuf::as_path).chain(laboratory).collect();
     refuse_inputs(&outputs(out, None), &read)?;
-    let tumble = tumble(&request, out.unwrap_or(Path::new("")), &unwatched)?;
+    let mut tumble = tumble(&request, out.unwrap_or(Path::new("")), &unwatched)?;
+    tumble.result = arguments.documents.in_axes(tumble.result, &request.files[0])?;
     let issuer = laboratory.map(|file| read_issuer(file, &tumble.result)).transpose()?;
     if let Some(folder) = out {
         tumble.write(&request.files, folder)?;

@@ -1,5 +1,6 @@
 //! The real binary in a temporary folder: what it prints, what it leaves behind, how it ends.
 
+mod axes;
 mod calibrate;
 mod compensate;
 mod history;

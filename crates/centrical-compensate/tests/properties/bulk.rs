@@ -55,8 +55,16 @@ fn bits(f: &[Vec<f64>; 3]) -> Vec<u64> {
 /// Many readings become, to the bit, what each becomes alone: in any vectors, by any number of threads.
 fn bulk_is_each_alone(model: &Model, count: usize) -> Result<(), TestCaseError> {
     let compensation = Compensation::new(model.terms.clone(), model.range).unwrap();
+    bulk_of(&compensation, model, count)?;
+    bulk_of(&compensation.in_axes(TURNED), model, count)
+}
+
+/// A rotation, exact in binary but for its rounding.
+const TURNED: [[f64; 3]; 3] = [[0.6, 0.0, -0.8], [0.0, 1.0, 0.0], [0.8, 0.0, 0.6]];
+
+fn bulk_of(compensation: &Compensation<Vec<Term>>, model: &Model, count: usize) -> Result<(), TestCaseError> {
     let f = readings(model, count);
-    let (expected, outside) = one_by_one(&compensation, &f);
+    let (expected, outside) = one_by_one(compensation, &f);
     let mut swept = f.clone();
     prop_assert_eq!(compensation.apply_all(slices(&mut swept)), Ok(outside));
     prop_assert!(bits(&swept) == bits(&expected));
@@ -106,4 +114,17 @@ fn unequal_lengths_are_refused() {
     assert_eq!(compensation.apply_all(slices(&mut f)), Err(UnequalLengths { lengths: [4, 3, 4] }));
     let rows = compensation.apply_rows_to(&[[0.5; 3]; 4], &mut [[0.0; 3]; 3]);
     assert_eq!(rows, Err(UnequalRows { readings: 4, forces: 3 }));
+}
+
+/// Specific forces in other axes are those in instrument axes, turned back.
+#[test]
+fn other_axes_turn_the_specific_force() {
+    let terms = [Term::power(0, 0, 1, 1e-3), Term::power(0, 0, 2, 2e-6), Term::power(1, 0, 1, 1e-3)];
+    let instrument = Compensation::new(terms.as_slice(), 2000.0).unwrap();
+    let f = [120.0, -35.0, 9.8];
+    let expected = instrument.apply(f).unwrap();
+    let turned = instrument.in_axes(TURNED).apply(f).unwrap();
+    let back = TURNED.map(|row| (0..3).map(|j| row[j] * turned[j]).sum::<f64>());
+    assert!(back.iter().zip(expected).all(|(found, f)| (found - f).abs() < 1e-13 * 120.0), "{back:?} {expected:?}");
+    assert!((turned[0] - (0.6 * expected[0] + 0.8 * expected[2])).abs() < 1e-13 * 120.0);
 }

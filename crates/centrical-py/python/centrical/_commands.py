@@ -323,14 +323,16 @@ def compensate(
     session: Path | None = None,
     range: Quantity | None = None,
     within_calibration: bool = False,
+    axes: str | None = None,
 ) -> Document:
     """Converts a record of readings to one of specific force, Parquet or CSV by the name of ``out``.
 
     Memory does not grow with the record. ``session`` says columns and units of the record; ``range`` is the largest
-    specific force on each axis [m/s^2]; readings beyond it become NaN. For arrays: :meth:`Result.compensate`.
+    specific force on each axis [m/s^2]; readings beyond it become NaN. ``axes``: see
+    :meth:`Result.in_axes`. For arrays: :meth:`Result.compensate`.
     """
     with Bar("compensating") as shown:
-        return Document(_native.compensate(result, record, out, session, range, within_calibration, shown))
+        return Document(_native.compensate(result, record, out, session, range, within_calibration, axes, shown))
 
 
 def report(
@@ -345,16 +347,17 @@ def report(
     code: Path | None = None,
     range: Quantity | None = None,
     laboratory: Path | None = None,
+    axes: str | None = None,
     language: Language = "en",
 ) -> Document:
     """Writes the documents of a result; for one in memory: :meth:`Result.report`.
 
     ``html``: the report; ``pdf``: the certificate; ``dcc``: the digital certificate, both with a ``laboratory``;
     ``code``: a folder for the compensation as source code. ``past``: earlier calibrations of the unit, results, folders of
-    them or stores; what they say of a reading after a switch-on stands in the report and in the certificates.
+    them or stores; what they say of a reading after a switch-on stands in the report and in the certificates. ``axes``: see :meth:`Result.in_axes`.
     """
     check_documents(html, history, pdf, before, dcc, code, range, laboratory)
-    text = _native.report(result, None, html, history, paths(past), pdf, before, dcc, code, range, laboratory, language)
+    text = _native.report(result, None, html, history, paths(past), pdf, before, dcc, code, range, laboratory, axes, language)
     return Document(text)
 
 

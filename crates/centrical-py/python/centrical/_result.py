@@ -221,6 +221,26 @@ class Result:
         deviations = self.native.uncertainty(forces)
         return given, columns_of_rows(deviations) if is_columns else deviations
 
+    def in_axes(self, axes: Path) -> Result:
+        """The result with its error model stated in other axes too; :meth:`compensate` gives specific forces there then.
+
+        Parameters
+        ----------
+        axes
+            ``"lower"``, ``"upper"``, ``"symmetric"``: those in which the scale matrix has this form; ``"case"``: those of the case, by the turns of
+            the instrument in its positions; anything else is a file with a table ``[axes]``.
+
+        Raises
+        ------
+        InputError
+            If the calibration does not determine them.
+
+        >>> case = ct.calibrate(example).in_axes("case")
+        >>> case.document.axes.name, len(case.document.axes.parameters)
+        ('case', 27)
+        """
+        return Result(self.native.in_axes(os.fspath(axes)))
+
     def report(
         self,
         *,
@@ -249,7 +269,7 @@ class Result:
             file = os.path.join(place, "result.json")
             self.native.write(file)
             text = _native.report(
-                file, "result.json", html, history, paths(past), pdf, before, dcc, code, range, laboratory, language
+                file, "result.json", html, history, paths(past), pdf, before, dcc, code, range, laboratory, None, language
             )
         return Document(text)
 

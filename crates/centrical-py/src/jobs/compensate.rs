@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use centrical_session::{self as session, CompensationRequest, Dimension};
+use centrical_session::{self as session, Axes, CompensationRequest, Dimension};
 use pyo3::prelude::*;
 
 use crate::progress::{self, Shown};
@@ -18,10 +18,12 @@ pub fn compensate(
     session: Option<PathBuf>,
     range: Option<Amount>,
     within_calibration: bool,
+    axes: Option<String>,
     shown: Shown,
 ) -> PyResult<String> {
     let range = Amount::optional(range, "range", Dimension::Acceleration)?;
-    let request = CompensationRequest { result, record, out, session, range, within_calibration };
+    let axes = axes.as_deref().map(Axes::from);
+    let request = CompensationRequest { result, record, out, session, range, within_calibration, axes };
     progress::run(py, &shown, |work| {
         work.expect(request.record.metadata().map_or(0, |metadata| metadata.len()));
         let (compensated, certificate) = session::compensate(&request, &|bytes| work.advance(bytes))?;

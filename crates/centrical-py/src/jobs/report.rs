@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{DocumentRequest, write_documents};
-use centrical_session::{Dimension, DocumentKind, DocumentsReport};
+use centrical_session::{Axes, Dimension, DocumentKind, DocumentsReport};
 use pyo3::prelude::*;
 
 use crate::progress;
@@ -24,11 +24,14 @@ pub fn report(
     code: Option<PathBuf>,
     range: Option<Amount>,
     laboratory: Option<PathBuf>,
+    axes: Option<String>,
     language: &str,
 ) -> PyResult<String> {
     let range = Amount::optional(range, "range", Dimension::Acceleration)?;
     let language = language_of(language)?;
-    let request = DocumentRequest { result, html, history, past, pdf, before, dcc, code, range, laboratory, language };
+    let axes = axes.as_deref().map(Axes::from);
+    let request =
+        DocumentRequest { result, html, history, past, pdf, before, dcc, code, range, laboratory, axes, language };
     progress::run(py, &None, |_| {
         let documents = write_documents(&request)?;
         let name = name.as_deref().unwrap_or(&request.result);

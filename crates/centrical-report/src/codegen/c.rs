@@ -1,5 +1,6 @@
 //! C99: one header, one source, in double and single precision.
 
+use super::axes;
 use super::model::Model;
 use super::raw;
 use super::statement::Language;
@@ -16,6 +17,8 @@ pub(super) fn source(model: &Model) -> String {
     let body = |c: &C| {
         let text = model.fill(include_str!("compensate_body.c.in"), c);
         let text = text.replace("@raw@", &model.of_raw(raw::C_SOURCE, c));
+        let text = text.replace("@axes@", &model.in_axes(axes::C_CONSTANT, "", c));
+        let text = text.replace("@turned@", &model.in_axes(axes::C_TURNED, "x[i]", c));
         text.replace("@real@", c.real).replace("@name@", c.name).replace("@literal@", c.literal)
     };
     let row = |reading: &str, f: &str| format!("    {{{{{reading}}}, {{{f}}}}},");

@@ -44,6 +44,14 @@ impl Model<'_> {
             .replace("@raw_bias@", &row(bias))
     }
 
+    /// A template for specific forces in other axes, filled; `otherwise` for those of the newtonometers.
+    pub fn in_axes(&self, template: &str, otherwise: &str, language: &dyn Language) -> String {
+        let Some(matrix) = self.compensation.axes() else { return otherwise.to_owned() };
+        let row = |numbers: &[f64; 3]| numbers.map(|x| language.number(x)).join(", ");
+        let rows = matrix.iter().enumerate();
+        rows.fold(template.to_owned(), |text, (i, numbers)| text.replace(&format!("@axes_{}@", i + 1), &row(numbers)))
+    }
+
     /// Range of the compensation [m/s^2].
     pub fn range(&self) -> f64 {
         self.compensation.certificate().range

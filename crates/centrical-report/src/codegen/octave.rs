@@ -1,5 +1,6 @@
 //! MATLAB and Octave: one function file, many readings at a time.
 
+use super::axes;
 use super::model::Model;
 use super::raw;
 use super::statement::Language;
@@ -10,6 +11,7 @@ pub(super) fn function(model: &Model) -> String {
     let row = |reading: &str, f: &str| format!("    {reading}, {f}");
     model
         .fill(include_str!("compensate.m.in"), &Octave)
+        .replace("@axes@", &model.in_axes(axes::OCTAVE, "", &Octave))
         .replace("@raw_help@", &model.of_raw(raw::OCTAVE_HELP, &Octave))
         .replace("@raw@", &model.of_raw(raw::OCTAVE_SOURCE, &Octave))
         .replace("@raw_test@", &model.of_raw(raw::OCTAVE_TEST, &Octave))

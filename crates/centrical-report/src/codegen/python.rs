@@ -1,5 +1,6 @@
 //! Python 3: one module without dependencies; arrays of readings where NumPy is there.
 
+use super::axes;
 use super::model::Model;
 use super::raw;
 use super::statement::Language;
@@ -10,6 +11,9 @@ pub(super) fn module(model: &Model) -> String {
     let row = |reading: &str, f: &str| format!("    (({reading}), ({f})),");
     model
         .fill(include_str!("compensate.py.in"), &Python)
+        .replace("@axes@", &model.in_axes(axes::PYTHON_CONSTANT, "", &Python))
+        .replace("@turned@", &model.in_axes(axes::PYTHON_TURNED, "f", &Python))
+        .replace("@turned_array@", &model.in_axes(axes::PYTHON_TURNED_ARRAY, "f", &Python))
         .replace("@raw@", &model.of_raw(raw::PYTHON_SOURCE, &Python))
         .replace("@raw_test@", &model.of_raw(raw::PYTHON_TEST, &Python))
         .replace("@vectors@", &vectors::rows(model, &Python, row))

@@ -1,7 +1,10 @@
 //! Measurement results: method, software, standards, influence conditions, parameters with their covariance, reading
 //! errors.
 
-use centrical_session::{CalibrationResult, Condition, Laboratory, OutputSummary, ParameterEstimate, Symbol, Unit};
+use centrical_session::{
+    AxesParameter, CalibrationResult, Condition, Laboratory, OutputSummary, ParameterEstimate, Symbol, Unit,
+    UnknownUnit,
+};
 use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -18,8 +21,9 @@ pub(super) fn list(
     (result, units): (&CalibrationResult, &[Unit]),
     laboratory: &Laboratory,
     language: Language,
-) {
+) -> Result<(), UnknownUnit> {
     let messages = language.messages();
+    let mut of_axes = Ok(());
     xml.element("dcc:measurementResults", |xml| {
         xml.element("dcc:measurementResult", |xml| {
             xml.content("dcc:name", messages.results, language);
@@ -31,10 +35,12 @@ pub(super) fn list(
                 nominal(xml, result, language);
                 parameters(xml, result, units, language);
                 covariance(xml, result, units, language);
+                of_axes = other_axes(xml, result, language);
                 errors(xml, result, language);
             });
         });
     });
+    of_axes
 }
 
 fn methods(xml: &mut Xml, laboratory: &Laboratory, language: Language) {
@@ -221,35 +227,69 @@ fn covariance(xml: &mut Xml, result: &CalibrationResult, units: &[Unit], languag
     if shown.is_empty() {
         return;
     }
-    let joined = |text: &dyn Fn(usize) -> String| shown.iter().map(|&j| text(j)).collect::<Vec<_>>().join(" ");
     xml.element_with("dcc:result", &[("refType", "centrical_covariance")], |xml| {
         xml.content("dcc:name", language.messages().covariance, language);
         xml.element("dcc:data", |xml| {
             xml.element_with("dcc:quantity", &[("refType", "centrical_parameterVector")], |xml| {
+                let quantity = |j: usize| (all[j].name.as_str(), all[j].value.unwrap_or(f64::NAN), units[j]);
+                let quantities: Vec<_> = shown.iter().map(|&j| quantity(j)).collect();
+                vector(xml, &quantities, &|i, j| result.covariance[shown[i]][shown[j]].unwrap_or(f64::NAN));
+            });
+        });
+    });
+}
+
+/// The error model in other axes, as one vector with its covariance matrix.
+fn other_axes(xml: &mut Xml, result: &CalibrationResult, language: Language) -> Result<(), UnknownUnit> {
+    let messages = language.messages();
+    let Some(axes) = &result.axes else { return Ok(()) };
+    let quantity = |p: &'_ AxesParameter| Ok((p.name.clone(), p.value, Unit::parse(&p.unit)?));
+    let quantities = axes.parameters.iter().map(quantity).collect::<Result<Vec<_>, _>>()?;
+    let quantities: Vec<_> = quantities.iter().map(|(name, value, unit)| (name.as_str(), *value, *unit)).collect();
+    let [first, second, third] = axes.matrix.map(|row| row.map(number).join(" "));
+    xml.element_with("dcc:result", &[("refType", "centrical_otherAxes")], |xml| {
+        xml.content("dcc:name", &format!("{}: {}", messages.axes, (messages.words.axes)(&axes.name)), language);
+        xml.content("dcc:description", messages.axes_text, language);
+        xml.element("dcc:data", |xml| {
+            xml.element_with("dcc:quantity", &[("refType", "centrical_rotationMatrix")], |xml| {
+                xml.content("dcc:name", messages.axes_matrix, language);
                 xml.element("si:realListXMLList", |xml| {
-                    xml.leaf("si:labelXMLList", &joined(&|j| all[j].name.clone()));
-                    xml.leaf("si:valueXMLList", &joined(&|j| number(all[j].value.unwrap_or(f64::NAN))));
-                    xml.leaf("si:unitXMLList", &joined(&|j| units[j].d_si()));
-                    xml.element("si:measurementUncertaintyMultivariateXMLList", |xml| {
-                        xml.element("si:ellipsoidalRegionMUXMLList", |xml| {
-                            xml.element("si:covarianceMatrixXMLList", |xml| {
-                                for &j in &shown {
-                                    xml.element("si:columnXMLList", |xml| {
-                                        xml.element("si:covarianceXMLList", |xml| {
-                                            let entry = |i: usize| number(result.covariance[i][j].unwrap_or(f64::NAN));
-                                            xml.leaf("si:valueXMLList", &joined(&entry));
-                                            let unit = |i: usize| units[i].times(units[j]).d_si();
-                                            xml.leaf("si:unitXMLList", &joined(&unit));
-                                        });
-                                    });
-                                }
-                            });
-                            xml.leaf("si:coverageFactorXMLList", &ellipsoid_factor(shown.len()));
-                            xml.leaf("si:coverageProbabilityXMLList", &coverage_probability());
-                            xml.leaf("si:distributionXMLList", "normal");
-                        });
-                    });
+                    xml.leaf("si:valueXMLList", &[first, second, third].join(" "));
+                    xml.leaf("si:unitXMLList", "\\one");
                 });
+            });
+            xml.element_with("dcc:quantity", &[("refType", "centrical_parameterVector")], |xml| {
+                vector(xml, &quantities, &|i, j| axes.covariance[i][j]);
+            });
+        });
+    });
+    Ok(())
+}
+
+/// Quantities, each a label, a value and a unit, as one vector with its covariance matrix.
+fn vector(xml: &mut Xml, quantities: &[(&str, f64, Unit)], covariance: &dyn Fn(usize, usize) -> f64) {
+    let all = 0..quantities.len();
+    let joined = |text: &dyn Fn(usize) -> String| all.clone().map(text).collect::<Vec<_>>().join(" ");
+    xml.element("si:realListXMLList", |xml| {
+        xml.leaf("si:labelXMLList", &joined(&|j| quantities[j].0.to_owned()));
+        xml.leaf("si:valueXMLList", &joined(&|j| number(quantities[j].1)));
+        xml.leaf("si:unitXMLList", &joined(&|j| quantities[j].2.d_si()));
+        xml.element("si:measurementUncertaintyMultivariateXMLList", |xml| {
+            xml.element("si:ellipsoidalRegionMUXMLList", |xml| {
+                xml.element("si:covarianceMatrixXMLList", |xml| {
+                    for j in all.clone() {
+                        xml.element("si:columnXMLList", |xml| {
+                            xml.element("si:covarianceXMLList", |xml| {
+                                xml.leaf("si:valueXMLList", &joined(&|i| number(covariance(i, j))));
+                                let unit = |i: usize| quantities[i].2.times(quantities[j].2).d_si();
+                                xml.leaf("si:unitXMLList", &joined(&unit));
+                            });
+                        });
+                    }
+                });
+                xml.leaf("si:coverageFactorXMLList", &ellipsoid_factor(quantities.len()));
+                xml.leaf("si:coverageProbabilityXMLList", &coverage_probability());
+                xml.leaf("si:distributionXMLList", "normal");
             });
         });
     });

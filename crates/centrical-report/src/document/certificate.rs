@@ -2,6 +2,7 @@
 
 use centrical_session::{Address, CalibrationResult, Condition, Contact, Laboratory, UnitHistoryReport, customary};
 
+use super::axes::axes;
 use super::conformity::{conformity_table, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Picture, Row, Section, Table};
 use super::drift::drift_facts;
@@ -49,6 +50,7 @@ pub fn certificate(
         drift(result, language),
         traceability(laboratory, language),
         results(result, language),
+        axes(result, language),
         adjustment(result, before, laboratory, language),
         issuer.past.as_ref().map(|past| switch_on(past, language)).unwrap_or_default(),
         issuer.unit.as_ref().map(|unit| conformity_statement(unit, language)).unwrap_or_default(),

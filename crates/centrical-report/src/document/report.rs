@@ -2,6 +2,7 @@
 
 use centrical_session::{CalibrationResult, UnitHistoryReport, ValiditySummary};
 
+use super::axes::axes;
 use super::conformity::{judged_in_words, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Section, Table, TableKind, Tone};
 use super::drift::drift_facts;
@@ -33,6 +34,7 @@ pub fn report(
         headline(result, language),
         error_model(result, language),
         instrument_parameters(result, language),
+        axes(result, language),
         plots(messages.first_plots, drawn, language),
         rests_on(result, language),
         past.map(|past| switch_on(past, language)).unwrap_or_default(),

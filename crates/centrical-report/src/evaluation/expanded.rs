@@ -32,10 +32,15 @@ pub(crate) fn expanded(result: &CalibrationResult, parameter: &ParameterEstimate
     let degrees = |j: usize| result.budget.as_ref()?.degrees_of_freedom.get(j).copied().flatten();
     // Cut to a whole number, which a reader finds in the published table (EA-4/02, E.3).
     let degrees_of_freedom = place.and_then(degrees).map(|nu| nu.floor().max(1.0));
+    Some(expanded_of(parameter.standard_uncertainty?, degrees_of_freedom))
+}
+
+/// `U = k u` of a quantity with these effective degrees of freedom, infinite if none are given.
+pub(crate) fn expanded_of(standard_uncertainty: f64, degrees_of_freedom: Option<f64>) -> Expanded {
+    let degrees_of_freedom = degrees_of_freedom.map(|nu| nu.floor().max(1.0));
     let factor =
         degrees_of_freedom.map_or(COVERAGE_FACTOR, |nu| coverage_factor(COVERAGE_PROBABILITY, Degrees::Finite(nu)));
-    let uncertainty = factor * parameter.standard_uncertainty?;
-    Some(Expanded { factor, degrees_of_freedom, uncertainty })
+    Expanded { factor, degrees_of_freedom, uncertainty: factor * standard_uncertainty }
 }
 
 #[cfg(test)]

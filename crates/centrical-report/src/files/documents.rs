@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::MeasurementModel;
 use centrical_session::{
-    CalibrationResult, Error, Laboratory, NoiseAnalysis, Place, UnknownUnit, claim_folder, create_folder,
+    Axes, CalibrationResult, Error, Laboratory, NoiseAnalysis, Place, UnknownUnit, claim_folder, create_folder,
     history_up_to, read_history, refuse_inputs, write_whole,
 };
 
@@ -40,6 +40,8 @@ pub struct DocumentRequest {
     pub range: Option<f64>,
     /// What the certificates say of the laboratory.
     pub laboratory: Option<PathBuf>,
+    /// Axes to state the error model in; those of the result if none.
+    pub axes: Option<Axes>,
     /// Language of the documents.
     pub language: Language,
 }
@@ -59,6 +61,10 @@ pub struct Documents {
 /// [`Error`] when a file cannot be read or written, or does not go with the result.
 pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     let result = CalibrationResult::read(&request.result)?;
+    let result = match &request.axes {
+        Some(axes) => axes.of(result, &request.result)?,
+        None => result,
+    };
     let has_past = !request.past.is_empty();
     let past = has_past.then(|| history_up_to(&request.result, &result, &request.past)).transpose()?;
     let issuer = request.laboratory.as_deref().map(|file| read_issuer(file, &result)).transpose()?;
@@ -219,7 +225,10 @@ fn write_source(
     let terms = NamedTerm::of(result).map_err(no_model)?;
     let plain = result.error_terms().map_err(no_model)?;
     let sources = (request.range.map_or_else(|| result.compensation_range(&plain), Ok))
-        .and_then(|range| compensation_source(&heading(result), &terms, result.output.as_ref(), range))
+        .and_then(|range| {
+            let axes = result.axes.as_ref().map(|axes| &axes.matrix);
+            compensation_source(&heading(result), &terms, result.output.as_ref(), range, axes)
+        })
         .map_err(|source| Error::NotInvertible { file: file(), source })?;
     let _claim = claim_folder(folder)?;
     refuse_inputs(&sources.iter().map(|source| folder.join(source.name)).collect::<Vec<_>>(), inputs)?;

@@ -263,6 +263,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     signed_on: "date",
     mark_place: "place for mark or seal",
     words: Words {
+        axes: words::axes,
         group: words::group,
         meaning: words::meaning,
         source: words::source,
@@ -320,4 +321,11 @@ pub(crate) const ENGLISH: Messages = Messages {
     this_calibration: "this calibration",
     between_calibrations: "between calibrations",
     after_switch_on: "after a switch-on",
+    axes: "Error model in other axes",
+    axes_text: "Readings are f′ = df + scale·f + N(C·f) with the specific force f in these axes, the other terms N of the error \
+        model along the newtonometers, and the matrix C, which takes f to the axes of the newtonometers. The turn is the rotation \
+        vector of the instrument axes from these axes. Specific forces of the compensation are in these axes.",
+    axes_matrix: "Matrix C, by rows:",
+    axes_of_case: "The axes of the case follow from the mean turn of the instrument in its positions; the scatter of the seats is in \
+        the uncertainty. Number of positions:",
 };

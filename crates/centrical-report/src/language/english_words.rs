@@ -3,7 +3,17 @@
 use centrical::{
     Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
 };
-use centrical_session::{Follows, Method};
+use centrical_session::{AxesName, Follows, Method};
+
+pub(super) fn axes(name: &AxesName) -> String {
+    match name {
+        AxesName::LowerTriangular => "axes of a lower triangular scale matrix".to_owned(),
+        AxesName::UpperTriangular => "axes of an upper triangular scale matrix".to_owned(),
+        AxesName::Symmetric => "axes of a symmetric scale matrix".to_owned(),
+        AxesName::Case => "axes of the case".to_owned(),
+        AxesName::Other(name) => format!("axes “{name}”"),
+    }
+}
 
 pub(super) fn group(group: Group) -> &'static str {
     match group {

@@ -261,6 +261,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     signed_on: "дата",
     mark_place: "место печати",
     words: Words {
+        axes: words::axes,
         group: words::group,
         meaning: words::meaning,
         source: words::source,
@@ -318,4 +319,11 @@ pub(crate) const RUSSIAN: Messages = Messages {
     this_calibration: "эта калибровка",
     between_calibrations: "между калибровками",
     after_switch_on: "после включения",
+    axes: "Модель погрешностей в других осях",
+    axes_text: "Показания f′ = df + scale·f + N(C·f), где f — удельная сила в этих осях, N — остальные члены модели по осям \
+        ньютонометров, матрица C переводит f в оси ньютонометров. Поворот turn — вектор поворота приборных осей относительно этих \
+        осей. Удельные силы после компенсации даны в этих осях.",
+    axes_matrix: "Матрица C по строкам:",
+    axes_of_case: "Оси корпуса найдены по среднему повороту прибора в положениях; разброс посадок входит в неопределённость. Число \
+        положений:",
 };

@@ -3,7 +3,17 @@
 use centrical::{
     Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
 };
-use centrical_session::{Follows, Method};
+use centrical_session::{AxesName, Follows, Method};
+
+pub(super) fn axes(name: &AxesName) -> String {
+    match name {
+        AxesName::LowerTriangular => "оси с нижнетреугольной матрицей передачи".to_owned(),
+        AxesName::UpperTriangular => "оси с верхнетреугольной матрицей передачи".to_owned(),
+        AxesName::Symmetric => "оси с симметричной матрицей передачи".to_owned(),
+        AxesName::Case => "оси корпуса".to_owned(),
+        AxesName::Other(name) => format!("оси «{name}»"),
+    }
+}
 
 pub(super) fn group(group: Group) -> &'static str {
     match group {

@@ -5,6 +5,7 @@ use centrical_session::{
     CalibrationResult, ParameterEstimate, ResultObjection, RivalSummary, TermSummary, ValiditySummary, customary,
 };
 
+use super::axes::axes as other_axes;
 use super::drift::drift;
 use super::pattern::pattern_in_words;
 use super::rests::rests;
@@ -24,6 +25,7 @@ pub fn terminal_table(result: &CalibrationResult) -> Screen {
     let mut screen = Screen::default();
     heading(&mut screen, result);
     error_model(&mut screen, result);
+    other_axes(&mut screen, result);
     if result.model.has_arm() {
         mounting(&mut screen, result);
     }

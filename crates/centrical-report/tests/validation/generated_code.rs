@@ -48,20 +48,31 @@ fn with_more_terms() -> Vec<NamedTerm> {
     terms
 }
 
-fn models() -> [(&'static str, Vec<NamedTerm>); 3] {
-    [("kozlov", kozlov()), ("with more terms", with_more_terms()), ("without terms", Vec::new())]
+/// Axes of specific forces, if not those of the newtonometers.
+type Axes = Option<[[f64; 3]; 3]>;
+
+/// Far from the newtonometers' axes, so that a transposed matrix shows.
+const TURNED: Axes = Some([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]]);
+
+fn models() -> [(&'static str, Vec<NamedTerm>, Axes); 4] {
+    [
+        ("kozlov", kozlov(), None),
+        ("with more terms", with_more_terms(), None),
+        ("without terms", Vec::new(), None),
+        ("in other axes", kozlov(), TURNED),
+    ]
 }
 
 /// A folder with the generated files, whose heading tries to break out of its comment.
-fn generate(terms: &[NamedTerm]) -> TempDir {
-    generate_for(terms, None)
+fn generate(terms: &[NamedTerm], axes: Axes) -> TempDir {
+    generate_for(terms, None, axes)
 }
 
 /// The same for a unit with raw output of its own.
-fn generate_for(terms: &[NamedTerm], output: Option<&OutputSummary>) -> TempDir {
+fn generate_for(terms: &[NamedTerm], output: Option<&OutputSummary>, axes: Axes) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let heading = ["TA-200 */ No. 0001 /* ??/\\".to_owned(), "line\nof \"\"\" a session @vectors@".to_owned()];
-    for file in compensation_source(&heading, terms, output, RANGE).unwrap() {
+    for file in compensation_source(&heading, terms, output, RANGE, axes.as_ref()).unwrap() {
         fs::write(folder.path().join(file.name), file.text).unwrap();
     }
     folder
@@ -111,8 +122,9 @@ fn as_text(readings: &[[f64; 3]]) -> String {
 }
 
 /// Compares lines `f1 f2 f3`, or `outside`, with the library: each to `tolerance` of the largest component.
-fn agrees(lines: &str, readings: &[[f64; 3]], terms: &[Term], tolerance: f64, what: &str) {
+fn agrees(lines: &str, readings: &[[f64; 3]], (terms, axes): (&[Term], Axes), tolerance: f64, what: &str) {
     let compensation = Compensation::new(terms, RANGE).unwrap();
+    let compensation = axes.map_or(compensation, |axes| compensation.in_axes(axes));
     let (mut worst, mut refused) = (0.0_f64, 0);
     assert_eq!(lines.lines().count(), readings.len(), "{what}");
     for (line, reading) in lines.lines().zip(readings) {
@@ -158,8 +170,8 @@ int main(int argc, char **argv) {
 }
 "#;
 
-fn check_c(compiler: &str, optimisation: &str, name: &str, terms: &[NamedTerm]) {
-    let folder = generate(terms);
+fn check_c(compiler: &str, optimisation: &str, (name, terms, axes): (&str, &[NamedTerm], Axes)) {
+    let folder = generate(terms, axes);
     let at = |name: &str| folder.path().join(name);
     fs::write(at("main.c"), C_MAIN).unwrap();
     let mut compile = Command::new(compiler);
@@ -171,7 +183,7 @@ fn check_c(compiler: &str, optimisation: &str, name: &str, terms: &[NamedTerm]) 
     let readings = readings(&plain);
     let what = format!("{compiler} {optimisation}, {name}");
     let double = run(&mut Command::new(at("program")), &as_text(&readings));
-    agrees(&double, &readings, &plain, 1e-12, &format!("{what}, double"));
+    agrees(&double, &readings, (&plain, axes), 1e-12, &format!("{what}, double"));
 
     // Single precision is given what it can hold, and not within its rounding of the edge.
     let [less, more] = [1.0 - 1e-5, 1.0 + 1e-5].map(|scale| Compensation::new(&plain, scale * RANGE).unwrap());
@@ -180,24 +192,24 @@ fn check_c(compiler: &str, optimisation: &str, name: &str, terms: &[NamedTerm]) 
     let rounded = readings.iter().map(|r| r.map(|x| f64::from(x as f32)));
     let rounded: Vec<[f64; 3]> = rounded.filter(|r| !near_edge(r)).collect();
     let single = run(Command::new(at("program")).arg("f"), &as_text(&rounded));
-    agrees(&single, &rounded, &plain, 1e-6, &format!("{what}, single"));
+    agrees(&single, &rounded, (&plain, axes), 1e-6, &format!("{what}, single"));
 }
 
 #[test]
 fn c_by_gcc() {
     if has("gcc") {
-        for (name, terms) in models() {
-            check_c("gcc", "-O0", name, &terms);
+        for (name, terms, axes) in models() {
+            check_c("gcc", "-O0", (name, &terms, axes));
         }
-        check_c("gcc", "-O2", "kozlov", &kozlov());
+        check_c("gcc", "-O2", ("kozlov", &kozlov(), None));
     }
 }
 
 #[test]
 fn c_by_clang() {
     if has("clang") {
-        for (name, terms) in models() {
-            check_c("clang", "-O2", name, &terms);
+        for (name, terms, axes) in models() {
+            check_c("clang", "-O2", (name, &terms, axes));
         }
     }
 }
@@ -216,8 +228,8 @@ fn octave() {
     if !has("octave-cli") {
         return;
     }
-    for (name, terms) in models() {
-        let folder = generate(&terms);
+    for (name, terms, axes) in models() {
+        let folder = generate(&terms, axes);
         let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
         let readings = readings(&plain);
         fs::write(folder.path().join("readings.txt"), as_text(&readings)).unwrap();
@@ -225,7 +237,7 @@ fn octave() {
         run(Command::new("octave-cli").args(["--no-init-file", "main.m"]).current_dir(&folder), "");
         let answers = fs::read_to_string(folder.path().join("answers.txt")).unwrap();
         let answers = answers.replace("NaN NaN NaN", "outside");
-        agrees(&answers, &readings, &plain, 1e-12, &format!("Octave, {name}"));
+        agrees(&answers, &readings, (&plain, axes), 1e-12, &format!("Octave, {name}"));
     }
 }
 
@@ -246,13 +258,13 @@ fn python() {
     if !has("python3") {
         return;
     }
-    for (name, terms) in models() {
-        let folder = generate(&terms);
+    for (name, terms, axes) in models() {
+        let folder = generate(&terms, axes);
         let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
         let readings = readings(&plain);
         fs::write(folder.path().join("main.py"), PYTHON_MAIN).unwrap();
         let answers = run(Command::new("python3").args(["-B", "main.py"]).current_dir(&folder), &as_text(&readings));
-        agrees(&answers, &readings, &plain, 1e-12, &format!("Python, {name}"));
+        agrees(&answers, &readings, (&plain, axes), 1e-12, &format!("Python, {name}"));
         run(Command::new("python3").args(["-B", "centrical_compensate.py"]).current_dir(&folder), "");
     }
 }
@@ -293,13 +305,13 @@ fn numpy() {
         eprintln!("NumPy is not installed: the code generated for it is not checked");
         return;
     }
-    for (name, terms) in models() {
-        let folder = generate_for(&terms, Some(&counts()));
+    for (name, terms, axes) in models() {
+        let folder = generate_for(&terms, Some(&counts()), axes);
         let plain: Vec<Term> = terms.iter().map(|t| t.term).collect();
         let readings = readings(&plain);
         fs::write(folder.path().join("main.py"), NUMPY_MAIN).unwrap();
         let answers = run(Command::new("python3").args(["-B", "main.py"]).current_dir(&folder), &as_text(&readings));
-        agrees(&answers, &readings, &plain, 1e-12, &format!("NumPy, {name}"));
+        agrees(&answers, &readings, (&plain, axes), 1e-12, &format!("NumPy, {name}"));
     }
 }
 
@@ -307,7 +319,7 @@ fn numpy() {
 /// they do not.
 #[test]
 fn raw_output_by_every_language() {
-    let folder = generate_for(&kozlov(), Some(&counts()));
+    let folder = generate_for(&kozlov(), Some(&counts()), TURNED);
     fs::write(folder.path().join("main.c"), C_MAIN).unwrap();
     let check = |is_sound: bool| {
         let succeeds = |command: &mut Command| command.current_dir(&folder).output().unwrap().status.success();
@@ -343,7 +355,7 @@ fn raw_output_by_every_language() {
 /// The test vectors have power: a coefficient that is off by the tolerance is found by each language.
 #[test]
 fn test_vectors_find_a_wrong_coefficient() {
-    let folder = generate(&kozlov());
+    let folder = generate(&kozlov(), None);
     spoil(folder.path(), "centrical_compensate.py", "COEFFICIENTS = (\n    ");
     spoil(folder.path(), "centrical_compensate.m", "  c = [\n    ");
     spoil(folder.path(), "centrical_compensate.c", "coefficient[] = {\n    ");

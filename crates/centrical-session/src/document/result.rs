@@ -1,5 +1,7 @@
 //! `result.json`: the form in which a calibration leaves the program, schema `centrical-result/1`.
 
+mod axes;
+mod axes_summary;
 mod budget_and_checks;
 mod error_terms;
 mod from_calibration;
@@ -8,6 +10,8 @@ mod schema;
 mod speeds;
 mod verdict;
 
+pub(crate) use self::axes::Attitude;
+pub use self::axes_summary::{AxesName, AxesParameter, AxesSummary};
 pub use self::budget_and_checks::{
     BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
 };

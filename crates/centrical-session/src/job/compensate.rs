@@ -8,6 +8,7 @@ use centrical_compensate::{Certificate, Compensation, Term};
 use centrical_table::{Rows, Stamps, refuse_inputs};
 use rayon::prelude::*;
 
+use super::axes::Axes;
 use crate::document::{CalibrationResult, CompensatedFiles, CompensationReport, FirstReading, ReadingsBeyond};
 use crate::error::{Error, Place};
 use crate::experiment::Session;
@@ -55,6 +56,8 @@ pub struct CompensationRequest {
     pub range: Option<f64>,
     /// Whether a reading beyond the calibrated range is an error.
     pub within_calibration: bool,
+    /// Axes of the specific forces; those of the result if none.
+    pub axes: Option<Axes>,
 }
 
 /// Where readings are those of the calibration.
@@ -78,10 +81,15 @@ impl Calibrated {
 /// As [`compensate_record`]; and if the result has no error model that can be inverted.
 pub fn compensate(request: &CompensationRequest, progress: OnProgress) -> Result<(Compensated, Certificate), Error> {
     let result = CalibrationResult::read(&request.result)?;
+    let result = match &request.axes {
+        Some(axes) => axes.of(result, &request.result)?,
+        None => result,
+    };
     let file = || request.result.clone();
     let terms = result.error_terms().map_err(|source| Error::ErrorModel { file: file(), source })?;
     let compensation = (request.range.map_or_else(|| result.compensation_range(&terms), Ok))
         .and_then(|range| Compensation::new(&terms, range))
+        .map(|compensation| result.in_its_axes(compensation))
         .map_err(|source| Error::NotInvertible { file: file(), source })?;
     let mut inputs = vec![request.result.clone(), request.record.clone()];
     let columns = match &request.session {

@@ -141,8 +141,15 @@ fn a_compensation_leaves_no_part_of_its_output() {
     calibrate(&session(), Method::Exact, &unwatched).unwrap().write(&result).unwrap();
     let out = folder.path().join("forces.csv");
     let record = example().join("ta-200/records/m01.csv");
-    let request =
-        CompensationRequest { result, record, out: out.clone(), session: None, range: None, within_calibration: false };
+    let request = CompensationRequest {
+        result,
+        record,
+        out: out.clone(),
+        session: None,
+        range: None,
+        within_calibration: false,
+        axes: None,
+    };
     is_stopped(|caller| {
         let _ = fs::remove_file(&out);
         let compensated = compensate(&request, &|n| caller.asked(n));

@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod axes;
 mod combination;
 mod comparison;
 mod consistency;

@@ -37,6 +37,15 @@ impl CalibrationResult {
         Ok(calibrated * margin.min(2.0))
     }
 
+    /// A compensation by this result that gives specific forces in the axes that it is stated in.
+    #[must_use]
+    pub fn in_its_axes<T: AsRef<[Term]>>(&self, compensation: Compensation<T>) -> Compensation<T> {
+        match &self.axes {
+            Some(axes) => compensation.in_axes(axes.matrix),
+            None => compensation,
+        }
+    }
+
     fn error_term(&self, term: &TermSummary) -> Result<Term, NoErrorModel> {
         let value = self.parameter(&term.name).and_then(|parameter| parameter.value);
         let not_estimable = || NoErrorModel::NotEstimable { name: term.name.clone() };

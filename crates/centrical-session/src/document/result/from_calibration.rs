@@ -53,6 +53,7 @@ impl CalibrationResult {
             session: SessionSummary::new(session),
             model: ModelSummary::new(model),
             output: OutputSummary::of(session),
+            axes: None,
             parameters: (0..count)
                 .map(|j| ParameterEstimate::new(model, fit, j, covariance(j, j).map(f64::sqrt)))
                 .collect(),

@@ -12,6 +12,7 @@ use centrical_table::write_whole;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
+use super::axes_summary::AxesSummary;
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
 use super::rivals::RestsOn;
 use super::speeds::SpeedsSummary;
@@ -40,6 +41,9 @@ pub struct CalibrationResult {
     /// How the raw output of the unit was taken to m/s^2, for a unit that does not put out an acceleration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputSummary>,
+    /// The error model in other axes, if it was stated in such.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axes: Option<AxesSummary>,
     /// The unknowns in the order of the covariance.
     pub parameters: Vec<ParameterEstimate>,
     /// Covariance of the estimates, SI; null where a parameter is not estimable. The combined one of the budget where the
@@ -424,12 +428,15 @@ impl CalibrationResult {
     /// As [`CalibrationResult::read`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, Error> {
         let result: Self = from_json(path, 1, text, &format!("a result of schema {SCHEMA:?}"))?;
-        if result.schema == SCHEMA {
-            Ok(result)
-        } else {
+        if result.schema != SCHEMA {
             let found = format!("schema {:?}", result.schema);
-            Err(Error::content(path, Place::Whole, found, format!("schema {SCHEMA:?}")))
+            return Err(Error::content(path, Place::Whole, found, format!("schema {SCHEMA:?}")));
         }
+        if let Some(axes) = result.axes.as_ref().filter(|axes| !axes.is_turned()) {
+            let found = format!("axes with the matrix {:?}", axes.matrix);
+            return Err(Error::content(path, Place::Whole, found, "a rotation"));
+        }
+        Ok(result)
     }
 
     /// The sources that the session states beyond what the fit weighs.

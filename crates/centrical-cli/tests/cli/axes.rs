@@ -1,0 +1,136 @@
+//! `--axes`: results, specific forces and documents in other axes than those of the newtonometers.
+
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use serde_json::Value;
+
+use crate::session::Copy;
+
+fn said(output: &Output) -> String {
+    [&output.stdout, &output.stderr].map(|part| String::from_utf8_lossy(part).into_owned()).concat()
+}
+
+fn json(file: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()
+}
+
+/// Rows of numbers of a CSV without its head.
+fn rows(file: &Path) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(file).unwrap();
+    text.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+}
+
+fn matrix(axes: &Value) -> [[f64; 3]; 3] {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| axes["matrix"][i][j].as_f64().unwrap()))
+}
+
+fn value(axes: &Value, name: &str) -> f64 {
+    let parameters = axes["parameters"].as_array().unwrap();
+    parameters.iter().find(|p| p["name"] == name).expect(name)["value"].as_f64().unwrap()
+}
+
+/// A session of the example, calibrated with `--axes`.
+fn calibrated(copy: &Copy, axes: &str) -> Value {
+    let folder = axes.trim_end_matches(".toml");
+    let output = copy.run(&["calibrate", copy.session().to_str().unwrap(), "--out", folder, "--axes", axes]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(said(&output).contains("OTHER AXES"), "{}", said(&output));
+    assert!(fs::read_to_string(copy.out().join(folder).join("report.html")).unwrap().contains("in other axes"));
+    json(&copy.out().join(folder).join("result.json"))["axes"].clone()
+}
+
+#[test]
+fn specific_forces_are_in_the_axes_of_the_result() {
+    let copy = Copy::new();
+    let axes = calibrated(&copy, "symmetric");
+    assert_eq!(axes["name"], "symmetric");
+    assert!((value(&axes, "scale_12") - value(&axes, "scale_21")).abs() < 1e-15);
+    let readings = "t,f1,f2,f3\n0,9.8,0.1,0.2\n1,120,-300,9.8\n";
+    fs::write(copy.out().join("readings.csv"), readings).unwrap();
+    let compensate = |arguments: &[&str]| {
+        let output = copy.run(&[&["compensate", "symmetric/result.json", "readings.csv", "--out"], arguments].concat());
+        assert!([Some(0), Some(1)].contains(&output.status.code()), "{}", said(&output));
+        rows(&copy.out().join(arguments[0]))
+    };
+    let (own, lower) = (compensate(&["own.csv"]), compensate(&["lower.csv", "--axes", "lower"]));
+    let c_zb = matrix(&axes);
+    for (own, lower) in own.iter().zip(&lower) {
+        for i in 0..3 {
+            let turned: f64 = (0..3).map(|j| c_zb[i][j] * own[1 + j]).sum();
+            assert!((turned - lower[1 + i]).abs() < 1e-8, "{turned} {}", lower[1 + i]);
+        }
+        assert!((own[2] - lower[2]).abs() > 1e-4, "{own:?} {lower:?}");
+    }
+    let output = copy.run(&["report", "symmetric/result.json", "--code", "code", "--axes", "upper"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(fs::read_to_string(copy.out().join("code/centrical_compensate.h")).unwrap().contains("upper triangular"));
+}
+
+/// The case, and a body that is mounted on it by a known rotation.
+#[test]
+fn a_file_fixes_axes_to_the_case() {
+    let copy = Copy::new();
+    let case = calibrated(&copy, "case");
+    assert_eq!(case["positions"], 6);
+    let write = |text: &str| fs::write(copy.out().join("body.toml"), text).unwrap();
+    let body = "[axes]\nname = \"body\"\nof = \"case\"\nmatrix = [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]\nuncertainty = \"1 mrad\"\n";
+    write(body);
+    let body_axes = calibrated(&copy, "body.toml");
+    let (c_zc, c_zb) = (matrix(&case), matrix(&body_axes));
+    // Axis 1 of the body is axis 2 of the case, axis 2 its axis 1 reversed.
+    for i in 0..3 {
+        assert!((c_zb[i][0] - c_zc[i][1]).abs() < 1e-15 && (c_zb[i][1] + c_zc[i][0]).abs() < 1e-15);
+    }
+    let u = |axes: &Value, name: &str| {
+        let parameters = axes["parameters"].as_array().unwrap();
+        parameters.iter().find(|p| p["name"] == name).unwrap()["standard_uncertainty"].as_f64().unwrap()
+    };
+    let expected = u(&case, "turn_3").hypot(1e-3);
+    assert!((u(&body_axes, "turn_3") / expected - 1.0).abs() < 1e-12);
+    // Bias does not turn.
+    assert_eq!(value(&case, "df_2"), value(&body_axes, "df_2"));
+
+    let refused = |text: &str, expected: &str| {
+        write(text);
+        let output = copy.run(&["report", "case/result.json", "--html", "r.html", "--axes", "body.toml"]);
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        assert!(said(&output).contains(expected), "{}", said(&output));
+        assert!(!copy.out().join("r.html").exists());
+    };
+    refused(&body.replace("[-1, 0, 0]", "[1, 0, 0]"), "expected a right-handed rotation");
+    refused(&body.replace("case", "car"), "body.toml, line 3");
+    refused(&body.replace("1 mrad", "1 mm"), "expected an angle");
+    refused("", "found no key `axes`");
+}
+
+/// A matrix that somebody edited does not turn forces.
+#[test]
+fn axes_of_a_result_are_a_rotation() {
+    let copy = Copy::new();
+    let axes = calibrated(&copy, "upper");
+    let file = copy.out().join("upper/result.json");
+    let mut result = json(&file);
+    result["axes"]["matrix"][0][0] = (axes["matrix"][0][0].as_f64().unwrap() + 1e-3).into();
+    fs::write(&file, result.to_string()).unwrap();
+    let output = copy.run(&["report", "upper/result.json", "--html", "r.html", "--laboratory", "laboratory.toml"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("expected a rotation"), "{}", said(&output));
+}
+
+#[test]
+fn rests_do_not_show_the_case() {
+    let copy = Copy::new();
+    let record = format!("{}/../../examples/tumble/record.csv", env!("CARGO_MANIFEST_DIR"));
+    let output = copy.run(&["tumble", &record, "--out", "tumbled", "--axes", "case"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("found 0 positions on an arm"), "{}", said(&output));
+    let output = copy.run(&["tumble", &record, "--out", "tumbled", "--axes", "upper", "--gravity", "9.81523"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let axes = json(&copy.out().join("tumbled/result.json"))["axes"].clone();
+    assert!(["scale_21", "scale_31", "scale_32"].iter().all(|name| value(&axes, name).abs() < 1e-14));
+    let output = copy.run(&["compensate", "tumbled/result.json", &record, "--out", "f.csv", "--axes", "missing.toml"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("one of lower, upper, symmetric, case"), "{}", said(&output));
+}

@@ -1,0 +1,174 @@
+//! From a result to its error model in other axes, and the attitude of its case.
+
+use centrical::uncertainty::ModelInAxes;
+use centrical::{Group, rotation, rotation_rate};
+use centrical_compensate::Term;
+use nalgebra::{DMatrix, Matrix3, Matrix3xX, Rotation3, Vector3};
+
+use super::axes_summary::{AxesName, AxesParameter, AxesSummary};
+use super::schema::CalibrationResult;
+use crate::error::NoErrorModel;
+
+/// Where axes lie, and how well that is known.
+pub(crate) struct Attitude {
+    /// What they are called.
+    pub name: AxesName,
+    /// Takes coordinates in them to coordinates in instrument axes.
+    pub c_zb: Matrix3<f64>,
+    /// Change of their turn by each parameter of the result, 3 rows [rad per unit].
+    pub turn: Matrix3xX<f64>,
+    /// Covariance of the turn from what a file states [rad^2].
+    pub stated: Matrix3<f64>,
+    /// Covariance of the turn from the scatter of the positions [rad^2].
+    pub scatter: Matrix3<f64>,
+    /// Positions that it follows from.
+    pub positions: Option<usize>,
+}
+
+impl AxesSummary {
+    /// The error model of `result` in the axes of `attitude`.
+    ///
+    /// # Errors
+    /// [`NoErrorModel`] naming a coefficient that the data do not determine.
+    pub(crate) fn new(result: &CalibrationResult, attitude: Attitude) -> Result<Self, NoErrorModel> {
+        let Attitude { name, c_zb, turn, stated, scatter, positions } = attitude;
+        let model = in_axes(result, c_zb, &turn, &(stated + scatter))?;
+        let names = &result.model.error_model;
+        let unit_of = |name: &str| result.parameter(name).map_or_else(String::new, |p| p.unit.clone());
+        let mut quantities: Vec<(String, f64, String)> = Vec::new();
+        for i in 1..=3 {
+            quantities.push((format!("df_{i}"), model.bias()[i - 1], "m/s^2".to_owned()));
+        }
+        for (i, j) in [1, 2, 3].into_iter().flat_map(|i| [1, 2, 3].map(|j| (i, j))) {
+            quantities.push((format!("scale_{i}{j}"), model.scale()[(i - 1, j - 1)], "1".to_owned()));
+        }
+        let is_other = |term: &Term| model.others().any(|other| other == term);
+        for (term, summary) in result.error_terms()?.iter().zip(names).filter(|(term, _)| is_other(term)) {
+            quantities.push((summary.name.clone(), term.coefficient, unit_of(&summary.name)));
+        }
+        // `rotation(v)` is the transpose of the usual one.
+        let turned = Rotation3::from_matrix_unchecked(c_zb.transpose()).scaled_axis();
+        for i in 1..=3 {
+            quantities.push((format!("turn_{i}"), turned[i - 1], "rad".to_owned()));
+        }
+        let covariance = model.covariance();
+        let without_scatter = in_axes(result, c_zb, &turn, &stated)?.covariance();
+        let degrees = |j: usize| {
+            let from_scatter = covariance[(j, j)] - without_scatter[(j, j)];
+            let degrees = (positions? as f64 - 1.0) * (covariance[(j, j)] / from_scatter).powi(2);
+            (from_scatter > 0.0 && degrees < MANY_DEGREES).then_some(degrees)
+        };
+        let parameter = |(j, (name, value, unit)): (usize, (String, f64, String))| AxesParameter {
+            name,
+            value,
+            standard_uncertainty: covariance[(j, j)].max(0.0).sqrt(),
+            unit,
+            degrees_of_freedom: degrees(j),
+        };
+        Ok(Self {
+            name,
+            matrix: [0, 1, 2].map(|i| [0, 1, 2].map(|j| c_zb[(i, j)])),
+            parameters: quantities.into_iter().enumerate().map(parameter).collect(),
+            covariance: covariance.row_iter().map(|row| row.iter().copied().collect()).collect(),
+            positions,
+        })
+    }
+
+    /// The error model of `result` in these axes, with its covariance.
+    ///
+    /// # Errors
+    /// [`NoErrorModel`] when a coefficient is not known or the covariance is not that of these quantities.
+    pub fn model(&self, result: &CalibrationResult) -> Result<ModelInAxes, NoErrorModel> {
+        let size = self.parameters.len();
+        let is_square = self.covariance.len() == size && self.covariance.iter().all(|row| row.len() == size);
+        let found = || NoErrorModel::Axes { found: format!("a covariance that is not one of {size} quantities") };
+        let covariance = is_square.then(|| DMatrix::from_fn(size, size, |i, j| self.covariance[i][j]));
+        let c_zb = Matrix3::from_fn(|i, j| self.matrix[i][j]);
+        let model = ModelInAxes::with_covariance(result.error_terms()?, c_zb, &covariance.ok_or_else(found)?);
+        model.ok_or_else(found)
+    }
+}
+
+/// Effective degrees of freedom from which on they count as infinite.
+const MANY_DEGREES: f64 = 1e6;
+
+/// The error model of `result` at the attitude `c_zb`, whose turn changes with the parameters by `turn` and has the covariance `own`
+/// beside these.
+fn in_axes(
+    result: &CalibrationResult,
+    c_zb: Matrix3<f64>,
+    turn: &Matrix3xX<f64>,
+    own: &Matrix3<f64>,
+) -> Result<ModelInAxes, NoErrorModel> {
+    let terms = result.error_terms()?;
+    let (count, all) = (terms.len(), result.parameters.len());
+    let mut by = DMatrix::zeros(count + 3, all);
+    for (row, term) in result.model.error_model.iter().enumerate() {
+        if let Some(column) = result.parameters.iter().position(|p| p.name == term.name) {
+            by[(row, column)] = 1.0;
+        }
+    }
+    by.rows_mut(count, 3).copy_from(turn);
+    // What is not determined takes no part: its column is zero, or the attitude had been refused.
+    let covariance = DMatrix::from_fn(all, all, |i, j| result.covariance[i][j].unwrap_or(0.0));
+    let mut joint = &by * covariance * by.transpose();
+    let mut of_turn = joint.view_mut((count, count), (3, 3));
+    of_turn += own;
+    let size = count + 3;
+    ModelInAxes::new(terms, c_zb, joint)
+        .ok_or(NoErrorModel::Axes { found: format!("a covariance of {size} quantities") })
+}
+
+impl CalibrationResult {
+    /// The attitude of the instrument against its case: the mean of its turns `delta` over the positions on the arm, which seat the
+    /// same case at different faces. Their scatter beyond that of the estimates is the seats' and the faces'; it counts as uncertainty.
+    ///
+    /// # Errors
+    /// [`NoErrorModel::Case`] when less than two positions determine all three turns.
+    pub(crate) fn of_case(&self) -> Result<Attitude, NoErrorModel> {
+        let all = self.parameters.len();
+        let place = |i: usize, id: &str| {
+            let name = format!("delta_{i}[{id}]");
+            self.parameters.iter().position(|p| p.group == Group::Turn && p.name == name && p.value.is_some())
+        };
+        let on_arm = self.model.positions.iter().filter(|position| !position.is_free);
+        let turns: Vec<[usize; 3]> =
+            on_arm.filter_map(|p| Some([place(1, &p.id)?, place(2, &p.id)?, place(3, &p.id)?])).collect();
+        if turns.len() < 2 {
+            return Err(NoErrorModel::Case { positions: turns.len() });
+        }
+        let count = turns.len() as f64;
+        let value = |j: usize| -> f64 { self.parameters[j].value.unwrap_or(0.0) };
+        let covariance = DMatrix::from_fn(all, all, |i, j| self.covariance[i][j].unwrap_or(0.0));
+        let mut turn = Matrix3xX::zeros(all);
+        let mut scatter = Matrix3::zeros();
+        let mut mean = Vector3::zeros();
+        for i in 0..3 {
+            for of in &turns {
+                mean[i] += value(of[i]) / count;
+                turn[(i, of[i])] = 1.0 / count;
+            }
+            let of_mean = turn.row(i).into_owned();
+            let (mut squares, mut expected) = (0.0, 0.0);
+            for of in &turns {
+                let deviation: f64 = value(of[i]) - mean[i];
+                squares += deviation.powi(2);
+                let mut deviation = -of_mean.clone();
+                deviation[of[i]] += 1.0;
+                expected += (&deviation * &covariance * deviation.transpose())[0];
+            }
+            scatter[(i, i)] = ((squares - expected) / (count - 1.0)).max(0.0) / count;
+        }
+        // From a change of the rotation vector to a small further turn in the axes of the case.
+        let c_zb = rotation(&mean);
+        let to_case = c_zb.transpose() * rotation_rate(&mean);
+        Ok(Attitude {
+            name: AxesName::Case,
+            c_zb,
+            turn: to_case * turn,
+            stated: Matrix3::zeros(),
+            scatter: to_case * scatter * to_case.transpose(),
+            positions: Some(turns.len()),
+        })
+    }
+}
