@@ -1,5 +1,6 @@
 //! The figures of a report: each a drawing, and a sentence that says what to see in it.
 
+mod attitudes;
 mod comparison;
 mod correlation;
 mod drawing;
@@ -30,11 +31,13 @@ use crate::language::Language;
 
 /// All figures that can be drawn from a result, in the order of the report.
 pub fn figures(result: &CalibrationResult, language: Language) -> Vec<Figure> {
+    let of_attitudes = attitudes::attitudes(result, language);
     let of_fit = fit::figures(result, language);
     let correlation = correlation::figure(result, language);
     let records = record::figure(result, language);
-    of_fit
+    of_attitudes
         .into_iter()
+        .chain(of_fit)
         .chain(prediction::figure(result, language))
         .chain(correlation)
         .chain(fit::singular_values(result, language))

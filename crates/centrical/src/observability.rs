@@ -5,6 +5,7 @@
 //! change the singular values, never which of them are zero.
 
 mod addition;
+mod attitude;
 mod combination;
 mod condition;
 mod correlation;
@@ -14,7 +15,8 @@ mod reason;
 mod remedy;
 mod study;
 
-pub use addition::Addition;
+pub use addition::{Addition, attitude_in_words};
+pub use attitude::NextAttitude;
 pub use combination::{Combination, CombinationError};
 pub use condition::{Condition, Need};
 pub use correlation::{CorrelatedGroup, STRONG_CORRELATION};

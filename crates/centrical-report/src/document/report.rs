@@ -77,7 +77,7 @@ pub fn report(
 
 /// What the unit does, what compensation leaves, and how well it is known.
 fn is_of_first_layer(figure: &Figure) -> bool {
-    ["before", "after", "prediction"].contains(&figure.name)
+    ["attitudes", "before", "after", "prediction"].contains(&figure.name)
 }
 
 /// The verdict on the calibration and, apart, what is said of the unit.
@@ -231,13 +231,15 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
     );
     let method =
         format!("{} ({}, {})", (words.method)(fit.method), (words.termination)(fit.termination), fit.iterations);
+    // Rests alone have no arm; an empty fact is not shown.
+    let of_arm = |fact: String| if model.has_arm() { fact } else { String::new() };
     let facts = Block::facts([
         (messages.gravity, gravity),
         (messages.latitude, latitude.unwrap_or_default()),
-        (messages.pair_relation, (words.pair_relation)(model.pair_relation).to_owned()),
-        (messages.reference, (words.reference)(model.reference).to_owned()),
-        (messages.speed_uncertainty, language.scientific(model.speed_uncertainty)),
-        (messages.speeds, speeds(result, language)),
+        (messages.pair_relation, of_arm((words.pair_relation)(model.pair_relation).to_owned())),
+        (messages.reference, of_arm((words.reference)(model.reference).to_owned())),
+        (messages.speed_uncertainty, of_arm(language.scientific(model.speed_uncertainty))),
+        (messages.speeds, of_arm(speeds(result, language))),
         (messages.data, data),
         (messages.method, method),
         (messages.software, format!("{} {}", result.program.name, result.program.version)),

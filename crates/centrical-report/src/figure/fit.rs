@@ -124,7 +124,7 @@ pub(super) fn singular_values(result: &CalibrationResult, language: Language) ->
         plot = plot.with(Series::markers(messages.lost, lost.iter().map(floor).collect()));
     }
     let figure = of_plot("singular-values", caption, plot, language);
-    Some(Figure { combinations: seen.null_directions.iter().map(printed_combination).collect(), ..figure })
+    Some(Figure { combinations: result.null_directions_in_short().iter().map(printed_combination).collect(), ..figure })
 }
 
 /// The worst-known parameter of each group against its final uncertainty.

@@ -264,6 +264,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     mark_place: "place for mark or seal",
     words: Words {
         axes: words::axes,
+        next_rest: words::next_rest,
         group: words::group,
         meaning: words::meaning,
         source: words::source,
@@ -325,6 +326,12 @@ pub(crate) const ENGLISH: Messages = Messages {
     axes_text: "Readings are f′ = df + scale·f + N(C·f) with the specific force f in these axes, the other terms N of the error \
         model along the newtonometers, and the matrix C, which takes f to the axes of the newtonometers. The turn is the rotation \
         vector of the instrument axes from these axes. Specific forces of the compensation are in these axes.",
+    attitudes: "Attitudes of the rests",
+    attitudes_caption: "Where the vertical points, seen from the instrument: two hemispheres in equal areas, with a dot for each rest \
+        and a ring for the one to add.",
+    up_of: ["axis 3 up", "axis 3 down"],
+    rest: "a rest",
+    next_rest: "the next rest",
     axes_matrix: "Matrix C, by rows:",
     axes_of_case: "The axes of the case follow from the mean turn of the instrument in its positions; the scatter of the seats is in \
         the uncertainty. Number of positions:",

@@ -3,7 +3,9 @@
 use centrical::{
     Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
 };
-use centrical_session::{AxesName, Follows, Method};
+use centrical_session::{AxesName, Follows, Method, NextAttitudeSummary};
+
+use crate::number::counted;
 
 pub(super) fn axes(name: &AxesName) -> String {
     match name {
@@ -164,4 +166,14 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::OneMounting(Difference::Unit, _) => "another unit in one mounting",
         },
     }
+}
+
+pub(super) fn next_rest(next: &NextAttitudeSummary) -> String {
+    let brings = match (&next.parameter, next.parameter_factor) {
+        (Some(parameter), Some(factor)) if next.gain == 0 => {
+            format!("uncertainties become {:.2} of these on average, that of {parameter} {factor:.2}", next.factor)
+        }
+        _ => format!("it brings back {}", counted(next.gain, "combination")),
+    };
+    format!("The best rest to add: {}; {brings}.", next.text)
 }

@@ -3,7 +3,7 @@
 //! One field a message and one function a set of words, so that a language that lacks one does not compile.
 
 use centrical::{Group, PairRelation, ReferencePoint, Rival, Source, Termination};
-use centrical_session::{AxesName, Follows, Method, SpeedFinding, SpeedsSummary};
+use centrical_session::{AxesName, Follows, Method, NextAttitudeSummary, SpeedFinding, SpeedsSummary};
 
 /// What the documents say, in one language.
 #[allow(missing_docs)]
@@ -268,11 +268,18 @@ pub(crate) struct Messages {
     pub axes_text: &'static str,
     pub axes_matrix: &'static str,
     pub axes_of_case: &'static str,
+    pub attitudes: &'static str,
+    pub attitudes_caption: &'static str,
+    pub up_of: [&'static str; 2],
+    pub rest: &'static str,
+    pub next_rest: &'static str,
 }
 
 /// Words for what is one of several, in one language; each function names all of them.
 pub(crate) struct Words {
     pub axes: fn(&AxesName) -> String,
+    /// Which attitude to add, and what it brings.
+    pub next_rest: fn(&NextAttitudeSummary) -> String,
     pub group: fn(Group) -> &'static str,
     /// What a coefficient of the group is, for who does not know its symbol.
     pub meaning: fn(Group) -> &'static str,

@@ -3,7 +3,7 @@
 use centrical::{
     Course, Difference, Extension, Extra, Group, Law, PairRelation, ReferencePoint, Rival, Source, Termination,
 };
-use centrical_session::{AxesName, Follows, Method};
+use centrical_session::{AxesName, Follows, Method, NextAttitudeSummary};
 
 pub(super) fn axes(name: &AxesName) -> String {
     match name {
@@ -162,4 +162,24 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::OneMounting(Difference::Unit, _) => "другой прибор в одной установке",
         },
     }
+}
+
+pub(super) fn next_rest(next: &NextAttitudeSummary) -> String {
+    let along = |sign: f64, way: &str| {
+        let axes: Vec<String> = (1..=3).filter(|i| next.up[i - 1] * sign > 0.1).map(|i| i.to_string()).collect();
+        (!axes.is_empty()).then(|| format!("{} {} {way}", if axes.len() > 1 { "оси" } else { "ось" }, axes.join(", ")))
+    };
+    let axes: Vec<String> = [along(1.0, "вверх"), along(-1.0, "вниз")].into_iter().flatten().collect();
+    let brings = match (&next.parameter, next.parameter_factor) {
+        (Some(parameter), Some(factor)) if next.gain == 0 => {
+            let comma = |number: f64| format!("{number:.2}").replace('.', ",");
+            format!(
+                "неопределённости составят {} нынешних в среднем, для {parameter} — {}",
+                comma(next.factor),
+                comma(factor)
+            )
+        }
+        _ => format!("вернёт потерянных комбинаций: {}", next.gain),
+    };
+    format!("Следующее положение покоя: {}; {brings}.", axes.join(", "))
 }

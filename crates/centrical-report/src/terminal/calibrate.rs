@@ -173,10 +173,18 @@ fn not_estimable(screen: &mut Screen, result: &CalibrationResult) {
     }
     screen.gap();
     screen.head("NOT SEEN", &format!("rank {} of {}: the readings do not change along", seen.rank, seen.columns));
-    for direction in &seen.null_directions {
+    for direction in &result.null_directions_in_short() {
         screen.say(2, &combination(direction));
     }
-    let lost: Vec<&str> = result.parameters.iter().filter(|p| !p.estimable).map(|p| p.name.as_str()).collect();
+    if !result.model.has_arm() {
+        screen.say(2, "each with small changes of other coefficients and of the attitudes");
+        if let Some(terms) = terms_without(result) {
+            screen.sentence(2, 4, &format!("what the others are if these are zero: --terms {terms}"));
+        }
+    }
+    let is_shown = |p: &&ParameterEstimate| result.model.has_arm() || is_of_instrument(result, p);
+    let lost = result.parameters.iter().filter(|p| !p.estimable).filter(is_shown);
+    let lost: Vec<&str> = lost.map(|p| p.name.as_str()).collect();
     screen.say(2, &format!("so these have no value of their own: {}", lost.join(", ")));
     let of_instrument = result.parameters.iter().filter(|p| is_of_instrument(result, p));
     let (of_instrument, lost_of_it) =
@@ -189,6 +197,18 @@ fn not_estimable(screen: &mut Screen, result: &CalibrationResult) {
             _ => format!("{lost_of_it} of the {of_instrument} parameters of the instrument are not determined."),
         },
     );
+}
+
+/// The terms of a model without those that lead the combinations that rests do not show; `None` where one leads two of them.
+fn terms_without(result: &CalibrationResult) -> Option<String> {
+    let directions = result.null_directions_in_short();
+    let mut left: Vec<&str> = result.model.error_model.iter().map(|term| term.name.as_str()).collect();
+    let all = left.len();
+    for direction in &directions {
+        let last = direction.keys().next_back()?;
+        left.retain(|name| name != last);
+    }
+    (left.len() + directions.len() == all).then(|| left.join(","))
 }
 
 /// What rests on priors, and what the data added to each.

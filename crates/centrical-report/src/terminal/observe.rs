@@ -143,6 +143,9 @@ fn groups(screen: &mut Screen, report: &ObservabilityReport) {
 }
 
 fn conditions(screen: &mut Screen, report: &ObservabilityReport) {
+    if report.conditions.is_empty() {
+        return;
+    }
     screen.gap();
     screen.head("THE SOURCE'S SUFFICIENT CONDITIONS", "");
     for condition in &report.conditions {

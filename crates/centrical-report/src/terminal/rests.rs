@@ -24,9 +24,27 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
     }
     let misfits: Vec<f64> = rests.iter().filter_map(|rest| misfit(rest)).collect();
     let square: f64 = misfits.iter().map(|misfit| misfit * misfit).sum();
-    let rms = (square / misfits.len().max(1) as f64).sqrt() / MICRO_G;
+    // Rests that do not determine the coefficients have no compensated force.
+    if misfits.is_empty() {
+        return next_attitude(screen, result);
+    }
+    let rms = (square / misfits.len() as f64).sqrt() / MICRO_G;
     let worst = misfits.iter().fold(0.0_f64, |most, misfit| most.max(misfit.abs())) / MICRO_G;
-    screen.say(2, &format!("size of the compensated force less gravity: {rms:.0} ug RMS, {worst:.0} ug at most"));
+    let of_size = format!("size of the compensated force less gravity: {rms:.0} ug RMS, {worst:.0} ug at most");
+    screen.say(2, &of_size);
+    next_attitude(screen, result);
+}
+
+/// Which attitude to add, and what it would bring.
+fn next_attitude(screen: &mut Screen, result: &CalibrationResult) {
+    let Some(next) = &result.next_attitude else { return };
+    let brings = match (next.gain, &next.parameter, next.parameter_factor) {
+        (0, Some(parameter), Some(factor)) => {
+            format!("uncertainties become {:.2} of these on average, that of {parameter} {factor:.2}", next.factor)
+        }
+        (gain, ..) => format!("it brings back {}", counted(gain, "combination")),
+    };
+    screen.sentence(2, 4, &format!("next rest: {}: {brings}", next.text));
 }
 
 /// Residual along the specific force [m/s^2]: what its size misses of gravity.

@@ -5,6 +5,7 @@ mod axes_summary;
 mod budget_and_checks;
 mod error_terms;
 mod from_calibration;
+mod next_attitude;
 mod rivals;
 mod schema;
 mod speeds;
@@ -15,6 +16,7 @@ pub use self::axes_summary::{AxesName, AxesParameter, AxesSummary};
 pub use self::budget_and_checks::{
     BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
 };
+pub use self::next_attitude::NextAttitudeSummary;
 pub use self::rivals::{RestsOn, RivalSize, RivalSummary};
 pub use self::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,

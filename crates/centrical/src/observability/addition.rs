@@ -21,6 +21,8 @@ pub enum Addition {
         /// `alpha_3` [rad].
         angle: f64,
     },
+    /// A rest in one more free attitude, with up along this direction in instrument axes.
+    Attitude(Vector3<f64>),
     /// A plateau at one more speed.
     Speed {
         /// Mountings in which it is read.
@@ -60,6 +62,7 @@ impl Addition {
             Self::Rest { mountings, angle } => {
                 draft.add(mountings.iter().map(|&mounting| SetPoint::at_rest(mounting, *angle)));
             }
+            Self::Attitude(up_z) => draft.rest(up_z),
             Self::Speed { mountings, omega } => {
                 draft.add(mountings.iter().map(|&mounting| SetPoint::spinning(mounting, *omega)));
             }
@@ -91,6 +94,7 @@ impl Addition {
     pub fn cost(&self) -> (u8, usize) {
         match self {
             Self::Rest { mountings, .. } => (0, mountings.len()),
+            Self::Attitude(_) => (0, 1),
             Self::Speed { mountings, .. } => (1, mountings.len()),
             Self::Prior { .. } => (2, 1),
             Self::Radius { positions, .. } => (3, positions.len()),
@@ -106,6 +110,7 @@ impl Addition {
             Self::Rest { mountings, angle } => {
                 format!("rest at {:.0} deg in {}", angle.to_degrees(), mountings_text(mountings, experiment))
             }
+            Self::Attitude(up_z) => format!("a rest with {}", attitude_in_words(up_z)),
             Self::Speed { mountings, omega } => {
                 let rpm = omega.abs() * 60.0 / std::f64::consts::TAU;
                 format!("a speed of {rpm:.1} rpm in {}", mountings_text(mountings, experiment))
@@ -154,6 +159,15 @@ impl Draft {
 
     fn add(&mut self, set_points: impl Iterator<Item = SetPoint>) {
         self.plateaus.extend(set_points.map(|set_point| (set_point, Some(self.usual))));
+    }
+
+    /// A rest in a free attitude.
+    fn rest(&mut self, up_z: &Vector3<f64>) {
+        let position = self.experiment.positions.len();
+        self.experiment.positions.push(Position::free(new_id(&self.experiment.positions), up_z));
+        let mounting = self.experiment.mountings.len();
+        self.experiment.mountings.push(Mounting { position, arm_y: Vector3::zeros() });
+        self.add(std::iter::once(SetPoint::at_rest(mounting, 0.0)));
     }
 
     /// A mounting of position `k` at `radius` with the fullest schedule of the position, or of any.
@@ -223,4 +237,37 @@ fn attitude_text(position: &Position) -> String {
     };
     let axes: Vec<String> = (0..2).map(|i| along(i).unwrap_or_else(|| oblique(i))).collect();
     format!("a position with {}", axes.join(", "))
+}
+
+/// The faces, edges and corners of a cube, in this order, as directions.
+pub fn cube_directions() -> Vec<Vector3<f64>> {
+    let signs = || [0.0, 1.0, -1.0].into_iter();
+    let all = signs().flat_map(|x| signs().flat_map(move |y| signs().map(move |z| Vector3::new(x, y, z))));
+    let mut directions: Vec<Vector3<f64>> = all.filter(|direction| *direction != Vector3::zeros()).collect();
+    directions.sort_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+    directions.into_iter().map(|direction| direction.normalize()).collect()
+}
+
+/// Where the axes point in an attitude in which up is `up_z`: `axes 1, 2 up, axis 3 down, each 55 deg from the vertical`.
+pub fn attitude_in_words(up_z: &Vector3<f64>) -> String {
+    let along = |sign: f64| (0..3).filter(|&i| up_z[i] * sign > 0.1).map(|i| (i + 1).to_string()).collect::<Vec<_>>();
+    let part = |axes: Vec<String>, way: &str| match axes.len() {
+        0 => None,
+        1 => Some(format!("axis {} {way}", axes[0])),
+        _ => Some(format!("axes {} {way}", axes.join(", "))),
+    };
+    let parts: Vec<String> = [part(along(1.0), "up"), part(along(-1.0), "down")].into_iter().flatten().collect();
+    let from_vertical = up_z.amax().min(1.0).acos().to_degrees();
+    let oblique =
+        if from_vertical < 1.0 { String::new() } else { format!(", each {from_vertical:.0} deg from the vertical") };
+    format!("{}{oblique}", parts.join(", "))
+}
+
+/// A name that no position and no pair has.
+pub(super) fn new_id(known: &[Position]) -> String {
+    let mut id = format!("new {}", known.len() + 1);
+    while known.iter().any(|p| p.id == id || p.pair == id) {
+        id.push('+');
+    }
+    id
 }

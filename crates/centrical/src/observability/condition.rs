@@ -6,8 +6,8 @@
 
 use nalgebra::Matrix3;
 
-use super::addition::Addition;
-use super::remedy::{axis_attitudes, new_angle, new_id, new_radius, new_speed};
+use super::addition::{Addition, new_id};
+use super::remedy::{axis_attitudes, new_angle, new_radius, new_speed};
 use super::study::Study;
 use crate::model::{Position, SetPoint};
 
@@ -45,8 +45,11 @@ pub enum Need {
 }
 
 impl Study {
-    /// The source's conditions, in its order.
+    /// The source's conditions, in its order; none where nothing is on an arm.
     pub fn conditions(&self) -> Vec<Condition> {
+        if !self.model().experiment().has_arm() {
+            return Vec::new();
+        }
         vec![self.rest_angles(), self.vertical_axes(), self.radii(), self.speeds(), self.directions()]
     }
 

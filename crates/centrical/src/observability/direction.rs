@@ -50,6 +50,16 @@ impl NullDirection {
         self.terms.iter().find(|(index, _)| *index == j).map_or(0.0, |(_, component)| *component)
     }
 
+    /// Its components along coefficients of the error model, those alone that change a reading at 1 g by a twentieth of the most that
+    /// one of them does.
+    pub(super) fn of_coefficients(&self, parameters: &Parameters, gravity: f64) -> Self {
+        const CHIEF: f64 = 0.05;
+        let change = |&(j, c): &(usize, f64)| (c * gravity.powi(1 - parameters[j].power_of_acceleration)).abs();
+        let coefficients = || self.terms.iter().filter(|(j, _)| parameters[*j].is_of_instrument());
+        let most = coefficients().map(change).fold(0.0, f64::max);
+        Self::in_simple_ratios(coefficients().filter(|term| change(term) >= CHIEF * most).copied().collect())
+    }
+
     /// The direction as people write it: `dR_2[A] + dR_1[B] - drho_22`. Where the ratios are not whole in SI but are
     /// with accelerations in `gravity` [m/s^2], those are written, and it is said.
     pub fn text(&self, parameters: &Parameters, gravity: f64) -> String {

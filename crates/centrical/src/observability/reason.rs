@@ -143,7 +143,17 @@ impl Study {
 impl Reason {
     /// The reason in a sentence or two.
     pub fn sentence(&self, study: &Study) -> String {
-        let name = self.direction.text(study.model().parameters(), study.model().experiment().site.gravity);
+        let (parameters, experiment) = (study.model().parameters(), study.model().experiment());
+        let gravity = experiment.site.gravity;
+        let name = if experiment.has_arm() {
+            self.direction.text(parameters, gravity)
+        } else {
+            // Each rest takes part with its attitude: a sum too long to be read.
+            format!(
+                "{} with the attitudes",
+                self.direction.of_coefficients(parameters, gravity).text(parameters, gravity)
+            )
+        };
         let sights = self.sights_text(study);
         let causes = self.causes_text(study);
         let of_instrument = self.of_instrument.iter().map(|&j| study.model().parameters()[j].name.as_str());
@@ -177,6 +187,9 @@ impl Reason {
 
     fn causes_text(&self, study: &Study) -> String {
         let them = if self.direction.terms().len() > 1 { "part them" } else { "show it" };
+        if !study.model().experiment().has_arm() {
+            return format!("other attitudes would {them}");
+        }
         if self.causes.is_empty() {
             return format!("no other speed, radius or angle at rest in these positions would {them}");
         }

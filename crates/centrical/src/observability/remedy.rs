@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::addition::Addition;
+use super::addition::{Addition, new_id};
 use super::rank::Observability;
 use super::study::Study;
 use crate::model::{Effect, Kind, PairRelation, Position, rotation};
@@ -58,7 +58,7 @@ impl Study {
     /// Remedies for a rank that is short: those that restore it cheapest first (see [`Addition`] for the order), then
     /// those that only raise it. Empty when nothing is lost or nothing in the catalogue helps.
     ///
-    /// The catalogue: rest at another angle and another speed (in one mounting if that does, otherwise in all), a prior
+    /// Of rests in free attitudes alone the catalogue is the best next attitude. Otherwise: rest at another angle and another speed (in one mounting if that does, otherwise in all), a prior
     /// on one dimension of each lost combination, another radius (in one position or in all), another position, another
     /// pair relation. When no single addition restores the rank, or only another pair relation, additions are chained,
     /// each the one that gains most and among these the cheapest, up to six.
@@ -68,7 +68,8 @@ impl Study {
         }
         let mut trials = self.helpful();
         let chain = (!trials.iter().any(|trial| trial.after.observability().lost() == 0)).then(|| self.chain(&trials));
-        trials.extend(relations(self).into_iter().filter_map(|relation| Trial::of(self, relation)));
+        let relations = if self.model().experiment().has_arm() { relations(self) } else { Vec::new() };
+        trials.extend(relations.into_iter().filter_map(|relation| Trial::of(self, relation)));
         let mut remedies: Vec<Remedy> = trials.into_iter().map(|trial| trial.into_remedy(self)).collect();
         remedies.extend(chain.flatten());
         remedies.sort_by_key(|remedy| (!remedy.restores_rank(), remedy.cost()));
@@ -104,7 +105,11 @@ impl Study {
         self.catalogue().into_iter().filter_map(of_family).collect()
     }
 
+    /// Where nothing is on an arm, another attitude is all that there is to add.
     fn catalogue(&self) -> Vec<Vec<Addition>> {
+        if !self.model().experiment().has_arm() {
+            return self.next_attitude().into_iter().map(|next| vec![Addition::Attitude(next.up_z)]).collect();
+        }
         let families = [new_angle(self), new_speed(self), new_radius(self)];
         let mut catalogue: Vec<Vec<Addition>> = families.into_iter().flatten().map(widest_first).collect();
         catalogue.extend(priors(self).into_iter().map(|prior| vec![prior]));
@@ -145,6 +150,9 @@ fn best(trials: &[Trial]) -> Option<&Trial> {
 
 /// Rest in every mounting at an angle where nothing was read at rest: the quarter turn farthest from those.
 pub(super) fn new_angle(study: &Study) -> Option<Addition> {
+    if !study.model().experiment().has_arm() {
+        return None;
+    }
     let experiment = study.model().experiment();
     let read: Vec<f64> = experiment.set_points.iter().filter(|s| s.is_rest()).map(|s| s.angle).collect();
     let apart = |a: f64, b: f64| ((a - b + PI).rem_euclid(TAU) - PI).abs();
@@ -255,15 +263,6 @@ fn new_positions(study: &Study) -> Vec<Position> {
         }
     }
     new
-}
-
-/// A name that no position and no pair has.
-pub(super) fn new_id(known: &[Position]) -> String {
-    let mut id = format!("new {}", known.len() + 1);
-    while known.iter().any(|p| p.id == id || p.pair == id) {
-        id.push('+');
-    }
-    id
 }
 
 /// The 24 attitudes whose axes lie along the arm axes.

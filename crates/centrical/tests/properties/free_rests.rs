@@ -1,8 +1,10 @@
 //! Rests in attitudes that only gravity shows: the model, what they determine, and what they add to a centrifuge session.
 
+use centrical::observability::Addition;
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::{
-    ErrorModel, Experiment, MeasurementModel, Mounting, Observation, PairRelation, Position, SetPoint, TypeB,
+    Combination, ErrorModel, Experiment, MeasurementModel, Mounting, Observation, PairRelation, Position, SetPoint,
+    Study, TypeB, Weight,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -205,4 +207,90 @@ fn errors_of_one_fit_are_as_large_as_stated() {
     assert_eq!(count, 21 * RUNS);
     let ratio = sum / count as f64;
     assert!((ratio - 1.0).abs() < 4.0 * (2.0 / count as f64).sqrt(), "{ratio}");
+}
+
+/// What a study of rests recommends, tried by adding it: each step brings back what it says until nothing does. Three edges or corners
+/// complete six faces. Of all squares, three sums are lost for good: `f_1^2 + f_2^2 + f_3^2` is `g^2` in every attitude.
+#[test]
+fn the_next_attitude_brings_back_what_it_says() {
+    let study = |directions: &[Vector3<f64>], terms: usize| {
+        let model = rests_alone(directions, terms);
+        let set_points = 0..model.experiment().set_points.len();
+        let weights = set_points.map(|set_point| Weight { set_point, covariance: Matrix3::identity() * NOISE * NOISE });
+        Study::at_zero(model.clone(), weights.collect()).unwrap()
+    };
+    for (terms, steps, lost_for_good) in [(2, 3, 0), (3, 9, 3)] {
+        let mut directions = faces();
+        for _ in 0..steps {
+            let before = study(&directions, terms);
+            let next = before.next_attitude().unwrap();
+            directions.push(next.up_z);
+            let after = study(&directions, terms).observability().lost();
+            assert_eq!(after, before.observability().lost() - next.gain, "{next:?}");
+        }
+        let complete = study(&directions, terms);
+        assert_eq!(complete.observability().lost(), lost_for_good);
+        assert_eq!(complete.next_attitude().is_none(), lost_for_good > 0);
+    }
+}
+
+/// The ratios of a study with nothing lost against the uncertainties with the attitude added, of each of the 26: none does better.
+#[test]
+fn the_next_attitude_improves_as_it_says_and_no_other_does_better() {
+    let mut random = Random::new(17);
+    let directions = random_directions(14, &mut random);
+    let study = |directions: &[Vector3<f64>]| {
+        let model = rests_alone(directions, 2);
+        let set_points = 0..model.experiment().set_points.len();
+        let weights = set_points.map(|set_point| Weight { set_point, covariance: Matrix3::identity() * NOISE * NOISE });
+        Study::at_zero(model.clone(), weights.collect()).unwrap()
+    };
+    // Logarithm of the volume of the ellipsoid of the coefficients, by the uncertainties in the order of their elimination.
+    let volume = |study: &Study| {
+        let parameters = study.model().parameters();
+        let terms: Vec<usize> = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument()).collect();
+        let variance = |a: &[(usize, f64)]| {
+            study.observability().standard_uncertainty(&Combination::new(a.iter().copied())).unwrap().powi(2)
+        };
+        let covariance = nalgebra::DMatrix::from_fn(terms.len(), terms.len(), |i, j| {
+            let (i, j) = (terms[i], terms[j]);
+            if i == j {
+                variance(&[(i, 1.0)])
+            } else {
+                0.25 * (variance(&[(i, 1.0), (j, 1.0)]) - variance(&[(i, 1.0), (j, -1.0)]))
+            }
+        });
+        (0.5 * covariance.determinant().ln() / terms.len() as f64, covariance)
+    };
+    let before = study(&directions);
+    let next = before.next_attitude().unwrap();
+    let (volume_before, covariance_before) = volume(&before);
+    let mut best = f64::INFINITY;
+    for direction in cube() {
+        let (after, covariance) = volume(&study(&[directions.clone(), vec![direction]].concat()));
+        let factor = (after - volume_before).exp();
+        best = best.min(factor);
+        if (direction - next.up_z).norm() < 1e-9 {
+            assert!((factor - next.factor).abs() < 1e-9, "{factor} {next:?}");
+            let (j, ratio) = next.most.unwrap();
+            let first = before.model().parameters().iter().position(centrical::Parameter::is_of_instrument).unwrap();
+            let seen = (covariance[(j - first, j - first)] / covariance_before[(j - first, j - first)]).sqrt();
+            assert!((seen - ratio).abs() < 1e-9, "{seen} {next:?}");
+        }
+    }
+    assert!((best - next.factor).abs() < 1e-9, "{best} {next:?}");
+}
+
+/// Rests alone are not told to spin.
+#[test]
+fn remedies_of_rests_are_attitudes() {
+    let model = rests_alone(&faces(), 2);
+    let weights: Vec<Weight> =
+        (0..6).map(|set_point| Weight { set_point, covariance: Matrix3::identity() * NOISE * NOISE }).collect();
+    let study = Study::at_zero(model, weights).unwrap();
+    let remedies = study.remedies();
+    assert!(remedies.iter().any(centrical::observability::Remedy::restores_rank));
+    assert!(remedies.iter().flat_map(|r| &r.steps).all(|step| matches!(step.addition, Addition::Attitude(_))));
+    assert!(study.conditions().is_empty());
+    assert!(study.reasons().iter().all(|reason| reason.sentence(&study).contains("other attitudes would")));
 }

@@ -8,6 +8,7 @@ use centrical::{
 use nalgebra::{Matrix3, Vector3};
 
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
+use super::next_attitude::NextAttitudeSummary;
 use super::rivals::RestsOn;
 use super::schema::{
     CalibrationResult, ConvergenceSummary, FitSummary, Method, ModelSummary, MountingSummary, ObservabilitySummary,
@@ -59,6 +60,7 @@ impl CalibrationResult {
                 .collect(),
             covariance: (0..count).map(|i| (0..count).map(|j| covariance(i, j)).collect()).collect(),
             observability: ObservabilitySummary::new(model, fit),
+            next_attitude: NextAttitudeSummary::of(calibration)?,
             fit: FitSummary::new(calibration),
             mountings: mountings(model, reduced),
             plateaus: plateaus(calibration, session, reduced),

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::axes_summary::AxesSummary;
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
+use super::next_attitude::NextAttitudeSummary;
 use super::rivals::RestsOn;
 use super::speeds::SpeedsSummary;
 use crate::document::json;
@@ -51,6 +52,9 @@ pub struct CalibrationResult {
     pub covariance: Vec<Vec<Option<f64>>>,
     /// What the experiment sees.
     pub observability: ObservabilitySummary,
+    /// The best attitude to add; of rests in free attitudes alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_attitude: Option<NextAttitudeSummary>,
     /// How the fit went.
     pub fit: FitSummary,
     /// The mountings, in the order of the session.
@@ -394,6 +398,33 @@ impl CalibrationResult {
         let is_free = |id: &str| self.model.positions.iter().any(|position| position.is_free && position.id == id);
         let free: Vec<bool> = self.mountings.iter().map(|mounting| is_free(&mounting.position)).collect();
         self.plateaus.iter().filter(move |p| p.mounting.checked_sub(1).and_then(|m| free.get(m)) == Some(&true))
+    }
+
+    /// The combinations that the data do not show, as people read them: of rests in free attitudes alone without the attitudes, in
+    /// which each rest takes part, and without coefficients that change a reading at 1 g by less than a twentieth of the most that one
+    /// does. All others as they are.
+    pub fn null_directions_in_short(&self) -> Vec<serde_json::Map<String, serde_json::Value>> {
+        const CHIEF: f64 = 0.05;
+        if self.model.has_arm() {
+            return self.observability.null_directions.clone();
+        }
+        let degree = |name: &str| {
+            let term = self.model.error_model.iter().find(|term| term.name == name)?;
+            Some(i32::from(term.powers.iter().sum::<u8>()))
+        };
+        let change = |(name, component): (&String, &serde_json::Value)| {
+            Some((component.as_f64()? * self.model.gravity.powi(degree(name)?)).abs())
+        };
+        let chiefly = |direction: &serde_json::Map<String, serde_json::Value>| {
+            let most = direction.iter().filter_map(change).fold(0.0, f64::max);
+            let chief = direction.iter().filter(|&term| change(term).is_some_and(|size| size >= CHIEF * most));
+            let first = chief.clone().next().and_then(|(_, component)| component.as_f64()).unwrap_or(1.0);
+            let to_one = |(name, component): (&String, &serde_json::Value)| {
+                (name.clone(), (component.as_f64().unwrap_or(0.0) / first).into())
+            };
+            chief.map(to_one).collect()
+        };
+        self.observability.null_directions.iter().map(chiefly).collect()
     }
 
     /// The estimates that the data determine, of the coefficients of the error model alone: what belongs to the unit
