@@ -21,5 +21,5 @@ pub use self::content::{
 };
 pub(crate) use self::objection::{objection, rival};
 pub use self::report::report;
-pub(crate) use self::rests_on::{counts_as_exact, rests_on_sentence};
+pub(crate) use self::rests_on::{counts_as_exact, presupposed, rests_on_sentence};
 pub(crate) use self::switch_on::switch_on_sentence;

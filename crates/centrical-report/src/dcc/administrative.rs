@@ -3,7 +3,7 @@
 use centrical_session::{Address, CalibrationResult, Contact, Laboratory};
 
 use super::xml::Xml;
-use crate::document::{Issuer, counts_as_exact, objection, rule, switch_on_sentence};
+use crate::document::{Issuer, counts_as_exact, objection, presupposed, rule, switch_on_sentence};
 use crate::evaluation::UnitVerdict;
 use crate::language::Language;
 
@@ -145,9 +145,10 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, langua
                 }
             });
         }
-        for (name, text) in
-            [(messages.counts_as_exact, counts_as_exact(result, language)), (messages.presupposed, String::new())]
-        {
+        for (name, text) in [
+            (messages.counts_as_exact, counts_as_exact(result, language)),
+            (presupposed(result, language), String::new()),
+        ] {
             let text = if text.is_empty() { name.to_owned() } else { format!("{name}: {text}") };
             statement(xml, "7.8.4.1 a", &text);
         }

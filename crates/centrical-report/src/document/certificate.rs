@@ -8,7 +8,7 @@ use super::content::{Align, Block, Document, Margins, Opening, Picture, Row, Sec
 use super::drift::drift_facts;
 use super::objection::objection;
 use super::reading_error::error_table;
-use super::rests_on::{counts_as_exact, rests_on_sentence};
+use super::rests_on::{self, counts_as_exact, rests_on_sentence};
 use super::switch_on::switch_on;
 use super::symbols::nominal_output;
 use super::tables::cells;
@@ -270,7 +270,7 @@ fn presupposed(result: &CalibrationResult, language: Language) -> String {
     } else {
         format!(" {}: {}.", messages.rests_on_sentence, worst.join("; "))
     };
-    format!("{}{effects}", messages.presupposed)
+    format!("{}{effects}", rests_on::presupposed(result, language))
 }
 
 /// The parameters of the instrument before its adjustment and after.

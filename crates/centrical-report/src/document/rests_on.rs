@@ -19,7 +19,7 @@ pub(super) fn rests_on(result: &CalibrationResult, language: Language) -> Vec<Bl
     let mut blocks = vec![
         Block::heading(messages.rests_on, 4),
         Block::facts([(messages.counts_as_exact, counts_as_exact(result, language))]),
-        Block::paragraph(messages.presupposed),
+        Block::paragraph(presupposed(result, language)),
     ];
     if !result.rests_on.is_empty() {
         blocks.push(Block::Subheading(messages.effects_absent.to_owned()));
@@ -43,6 +43,12 @@ pub(crate) fn counts_as_exact(result: &CalibrationResult, language: Language) ->
     let names: Vec<String> =
         exact(result).into_iter().map(|source| (messages.words.source)(source).to_lowercase()).collect();
     if names.is_empty() { messages.nothing_exact.to_owned() } else { names.join(", ") }
+}
+
+/// What the stated uncertainties presuppose of the machine, or of the rests.
+pub(crate) fn presupposed(result: &CalibrationResult, language: Language) -> &'static str {
+    let messages = language.messages();
+    if result.model.has_arm() { messages.presupposed } else { messages.presupposed_of_rests }
 }
 
 fn table(result: &CalibrationResult, rows: usize, language: Language) -> Table {

@@ -17,7 +17,8 @@ pub(crate) fn exact(result: &CalibrationResult) -> Vec<Source> {
     ];
     let is_exact = |source: &Source| {
         let is_in_model = *source != Source::Latitude || result.model.latitude.is_some();
-        is_in_model && !stated.contains(source)
+        let acts = result.model.has_arm() || *source == Source::Gravity;
+        acts && is_in_model && !stated.contains(source)
     };
     of_quantity.into_iter().filter(is_exact).collect()
 }

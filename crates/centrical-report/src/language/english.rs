@@ -306,6 +306,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     uncertainties_and_reading: "standard uncertainties and a compensated reading by",
     presupposed: "The stated uncertainties presuppose a rigid arm, a constant temperature of the unit, and speeds whose errors \
         are independent from plateau to plateau.",
+    presupposed_of_rests: "The stated uncertainties presuppose a constant temperature of the unit, and rests in which it stands still.",
     chi_squared_small: "Residuals are smaller than the stated uncertainties allow: these are too large.",
     lost_parameters: "parameters of the instrument are not determined",
     speeds: "Speeds of the plateaus",

@@ -73,6 +73,7 @@ pub(super) fn source(source: Source) -> &'static str {
         Source::RestAngle => "Angle at rest",
         Source::ProofMasses => "Proof masses",
         Source::Attitude => "Attitudes",
+        Source::BiasChange => "Change of bias at a switch-off",
         Source::Resolution => "Resolution",
         Source::Effects => "Effects left out",
     }

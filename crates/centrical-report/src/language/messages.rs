@@ -251,6 +251,7 @@ pub(crate) struct Messages {
     pub by: &'static str,
     pub uncertainties_and_reading: &'static str,
     pub presupposed: &'static str,
+    pub presupposed_of_rests: &'static str,
     pub chi_squared_small: &'static str,
     pub lost_parameters: &'static str,
     pub speeds: &'static str,

@@ -71,6 +71,7 @@ pub(super) fn source(source: Source) -> &'static str {
         Source::RestAngle => "Угол в покое",
         Source::ProofMasses => "Чувствительные массы",
         Source::Attitude => "Ориентация",
+        Source::BiasChange => "Изменение смещения при выключении",
         Source::Resolution => "Разрешение",
         Source::Effects => "Неучтённые эффекты",
     }

@@ -284,7 +284,9 @@ fn uncertainties(screen: &mut Screen, result: &CalibrationResult) {
     let names: Vec<&str> = budget.sources.iter().map(|source| source.name.name()).collect();
     screen.fact("FROM", &names.join(", "));
     if result.stated_sources().is_empty() {
-        screen.fact("", "the session states no [uncertainty]: gravity, radii, attitudes and the like count as exact");
+        let exact =
+            if result.model.has_arm() { "gravity, radii, attitudes and the like count" } else { "gravity counts" };
+        screen.fact("", &format!("the session states no [uncertainty]: {exact} as exact"));
     }
 }
 

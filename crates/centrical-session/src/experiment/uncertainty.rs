@@ -12,7 +12,7 @@ use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
 
 /// The quantities beside effects.
-const QUANTITIES: [&str; 11] = [
+const QUANTITIES: [&str; 12] = [
     "gravity",
     "latitude",
     "radius",
@@ -22,9 +22,13 @@ const QUANTITIES: [&str; 11] = [
     "rest_angle",
     "proof_masses",
     "attitude",
+    "bias_change",
     "resolution",
     "doubt",
 ];
+
+/// Standard uncertainty of a change of bias of which nothing is known [m/s^2]: ten times a typical bias.
+const ANY_BIAS: f64 = 0.5;
 
 /// Standard uncertainties, SI; `plateau_speed` is the same as `speed_uncertainty` of `[centrifuge]` or absent, and
 /// `speed_scale` the same as the scale of measured speeds, where both are stated.
@@ -73,6 +77,7 @@ pub(crate) fn type_b(
         rest_angle: angle("rest_angle")?.unwrap_or(0.0),
         proof_masses: length("proof_masses")?.unwrap_or(0.0),
         attitude: angle("attitude")?.unwrap_or(0.0),
+        bias_change: acceleration("bias_change")?.unwrap_or(ANY_BIAS),
         resolution: acceleration("resolution")?.unwrap_or(0.0),
         doubt: ratio("doubt")?.unwrap_or(0.0),
         effects: effects(&at, table, experiment, error_model)?,

@@ -56,9 +56,13 @@ fn rests(session: &Session, result: &CalibrationResult, random: &mut Random) -> 
     model.experiment().set_points.iter().enumerate().map(row).collect()
 }
 
-fn with_rests(folder: &Path) {
+/// The session with rests, and a change of bias of this uncertainty where one is stated.
+fn with_rests(folder: &Path, bias_change: Option<&str>) {
     let file = folder.join("experiment.toml");
     let mut text = fs::read_to_string(&file).unwrap();
+    if let Some(change) = bias_change {
+        writeln!(text, "\n[uncertainty]\nbias_change = {change:?}").unwrap();
+    }
     writeln!(text, "\n[[tumble]]\nrests = \"rests.csv\"").unwrap();
     fs::write(file, text).unwrap();
 }
@@ -71,7 +75,7 @@ fn rests_and_centrifuge_are_one_fit() {
     let alone = reduced_example(folder.path());
     let session = Session::read(folder.path()).unwrap();
     write_plateaus(&folder.path().join("rests.csv"), &rests(&session, &alone, &mut Random::new(2))).unwrap();
-    with_rests(folder.path());
+    with_rests(folder.path(), Some("0 mg"));
     let session = Session::read(folder.path()).unwrap();
     assert_eq!((session.rests.len(), session.mountings.len()), (26, 12));
     let together = calibrate(&session, Method::Exact, &unwatched).unwrap();
@@ -100,11 +104,51 @@ fn rests_and_centrifuge_are_one_fit() {
     assert_eq!((on_arm.rests.len(), on_arm.experiment.set_points.len()), (0, 108));
 }
 
+/// A unit that was switched off between the rests and the arm has another bias there. Unless the session states how far it may be, the
+/// rests tell scale and misalignment alone, and the bias on the arm stays what the arm says.
+#[test]
+fn rests_after_a_switch_off_have_a_bias_of_their_own() {
+    let change = Vector3::new(0.03, -0.02, 0.04);
+    let calibrated = |bias_change: Option<&str>| {
+        let folder = tempfile::tempdir().unwrap();
+        let alone = reduced_example(folder.path());
+        let session = Session::read(folder.path()).unwrap();
+        let mut rests = rests(&session, &alone, &mut Random::new(4));
+        for rest in &mut rests {
+            rest.mean += change;
+        }
+        write_plateaus(&folder.path().join("rests.csv"), &rests).unwrap();
+        with_rests(folder.path(), bias_change);
+        let session = Session::read(folder.path()).unwrap();
+        (alone, calibrate(&session, Method::Exact, &unwatched).unwrap())
+    };
+    let estimate = |result: &CalibrationResult, name: &str| {
+        let parameter = result.parameter(name).unwrap();
+        (parameter.value.unwrap(), parameter.standard_uncertainty.unwrap())
+    };
+    for stated in [None, Some("5 mg")] {
+        let (alone, together) = calibrated(stated);
+        assert!(together.objections().is_empty(), "{stated:?}: {:?}", together.objections());
+        for name in ["df_1", "df_2", "df_3", "G0_11", "G0_22", "G0_33"] {
+            let ((before, u), (after, better)) = (estimate(&alone, name), estimate(&together, name));
+            // The covariance of an estimate with a better one of the same data is that of the better one.
+            let deviation = (after - before) / (u * u - better * better).sqrt();
+            assert!(better < u && deviation.abs() < 4.0, "{stated:?} {name}: {deviation} {u} {better}");
+        }
+        for name in ["G0_22", "G0_33"] {
+            assert!(estimate(&alone, name).1 / estimate(&together, name).1 > 2.0, "{stated:?} {name}");
+        }
+    }
+    // Stated to be the same, it is not: the residuals say so.
+    let (_, wrong) = calibrated(Some("0 mg"));
+    assert!(!wrong.objections().is_empty());
+}
+
 #[test]
 fn what_is_no_table_of_rests_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     reduced_example(folder.path());
-    with_rests(folder.path());
+    with_rests(folder.path(), Some("0 mg"));
     let message = || Session::read(folder.path()).unwrap_err().to_string().replace('\\', "/");
     assert!(message().contains("rests.csv"), "{}", message());
     let file: PathBuf = folder.path().join("rests.csv");

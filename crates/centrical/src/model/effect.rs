@@ -111,6 +111,11 @@ pub enum Effect {
         /// What it follows.
         follows: Course,
     },
+    /// Change of the bias of a newtonometer between the arm and the rests in free attitudes, after a switch-off [m/s^2].
+    BiasChange {
+        /// Newtonometer.
+        axis: usize,
+    },
     /// An error of rounding common to repeated rests of one mounting at one angle [m/s^2].
     Rounding {
         /// Newtonometer.
@@ -165,7 +170,11 @@ impl Effect {
     /// unknown.
     pub(super) fn is_of_arm(self) -> bool {
         match self {
-            Self::Gravity | Self::Monomial { .. } | Self::Disturbance { .. } | Self::Rounding { .. } => false,
+            Self::Gravity
+            | Self::Monomial { .. }
+            | Self::Disturbance { .. }
+            | Self::BiasChange { .. }
+            | Self::Rounding { .. } => false,
             Self::ElasticTurn { .. }
             | Self::ArmTurn { .. }
             | Self::PositionTurn { .. }
@@ -203,6 +212,7 @@ impl Effect {
             | Self::Latitude
             | Self::Monomial { .. }
             | Self::Disturbance { .. }
+            | Self::BiasChange { .. }
             | Self::Rounding { .. } => false,
         }
     }

@@ -29,6 +29,9 @@ pub struct TypeB {
     pub proof_masses: f64,
     /// Of the nominal attitude of each position, about each instrument axis [rad].
     pub attitude: f64,
+    /// Of the change of each bias between the arm and rests in free attitudes, where the unit was switched off in between
+    /// [m/s^2]; of no effect where the experiment has not both.
+    pub bias_change: f64,
     /// Smallest step of the reading [m/s^2], not a standard uncertainty: it leaves a rectangular error of `step/sqrt(12)`
     /// on each mean (GUM, F.2.2.1), independent of the others.
     pub resolution: f64,
@@ -64,6 +67,8 @@ pub enum Source {
     ProofMasses,
     /// Nominal attitudes.
     Attitude,
+    /// Change of the bias between the arm and rests in free attitudes.
+    BiasChange,
     /// Resolution of the reading.
     Resolution,
     /// Effects that the model leaves out, as stated.
@@ -72,7 +77,7 @@ pub enum Source {
 
 impl Source {
     /// All sources in the order of the budget.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Noise,
         Self::PlateauSpeed,
         Self::Priors,
@@ -84,6 +89,7 @@ impl Source {
         Self::RestAngle,
         Self::ProofMasses,
         Self::Attitude,
+        Self::BiasChange,
         Self::Resolution,
         Self::Effects,
     ];
@@ -95,7 +101,7 @@ impl Source {
 
     /// Whether its errors stay the same from session to session on one station: stated, and not drawn anew for every plateau.
     pub fn is_shared(self) -> bool {
-        !self.is_weighed() && !matches!(self, Self::RestAngle | Self::Resolution)
+        !self.is_weighed() && !matches!(self, Self::RestAngle | Self::BiasChange | Self::Resolution)
     }
 
     /// Its name for people.
@@ -112,6 +118,7 @@ impl Source {
             Self::RestAngle => "angle at rest",
             Self::ProofMasses => "proof masses",
             Self::Attitude => "attitudes",
+            Self::BiasChange => "change of bias",
             Self::Resolution => "resolution",
             Self::Effects => "effects left out",
         }
@@ -159,6 +166,11 @@ impl TypeB {
         let on_arm = (0..experiment.positions.len()).filter(|&k| !experiment.positions[k].is_free);
         for (position, axis) in on_arm.flat_map(|k| (0..3).map(move |axis| (k, axis))) {
             add(Source::Attitude, Effect::PositionTurn { position, axis }, self.attitude);
+        }
+        if experiment.has_arm() {
+            for axis in (0..3).filter(|_| experiment.positions.iter().any(|position| position.is_free)) {
+                add(Source::BiasChange, Effect::BiasChange { axis }, self.bias_change);
+            }
         }
         for first in repeated_rests(experiment) {
             for axis in 0..3 {

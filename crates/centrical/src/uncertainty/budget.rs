@@ -79,6 +79,7 @@ impl Calibration<'_> {
                 | Source::SpeedScale
                 | Source::ProofMasses
                 | Source::Attitude
+                | Source::BiasChange
                 | Source::Effects => DMatrix::zeros(model.parameters().len(), 0),
             };
             let of_source = model.influences().iter().enumerate().filter(|(_, influence)| influence.source == source);

@@ -20,6 +20,7 @@ pub const STATED: TypeB = TypeB {
     rest_angle: 5e-5,
     proof_masses: 20e-6,
     attitude: 2e-5,
+    bias_change: 0.0,
     resolution: 1e-5,
     doubt: 0.0,
     effects: [0.0; Rival::COUNT],

@@ -147,6 +147,7 @@ fn acts_on(experiment: &Experiment, effect: Effect, here: usize) -> bool {
         | Effect::Gravity
         | Effect::Latitude
         | Effect::Monomial { mounting: None, .. }
+        | Effect::BiasChange { .. }
         | Effect::Disturbance { .. } => true,
     }
 }
