@@ -3,8 +3,8 @@
 use centrical::observability::Addition;
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::{
-    Combination, ErrorModel, Experiment, MeasurementModel, Mounting, Observation, PairRelation, Position, SetPoint,
-    Study, TypeB, Weight,
+    Calibration, Combination, Data, ErrorModel, Experiment, MeasurementModel, Mounting, Observation, PairRelation,
+    Position, SetPoint, Source, Study, TypeB, Weight,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -293,4 +293,40 @@ fn remedies_of_rests_are_attitudes() {
     assert!(remedies.iter().flat_map(|r| &r.steps).all(|step| matches!(step.addition, Addition::Attitude(_))));
     assert!(study.conditions().is_empty());
     assert!(study.reasons().iter().all(|reason| reason.sentence(&study).contains("other attitudes would")));
+}
+
+/// What the budget says of a change of bias is what rests do to the estimates that were read with another bias.
+#[test]
+fn a_change_of_bias_is_what_a_refit_shows() {
+    const CHANGE: f64 = 2e-4;
+    let experiment = with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &cube());
+    let model = kozlov(experiment).with_stated(TypeB { bias_change: CHANGE, ..TypeB::default() });
+    let truth = truth(&model, 3.0, &mut Random::new(21));
+    let read = observed(&model, &truth, &mut Random::new(22));
+    let data = Data::new(&model, read.clone()).unwrap();
+    let budget = Calibration::exact(&data).unwrap().budget().unwrap();
+    let stated = budget.contributions().iter().find(|c| c.source == Source::BiasChange).unwrap();
+    let estimates = |axis: usize, sign: f64| {
+        let mut read = read.clone();
+        for rest in &mut read {
+            let mounting = model.experiment().set_points[rest.set_point].mounting;
+            if !model.experiment().is_on_arm(mounting) {
+                rest.mean[axis] += sign * CHANGE;
+            }
+        }
+        exact(&model, &read).unwrap().state().to_vec()
+    };
+    let shifts: Vec<Vec<f64>> = (0..3)
+        .map(|axis| {
+            let (up, down) = (estimates(axis, 1.0), estimates(axis, -1.0));
+            up.iter().zip(down).map(|(up, down)| 0.5 * (up - down)).collect()
+        })
+        .collect();
+    for (j, parameter) in model.parameters().iter().enumerate() {
+        let shifted = shifts.iter().map(|shift| shift[j].powi(2)).sum::<f64>().sqrt();
+        let (stated, u) = (stated.standard_uncertainty(j), budget.standard_uncertainty(j).unwrap());
+        assert!((stated - shifted).abs() < 1e-3 * u, "{}: {stated:e} {shifted:e} of {u:e}", parameter.name);
+    }
+    let bias = model.parameters().find("df_2").unwrap();
+    assert!(stated.standard_uncertainty(bias) > 0.1 * budget.standard_uncertainty(bias).unwrap());
 }
