@@ -31,6 +31,7 @@ pub(super) fn group(group: Group) -> &'static str {
         Group::Turn => "Turn of the unit",
         Group::Shift => "Shift of the unit",
         Group::Attitude => "Attitude of a rest",
+        Group::CaseTurn => "Turn of the instrument against its case",
         Group::ProofMass => "Place of a proof mass",
         Group::ElasticTurn => "Elastic turn",
         Group::ArmStretch => "Stretch of the arm",

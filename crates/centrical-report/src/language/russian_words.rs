@@ -29,6 +29,7 @@ pub(super) fn group(group: Group) -> &'static str {
         Group::Turn => "Поворот прибора",
         Group::Shift => "Смещение прибора",
         Group::Attitude => "Наклон в покое",
+        Group::CaseTurn => "Поворот прибора относительно корпуса",
         Group::ProofMass => "Положение чувствительной массы",
         Group::ElasticTurn => "Упругий поворот",
         Group::ArmStretch => "Растяжение плеча",

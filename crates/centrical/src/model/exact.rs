@@ -108,7 +108,10 @@ impl MeasurementModel {
                 Vector3::new(x[turn], x[turn + 1], x[turn + 2]),
                 pair(shift.column) * shift.sign,
             ),
-            OfPosition::Free(attitude) => (pair(attitude), Vector3::zeros(), Vector3::zeros()),
+            OfPosition::Free { attitude, case_turn } => {
+                let turn = case_turn.map_or_else(Vector3::zeros, |c| Vector3::new(x[c], x[c + 1], x[c + 2]));
+                (pair(attitude), turn, Vector3::zeros())
+            }
         };
         let mut geometry = Geometry {
             gravity: experiment.site.gravity,
@@ -224,17 +227,17 @@ impl MeasurementModel {
         let parameters = &self.parameters;
         let position = self.experiment.mountings[set_point.mounting].position;
         let mut columns = Vec::with_capacity(10 + monomials.len());
-        let (tilt, on_arm) = match parameters.of_position(position) {
-            OfPosition::OnArm { turn, shift } => (parameters.tilt(), Some((turn, shift))),
-            OfPosition::Free(attitude) => (Some(attitude), None),
+        let (tilt, turn, shift) = match parameters.of_position(position) {
+            OfPosition::OnArm { turn, shift } => (parameters.tilt(), Some(turn), Some(shift)),
+            OfPosition::Free { attitude, case_turn } => (Some(attitude), case_turn, None),
         };
         for (column, axis) in tilt.into_iter().flat_map(|c| [(c, 0), (c + 1, 1)]) {
             columns.push((column, partials.tilt.column(axis).into_owned()));
         }
-        for (column, axis) in on_arm.into_iter().flat_map(|(turn, _)| (0..3).map(move |axis| (turn + axis, axis))) {
+        for (column, axis) in turn.into_iter().flat_map(|c| [(c, 0), (c + 1, 1), (c + 2, 2)]) {
             columns.push((column, partials.turn.column(axis).into_owned()));
         }
-        if let Some((_, shift)) = on_arm.filter(|_| !set_point.is_rest()) {
+        if let Some(shift) = shift.filter(|_| !set_point.is_rest()) {
             for axis in 0..2 {
                 columns.push((shift.column + axis, partials.arm.column(axis) * shift.sign));
             }

@@ -27,6 +27,8 @@ pub enum Group {
     Shift,
     /// Attitude of a rest against the vertical.
     Attitude,
+    /// Turn of the instrument against its case.
+    CaseTurn,
     /// Place of a proof mass.
     ProofMass,
     /// Elastic turn of the unit.
@@ -55,7 +57,7 @@ pub enum Group {
 
 impl Group {
     /// All groups.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::Bias,
         Self::Scale,
         Self::Misalignment,
@@ -68,6 +70,7 @@ impl Group {
         Self::Turn,
         Self::Shift,
         Self::Attitude,
+        Self::CaseTurn,
         Self::ProofMass,
         Self::ElasticTurn,
         Self::ArmStretch,
@@ -97,6 +100,7 @@ impl Group {
             Self::Turn => "turn",
             Self::Shift => "shift",
             Self::Attitude => "attitude",
+            Self::CaseTurn => "turn against the case",
             Self::ProofMass => "proof mass",
             Self::ElasticTurn => "elastic turn",
             Self::ArmStretch => "arm stretch",

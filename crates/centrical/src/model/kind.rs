@@ -29,6 +29,8 @@ pub enum Kind {
         /// Index of the position.
         position: usize,
     },
+    /// `case_turn_i`: turn of the instrument against its case about instrument axis `i` [rad]: what rests in known attitudes share.
+    CaseTurn(usize),
     /// `drho_ii`: error of the place of proof mass `i` along its own axis [m].
     ProofMass(usize),
     /// Coefficient of a term of the error model, by its index.
@@ -43,7 +45,7 @@ impl Kind {
         match self {
             Self::Turn { .. } | Self::Shift { .. } | Self::Attitude { .. } => true,
             Self::Effect(effect) => effect.is_of_position(),
-            Self::Tilt(_) | Self::ProofMass(_) | Self::Term(_) => false,
+            Self::Tilt(_) | Self::CaseTurn(_) | Self::ProofMass(_) | Self::Term(_) => false,
         }
     }
 }

@@ -53,6 +53,9 @@ impl MeasurementModel {
             Kind::Tilt(axis) if self.experiment.is_on_arm(set_point.mounting) => n.by_tilt(axis, set_point),
             Kind::Attitude { axis, position: k } if k == position => n.by_tilt(axis, set_point),
             Kind::Turn { axis, position: k } if k == position => n.by_turn(axis),
+            Kind::CaseTurn(axis) if self.experiment.positions[position].attitude_uncertainty.is_some() => {
+                n.by_turn(axis)
+            }
             Kind::Shift { axis, .. } => match parameters.shift_of(position) {
                 Some(shift) if shift.column + axis == column => n.p * n.d * Vector3::ith(axis, shift.sign),
                 _ => Vector3::zeros(),
@@ -64,8 +67,8 @@ impl MeasurementModel {
                 let term = &self.error_model.terms[index];
                 Vector3::ith(term.axis, term.monomial.value((*f0).into()))
             }
-            // Of another position; the tilt of the arm's axis where the unit is not on the arm.
-            Kind::Turn { .. } | Kind::Attitude { .. } | Kind::Tilt(_) => Vector3::zeros(),
+            // Of another position; the tilt of the arm's axis where the unit is not on the arm; of an attitude that is not known.
+            Kind::Turn { .. } | Kind::Attitude { .. } | Kind::Tilt(_) | Kind::CaseTurn(_) => Vector3::zeros(),
             Kind::Effect(effect) => by_share(n, &self.share(set_point, effect), set_point),
         }
     }

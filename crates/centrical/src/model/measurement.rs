@@ -68,17 +68,18 @@ impl Linearisation {
 }
 
 impl MeasurementModel {
-    /// Model of `experiment` with the unknowns of [K5.4] and `extensions`.
+    /// Model of `experiment` with the unknowns of [K5.4] and `extensions`, and priors of the attitudes that the experiment knows.
     pub fn new(mut experiment: Experiment, error_model: ErrorModel, extensions: &[Extension]) -> Self {
         history::fill(&mut experiment);
         let parameters = Parameters::new(&experiment, &error_model, extensions);
+        let priors = prior::of_known_attitudes(&experiment, &parameters);
         let revolution = revolution(&error_model);
         Self {
             experiment,
             error_model,
             extensions: extensions.to_vec(),
             parameters,
-            priors: Vec::new(),
+            priors,
             stated: TypeB::default(),
             influences: Vec::new(),
             deviations: Vec::new(),
@@ -138,7 +139,11 @@ impl MeasurementModel {
             let parameter = other.parameters.find(&self.parameters[prior.parameter].name)?;
             Some(Prior { parameter, ..*prior })
         };
-        other.priors = self.priors.iter().filter_map(renamed).collect();
+        let own = std::mem::take(&mut other.priors);
+        let carried: Vec<Prior> = self.priors.iter().filter_map(renamed).collect();
+        let is_carried = |own: &Prior| carried.iter().any(|prior| prior.parameter == own.parameter);
+        let further: Vec<Prior> = own.into_iter().filter(|own| !is_carried(own)).collect();
+        other.priors = [carried, further].concat();
         other.with_stated(self.stated)
     }
 

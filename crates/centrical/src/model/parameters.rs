@@ -11,7 +11,7 @@ use super::kind::Kind;
 use super::parameter::{Parameter, coefficient, parameter};
 
 /// The unknowns of an experiment in the order of `X` [K5.4]: `alpha`, `delta` by position, `dR` by pair (by
-/// position when free), `drho`, `theta` by rest in a free attitude, the coefficients of the error model, then the extensions
+/// position when free), `drho`, `theta` by rest in a free attitude, `case_turn` where such attitudes are known, the coefficients of the error model, then the extensions
 /// as asked for. Where nothing is on an arm there is no `alpha` and no `drho`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
@@ -40,8 +40,13 @@ pub(crate) enum OfPosition {
         /// First of the two columns of `dR`, and the sign with which they act here.
         shift: Shared,
     },
-    /// Of a free attitude: the first of the two columns of `theta`.
-    Free(usize),
+    /// Of a free attitude.
+    Free {
+        /// First of the two columns of `theta`.
+        attitude: usize,
+        /// First of the three columns of `case_turn`, where the attitude is known.
+        case_turn: Option<usize>,
+    },
 }
 
 impl Parameters {
@@ -64,10 +69,17 @@ impl Parameters {
             }
             first
         });
+        let attitude = attitudes(experiment, &mut list);
+        let case_turn = list.len();
+        for axis in (0..3).filter(|_| experiment.positions.iter().any(|p| p.attitude_uncertainty.is_some())) {
+            let name = format!("case_turn_{}", axis + 1);
+            list.push(parameter(name, "rad", Group::CaseTurn, Kind::CaseTurn(axis), 1e-3));
+        }
         let of_position = (experiment.positions.iter().enumerate())
             .map(|(k, position)| {
                 if position.is_free {
-                    OfPosition::Free(attitude(k, &position.id, &mut list))
+                    let case_turn = position.attitude_uncertainty.map(|_| case_turn);
+                    OfPosition::Free { attitude: attitude[k], case_turn }
                 } else {
                     OfPosition::OnArm { turn: turn[k], shift: shift[k] }
                 }
@@ -145,7 +157,7 @@ impl Parameters {
     pub(crate) fn shift_of(&self, position: usize) -> Option<Shared> {
         match self.of_position[position] {
             OfPosition::OnArm { shift, .. } => Some(shift),
-            OfPosition::Free(_) => None,
+            OfPosition::Free { .. } => None,
         }
     }
 
@@ -162,6 +174,7 @@ impl Parameters {
             | Kind::Turn { .. }
             | Kind::Shift { .. }
             | Kind::Attitude { .. }
+            | Kind::CaseTurn(_)
             | Kind::ProofMass(_)
             | Kind::Term(_) => None,
         })
@@ -197,14 +210,17 @@ fn turns(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<usize> {
     first_columns
 }
 
-/// The two `theta` of a free attitude; the first of their columns.
-fn attitude(position: usize, id: &str, list: &mut Vec<Parameter>) -> usize {
-    let first = list.len();
-    for axis in 0..2 {
-        let name = format!("theta_{}[{id}]", axis + 1);
-        list.push(parameter(name, "rad", Group::Attitude, Kind::Attitude { axis, position }, 1e-3));
+/// The two `theta` of each free attitude; the first of their columns by position.
+fn attitudes(experiment: &Experiment, list: &mut Vec<Parameter>) -> Vec<usize> {
+    let mut first_columns = Vec::with_capacity(experiment.positions.len());
+    for (k, position) in experiment.positions.iter().enumerate() {
+        first_columns.push(list.len());
+        for axis in (0..2).filter(|_| position.is_free) {
+            let name = format!("theta_{}[{}]", axis + 1, position.id);
+            list.push(parameter(name, "rad", Group::Attitude, Kind::Attitude { axis, position: k }, 1e-3));
+        }
     }
-    first
+    first_columns
 }
 
 /// `dR` by pair, or by position when free; the value belongs to the pair's first position.

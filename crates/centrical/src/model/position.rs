@@ -15,12 +15,15 @@ pub struct Position {
     /// Whether the unit rests here in an attitude of its own, on a table or in a hand, not on the arm: its attitude against
     /// the vertical is unknown, `theta_1[id]`, `theta_2[id]`, and only the size of gravity is known.
     pub is_free: bool,
+    /// Standard uncertainty of a free attitude that is known, about each horizontal axis [rad]: `p_zy` takes the vertical to axes of
+    /// the case, against which the instrument is turned by `case_turn`. `None` where only gravity shows the attitude, and on the arm.
+    pub attitude_uncertainty: Option<f64>,
 }
 
 impl Position {
     /// A position on the arm.
     pub fn on_arm(id: impl Into<String>, p_zy: Matrix3<f64>, pair: impl Into<String>) -> Self {
-        Self { id: id.into(), p_zy, pair: pair.into(), is_free: false }
+        Self { id: id.into(), p_zy, pair: pair.into(), is_free: false, attitude_uncertainty: None }
     }
 
     /// A rest in an attitude of its own, where the specific force points about along `f_z` (instrument axes, of any length
@@ -30,7 +33,13 @@ impl Position {
         // Opposite vectors have no shortest rotation between them; half a turn about axis 1 is one of many.
         let half_turn = || Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
         let p_zy = Rotation3::rotation_between(&Vector3::z(), f_z).unwrap_or_else(half_turn).into_inner();
-        Self { pair: id.clone(), id, p_zy, is_free: true }
+        Self { pair: id.clone(), id, p_zy, is_free: true, attitude_uncertainty: None }
+    }
+
+    /// A rest in an attitude that is known to `standard_uncertainty` about each horizontal axis [rad]: the vertical points along
+    /// `up_b`, axes of the case.
+    pub fn known(id: impl Into<String>, up_b: &Vector3<f64>, standard_uncertainty: f64) -> Self {
+        Self { attitude_uncertainty: Some(standard_uncertainty), ..Self::free(id, up_b) }
     }
 }
 

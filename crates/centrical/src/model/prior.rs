@@ -7,6 +7,8 @@
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
+use super::experiment::Experiment;
+use super::kind::Kind;
 use super::parameters::Parameters;
 
 /// Prior knowledge of one parameter: a mean with a standard uncertainty.
@@ -73,6 +75,16 @@ pub enum PriorError {
         /// The parameter.
         parameter: String,
     },
+}
+
+/// The attitudes of rests that are known: `theta` is zero with the uncertainty of its position.
+pub(crate) fn of_known_attitudes(experiment: &Experiment, parameters: &Parameters) -> Vec<Prior> {
+    let known = parameters.iter().enumerate().filter_map(|(parameter, unknown)| {
+        let Kind::Attitude { position, .. } = unknown.kind else { return None };
+        let standard_uncertainty = experiment.positions[position].attitude_uncertainty?;
+        Some(Prior { parameter, mean: 0.0, standard_uncertainty })
+    });
+    known.collect()
 }
 
 /// Priors on all parameters that `name` selects.

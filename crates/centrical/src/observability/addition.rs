@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use nalgebra::{Matrix3, Vector3};
 
 use super::study::Study;
-use crate::model::{Experiment, FitError, Mounting, PairRelation, Position, SetPoint, Weight};
+use crate::model::{Experiment, FitError, MeasurementModel, Mounting, PairRelation, Position, SetPoint, Weight};
 
 /// One addition to an experiment.
 ///
@@ -21,7 +21,8 @@ pub enum Addition {
         /// `alpha_3` [rad].
         angle: f64,
     },
-    /// A rest in one more free attitude, with up along this direction in instrument axes.
+    /// A rest in one more free attitude, with up along this direction in instrument axes; known as well as those of the experiment
+    /// are, where all of them are known.
     Attitude(Vector3<f64>),
     /// A plateau at one more speed.
     Speed {
@@ -56,6 +57,12 @@ impl Addition {
     /// # Errors
     /// As [`Study::at_zero`].
     pub fn apply(&self, study: &Study) -> Result<Study, FitError> {
+        let (model, weights) = self.added_to(study);
+        Study::at_zero(model, weights)
+    }
+
+    /// The model and the weights of the experiment with the addition; new mountings stand last.
+    pub(super) fn added_to(&self, study: &Study) -> (MeasurementModel, Vec<Weight>) {
         let mut draft = Draft::of(study);
         let mut model = None;
         match self {
@@ -86,8 +93,7 @@ impl Addition {
             Self::Relation(relation) => draft.experiment.pair_relation = *relation,
         }
         let (experiment, weights) = draft.finish();
-        let model = model.unwrap_or_else(|| study.model().in_experiment(experiment));
-        Study::at_zero(model, weights)
+        (model.unwrap_or_else(|| study.model().in_experiment(experiment)), weights)
     }
 
     /// Rank of its kind in the order of cost, and the number of plateaus, mountings or fixtures it takes.
@@ -164,7 +170,14 @@ impl Draft {
     /// A rest in a free attitude.
     fn rest(&mut self, up_z: &Vector3<f64>) {
         let position = self.experiment.positions.len();
-        self.experiment.positions.push(Position::free(new_id(&self.experiment.positions), up_z));
+        let id = new_id(&self.experiment.positions);
+        let free = self.experiment.positions.iter().filter(|position| position.is_free);
+        let known: Option<Vec<f64>> = free.map(|position| position.attitude_uncertainty).collect();
+        let uncertainty = known.and_then(|known| known.into_iter().max_by(f64::total_cmp));
+        self.experiment.positions.push(match uncertainty {
+            Some(uncertainty) => Position::known(id, up_z, uncertainty),
+            None => Position::free(id, up_z),
+        });
         let mounting = self.experiment.mountings.len();
         self.experiment.mountings.push(Mounting { position, arm_y: Vector3::zeros() });
         self.add(std::iter::once(SetPoint::at_rest(mounting, 0.0)));

@@ -1,9 +1,10 @@
 //! Which attitude to add to rests that only gravity shows.
 
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DMatrix, Vector3};
 
 use super::addition::{Addition, cube_directions};
 use super::study::Study;
+use crate::model::Kind;
 
 /// The best attitude to add: of the faces, edges and corners of a cube, the one that brings back most, then the one that makes the
 /// coefficients of the error model most certain together.
@@ -13,43 +14,61 @@ pub struct NextAttitude {
     pub up_z: Vector3<f64>,
     /// Number of lost combinations that it brings back.
     pub gain: usize,
-    /// Standard uncertainties of the coefficients after it over those before, their geometric mean over independent directions;
-    /// 1 where a combination comes back, since it had none.
+    /// Standard uncertainties of the coefficients, and of the turn against the case where attitudes are known, after it over those
+    /// before, their geometric mean over independent directions; 1 where a combination comes back, since it had none.
     pub factor: f64,
     /// The coefficient that it improves most, by its index, and the same ratio of its uncertainty.
     pub most: Option<(usize, f64)>,
 }
 
+/// What a rest adds: `R` for the unknowns that all rests share, and `S`, the covariance of the errors of its equations.
+struct Equations {
+    rows: DMatrix<f64>,
+    covariance: DMatrix<f64>,
+}
+
 impl Study {
     /// The best attitude to add to rests in free attitudes, of those of a cube; `None` where the experiment has no such rest, or where
-    /// something is lost that no such attitude brings back. A new rest is as noisy as the median one.
+    /// something is lost that no such attitude brings back. A new rest is as noisy as the median one, and as well known as the others.
     ///
-    /// A rest in a free attitude is one equation for the coefficients, along the specific force. With the covariance `C` of the
-    /// coefficients, the row `r` of the equation and its variance `s^2`, the determinant of `C` shrinks by `1 + r C r^T / s^2`, and the
-    /// variance of coefficient `j` by `1 - (C r^T)_j^2 / (C_jj (s^2 + r C r^T))`.
+    /// A rest adds equations with the rows `R` and the covariance `S`: see [`Study::equations`]. With the covariance `C` of the
+    /// coefficients, and of the turn against the case where attitudes are known, the determinant of `C` shrinks by `det S / det M`,
+    /// `M = S + R C R^T`, and the variance of coefficient `j` by `1 - (C R^T M^-1 R C)_jj / C_jj`.
     pub fn next_attitude(&self) -> Option<NextAttitude> {
         let experiment = self.model().experiment();
         experiment.positions.iter().find(|position| position.is_free)?;
         if self.observability().lost() > 0 {
             return self.regaining_attitude();
         }
-        let (first, count) = (self.model().parameters().first_term(), self.model().error_model().terms.len());
-        let covariance = DMatrix::from_fn(count, count, |i, j| self.observability().covariance(first + i, first + j));
+        let shared = self.shared();
+        let count = shared.len();
+        let covariance = DMatrix::from_fn(count, count, |i, j| self.observability().covariance(shared[i], shared[j]));
         let mut best: Option<NextAttitude> = None;
         for up_z in cube_directions() {
-            let (row, variance) = self.equation(&up_z);
-            let change = &covariance * &row;
-            let shown = row.dot(&change);
-            let factor = (1.0 + shown / variance).powf(-0.5 / count as f64);
-            let ratio =
-                |j: usize| (1.0 - change[j].powi(2) / (covariance[(j, j)] * (variance + shown))).max(0.0).sqrt();
-            let most = (0..count).map(|j| (first + j, ratio(j))).min_by(|a, b| a.1.total_cmp(&b.1));
+            let Equations { rows, covariance: noise } = self.equations(&up_z, &shared);
+            let change = &rows * &covariance;
+            let before = noise.clone().cholesky()?;
+            let after = (noise + &change * rows.transpose()).cholesky()?;
+            let factor = (before.l_dirty().diagonal().component_div(&after.l_dirty().diagonal()))
+                .product()
+                .powf(1.0 / count as f64);
+            let whitened = after.l().solve_lower_triangular(&change)?;
+            let ratio = |j: usize| (1.0 - whitened.column(j).norm_squared() / covariance[(j, j)]).max(0.0).sqrt();
+            let terms = (0..count).filter(|&j| matches!(self.model().parameters()[shared[j]].kind, Kind::Term(_)));
+            let most = terms.map(|j| (shared[j], ratio(j))).min_by(|a, b| a.1.total_cmp(&b.1));
             // A later direction has to be better beyond rounding, so that the simplest of equal ones is taken.
             if best.as_ref().is_none_or(|best| factor < best.factor * (1.0 - 1e-9)) {
                 best = Some(NextAttitude { up_z, gain: 0, factor, most });
             }
         }
         best
+    }
+
+    /// What all rests in free attitudes share, by index: the coefficients, and the turn against the case where attitudes are known.
+    fn shared(&self) -> Vec<usize> {
+        let parameters = self.model().parameters().iter().enumerate();
+        let shared = parameters.filter(|(_, parameter)| matches!(parameter.kind, Kind::Term(_) | Kind::CaseTurn(_)));
+        shared.map(|(j, _)| j).collect()
     }
 
     /// The attitude that brings back most, and leaves the smallest singular value largest.
@@ -67,22 +86,52 @@ impl Study {
         best.map(|(gain, _, up_z)| NextAttitude { up_z, gain, factor: 1.0, most: None })
     }
 
-    /// The row of the equation that a rest with `up_z` adds for the coefficients, at zero: `u_i m_j(g u)` for the monomial `m_j` of
-    /// newtonometer `i`; and its variance, that of the median rest along its force [m^2/s^4].
-    fn equation(&self, up_z: &Vector3<f64>) -> (DVector<f64>, f64) {
-        let force = up_z * self.model().experiment().site.gravity;
-        let terms = &self.model().error_model().terms;
-        let row = terms.iter().map(|term| up_z[term.axis] * term.monomial.value(force.into()));
-        // What trembles in a hand is the attitude: across the force a rest is noisier than along it.
+    /// The equations that a rest with `up_z` adds for the unknowns `shared`, at zero.
+    ///
+    /// Where its attitude is unknown, `theta` takes two of the three equations of its mean, and the one along the specific force
+    /// remains: `R = u^T H`, `S = u^T N u`, `H` the design matrix and `N` the covariance of the mean. Where its attitude is known to
+    /// `u(theta)`, all three remain: `R = H`, `S = N + u(theta)^2 Theta Theta^T`, `Theta` the columns of `theta`.
+    fn equations(&self, up_z: &Vector3<f64>, shared: &[usize]) -> Equations {
+        let (model, weights) = Addition::Attitude(*up_z).added_to(self);
+        let parameters = model.parameters();
+        let new = weights[weights.len() - 1];
+        let set_point = &model.experiment().set_points[new.set_point];
+        let columns = model.linearise_at_zero(set_point).columns;
+        let mut rows = DMatrix::zeros(3, shared.len());
+        let mut theta = DMatrix::zeros(3, 0);
+        for (j, column) in &columns {
+            let parameter = &parameters[*j];
+            if let Some(at) = shared.iter().position(|&known| self.model().parameters()[known].name == parameter.name) {
+                rows.set_column(at, column);
+            } else {
+                theta = theta.insert_column(0, 0.0);
+                theta.set_column(0, column);
+            }
+        }
+        match model.experiment().position_of(set_point).attitude_uncertainty {
+            Some(uncertainty) => {
+                let noise = DMatrix::from_fn(3, 3, |i, j| new.covariance[(i, j)]);
+                Equations { rows, covariance: noise + &theta * theta.transpose() * uncertainty.powi(2) }
+            }
+            None => {
+                let along = DMatrix::from_fn(1, 3, |_, i| up_z[i]);
+                Equations { rows: along * rows, covariance: DMatrix::from_element(1, 1, self.variance_along_force()) }
+            }
+        }
+    }
+
+    /// Variance of the median rest along its force [m^2/s^4]: what trembles in a hand is the attitude, so that across the force a rest
+    /// is noisier.
+    fn variance_along_force(&self) -> f64 {
         let experiment = self.model().experiment();
         let mut variances: Vec<f64> = (self.weights().iter())
             .map(|weight| {
-                let along =
-                    experiment.position_of(&experiment.set_points[weight.set_point]).p_zy.column(2).into_owned();
+                let position = experiment.position_of(&experiment.set_points[weight.set_point]);
+                let along = position.p_zy.column(2).into_owned();
                 along.dot(&(weight.covariance * along))
             })
             .collect();
         variances.sort_by(f64::total_cmp);
-        (DVector::from_iterator(terms.len(), row), variances[variances.len() / 2])
+        variances[variances.len() / 2]
     }
 }

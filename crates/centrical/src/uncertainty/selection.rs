@@ -328,6 +328,11 @@ fn can_go(model: &MeasurementModel, kind: Kind) -> bool {
     match kind {
         Kind::Term(index) => model.error_model().terms[index].monomial.degree() >= 2,
         Kind::Effect(_) => true,
-        Kind::Tilt(_) | Kind::Turn { .. } | Kind::Shift { .. } | Kind::Attitude { .. } | Kind::ProofMass(_) => false,
+        Kind::Tilt(_)
+        | Kind::Turn { .. }
+        | Kind::Shift { .. }
+        | Kind::Attitude { .. }
+        | Kind::CaseTurn(_)
+        | Kind::ProofMass(_) => false,
     }
 }

@@ -3,8 +3,8 @@
 use centrical::observability::Addition;
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::{
-    Calibration, Combination, Data, ErrorModel, Experiment, MeasurementModel, Mounting, Observation, PairRelation,
-    Position, SetPoint, Source, Study, TypeB, Weight,
+    Calibration, Combination, Data, ErrorModel, Experiment, Kind, MeasurementModel, Mounting, Observation,
+    PairRelation, Position, SetPoint, Source, Study, TypeB, Weight,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -36,6 +36,14 @@ fn with_rests(mut experiment: Experiment, directions: &[Vector3<f64>]) -> Experi
         experiment.mountings.push(Mounting { position, arm_y: Vector3::zeros() });
         experiment.positions.push(Position::free(format!("r{}", n + 1), direction));
         experiment.set_points.push(SetPoint::at_rest(mounting, 0.0));
+    }
+    experiment
+}
+
+/// `experiment` with its free attitudes known to `uncertainty` [rad].
+fn known(mut experiment: Experiment, uncertainty: f64) -> Experiment {
+    for position in experiment.positions.iter_mut().filter(|position| position.is_free) {
+        position.attitude_uncertainty = Some(uncertainty);
     }
     experiment
 }
@@ -75,9 +83,13 @@ fn shown(model: &MeasurementModel) -> Vec<String> {
 
 #[test]
 fn the_derivatives_are_those_of_the_reading() {
-    let mut random = Random::new(5);
-    let model = kozlov(with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &cube()));
-    let x = truth(&model, 3.0, &mut random);
+    let free = with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &cube());
+    the_derivatives_are_those_of(&kozlov(known(free.clone(), 1e-3)));
+    the_derivatives_are_those_of(&kozlov(free));
+}
+
+fn the_derivatives_are_those_of(model: &MeasurementModel) {
+    let x = truth(model, 3.0, &mut Random::new(5));
     for set_point in &model.experiment().set_points {
         let mut difference = vec![Vector3::zeros(); x.len()];
         for (j, parameter) in model.parameters().iter().enumerate() {
@@ -103,7 +115,12 @@ fn the_derivatives_are_those_of_the_reading() {
 /// The linear model is the exact one at zero.
 #[test]
 fn the_linear_model_is_the_exact_one_at_zero() {
-    let model = kozlov(with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &cube()));
+    let free = with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &cube());
+    the_linear_model_is_the_exact_one_of(&kozlov(known(free.clone(), 1e-3)));
+    the_linear_model_is_the_exact_one_of(&kozlov(free));
+}
+
+fn the_linear_model_is_the_exact_one_of(model: &MeasurementModel) {
     let zero = vec![0.0; model.parameters().len()];
     for set_point in model.experiment().set_points.iter().filter(|s| !model.experiment().is_on_arm(s.mounting)) {
         let (linear, exact) = (model.linearise_at_zero(set_point), model.linearise(set_point, &zero));
@@ -157,6 +174,62 @@ fn errors_are_as_large_as_stated() {
     }
     let ratio = sum / count as f64;
     // Four standard deviations of a mean of squares.
+    assert!((ratio - 1.0).abs() < 4.0 * (2.0 / count as f64).sqrt(), "{ratio}");
+}
+
+/// Known attitudes show on six faces what gravity alone does not: the misalignments, and the turn against the case, no better than the
+/// attitudes are known.
+#[test]
+fn faces_in_known_attitudes_show_the_whole_linear_model() {
+    let uncertainty = 1e-3;
+    let model = rests_alone(&faces(), 2);
+    let model = model.in_experiment(known(model.experiment().clone(), uncertainty));
+    assert_eq!(shown(&model).len(), 9);
+    let mut random = Random::new(30);
+    let truth = truth(&model, 1.0, &mut random);
+    let fit = exact(&model, &observed(&model, &truth, &mut random)).unwrap();
+    let u = |name: &str| fit.standard_uncertainty(model.parameters().find(name).unwrap()).unwrap();
+    // Each element of the matrix is read on two opposite faces, each tilted by its own `theta`.
+    let element = uncertainty / 2.0_f64.sqrt();
+    // The elements (i, j) and (j, i) make the misalignment and the turn.
+    for (name, expected) in [("case_turn_1", element), ("case_turn_2", element), ("G0_32", element * 2.0_f64.sqrt())] {
+        assert!((u(name) / expected - 1.0).abs() < 0.02, "{name}: {} of {expected}", u(name));
+    }
+    for name in ["G0_11", "G0_22", "G0_33"] {
+        assert!(u(name) < 1e-5, "{name}: {}", u(name));
+    }
+}
+
+/// As above for known attitudes, each set with its own errors about the attitudes stated; the turn against the case is one of the
+/// estimates.
+#[test]
+fn errors_in_known_attitudes_are_as_large_as_stated() {
+    const RUNS: usize = 200;
+    const UNCERTAINTY: f64 = 2e-3;
+    let mut random = Random::new(9);
+    let (mut sum, mut count) = (0.0, 0);
+    for run in 0..RUNS {
+        let model = rests_alone(&random_directions(6 + run % 12, &mut random), 2);
+        let model = model.in_experiment(known(model.experiment().clone(), UNCERTAINTY));
+        let mut truth = truth(&model, 3.0, &mut random);
+        for (j, parameter) in model.parameters().iter().enumerate() {
+            match parameter.kind {
+                Kind::Attitude { .. } => truth[j] = UNCERTAINTY * random.normal(),
+                Kind::CaseTurn(_) => truth[j] = 0.02 * random.normal(),
+                _ => {}
+            }
+        }
+        let fit = exact(&model, &observed(&model, &truth, &mut random)).unwrap();
+        let is_own = |j: &usize| !matches!(model.parameters()[*j].kind, Kind::Attitude { .. });
+        let own: Vec<usize> = (0..truth.len()).filter(is_own).collect();
+        let error = nalgebra::DVector::from_fn(own.len(), |a, _| fit.value(own[a]).unwrap() - truth[own[a]]);
+        let covariance =
+            nalgebra::DMatrix::from_fn(own.len(), own.len(), |a, b| fit.covariance(own[a], own[b]).unwrap());
+        sum += error.dot(&covariance.cholesky().unwrap().solve(&error));
+        count += own.len();
+    }
+    assert_eq!(count, 12 * RUNS);
+    let ratio = sum / count as f64;
     assert!((ratio - 1.0).abs() < 4.0 * (2.0 / count as f64).sqrt(), "{ratio}");
 }
 
@@ -237,18 +310,29 @@ fn the_next_attitude_brings_back_what_it_says() {
 /// The ratios of a study with nothing lost against the uncertainties with the attitude added, of each of the 26: none does better.
 #[test]
 fn the_next_attitude_improves_as_it_says_and_no_other_does_better() {
+    the_next_attitude_improves_as_it_says(None);
+    the_next_attitude_improves_as_it_says(Some(1e-3));
+}
+
+fn the_next_attitude_improves_as_it_says(uncertainty: Option<f64>) {
     let mut random = Random::new(17);
     let directions = random_directions(14, &mut random);
     let study = |directions: &[Vector3<f64>]| {
-        let model = rests_alone(directions, 2);
+        let mut model = rests_alone(directions, 2);
+        if let Some(uncertainty) = uncertainty {
+            model = model.in_experiment(known(model.experiment().clone(), uncertainty));
+        }
         let set_points = 0..model.experiment().set_points.len();
         let weights = set_points.map(|set_point| Weight { set_point, covariance: Matrix3::identity() * NOISE * NOISE });
         Study::at_zero(model.clone(), weights.collect()).unwrap()
     };
-    // Logarithm of the volume of the ellipsoid of the coefficients, by the uncertainties in the order of their elimination.
+    // Logarithm of the volume of the ellipsoid of the coefficients and of the turn against the case.
+    let terms = |study: &Study| -> Vec<usize> {
+        let parameters = study.model().parameters().iter().enumerate();
+        parameters.filter(|(_, p)| !matches!(p.kind, Kind::Attitude { .. })).map(|(j, _)| j).collect()
+    };
     let volume = |study: &Study| {
-        let parameters = study.model().parameters();
-        let terms: Vec<usize> = (0..parameters.len()).filter(|&j| parameters[j].is_of_instrument()).collect();
+        let terms = terms(study);
         let variance = |a: &[(usize, f64)]| {
             study.observability().standard_uncertainty(&Combination::new(a.iter().copied())).unwrap().powi(2)
         };
@@ -273,8 +357,8 @@ fn the_next_attitude_improves_as_it_says_and_no_other_does_better() {
         if (direction - next.up_z).norm() < 1e-9 {
             assert!((factor - next.factor).abs() < 1e-9, "{factor} {next:?}");
             let (j, ratio) = next.most.unwrap();
-            let first = before.model().parameters().iter().position(centrical::Parameter::is_of_instrument).unwrap();
-            let seen = (covariance[(j - first, j - first)] / covariance_before[(j - first, j - first)]).sqrt();
+            let j = terms(&before).iter().position(|term| *term == j).unwrap();
+            let seen = (covariance[(j, j)] / covariance_before[(j, j)]).sqrt();
             assert!((seen - ratio).abs() < 1e-9, "{seen} {next:?}");
         }
     }

@@ -133,8 +133,14 @@ impl ModelSummary {
 
 impl PositionSummary {
     fn new(position: &Position) -> Self {
-        let Position { id, p_zy, pair, is_free } = position;
-        Self { id: id.clone(), pair: pair.clone(), matrix: rows(p_zy), is_free: *is_free }
+        let Position { id, p_zy, pair, is_free, attitude_uncertainty } = position;
+        Self {
+            id: id.clone(),
+            pair: pair.clone(),
+            matrix: rows(p_zy),
+            is_free: *is_free,
+            attitude_uncertainty: *attitude_uncertainty,
+        }
     }
 }
 

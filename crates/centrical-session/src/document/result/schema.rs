@@ -172,11 +172,14 @@ pub struct PositionSummary {
     pub id: String,
     /// Name of its pair.
     pub pair: String,
-    /// `P_k`, row by row: takes arm axes to instrument axes.
+    /// `P_k`, row by row: takes arm axes to instrument axes; of an attitude that is known, to axes of the case.
     pub matrix: [[f64; 3]; 3],
     /// Whether the unit rested here in an attitude of its own, not on the arm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_free: bool,
+    /// Standard uncertainty of an attitude that is known, about each horizontal axis [rad].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude_uncertainty: Option<f64>,
 }
 
 /// A term of the error model.

@@ -118,7 +118,7 @@ fn belongs(model: &MeasurementModel, column: usize, set_point: &SetPoint) -> boo
             model.parameters().shift_of(position).is_some_and(|shift| shift.column + axis == column)
         }
         Kind::Effect(effect) => acts_on(experiment, effect, set_point.mounting),
-        Kind::Tilt(_) | Kind::ProofMass(_) | Kind::Term(_) => true,
+        Kind::Tilt(_) | Kind::CaseTurn(_) | Kind::ProofMass(_) | Kind::Term(_) => true,
     }
 }
 
