@@ -1,7 +1,10 @@
-"""Makes `record.csv` and `truth.json`: a unit turned by hand into 24 attitudes, 2 to 4 s each, 50 Hz. Needs NumPy.
+"""Makes `record.csv`, `attitudes.csv` and `truth.json`: a unit turned by hand into 24 attitudes, 2 to 4 s each, 50 Hz. Needs NumPy.
 
 Readings are `f + df + G0 f`, with white noise, noise of a correlation time of a second, and the tremor of a hand: the attitude
 trembles, the size of gravity does not. One rest is bumped. From one attitude to the next the unit turns in 1 to 2 s and is shaken.
+
+The attitudes are those of the case, against which the instrument is turned by `case_turn`, with an error of 1 mrad about either
+horizontal axis, in a shuffled order.
 """
 
 import json
@@ -11,6 +14,8 @@ import numpy as np
 
 HERE = Path(__file__).parent
 RATE, GRAVITY = 50.0, 9.81523
+ATTITUDE_ERROR = 1e-3
+CASE_TURN = np.array([8e-3, -5e-3, 12e-3])
 WHITE, SLOW, TREMOR = 4e-3, 5e-4, 1e-3
 DF = np.array([0.12, -0.08, 0.21])
 G0 = np.array([[3.1e-3, 0, 0], [-4.2e-3, -1.7e-3, 0], [6.5e-3, 2.4e-3, 4.4e-3]])
@@ -25,6 +30,21 @@ def markov(random, count, seconds):
         value = keep * value + np.sqrt(1 - keep**2) * random.normal(size=3)
         values[i] = value
     return values
+
+
+def in_case(directions):
+    """The directions as a laboratory states them: in axes of the case, with errors, shuffled.
+
+    `rotation(v)` takes coordinates in the case to those in the instrument: a turn by `-v` in the usual sense.
+    """
+    random = np.random.default_rng(25)
+    angle = np.linalg.norm(CASE_TURN)
+    x, y, z = CASE_TURN / angle
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    to_case = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    stated = directions @ to_case.T
+    stated += ATTITUDE_ERROR * np.cross(random.normal(size=stated.shape), stated)
+    return random.permutation(stated / np.linalg.norm(stated, axis=1, keepdims=True))
 
 
 def main():
@@ -51,7 +71,9 @@ def main():
     readings = force + DF + force @ G0.T + noise
     lines = [f"{i / RATE:.2f},{a:.4f},{b:.4f},{c:.4f}" for i, (a, b, c) in enumerate(readings)]
     (HERE / "record.csv").write_text("t,f1,f2,f3\n" + "\n".join(lines) + "\n")
-    truth = {"gravity": GRAVITY, "rests": 24, "df": DF.tolist(), "G0": G0.tolist()}
+    lines = [",".join(f"{component:.6f}" for component in up) for up in in_case(directions)]
+    (HERE / "attitudes.csv").write_text("up_1,up_2,up_3\n" + "\n".join(lines) + "\n")
+    truth = {"case_turn": CASE_TURN.tolist(), "gravity": GRAVITY, "rests": 24, "df": DF.tolist(), "G0": G0.tolist()}
     (HERE / "truth.json").write_text(json.dumps(truth, indent=1) + "\n")
 
 

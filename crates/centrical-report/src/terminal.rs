@@ -14,6 +14,7 @@ mod observe;
 mod pattern;
 mod plan;
 mod prediction;
+mod priors;
 mod rests;
 mod rests_on;
 mod rivals;

@@ -229,8 +229,8 @@ pub enum NoErrorModel {
     },
     /// The turns do not show the attitude of the case.
     #[error(
-        "found {positions} positions on an arm whose turns delta_1, delta_2, delta_3 are all determined, expected two or more: the \
-         error of one seat cannot be separated from the attitude of the case"
+        "found {positions} positions on an arm whose turns delta_1, delta_2, delta_3 are all determined, expected two or more, since the \
+         error of one seat cannot be separated from the attitude of the case, or rests in known attitudes"
     )]
     Case {
         /// Positions that determine all three turns.

@@ -109,7 +109,7 @@ impl Reduced {
 
     /// With the rests of the session, which are averaged already, behind its plateaus.
     pub(crate) fn with_rests(mut self, session: &Session) -> Self {
-        self.plateaus.extend(session.rests.iter().map(ReducedPlateau::from));
+        self.plateaus.extend(session.rests().map(ReducedPlateau::from));
         if !self.speeds.is_empty() {
             self.speeds.resize(self.plateaus.len(), None);
         }

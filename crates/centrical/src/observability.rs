@@ -15,7 +15,7 @@ mod reason;
 mod remedy;
 mod study;
 
-pub use addition::{Addition, attitude_in_words};
+pub use addition::{Addition, attitude_in_words, cube_directions};
 pub use attitude::NextAttitude;
 pub use combination::{Combination, CombinationError};
 pub use condition::{Condition, Need};

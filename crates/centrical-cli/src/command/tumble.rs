@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::{read_issuer, terminal_table, unit_text, verdict_text, write_all_documents};
 use centrical_session::{
-    ColumnName, Dimension, Error, NotThatQuantity, STANDARD_GRAVITY, TumbleRequest, claim_folder, refuse_inputs,
-    tumble, unwatched,
+    ColumnName, Dimension, Error, NotThatQuantity, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder,
+    refuse_inputs, tumble, unwatched,
 };
 
 use crate::command::calibrate::outputs;
@@ -39,6 +39,13 @@ pub struct Arguments {
     /// Standard uncertainty of gravity [default: 0.02 m/s^2, or 0 for a gravity that is given]
     #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
     gravity_uncertainty: Option<f64>,
+    /// Attitudes in which the unit was laid down: a table of up_1, up_2, up_3 in axes of the case, or "cube" for its faces,
+    /// edges and corners
+    #[arg(long, value_name = "FILE|cube", requires = "attitude_uncertainty")]
+    attitudes: Option<PathBuf>,
+    /// Standard uncertainty of these attitudes, such as "0.1 deg"
+    #[arg(long, value_name = "QUANTITY", value_parser = angle, requires = "attitudes")]
+    attitude_uncertainty: Option<f64>,
     /// Terms of the error model, as in experiment.toml
     #[arg(long, value_name = "TERMS", value_delimiter = ',', default_values_t = TumbleRequest::USUAL_TERMS.map(str::to_owned))]
     terms: Vec<String>,
@@ -72,6 +79,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         unit: arguments.unit.clone(),
         gravity: arguments.gravity.unwrap_or(STANDARD_GRAVITY),
         gravity_uncertainty: arguments.gravity_uncertainty.unwrap_or(uncertain),
+        attitudes: (arguments.attitudes.iter().zip(arguments.attitude_uncertainty))
+            .map(|(name, uncertainty)| StatedAttitudes::named(name, uncertainty))
+            .next()
+            .transpose()?,
         terms: arguments.terms.clone(),
         serial: arguments.serial.clone(),
         date: arguments.date.clone(),
@@ -79,13 +90,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let out = arguments.out.as_deref();
     let claim = out.map(claim_folder).transpose()?;
     let laboratory = arguments.documents.laboratory.as_deref();
-    let read: Vec<&Path> = request.files.iter().map(PathBuf::as_path).chain(laboratory).collect();
+    let read: Vec<&Path> = request.inputs().chain(laboratory).collect();
     refuse_inputs(&outputs(out, None), &read)?;
     let mut tumble = tumble(&request, out.unwrap_or(Path::new("")), &unwatched)?;
     tumble.result = arguments.documents.in_axes(tumble.result, &request.files[0])?;
     let issuer = laboratory.map(|file| read_issuer(file, &tumble.result)).transpose()?;
     if let Some(folder) = out {
-        tumble.write(&request.files, folder)?;
+        tumble.write(&request, folder)?;
         write_all_documents(&tumble.result, issuer.as_ref(), arguments.documents.language.into(), folder)?;
     }
     drop(claim);
@@ -112,6 +123,10 @@ fn three_columns(text: &str) -> Result<Columns, String> {
     let columns = text.split(',').map(column_name).collect::<Result<Vec<_>, _>>()?;
     let columns = <[ColumnName; 3]>::try_from(columns);
     columns.map(Columns).map_err(|found| format!("found {} columns, expected three", found.len()))
+}
+
+fn angle(text: &str) -> Result<f64, NotThatQuantity> {
+    quantity(text, Dimension::Angle)
 }
 
 fn acceleration(text: &str) -> Result<f64, NotThatQuantity> {

@@ -69,7 +69,7 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
-    if !session.rests.is_empty() {
+    if !session.rest_tables.is_empty() {
         let mut screen = Screen::default();
         screen.say(0, "The rests of [[tumble]] are not watched: `centrical calibrate` adds them.");
         remark(&screen);

@@ -7,6 +7,7 @@ a second.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -64,6 +65,8 @@ def tumble(
     unit: str = "m/s^2",
     gravity: Quantity | None = None,
     gravity_uncertainty: Quantity | None = None,
+    attitudes: Path | Iterable[Iterable[float]] | None = None,
+    attitude_uncertainty: Quantity | None = None,
     terms: Iterable[str] | None = None,
     serial: str = "",
     date: str = "",
@@ -81,17 +84,26 @@ def tumble(
         Of the readings: of acceleration, or ``"counts"`` or ``"V"``, whose scale and bias are found.
     gravity
         At the place [m/s^2]; 9.80665 m/s^2, uncertain by 0.02 m/s^2, if it is not given.
+    attitudes
+        Attitudes in which the unit was laid down, where they are known, in any order: an array of shape ``(n, 3)`` of the
+        direction of up in axes of the case, the path of such a table, or ``"cube"`` for its faces, edges and corners.
+    attitude_uncertainty
+        Their standard uncertainty [rad], or a text such as ``"0.1 deg"``.
     terms
         Of the error model, as in ``experiment.toml``; bias, scale and misalignment if there are none.
     out
         A folder for ``result.json``, the rests as a session, the report and its plots.
     """
     given = [str(name) for name in terms] if terms is not None else None
+    if attitudes is None and attitude_uncertainty is not None:
+        raise ValueError("attitude_uncertainty: found one without attitudes, expected attitudes that are this uncertain")
+    if attitudes is not None and not isinstance(attitudes, (str, os.PathLike)):
+        attitudes = [[float(component) for component in up] for up in attitudes]
+    known = None if attitudes is None else (attitudes, attitude_uncertainty)
+    at = (gravity, gravity_uncertainty)
     with Bar("finding rests") as shown:
         return Result(
-            _native.tumble(
-                paths(records), time, rate, list(readings), unit, (gravity, gravity_uncertainty), given, serial, date, out, shown
-            )
+            _native.tumble(paths(records), time, rate, list(readings), unit, at, known, given, serial, date, out, shown)
         )
 
 

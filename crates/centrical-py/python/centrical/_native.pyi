@@ -180,6 +180,7 @@ def tumble(
     readings: Sequence[str | int],
     unit: str,
     gravity: tuple[_Quantity | None, _Quantity | None],
+    attitudes: tuple[_Path | Sequence[Sequence[float]], _Quantity | None] | None,
     terms: Sequence[str] | None,
     serial: str,
     date: str,

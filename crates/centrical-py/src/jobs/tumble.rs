@@ -3,12 +3,24 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{Language, write_all_documents};
-use centrical_session::{Dimension, STANDARD_GRAVITY, TumbleRequest, claim_folder, refuse_inputs};
+use centrical_session::{
+    Dimension, Error, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder, refuse_inputs,
+};
+use nalgebra::Vector3;
 use pyo3::prelude::*;
 
 use crate::progress::{self, Shown};
 use crate::result::CalibrationResult;
-use crate::words::{Amount, Named, column, sampling_rate};
+use crate::words::{Amount, Named, column, refused, sampling_rate};
+
+/// Attitudes in which the unit was laid down.
+#[derive(FromPyObject)]
+pub enum Attitudes {
+    /// A table of them, or `"cube"`.
+    Table(PathBuf),
+    /// Where up is, axes of the case, of any length.
+    Directions(Vec<[f64; 3]>),
+}
 
 /// The result of records; into the folder `out` as well, with the rests as a session and the report, if one is given.
 #[pyfunction]
@@ -21,6 +33,7 @@ pub fn tumble(
     readings: [Named; 3],
     unit: String,
     gravity: [Option<Amount>; 2],
+    attitudes: Option<(Attitudes, Option<Amount>)>,
     terms: Option<Vec<String>>,
     serial: String,
     date: String,
@@ -31,7 +44,7 @@ pub fn tumble(
     let [gravity, uncertainty] = gravity.map(|amount| Amount::optional(amount, "gravity", Dimension::Acceleration));
     let (gravity, uncertainty) = (gravity?, uncertainty?);
     let anywhere = if gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
-    let request = TumbleRequest {
+    let mut request = TumbleRequest {
         files: records,
         time: column("time", time)?,
         rate: sampling_rate(rate)?,
@@ -39,22 +52,52 @@ pub fn tumble(
         unit,
         gravity: gravity.unwrap_or(STANDARD_GRAVITY),
         gravity_uncertainty: uncertainty.unwrap_or(anywhere),
+        attitudes: None,
         terms: terms.unwrap_or_else(|| TumbleRequest::USUAL_TERMS.map(str::to_owned).to_vec()),
         serial,
         date,
     };
+    let attitudes = attitudes.map(|(attitudes, uncertainty)| checked(attitudes, uncertainty)).transpose()?;
     let result = progress::run(py, &shown, |work| {
+        request.attitudes = attitudes.map(|(attitudes, uncertainty)| stated(attitudes, uncertainty)).transpose()?;
         let folder = out.as_deref().unwrap_or(Path::new(""));
         let claim = out.as_deref().map(claim_folder).transpose()?;
-        let read: Vec<&Path> = request.files.iter().map(PathBuf::as_path).collect();
+        let read: Vec<&Path> = request.inputs().collect();
         refuse_inputs(&["result.json", "report.html"].map(|name| folder.join(name)), &read)?;
         let tumble = centrical_session::tumble(&request, folder, &|bytes| work.advance(bytes))?;
         if out.is_some() {
-            tumble.write(&request.files, folder)?;
+            tumble.write(&request, folder)?;
             write_all_documents(&tumble.result, None, Language::English, folder)?;
         }
         drop(claim);
         Ok(tumble.result)
     })?;
     Ok(result.into())
+}
+
+/// Directions that are none, and a missing uncertainty, are errors of the call.
+fn checked(attitudes: Attitudes, uncertainty: Option<Amount>) -> PyResult<(Attitudes, f64)> {
+    let uncertainty = Amount::optional(uncertainty, "attitude_uncertainty", Dimension::Angle)?;
+    let missing =
+        || refused("attitude_uncertainty", "found None beside attitudes, expected an angle such as \"0.1 deg\"");
+    if let Attitudes::Directions(directions) = &attitudes {
+        let is_direction = |up_b: &[f64; 3]| up_b.iter().all(|c| c.is_finite()) && up_b.iter().any(|c| *c != 0.0);
+        if let Some(wrong) = directions.iter().find(|up_b| !is_direction(up_b)) {
+            return Err(refused(
+                "attitudes",
+                format!("found {wrong:?}, expected a direction of finite numbers, not all zero"),
+            ));
+        }
+    }
+    Ok((attitudes, uncertainty.ok_or_else(missing)?))
+}
+
+fn stated(attitudes: Attitudes, uncertainty: f64) -> Result<StatedAttitudes, Error> {
+    match attitudes {
+        Attitudes::Table(table) => StatedAttitudes::named(&table, uncertainty),
+        Attitudes::Directions(directions) => {
+            let up_b = directions.into_iter().map(|up_b| Vector3::from(up_b).normalize()).collect();
+            Ok(StatedAttitudes { up_b, uncertainty, file: None })
+        }
+    }
 }

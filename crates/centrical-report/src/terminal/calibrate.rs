@@ -8,9 +8,10 @@ use centrical_session::{
 use super::axes::axes as other_axes;
 use super::drift::drift;
 use super::pattern::pattern_in_words;
+use super::priors::priors as prior_table;
 use super::rests::rests;
 use super::rests_on::rests_on_text;
-use super::rivals::lines_of;
+use super::rivals::changes_for;
 use super::screen::{Emphasis, Screen};
 use super::symbols::{Symbol, legend};
 use super::table::{Align, Cell, Table};
@@ -143,7 +144,8 @@ fn others(screen: &mut Screen, result: &CalibrationResult) {
         return;
     }
     screen.gap();
-    screen.head("EXTENSIONS", "");
+    let is_of_case = others.iter().all(|p| p.group == Group::CaseTurn);
+    screen.head(if is_of_case { "CASE" } else { "EXTENSIONS" }, "");
     let mut table = Table::new(2, [("", Align::Left), ("unit", Align::Left), ("value", Align::Right)]);
     for parameter in &others {
         let unit = customary(&parameter.unit, parameter.group).1;
@@ -219,15 +221,11 @@ fn priors(screen: &mut Screen, result: &CalibrationResult) {
     }
     screen.gap();
     screen.head("PRIORS", "standard uncertainty after the data over that before");
-    let mut table = Table::new(1, [("", Align::Left), ("", Align::Right)]);
-    for (parameter, prior) in given {
-        table.row([parameter.name.as_str().into(), format!("{:.3}", prior.posterior_over_prior).into()]);
-    }
-    screen.table(table);
-    let resting = result.parameters.iter().filter(|p| p.rests_on_prior);
+    screen.table(prior_table(given.iter().map(|(p, prior)| (p.name.as_str(), p.group, prior.posterior_over_prior))));
+    let resting = result.parameters.iter().filter(|p| p.rests_on_prior && p.group != Group::Attitude);
     let resting: Vec<&str> = resting.map(|p| p.name.as_str()).collect();
     if !resting.is_empty() {
-        screen.say(2, &format!("without the priors these would have no value: {}", resting.join(", ")));
+        screen.sentence(2, 4, &format!("without the priors these would have no value: {}", resting.join(", ")));
     }
 }
 
@@ -364,7 +362,7 @@ fn rivals(screen: &mut Screen, validity: &ValiditySummary) {
         );
     }
     if let Some(first) = shown.first().and_then(RivalSummary::rival) {
-        screen.fact("", &format!("models fits it in full; to add it: {}", lines_of(&[first]).join("; ")));
+        screen.fact("", &format!("models fits it in full; to have it in the model: {}", changes_for(&[first])));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use centrical::uncertainty::Selection;
 
-use super::rivals::lines_of;
+use super::rivals::changes_for;
 use super::screen::{Emphasis, Screen};
 use super::table::{Align, Cell, Table};
 use crate::number::counted;
@@ -49,8 +49,8 @@ fn recommendation(screen: &mut Screen, selection: &Selection) {
     };
     screen.marked(Emphasis::Heading, "RECOMMENDED", &meaning);
     if !best.rivals.is_empty() {
-        let lines = lines_of(&best.rivals).join("; ");
-        screen.say(2, &format!("in experiment.toml, under [model]: {lines}"));
+        let changes = changes_for(&best.rivals);
+        screen.say(2, &format!("in experiment.toml, under [model]: {changes}"));
     }
     for reason in reasons(selection) {
         screen.say(2, &reason);

@@ -1,12 +1,13 @@
 //! What an experiment can see, as text for the terminal.
 
+use centrical::Group;
 use centrical_session::{
     ConditionReport, ObservabilityReport, ObservedParameter, RemedyReport, customary, harmless_line,
 };
 
 use super::prediction::prediction_text;
+use super::priors::priors as prior_table;
 use super::screen::Screen;
-use super::table::{Align, Table};
 use crate::number::{counted, two_digits};
 
 /// Remedies beyond these only raise the rank, and the list is long enough.
@@ -173,12 +174,9 @@ fn priors(screen: &mut Screen, report: &ObservabilityReport) {
     }
     screen.gap();
     screen.head("PRIORS", "standard uncertainty after the data over that before");
-    let mut table = Table::new(1, [("", Align::Left), ("", Align::Right)]);
-    for (parameter, prior) in given {
-        table.row([parameter.name.as_str().into(), format!("{:.3}", prior.posterior_over_prior).into()]);
-    }
-    screen.table(table);
-    let resting: Vec<&str> = report.parameters.iter().filter(|p| p.rests_on_prior).map(|p| p.name.as_str()).collect();
+    screen.table(prior_table(given.iter().map(|(p, prior)| (p.name.as_str(), p.group, prior.posterior_over_prior))));
+    let resting = report.parameters.iter().filter(|p| p.rests_on_prior && p.group != Group::Attitude);
+    let resting: Vec<&str> = resting.map(|p| p.name.as_str()).collect();
     if !resting.is_empty() {
         screen.sentence(2, 2, &format!("without the priors these would be lost: {}", resting.join(", ")));
     }

@@ -12,7 +12,8 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
         return;
     }
     screen.gap();
-    screen.head("RESTS", "in attitudes that only gravity shows");
+    let known: Vec<f64> = result.model.positions.iter().filter_map(|position| position.attitude_uncertainty).collect();
+    screen.head("RESTS", if known.is_empty() { "in attitudes that only gravity shows" } else { "" });
     let lengths = rests.iter().filter_map(|rest| rest.window).map(|[from, to]| to - from);
     let (shortest, longest) =
         lengths.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), t| (low.min(t), high.max(t)));
@@ -21,6 +22,14 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
         screen.say(2, &format!("{found}, of {shortest:.1} s to {longest:.1} s"));
     } else {
         screen.say(2, &found);
+    }
+    if !known.is_empty() {
+        let (low, high) = known.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), u| (low.min(*u), high.max(*u)));
+        let degrees = |u: f64| format!("{:.2} deg", u.to_degrees());
+        let uncertain = if low < high { format!("{} to {}", degrees(low), degrees(high)) } else { degrees(low) };
+        let rest = rests.len() - known.len();
+        let others = if rest == 0 { String::new() } else { format!(", {rest} in attitudes that only gravity shows") };
+        screen.say(2, &format!("{} in attitudes known to {uncertain}{others}", known.len()));
     }
     let misfits: Vec<f64> = rests.iter().filter_map(|rest| misfit(rest)).collect();
     let square: f64 = misfits.iter().map(|misfit| misfit * misfit).sum();

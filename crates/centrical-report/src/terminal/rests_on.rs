@@ -3,7 +3,7 @@
 use centrical::{Extension, Rival};
 use centrical_session::RestsOn;
 
-use super::rivals::lines_of;
+use super::rivals::changes_for;
 use super::screen::Screen;
 use crate::document::rests_on_sentence;
 use crate::language::Language;
@@ -31,16 +31,16 @@ pub(super) fn rests_on_text(effects: &[RestsOn]) -> Screen {
 /// What protects against an effect: an unknown where it costs little, else a bound.
 fn protection(effect: &RestsOn) -> String {
     let bound = effect.name.replace('-', "_");
-    let line = effect.rival().map(|rival| lines_of(&[rival]).join("; ")).unwrap_or_default();
+    let change = effect.rival().map(|rival| changes_for(&[rival])).unwrap_or_default();
     if let Some(Rival::Effect(Extension::OneMounting(_, mounting))) = effect.rival() {
         return format!("protect: mount the unit again as in mounting {}", mounting + 1);
     }
     match effect.price_as_unknown {
         Some(price) if price < CHEAP => {
-            format!("protect: {line}, at {price:.2} times the uncertainty of {}", effect.parameter)
+            format!("protect: {change}, at {price:.2} times the uncertainty of {}", effect.parameter)
         }
         Some(price) => format!(
-            "protect: state {bound} under [uncertainty]; or {line}, at {price:.1} times the uncertainty of {}",
+            "protect: state {bound} under [uncertainty]; or {change}, at {price:.1} times the uncertainty of {}",
             effect.parameter
         ),
         None => format!(

@@ -2,24 +2,23 @@
 
 use centrical::{Extension, Rival};
 
-/// The lines of `[model]` in `experiment.toml` that put rivals into the model, beside what stands there.
-pub(super) fn lines_of(rivals: &[Rival]) -> Vec<String> {
-    let mut terms: Vec<&str> = Vec::new();
+/// What to change under `[model]` in `experiment.toml` to put rivals into the model: `add "jump" to error_model`.
+pub(super) fn changes_for(rivals: &[Rival]) -> String {
+    let mut terms: Vec<String> = Vec::new();
     let mut extensions: Vec<String> = Vec::new();
-    let mut lines = Vec::new();
+    let mut changes = Vec::new();
     for rival in rivals {
         match rival {
-            Rival::Terms(extra) => terms.push(extra.name()),
-            Rival::Effect(Extension::PositionShift) => lines.push("pair_relation = \"free\"".to_owned()),
+            Rival::Terms(extra) => terms.push(extra.name().to_owned()),
+            Rival::Effect(Extension::PositionShift) => changes.push("set pair_relation = \"free\"".to_owned()),
             Rival::Effect(extension) => extensions.push(extension.name()),
         }
     }
-    if !terms.is_empty() {
-        let terms: Vec<String> = terms.iter().map(|name| format!("{name:?}")).collect();
-        lines.push(format!("error_model = [\"kozlov-2017\", {}]", terms.join(", ")));
+    for (key, names) in [("error_model", terms), ("extensions", extensions)] {
+        if !names.is_empty() {
+            let names: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
+            changes.push(format!("add {} to {key}", names.join(", ")));
+        }
     }
-    if !extensions.is_empty() {
-        lines.push(format!("extensions = {extensions:?}"));
-    }
-    lines
+    changes.join("; ")
 }

@@ -6,19 +6,19 @@ use std::path::{Path, PathBuf};
 use centrical::TypeB;
 use centrical::reduction::{PulseTrain, Record, SpeedTrace};
 use centrical::{
-    Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, Mounting, PairRelation, Position, Rotation,
-    SetPoint, Site,
+    Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, Mounting, PairRelation, Rotation, SetPoint, Site,
 };
 use nalgebra::Vector3;
 
 use super::form::{Form, ModelTable, RecordEntry, SiteTable};
-use super::plateaus::{PlateauMean, PlateauTable, read_plateaus};
+use super::plateaus::{PlateauMean, PlateauTable};
 use super::prior::{self, PriorEntry};
+use super::rests::RestTable;
 use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
 use super::unit::OutputUnit;
 use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
-use crate::error::{Error, Place, quoted};
+use crate::error::{Error, quoted};
 use crate::quantity::Dimension;
 use crate::record::{Columns, read_pulses, read_records, read_telemetry};
 use crate::settings::{from_toml, read_settings};
@@ -61,10 +61,8 @@ pub struct Session {
     pub mountings: Vec<MountingFiles>,
     /// Plateaus already averaged, if the session brings them instead of records.
     pub plateaus: Option<PlateauTable>,
-    /// Rests in free attitudes, each a mounting behind the others: their means, from tables of their own.
-    pub rests: Vec<PlateauMean>,
-    /// The tables of the rests.
-    pub rest_files: Vec<PathBuf>,
+    /// Tables of rests in free attitudes, each rest a mounting behind the others.
+    pub rest_tables: Vec<RestTable>,
     /// Duration that the schedule states for each set point, if it does [s].
     pub durations: Vec<Option<f64>>,
     priors: Vec<PriorEntry>,
@@ -107,14 +105,14 @@ impl Session {
     /// # Errors
     /// As [`Session::read`].
     pub fn parse(text: &str, file: &Path) -> Result<Self, Error> {
-        Self::parse_with(text, file, read_rests)
+        Self::parse_with(text, file, RestTable::read)
     }
 
-    /// [`Session::parse`] with the rests that a table of this path holds.
+    /// [`Session::parse`] with tables of rests that `read` fills.
     pub(crate) fn parse_with(
         text: &str,
         file: &Path,
-        mut rests: impl FnMut(&Path) -> Result<Vec<PlateauMean>, Error>,
+        read: impl FnMut(&mut RestTable) -> Result<(), Error>,
     ) -> Result<Self, Error> {
         let form = from_toml::<Form>(file, text)?.with_schedules();
         let folder = file.parent().unwrap_or(Path::new(""));
@@ -129,9 +127,7 @@ impl Session {
             session.experiment.set_points = schedule::set_points(file, &form.mounting, rotation)?;
             session.durations = schedule::durations(file, &form.mounting)?;
         }
-        for table in &session.rest_files {
-            session.rests.extend(rests(table)?);
-        }
+        session.rest_tables.iter_mut().try_for_each(read)?;
         session.refuse_rests_alone()?;
         session.add_rests();
         // Whatever is wrong with the priors is said before any record is read.
@@ -153,15 +149,24 @@ impl Session {
         Ok(self)
     }
 
-    /// Adds a position, a mounting and a set point for each rest in a free attitude; where its vertical is, its mean says.
+    /// Adds a position, a mounting and a set point for each rest in a free attitude.
     fn add_rests(&mut self) {
         let experiment = &mut self.experiment;
-        for (number, rest) in (1..).zip(&self.rests) {
-            let (position, mounting) = (experiment.positions.len(), experiment.mountings.len());
-            experiment.positions.push(Position::free(format!("r{number}"), &rest.mean));
-            experiment.mountings.push(Mounting { position, arm_y: Vector3::zeros() });
-            experiment.set_points.push(SetPoint::at_rest(mounting, 0.0));
+        let mut first = 1;
+        for table in &self.rest_tables {
+            for free in table.positions(first) {
+                let (position, mounting) = (experiment.positions.len(), experiment.mountings.len());
+                experiment.positions.push(free);
+                experiment.mountings.push(Mounting { position, arm_y: Vector3::zeros() });
+                experiment.set_points.push(SetPoint::at_rest(mounting, 0.0));
+            }
+            first += table.means.len();
         }
+    }
+
+    /// The means of the rests in free attitudes.
+    pub fn rests(&self) -> impl Iterator<Item = &PlateauMean> {
+        self.rest_tables.iter().flat_map(|table| &table.means)
     }
 
     /// Takes away what [`Session::add_rests`] added.
@@ -176,13 +181,13 @@ impl Session {
     #[must_use]
     pub fn on_arm(mut self) -> Self {
         self.forget_rests();
-        (self.rests, self.rest_files) = (Vec::new(), Vec::new());
+        self.rest_tables = Vec::new();
         self
     }
 
     /// On an arm plateaus at rest alone show nothing of a centrifuge.
     fn refuse_rests_alone(&self) -> Result<(), Error> {
-        let is_of_rests = !self.experiment.has_arm() && !self.rests.is_empty();
+        let is_of_rests = !self.experiment.has_arm() && self.rests().next().is_some();
         if !is_of_rests && self.experiment.set_points.iter().all(SetPoint::is_rest) {
             let at = TomlPath::entry(&self.file, "mounting", 0);
             return Err(at.unexpected("plateaus", "all plateaus at rest", "at least one plateau with a speed"));
@@ -263,8 +268,7 @@ impl Session {
                 })
                 .collect(),
             plateaus: None,
-            rests: Vec::new(),
-            rest_files: form.tumble.iter().map(|tumble| folder.join(&tumble.rests)).collect(),
+            rest_tables: RestTable::named(file, &form.tumble)?,
             durations: Vec::new(),
             priors: prior::entries(&form.prior),
         })
@@ -312,7 +316,11 @@ impl Session {
     /// All files of the session in the order they are named: the experiment file first.
     pub fn files(&self) -> Vec<&Path> {
         let of_mountings = self.mountings.iter().flat_map(|m| m.records().chain(&m.telemetry).chain(&m.pulses));
-        let table = self.plateaus.iter().flat_map(|table| &table.file).chain(&self.rest_files);
+        let table = self
+            .plateaus
+            .iter()
+            .flat_map(|table| &table.file)
+            .chain(self.rest_tables.iter().flat_map(RestTable::files));
         std::iter::once(&self.file).chain(table).chain(of_mountings).map(PathBuf::as_path).collect()
     }
 
@@ -328,18 +336,6 @@ impl Session {
         record.ok_or_else(|| {
             TomlPath::entry(&self.file, "mounting", mounting).unexpected("record", "no record", "the path of one")
         })
-    }
-}
-
-/// The rests of a table: each row is one, and none has a speed.
-fn read_rests(table: &Path) -> Result<Vec<PlateauMean>, Error> {
-    let rests = read_plateaus(table, usize::MAX)?;
-    match (1..).zip(&rests).find(|(_, rest)| rest.speed != 0.0) {
-        Some((row, rest)) => {
-            let place = Place::Row { row, column: "speed".to_owned() };
-            Err(Error::content(table, place, rest.speed.to_string(), "0 in a table of rests"))
-        }
-        None => Ok(rests),
     }
 }
 

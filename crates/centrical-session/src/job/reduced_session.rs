@@ -1,13 +1,14 @@
 //! A session reduced to its plateau means: an experiment file that names a table of plateaus instead of records.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use centrical_table::{TableFormat, claim_folder, refuse_inputs, write_whole};
-use toml_edit::{InlineTable, Item, Table, TableLike, Value, value};
+use toml_edit::{InlineTable, Item, TableLike, Value, value};
 
 use crate::error::{Error, Place};
 use crate::experiment::{
-    EXPERIMENT_FILE, PlateauMean, Session, SpeedSource, read_text, write_plateaus, write_plateaus_parquet,
+    EXPERIMENT_FILE, PlateauMean, Session, SpeedSource, read_text, write_attitudes, write_plateaus,
+    write_plateaus_parquet,
 };
 use crate::reduced::Reduced;
 use crate::settings::editable;
@@ -15,8 +16,8 @@ use crate::settings::editable;
 /// Keys of a mounting that say what the table of plateaus says now.
 const REPLACED: [&str; 4] = ["record", "telemetry", "pulses", "plateaus"];
 
-/// Name of the table of rests in free attitudes.
-const RESTS: &str = "rests.csv";
+/// Names of the tables of rests in free attitudes and of their attitudes, of the first `[[tumble]]`.
+const RESTS: [&str; 2] = ["rests.csv", "attitudes.csv"];
 
 /// Writes the reduced session into `folder`: the table of plateaus first, and `experiment.toml`, which names it, last.
 /// Calibrating it gives the numbers that calibrating the records gives.
@@ -34,14 +35,21 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
         TableFormat::Csv => ("plateaus.csv", write_plateaus),
         TableFormat::Parquet => ("plateaus.parquet", write_plateaus_parquet),
     };
-    refuse_inputs(&[experiment_file.clone(), folder.join(name), folder.join(RESTS)], &session.files())?;
+    let rests: Vec<[PathBuf; 2]> =
+        (0..session.rest_tables.len()).map(|n| rest_files(n).map(|name| folder.join(name))).collect();
+    let outputs: Vec<PathBuf> =
+        rests.iter().flatten().cloned().chain([experiment_file.clone(), folder.join(name)]).collect();
+    refuse_inputs(&outputs, &session.files())?;
     let rows = reduced.table(session);
     // Speeds that single plateaus of the schedule state as measured: the table has a column for them.
     let of_plateaus = session.speeds.measured.is_none() && rows.iter().any(|row| row.speed_uncertainty.is_some());
     let text = experiment(&session.file, name, of_plateaus.then_some(session.speeds.set_uncertainty))?;
     write(&folder.join(name), &rows)?;
-    if !session.rests.is_empty() {
-        write_plateaus(&folder.join(RESTS), &session.rests)?;
+    for (table, [means, attitudes]) in session.rest_tables.iter().zip(&rests) {
+        write_plateaus(means, &table.means)?;
+        if let Some(known) = &table.attitudes {
+            write_attitudes(attitudes, &known.up_b)?;
+        }
     }
     Ok(write_whole(&experiment_file, text.as_bytes())?)
 }
@@ -72,12 +80,26 @@ fn experiment(file: &Path, table: &str, uncertainty: Option<f64>) -> Result<Stri
         measured.insert("from", value(SpeedSource::Plateaus.name()));
     }
     document.insert("plateaus", value(table));
-    if document.contains_key("tumble") {
-        let mut tumble = Table::new();
-        tumble.insert("rests", value(RESTS));
-        document.insert("tumble", Item::ArrayOfTables([tumble].into_iter().collect()));
+    if let Some(Item::ArrayOfTables(tumbles)) = document.get_mut("tumble") {
+        tumbles.iter_mut().enumerate().for_each(|(n, tumble)| rename_rests(n, tumble));
+    } else if let Some(Item::Value(Value::Array(tumbles))) = document.get_mut("tumble") {
+        let tables = tumbles.iter_mut().filter_map(Value::as_inline_table_mut);
+        tables.enumerate().for_each(|(n, tumble)| rename_rests(n, tumble));
     }
     Ok(document.to_string())
+}
+
+/// Names of the tables of `[[tumble]]` number `n` from 0.
+fn rest_files(n: usize) -> [String; 2] {
+    RESTS.map(|name| if n == 0 { name.to_owned() } else { name.replace('.', &format!("-{}.", n + 1)) })
+}
+
+fn rename_rests(n: usize, tumble: &mut dyn TableLike) {
+    for (key, name) in ["rests", "attitudes"].into_iter().zip(rest_files(n)) {
+        if tumble.contains_key(key) {
+            tumble.insert(key, value(name));
+        }
+    }
 }
 
 fn strip(mounting: &mut dyn TableLike) {

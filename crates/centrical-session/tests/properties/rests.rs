@@ -77,7 +77,7 @@ fn rests_and_centrifuge_are_one_fit() {
     write_plateaus(&folder.path().join("rests.csv"), &rests(&session, &alone, &mut Random::new(2))).unwrap();
     with_rests(folder.path(), Some("0 mg"));
     let session = Session::read(folder.path()).unwrap();
-    assert_eq!((session.rests.len(), session.mountings.len()), (26, 12));
+    assert_eq!((session.rests().count(), session.mountings.len()), (26, 12));
     let together = calibrate(&session, Method::Exact, &unwatched).unwrap();
     let gain = |name: &str| {
         let uncertainty = |result: &CalibrationResult| result.parameter(name).unwrap().standard_uncertainty.unwrap();
@@ -101,7 +101,7 @@ fn rests_and_centrifuge_are_one_fit() {
     assert_eq!(reduced.parameters, together.parameters);
     // A watch knows the centrifuge alone.
     let on_arm = session.on_arm();
-    assert_eq!((on_arm.rests.len(), on_arm.experiment.set_points.len()), (0, 108));
+    assert_eq!((on_arm.rests().count(), on_arm.experiment.set_points.len()), (0, 108));
 }
 
 /// A unit that was switched off between the rests and the arm has another bias there. Unless the session states how far it may be, the

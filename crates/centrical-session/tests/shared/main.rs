@@ -129,7 +129,7 @@ fn units_turned_by_hand_are_as_their_owners_say() {
             date: String::new(),
         };
         let Tumble { session, result, .. } = tumble(&request, Path::new(""), &unwatched).unwrap();
-        assert_eq!(session.rests.len(), owned.rests, "{}", owned.file);
+        assert_eq!(session.rests().count(), owned.rests, "{}", owned.file);
         for axis in 0..3 {
             let Scale { offset, factor } = session.columns.f[axis].scale;
             let estimate = |name: String| {

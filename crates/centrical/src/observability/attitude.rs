@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, Vector3};
 
 use super::addition::{Addition, cube_directions};
 use super::study::Study;
-use crate::model::Kind;
+use crate::model::{Kind, TypeB};
 
 /// The best attitude to add: of the faces, edges and corners of a cube, the one that brings back most, then the one that makes the
 /// coefficients of the error model most certain together.
@@ -14,8 +14,8 @@ pub struct NextAttitude {
     pub up_z: Vector3<f64>,
     /// Number of lost combinations that it brings back.
     pub gain: usize,
-    /// Standard uncertainties of the coefficients, and of the turn against the case where attitudes are known, after it over those
-    /// before, their geometric mean over independent directions; 1 where a combination comes back, since it had none.
+    /// Standard uncertainties of the coefficients after it over those before, their geometric mean; 1 where a combination comes back,
+    /// since it had none.
     pub factor: f64,
     /// The coefficient that it improves most, by its index, and the same ratio of its uncertainty.
     pub most: Option<(usize, f64)>,
@@ -30,38 +30,48 @@ struct Equations {
 impl Study {
     /// The best attitude to add to rests in free attitudes, of those of a cube; `None` where the experiment has no such rest, or where
     /// something is lost that no such attitude brings back. A new rest is as noisy as the median one, and as well known as the others.
-    ///
-    /// A rest adds equations with the rows `R` and the covariance `S`: see [`Study::equations`]. With the covariance `C` of the
-    /// coefficients, and of the turn against the case where attitudes are known, the determinant of `C` shrinks by `det S / det M`,
-    /// `M = S + R C R^T`, and the variance of coefficient `j` by `1 - (C R^T M^-1 R C)_jj / C_jj`.
     pub fn next_attitude(&self) -> Option<NextAttitude> {
         let experiment = self.model().experiment();
         experiment.positions.iter().find(|position| position.is_free)?;
         if self.observability().lost() > 0 {
             return self.regaining_attitude();
         }
+        // What the laboratory states, such as gravity, is off in all rests alike: noise alone tells one attitude from another.
+        let model = self.model().clone().with_stated(TypeB::default());
+        let up_z = Self::at_zero(model, self.weights().to_vec()).ok()?.sharpening_direction()?;
+        let after = Addition::Attitude(up_z).apply(self).ok()?;
+        let parameters = self.model().parameters();
+        let terms = (0..parameters.len()).filter(|&j| matches!(parameters[j].kind, Kind::Term(_)));
+        let ratio = |j: usize| {
+            let same = after.model().parameters().find(&parameters[j].name)?;
+            Some((j, after.standard_uncertainty(same)? / self.standard_uncertainty(j)?))
+        };
+        let ratios: Vec<(usize, f64)> = terms.filter_map(ratio).collect();
+        let factor = (ratios.iter().map(|(_, ratio)| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp();
+        let most = ratios.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        Some(NextAttitude { up_z, gain: 0, factor, most })
+    }
+
+    /// The direction of up whose rest leaves the smallest determinant of the covariance `C` of what all rests share.
+    ///
+    /// A rest adds equations with the rows `R` and the covariance `S`: see [`Study::equations`]. The determinant of `C` shrinks by
+    /// `det S / det (S + R C R^T)`.
+    fn sharpening_direction(&self) -> Option<Vector3<f64>> {
         let shared = self.shared();
         let count = shared.len();
         let covariance = DMatrix::from_fn(count, count, |i, j| self.observability().covariance(shared[i], shared[j]));
-        let mut best: Option<NextAttitude> = None;
+        let mut best: Option<(f64, Vector3<f64>)> = None;
         for up_z in cube_directions() {
             let Equations { rows, covariance: noise } = self.equations(&up_z, &shared);
-            let change = &rows * &covariance;
-            let before = noise.clone().cholesky()?;
-            let after = (noise + &change * rows.transpose()).cholesky()?;
-            let factor = (before.l_dirty().diagonal().component_div(&after.l_dirty().diagonal()))
-                .product()
-                .powf(1.0 / count as f64);
-            let whitened = after.l().solve_lower_triangular(&change)?;
-            let ratio = |j: usize| (1.0 - whitened.column(j).norm_squared() / covariance[(j, j)]).max(0.0).sqrt();
-            let terms = (0..count).filter(|&j| matches!(self.model().parameters()[shared[j]].kind, Kind::Term(_)));
-            let most = terms.map(|j| (shared[j], ratio(j))).min_by(|a, b| a.1.total_cmp(&b.1));
+            let volume = |matrix: DMatrix<f64>| Some(matrix.cholesky()?.l_dirty().diagonal().product());
+            let before = volume(noise.clone())?;
+            let factor = before / volume(noise + &rows * &covariance * rows.transpose())?;
             // A later direction has to be better beyond rounding, so that the simplest of equal ones is taken.
-            if best.as_ref().is_none_or(|best| factor < best.factor * (1.0 - 1e-9)) {
-                best = Some(NextAttitude { up_z, gain: 0, factor, most });
+            if best.is_none_or(|(least, _)| factor < least * (1.0 - 1e-9)) {
+                best = Some((factor, up_z));
             }
         }
-        best
+        best.map(|(_, up_z)| up_z)
     }
 
     /// What all rests in free attitudes share, by index: the coefficients, and the turn against the case where attitudes are known.

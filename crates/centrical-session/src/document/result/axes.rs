@@ -25,6 +25,23 @@ pub(crate) struct Attitude {
     pub positions: Option<usize>,
 }
 
+impl Attitude {
+    /// The attitude of the case by the rotation vector `v` from it, its change by each parameter of the result, and its scatter.
+    fn of_case(v: &Vector3<f64>, change: Matrix3xX<f64>, scatter: Matrix3<f64>, positions: Option<usize>) -> Self {
+        // From a change of the rotation vector to a small further turn in the axes of the case.
+        let c_zb = rotation(v);
+        let to_case = c_zb.transpose() * rotation_rate(v);
+        Self {
+            name: AxesName::Case,
+            c_zb,
+            turn: to_case * change,
+            stated: Matrix3::zeros(),
+            scatter: to_case * scatter * to_case.transpose(),
+            positions,
+        }
+    }
+}
+
 impl AxesSummary {
     /// The error model of `result` in the axes of `attitude`.
     ///
@@ -121,11 +138,32 @@ fn in_axes(
 
 impl CalibrationResult {
     /// The attitude of the instrument against its case: the mean of its turns `delta` over the positions on the arm, which seat the
-    /// same case at different faces. Their scatter beyond that of the estimates is the seats' and the faces'; it counts as uncertainty.
+    /// same case at different faces, or `case_turn` of rests in known attitudes. The scatter of the turns beyond that of the estimates is
+    /// the seats' and the faces'; it counts as uncertainty.
     ///
     /// # Errors
-    /// [`NoErrorModel::Case`] when less than two positions determine all three turns.
+    /// [`NoErrorModel::Case`] when less than two positions determine all three turns, and no rests do.
     pub(crate) fn of_case(&self) -> Result<Attitude, NoErrorModel> {
+        match (self.of_case_by_positions(), self.of_case_by_rests()) {
+            (Err(NoErrorModel::Case { .. }), Some(by_rests)) => Ok(by_rests),
+            (by_positions, _) => by_positions,
+        }
+    }
+
+    /// The attitude of the case by `case_turn`; `None` where a component is not determined.
+    fn of_case_by_rests(&self) -> Option<Attitude> {
+        let mut turn = Matrix3xX::zeros(self.parameters.len());
+        let mut value = Vector3::zeros();
+        for i in 0..3 {
+            let name = format!("case_turn_{}", i + 1);
+            let j = self.parameters.iter().position(|p| p.group == Group::CaseTurn && p.name == name)?;
+            value[i] = self.parameters[j].value?;
+            turn[(i, j)] = 1.0;
+        }
+        Some(Attitude::of_case(&value, turn, Matrix3::zeros(), None))
+    }
+
+    fn of_case_by_positions(&self) -> Result<Attitude, NoErrorModel> {
         let all = self.parameters.len();
         let place = |i: usize, id: &str| {
             let name = format!("delta_{i}[{id}]");
@@ -159,16 +197,6 @@ impl CalibrationResult {
             }
             scatter[(i, i)] = ((squares - expected) / (count - 1.0)).max(0.0) / count;
         }
-        // From a change of the rotation vector to a small further turn in the axes of the case.
-        let c_zb = rotation(&mean);
-        let to_case = c_zb.transpose() * rotation_rate(&mean);
-        Ok(Attitude {
-            name: AxesName::Case,
-            c_zb,
-            turn: to_case * turn,
-            stated: Matrix3::zeros(),
-            scatter: to_case * scatter * to_case.transpose(),
-            positions: Some(turns.len()),
-        })
+        Ok(Attitude::of_case(&mean, turn, scatter, Some(turns.len())))
     }
 }

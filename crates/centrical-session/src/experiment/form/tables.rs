@@ -365,12 +365,16 @@ pub(crate) struct MountingTable {
     pub plateaus: Vec<PlateauEntry>,
 }
 
-/// Rests in attitudes that only gravity shows.
+/// Rests in attitudes of their own, which only gravity shows or which are known.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TumbleTable {
     /// Path of a table of rests, such as `centrical tumble` writes: the columns of a table of plateaus.
     pub rests: String,
+    /// Path of a table of the attitudes of the rests, where they are known: up in axes of the case, row by row.
+    pub attitudes: Option<String>,
+    /// Standard uncertainty of these attitudes about each horizontal axis, such as "0.1 deg".
+    pub attitude_uncertainty: Option<Quantity>,
 }
 
 /// The schedule common to mountings.

@@ -8,10 +8,10 @@ use centrical_table::{TableLines, refuse_inputs, write_whole};
 use nalgebra::Vector3;
 
 use super::request::TumbleRequest;
-use super::session_text::{TABLE, session_text};
+use super::session_text::{ATTITUDES, TABLE, session_text};
 use crate::document::{CalibrationResult, Method};
 use crate::error::{Error, Place};
-use crate::experiment::{EXPERIMENT_FILE, Session, write_plateaus};
+use crate::experiment::{EXPERIMENT_FILE, Session, write_attitudes, write_plateaus};
 use crate::job::calibrate::calibrate_reduced;
 use crate::job::noise::Series;
 use crate::quantity::Dimension;
@@ -53,12 +53,20 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         rests = self::rests(request, &records)?;
         Some(coarse)
     };
+    let means: Vec<Vector3<f64>> = rests.iter().map(|rest| rest.mean).collect();
+    let known = (request.attitudes.as_ref()).map(|stated| stated.of_rests(&means, &first(request))).transpose()?;
     let plateaus: Vec<ReducedPlateau> = rests.into_iter().map(ReducedPlateau::from).collect();
     let text = session_text(request, coarse.as_ref());
     let mut reduced = Reduced { plateaus, ..Reduced::of_table(&[]) };
-    let inputs = request.files.iter().map(|file| Input::of(file.parent().unwrap_or(Path::new("")), file, progress));
+    let inputs = request.inputs().map(|file| Input::of(file.parent().unwrap_or(Path::new("")), file, progress));
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
-    let session = Session::parse_with(&text, &folder.join(EXPERIMENT_FILE), |_| Ok(reduced.rests()))?;
+    let session = Session::parse_with(&text, &folder.join(EXPERIMENT_FILE), |table| {
+        table.means = reduced.rests();
+        if let (Some(table), Some(known)) = (&mut table.attitudes, &known) {
+            table.up_b.clone_from(known);
+        }
+        Ok(())
+    })?;
     let result = calibrate_reduced(&session, &reduced, Method::Exact, progress)?;
     Ok(Tumble { session, text, reduced, result })
 }
@@ -67,14 +75,17 @@ impl Tumble {
     /// Writes the rests as a session into `folder`, which is there, and the result beside.
     ///
     /// # Errors
-    /// If the folder does not take the files, or a record is one of them.
-    pub fn write(&self, records: &[PathBuf], folder: &Path) -> Result<(), Error> {
-        let [table, experiment, result] = [TABLE, EXPERIMENT_FILE, "result.json"].map(|name| folder.join(name));
-        let read: Vec<&Path> = records.iter().map(PathBuf::as_path).collect();
-        refuse_inputs(&[table.clone(), experiment.clone(), result.clone()], &read)?;
-        write_plateaus(&table, &self.reduced.rests())?;
-        write_whole(&experiment, self.text.as_bytes())?;
-        self.result.write(&result)
+    /// If the folder does not take the files, or one of them was read.
+    pub fn write(&self, request: &TumbleRequest, folder: &Path) -> Result<(), Error> {
+        let names = [TABLE, ATTITUDES, EXPERIMENT_FILE, "result.json"];
+        let outputs @ [table, attitudes, experiment, result] = &names.map(|name| folder.join(name));
+        refuse_inputs(outputs, &request.inputs().collect::<Vec<_>>())?;
+        write_plateaus(table, &self.reduced.rests())?;
+        for known in self.session.rest_tables.iter().filter_map(|table| table.attitudes.as_ref()) {
+            write_attitudes(attitudes, &known.up_b)?;
+        }
+        write_whole(experiment, self.text.as_bytes())?;
+        self.result.write(result)
     }
 }
 
@@ -90,13 +101,12 @@ fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<
 /// The rests of all records. A single one shows nothing.
 fn rests(request: &TumbleRequest, records: &[Record]) -> Result<Vec<PlateauMean>, Error> {
     let slices: Vec<_> = records.iter().map(Record::as_slice).collect();
-    let first = || request.files.first().cloned().unwrap_or_default();
-    let refused = |source| Error::Reduction { file: first(), mounting: 1, source: Box::new(source) };
+    let refused = |source| Error::Reduction { file: first(request), mounting: 1, source: Box::new(source) };
     let rests: Vec<PlateauMean> = reduce_rests(&slices).map_err(refused)?.into_iter().flatten().collect();
     if rests.len() < 2 {
         let found = format!("{} in which the unit rests", count(rests.len(), "stretch", "stretches"));
         let expected = "a unit that is turned, left alone for a second or more, and turned again";
-        return Err(Error::content(&first(), Place::Whole, found, expected));
+        return Err(Error::content(&first(request), Place::Whole, found, expected));
     }
     Ok(rests)
 }
@@ -105,12 +115,16 @@ fn rests(request: &TumbleRequest, records: &[Record]) -> Result<Vec<PlateauMean>
 fn coarse(request: &TumbleRequest, rests: &[PlateauMean]) -> Result<CoarseScale, Error> {
     let means: Vec<Vector3<f64>> = rests.iter().map(|rest| rest.mean).collect();
     coarse_scale(&means, request.gravity).ok_or_else(|| {
-        let file = request.files.first().cloned().unwrap_or_default();
         let found =
             format!("{} that do not show scale and bias of {}", count(rests.len(), "rest", "rests"), request.unit);
         let expected = "rests with each axis about up and about down, six at least";
-        Error::content(&file, Place::Whole, found, expected)
+        Error::content(&first(request), Place::Whole, found, expected)
     })
+}
+
+/// The record that messages name.
+fn first(request: &TumbleRequest) -> PathBuf {
+    request.files.first().cloned().unwrap_or_default()
 }
 
 fn in_si(record: &mut Record, CoarseScale { scale, bias }: &CoarseScale) {

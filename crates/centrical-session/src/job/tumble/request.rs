@@ -1,8 +1,10 @@
 //! Which records, and what is to be made of them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use centrical_table::ColumnName;
+
+use super::attitudes::StatedAttitudes;
 
 /// Records of a unit that rested in attitudes that only gravity shows, and what is to be made of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +23,8 @@ pub struct TumbleRequest {
     pub gravity: f64,
     /// Its standard uncertainty [m/s^2].
     pub gravity_uncertainty: f64,
+    /// Attitudes in which the unit was laid down, where they are known.
+    pub attitudes: Option<StatedAttitudes>,
     /// Terms of the error model, as in `[model]`.
     pub terms: Vec<String>,
     /// Serial number of the unit.
@@ -33,6 +37,12 @@ impl TumbleRequest {
     /// Bias, scale and misalignment: what a unit shows at 1 g.
     pub const USUAL_TERMS: [&'static str; 9] =
         ["df_1", "df_2", "df_3", "G0_11", "G0_21", "G0_22", "G0_31", "G0_32", "G0_33"];
+
+    /// All files that are read: the records, and that of the attitudes.
+    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
+        let attitudes = self.attitudes.iter().flat_map(|attitudes| &attitudes.file);
+        self.files.iter().chain(attitudes).map(PathBuf::as_path)
+    }
 
     /// Standard uncertainty of the gravity of an unknown place on Earth [m/s^2]: rectangular from 9.764 to 9.834 m/s^2.
     pub const GRAVITY_ANYWHERE: f64 = 0.02;

@@ -9,6 +9,9 @@ use super::request::TumbleRequest;
 /// Name of the table of rests.
 pub(super) const TABLE: &str = "rests.csv";
 
+/// Name of the table of their attitudes.
+pub(super) const ATTITUDES: &str = "attitudes.csv";
+
 /// The experiment file of rests in a table beside it, of readings with this coarse scale where they are in no unit of acceleration.
 pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>) -> String {
     let mut text = String::new();
@@ -17,7 +20,7 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
         let _ = writeln!(text, "{line}");
     };
     let names: Vec<String> = request.files.iter().map(|file| file.display().to_string()).collect();
-    line("# Rests in attitudes that only gravity shows, found by `centrical tumble`.".to_owned());
+    line("# Rests in attitudes of their own, found by `centrical tumble`.".to_owned());
     line(format!("[session]\ntitle = {:?}\ndate = {:?}\n", format!("Rests of {}", names.join(", ")), request.date));
     line(format!("[site]\ngravity = \"{:?} m/s^2\"\n", request.gravity));
     line(format!("[uncertainty]\ngravity = \"{:?} m/s^2\"\n", request.gravity_uncertainty));
@@ -32,5 +35,9 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
     }
     line(format!("[model]\nerror_model = {:?}\n", request.terms));
     line(format!("[[tumble]]\nrests = {TABLE:?}"));
+    if let Some(attitudes) = &request.attitudes {
+        let uncertainty = attitudes.uncertainty;
+        line(format!("attitudes = {ATTITUDES:?}\nattitude_uncertainty = \"{uncertainty:?} rad\""));
+    }
     text
 }
