@@ -53,6 +53,88 @@ fn the_example_is_calibrated_to_its_truth() {
     assert_eq!(copy.run(&compensated).status.code(), Some(0));
 }
 
+/// Stated attitudes, in any order, show the case besides; the folder keeps them with their rests.
+#[test]
+fn known_attitudes_show_the_case() {
+    let copy = Copy::new();
+    let attitudes = example("attitudes.csv");
+    let arguments = ["tumble", &example("record.csv"), "--gravity", "9.81523 m/s^2", "--out", "tumbled"];
+    let known = ["--attitudes", &attitudes, "--attitude-uncertainty", "1 mrad"];
+    let output = copy.run(&[&arguments[..], &known].concat());
+    let text = said(&output);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert!(text.contains("24 in attitudes known to 0.06 deg") && text.contains("case_turn_3"), "{text}");
+    let folder = copy.out().join("tumbled");
+    let (result, truth) = (json(&folder.join("result.json")), json(example("truth.json").as_ref()));
+    for i in 0..3 {
+        let (value, uncertainty) = estimate(&result, &format!("case_turn_{}", i + 1));
+        let truth = truth["case_turn"][i].as_f64().unwrap();
+        assert!((value - truth).abs() < 3.5 * uncertainty, "{i}: {value} +- {uncertainty}, in truth {truth}");
+        // Each of the 24 rests shows two of three components.
+        assert!((uncertainty / (1e-3 / 16.0_f64.sqrt()) - 1.0).abs() < 0.2, "{uncertainty}");
+    }
+    assert_eq!(copy.run(&["calibrate", "tumbled", "--out", "again", "--axes", "case"]).status.code(), Some(0));
+    let again = json(&copy.out().join("again/result.json"));
+    assert!(again["parameters"] == result["parameters"]);
+    let in_case = again["axes"]["parameters"].as_array().unwrap();
+    let turn = in_case.iter().find(|parameter| parameter["name"] == "turn_1").unwrap();
+    assert!((turn["value"].as_f64().unwrap() / estimate(&result, "case_turn_1").0 - 1.0).abs() < 1e-10);
+    let refused = |arguments: &[&str]| {
+        let output = copy.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        said(&output).replace('\\', "/")
+    };
+    // The rows are those of the rests.
+    let table = folder.join("attitudes.csv");
+    let rows = fs::read_to_string(&table).unwrap();
+    let mut lines: Vec<&str> = rows.lines().collect();
+    lines.swap(3, 7);
+    fs::write(&table, lines.join("\n")).unwrap();
+    let text = refused(&["calibrate", "tumbled"]);
+    assert!(
+        text.contains("tumbled/attitudes.csv, row 3") && text.contains("deg from that of the mean reading"),
+        "{text}"
+    );
+    lines.truncate(20);
+    fs::write(&table, lines.join("\n")).unwrap();
+    let text = refused(&["calibrate", "tumbled"]);
+    assert!(text.contains("found 19 rows, expected a row for each of the 24 rests"), "{text}");
+    // A rest of unknown attitude is a row of zeros. Two rows are out of order still.
+    lines.extend(["0,0,0"; 5]);
+    (lines[3], lines[7]) = ("0,0,0", "0,0,0");
+    fs::write(&table, lines.join("\n")).unwrap();
+    let text = said(&copy.run(&["calibrate", "tumbled"]));
+    assert!(text.contains("17 in attitudes known to 0.06 deg, 7 in attitudes that only gravity shows"), "{text}");
+    let experiment = folder.join("experiment.toml");
+    let without = fs::read_to_string(&experiment).unwrap().replace("attitude_uncertainty", "# ");
+    fs::write(&experiment, without).unwrap();
+    let text = refused(&["calibrate", "tumbled"]);
+    assert!(text.contains("[[tumble]] 1, attitude_uncertainty: found no such key beside attitudes"), "{text}");
+}
+
+#[test]
+fn attitudes_that_are_none_are_refused() {
+    let copy = Copy::new();
+    let record = example("record.csv");
+    let refused = |arguments: &[&str]| {
+        let output = copy.run(&[&["tumble", &record], arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        said(&output)
+    };
+    let text = refused(&["--attitudes", "cube"]);
+    assert!(text.contains("--attitude-uncertainty"), "{text}");
+    let text = refused(&["--attitudes", "cube", "--attitude-uncertainty", "20 deg"]);
+    assert!(text.contains("expected a standard uncertainty above 0 and up to 10 deg"), "{text}");
+    let text = refused(&["--attitudes", &record, "--attitude-uncertainty", "1 deg"]);
+    assert!(text.contains("up_1"), "{text}");
+    fs::write(copy.out().join("one.csv"), "up_1,up_2,up_3\n0,0,0\n").unwrap();
+    let text = refused(&["--attitudes", "one.csv", "--attitude-uncertainty", "1 deg"]);
+    assert!(text.contains("one.csv, row 1") && text.contains("found a row of zeros"), "{text}");
+    fs::write(copy.out().join("one.csv"), "up_1,up_2,up_3\n1,2,0\n").unwrap();
+    let text = refused(&["--attitudes", "one.csv", "--attitude-uncertainty", "1 deg"]);
+    assert!(text.contains("none of them within 10 deg of any of the 24 rests"), "{text}");
+}
+
 /// Gravity of an unknown place is uncertain by 2 parts in a thousand, and so are the scales.
 #[test]
 fn an_unknown_gravity_is_said_to_be_uncertain() {

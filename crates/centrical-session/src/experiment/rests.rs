@@ -5,7 +5,7 @@
 //!
 //! | column | what |
 //! |---|---|
-//! | `up_1` .. `up_3` | the direction of the vertical, of any length; all three empty where it is unknown |
+//! | `up_1` .. `up_3` | the direction of the vertical, of any length; zero where it is unknown |
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -141,15 +141,15 @@ fn read_rests(table: &Path) -> Result<Vec<PlateauMean>, Error> {
     }
 }
 
-/// Directions in the columns `up_1`, `up_2`, `up_3` of a table, of length 1; `None` for a row whose fields are empty.
+/// Directions in the columns `up_1`, `up_2`, `up_3` of a table, of length 1; `None` for a row of zeros.
 ///
 /// # Errors
-/// If the file can not be read or lacks a column, or a row has a direction in part or of no length.
+/// If the file can not be read, or lacks a column or a number.
 pub(crate) fn read_attitudes(file: &Path) -> Result<Vec<Option<Vector3<f64>>>, Error> {
     let fields = UP.map(|name| Field {
         name: ColumnName::Name(name.to_owned()),
         expected: "a component of the direction of up".to_owned(),
-        rule: Rule::OrMissing,
+        rule: Rule::Any,
     });
     let mut table = TableReader::open(file, Extent::Whole, &fields, "a table of attitudes")?;
     let mut rows = Vec::new();
@@ -158,22 +158,14 @@ pub(crate) fn read_attitudes(file: &Path) -> Result<Vec<Option<Vector3<f64>>>, E
             rows.extend((0..columns[0].len()).map(|row| Vector3::from_fn(|axis, _| columns[axis][row])));
         }
     }
-    let direction = |(row, up_b): (u64, Vector3<f64>)| {
-        if up_b.iter().all(|component| component.is_nan()) {
-            return Ok(None);
-        }
+    let direction = |up_b: Vector3<f64>| {
         // The squares of the components neither overflow nor vanish.
         let length = up_b.amax();
-        if up_b.iter().any(|component| component.is_nan()) || length == 0.0 {
-            let place = Place::Row { row, column: UP[0].to_owned() };
-            let [x, y, z] =
-                up_b.map(|component| if component.is_nan() { String::new() } else { component.to_string() }).into();
-            let expected = "three components, not all zero, or three empty fields";
-            return Err(Error::content(file, place, format!("\"{x},{y},{z}\""), expected));
-        }
-        Ok(Some((up_b / length).normalize()))
+        // A direction that was written with length 1 is read again to its last digit.
+        let is_unit = (up_b.norm() - 1.0).abs() < 1e-15;
+        (length > 0.0).then(|| if is_unit { up_b } else { (up_b / length).normalize() })
     };
-    (1..).zip(rows).map(direction).collect()
+    Ok(rows.into_iter().map(direction).collect())
 }
 
 /// Writes a table of attitudes, every number to its last digit; the file appears whole or not at all.
@@ -186,7 +178,7 @@ pub(crate) fn write_attitudes(file: &Path, up_b: &[Option<Vector3<f64>>]) -> Res
         // Writing to a String does not fail.
         let _ = match up_b {
             Some(up_b) => writeln!(text, "{},{},{}", up_b.x, up_b.y, up_b.z),
-            None => writeln!(text, ",,"),
+            None => writeln!(text, "0,0,0"),
         };
     }
     Ok(write_whole(file, text.as_bytes())?)

@@ -124,6 +124,7 @@ fn units_turned_by_hand_are_as_their_owners_say() {
             unit: owned.unit.to_owned(),
             gravity: owned.gravity,
             gravity_uncertainty: 0.0,
+            attitudes: None,
             terms: TumbleRequest::USUAL_TERMS.map(str::to_owned).to_vec(),
             serial: String::new(),
             date: String::new(),

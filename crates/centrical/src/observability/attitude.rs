@@ -118,16 +118,13 @@ impl Study {
                 theta.set_column(0, column);
             }
         }
-        match model.experiment().position_of(set_point).attitude_uncertainty {
-            Some(uncertainty) => {
-                let noise = DMatrix::from_fn(3, 3, |i, j| new.covariance[(i, j)]);
-                Equations { rows, covariance: noise + &theta * theta.transpose() * uncertainty.powi(2) }
-            }
-            None => {
-                let along = DMatrix::from_fn(1, 3, |_, i| up_z[i]);
-                Equations { rows: along * rows, covariance: DMatrix::from_element(1, 1, self.variance_along_force()) }
-            }
-        }
+        let Some(uncertainty) = model.experiment().position_of(set_point).attitude_uncertainty else {
+            let along = DMatrix::from_fn(1, 3, |_, i| up_z[i]);
+            let variance = self.variance_along_force();
+            return Equations { rows: along * rows, covariance: DMatrix::from_element(1, 1, variance) };
+        };
+        let noise = DMatrix::from_fn(3, 3, |i, j| new.covariance[(i, j)]);
+        Equations { rows, covariance: noise + &theta * theta.transpose() * uncertainty.powi(2) }
     }
 
     /// Variance of the median rest along its force [m^2/s^4]: what trembles in a hand is the attitude, so that across the force a rest

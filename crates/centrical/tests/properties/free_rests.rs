@@ -313,20 +313,20 @@ fn the_next_attitude_brings_back_what_it_says() {
 fn the_next_attitude_improves_as_it_says_and_no_other_does_better() {
     let exact = TypeB::default();
     for (uncertainty, stated) in [(None, exact), (Some(1e-3), exact), (None, TypeB { gravity: 0.02, ..exact })] {
-        the_next_attitude_improves_as_it_says(uncertainty, stated);
+        the_next_attitude_improves_as_it_says(uncertainty, &stated);
     }
 }
 
-fn the_next_attitude_improves_as_it_says(uncertainty: Option<f64>, stated: TypeB) {
+fn the_next_attitude_improves_as_it_says(uncertainty: Option<f64>, stated: &TypeB) {
     let directions = random_directions(14, &mut Random::new(17));
-    let study = |directions: &[Vector3<f64>], stated: TypeB| {
+    let study = |directions: &[Vector3<f64>], stated: &TypeB| {
         let mut model = rests_alone(directions, 2);
         if let Some(uncertainty) = uncertainty {
             model = model.in_experiment(known(model.experiment().clone(), uncertainty));
         }
         let set_points = 0..model.experiment().set_points.len();
         let weights = set_points.map(|set_point| Weight { set_point, covariance: Matrix3::identity() * NOISE * NOISE });
-        Study::at_zero(model.with_stated(stated), weights.collect()).unwrap()
+        Study::at_zero(model.with_stated(*stated), weights.collect()).unwrap()
     };
     let with = |direction: Vector3<f64>| [directions.clone(), vec![direction]].concat();
     let before = study(&directions, stated);
@@ -344,7 +344,7 @@ fn the_next_attitude_improves_as_it_says(uncertainty: Option<f64>, stated: TypeB
     assert!((mean - next.factor).abs() < 1e-9 && mean < 1.0, "{mean} {next:?}");
     assert!((least - next.most.unwrap().1).abs() < 1e-9, "{least} {next:?}");
     let volumes: Vec<(Vector3<f64>, f64)> =
-        cube().into_iter().map(|d| (d, volume(&study(&with(d), TypeB::default())))).collect();
+        cube().into_iter().map(|d| (d, volume(&study(&with(d), &TypeB::default())))).collect();
     let smallest = volumes.iter().map(|(_, volume)| *volume).fold(f64::INFINITY, f64::min);
     let (_, chosen) = volumes.iter().find(|(direction, _)| (direction - next.up_z).norm() < 1e-9).unwrap();
     assert!((chosen - smallest).abs() < 1e-9, "{chosen} {smallest}");

@@ -24,7 +24,7 @@ impl StatedAttitudes {
     /// `up_2`, `up_3`.
     ///
     /// # Errors
-    /// If the file can not be read, lacks a column, or has no row.
+    /// If the file can not be read, lacks a column, or has no row or one without a direction.
     pub fn named(name: &Path, uncertainty: f64) -> Result<Self, Error> {
         if name.as_os_str() == "cube" {
             return Ok(Self { up_b: cube_directions(), uncertainty, file: None });
@@ -33,7 +33,12 @@ impl StatedAttitudes {
     }
 
     fn read(file: &Path, uncertainty: f64) -> Result<Self, Error> {
-        let up_b: Vec<_> = read_attitudes(file)?.into_iter().flatten().collect();
+        let no_direction = |row: u64| {
+            let place = Place::Row { row, column: "up_1".to_owned() };
+            Error::content(file, place, "a row of zeros", "the direction of up")
+        };
+        let rows = (1..).zip(read_attitudes(file)?).map(|(row, up_b)| up_b.ok_or_else(|| no_direction(row)));
+        let up_b: Vec<Vector3<f64>> = rows.collect::<Result<_, _>>()?;
         if up_b.is_empty() {
             return Err(Error::content(file, Place::Whole, "no attitude", "a row for each attitude"));
         }
