@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import pathlib
+
 import centrical as ct
+import numpy
 import pytest
 
 RECORD = "examples/tumble/record.csv"
@@ -18,6 +22,36 @@ def test_tumble(program, tmp_path):
     # The folder is a session.
     again = ct.calibrate(tmp_path / "python")
     assert (again.values == given.values).all()
+
+
+def test_known_attitudes(program, tmp_path):
+    table = "examples/tumble/attitudes.csv"
+    stated = {"gravity": "9.81523 m/s^2", "attitude_uncertainty": "1 mrad"}
+    given = ct.tumble(RECORD, attitudes=table, out=tmp_path / "python", **stated)
+    options = ["--gravity", "9.81523 m/s^2", "--attitudes", table, "--attitude-uncertainty", "1 mrad"]
+    said = program("tumble", RECORD, *options, "--out", tmp_path / "command")
+    assert given.to_json() == said
+    for name in ("result.json", "attitudes.csv", "experiment.toml", "report.html"):
+        assert (tmp_path / "command" / name).read_bytes() == (tmp_path / "python" / name).read_bytes()
+    truth = json.loads(pathlib.Path("examples/tumble/truth.json").read_text())["case_turn"]
+    for axis, turn in enumerate(truth, start=1):
+        found = given[f"case_turn_{axis}"]
+        assert abs(found.value - turn) < 4 * found.u
+    # The same directions as numbers, of any length.
+    rows = pathlib.Path(table).read_text().splitlines()
+    directions = [[2.0 * float(cell) for cell in row.split(",")] for row in rows[1:]]
+    by_rows = ct.tumble(RECORD, attitudes=directions, **stated)
+    assert numpy.allclose(by_rows.values, given.values, rtol=1e-9, atol=1e-12, equal_nan=True)
+    assert all((ct.calibrate(tmp_path / "python").values == given.values).tolist())
+
+
+def test_attitudes_without_their_uncertainty():
+    with pytest.raises(ValueError, match="found None beside attitudes"):
+        ct.tumble(RECORD, attitudes="cube")
+    with pytest.raises(ValueError, match="found one without attitudes"):
+        ct.tumble(RECORD, attitude_uncertainty="0.1 deg")
+    with pytest.raises(ValueError, match="attitude"):
+        ct.tumble(RECORD, attitudes=[[0.0, 0.0, 0.0]], attitude_uncertainty="0.1 deg")
 
 
 def test_what_is_no_record_of_rests():
