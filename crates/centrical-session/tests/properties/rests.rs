@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use centrical::{Experiment, MeasurementModel, Mounting, Position, SetPoint};
 use centrical_session::{
-    CalibrationResult, Method, PlateauMean, Session, TableFormat, calibrate, reduce, unwatched, write_plateaus,
+    Axes, CalibrationResult, Method, PlateauMean, Session, TableFormat, calibrate, reduce, unwatched, write_plateaus,
     write_reduced,
 };
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 
 use crate::random::Random;
 
@@ -142,6 +142,85 @@ fn rests_after_a_switch_off_have_a_bias_of_their_own() {
     // Stated to be the same, it is not: the residuals say so.
     let (_, wrong) = calibrated(Some("0 mg"));
     assert!(!wrong.objections().is_empty());
+}
+
+/// Bias and scale matrix in axes of the case against their covariance, by many made tumbles on a table of attitudes. The readings come
+/// from the equation itself: bias + scale matrix x specific force in the axes of the case.
+#[test]
+fn errors_in_axes_of_the_case_are_as_large_as_stated() {
+    const RUNS: usize = 100;
+    const GRAVITY: f64 = 9.81523;
+    const UNCERTAINTY: f64 = 1e-3;
+    const NAMES: [&str; 12] = [
+        "df_1", "df_2", "df_3", "scale_11", "scale_12", "scale_13", "scale_21", "scale_22", "scale_23", "scale_31",
+        "scale_32", "scale_33",
+    ];
+    let mut random = Random::new(12);
+    let mut sum = 0.0;
+    let folder = tempfile::tempdir().unwrap();
+    let session = format!(
+        r#"
+[session]
+title = "made"
+date = ""
+[site]
+gravity = "{GRAVITY} m/s^2"
+[uncertainty]
+gravity = "0 m/s^2"
+[unit]
+serial = ""
+output_unit = "m/s^2"
+[model]
+error_model = ["df_1", "df_2", "df_3", "G0_11", "G0_21", "G0_22", "G0_31", "G0_32", "G0_33"]
+[[tumble]]
+rests = "rests.csv"
+attitudes = "attitudes.csv"
+attitude_uncertainty = "{UNCERTAINTY} rad"
+"#
+    );
+    fs::write(folder.path().join("experiment.toml"), session).unwrap();
+    for run in 0..RUNS {
+        let mut normal = |size: f64| Vector3::from_fn(|_, _| size * random.normal());
+        let bias = normal(0.2);
+        let turn = Rotation3::from_scaled_axis(normal(0.02));
+        let mut scale = Matrix3::zeros();
+        for j in 0..3 {
+            let column = normal(5e-3);
+            (j..3).for_each(|i| scale[(i, j)] = column[i]);
+        }
+        let scale = (Matrix3::identity() + scale) * turn.matrix();
+        let mut attitudes = "up_1,up_2,up_3\n".to_owned();
+        let mut rests = Vec::new();
+        for mounting in 0..12 + run % 12 {
+            let stated = normal(1.0).normalize();
+            writeln!(attitudes, "{},{},{}", stated[0], stated[1], stated[2]).unwrap();
+            let tilt = normal(UNCERTAINTY);
+            let up = Rotation3::from_scaled_axis(tilt - stated * stated.dot(&tilt)) * stated;
+            rests.push(PlateauMean {
+                mounting,
+                speed: 0.0,
+                speed_uncertainty: None,
+                angle: 0.0,
+                mean: bias + scale * up * GRAVITY + normal(NOISE),
+                covariance: Matrix3::identity() * NOISE * NOISE,
+                samples: 6000,
+            });
+        }
+        fs::write(folder.path().join("attitudes.csv"), attitudes).unwrap();
+        write_plateaus(&folder.path().join("rests.csv"), &rests).unwrap();
+        let session = Session::read(folder.path()).unwrap();
+        let result = calibrate(&session, Method::Exact, &unwatched).unwrap();
+        let axes = Axes::Case.of(result, Path::new("result.json")).unwrap().axes.unwrap();
+        let places = NAMES.map(|name| axes.parameters.iter().position(|p| p.name == name).unwrap());
+        let truth: Vec<f64> = bias.iter().chain(scale.transpose().iter()).copied().collect();
+        let error = DVector::from_fn(NAMES.len(), |a, _| axes.parameters[places[a]].value - truth[a]);
+        let covariance = DMatrix::from_fn(NAMES.len(), NAMES.len(), |a, b| axes.covariance[places[a]][places[b]]);
+        sum += error.dot(&covariance.cholesky().unwrap().solve(&error));
+    }
+    let count = (RUNS * NAMES.len()) as f64;
+    let ratio = sum / count;
+    // Four standard deviations of a mean of squares.
+    assert!((ratio - 1.0).abs() < 4.0 * (2.0 / count).sqrt(), "{ratio}");
 }
 
 #[test]
