@@ -13,6 +13,7 @@ mod switch_on;
 mod symbols;
 mod tables;
 
+pub(crate) use self::certificate::method_text;
 pub use self::certificate::{Issuer, certificate};
 pub(crate) use self::conformity::{judged_in_words, rule};
 pub use self::content::{

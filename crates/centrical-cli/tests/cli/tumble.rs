@@ -112,6 +112,28 @@ fn known_attitudes_show_the_case() {
     assert!(text.contains("[[tumble]] 1, attitude_uncertainty: found no such key beside attitudes"), "{text}");
 }
 
+/// A certificate of rests alone says so, in print and for programs: no centrifuge and no speed.
+#[test]
+fn a_certificate_of_rests_names_no_centrifuge() {
+    let copy = Copy::new();
+    let record = example("record.csv");
+    let tumble = ["tumble", &record, "--gravity", "9.81523 m/s^2", "--out", "tumbled"];
+    let table = example("attitudes.csv");
+    let known = ["--attitudes", &table, "--attitude-uncertainty", "1 mrad"];
+    let laboratory = format!("{}/../../examples/ta-200/laboratory.toml", env!("CARGO_MANIFEST_DIR"));
+    for (options, attitudes) in [(&[][..], "not known beforehand"), (&known[..], "Of 24 attitudes 24 are known")] {
+        let run = copy.run(&[&tumble[..], options].concat());
+        assert_eq!(run.status.code(), Some(0), "{}", said(&run));
+        let options = ["--laboratory", &laboratory, "--html", "certificate.html", "--dcc", "certificate.xml"];
+        // Its limits are those of another unit: the certificate is written, and says that they are not kept.
+        let run = copy.run(&[&["report", "tumbled/result.json"], &options[..]].concat());
+        assert!(run.status.code() != Some(2), "{}", said(&run));
+        let digital = fs::read_to_string(copy.out().join("certificate.xml")).unwrap();
+        assert!(digital.contains("Static calibration by gravity") && digital.contains(attitudes));
+        assert!(!digital.contains("Kozlov") && !digital.contains("centrical_speedUncertainty"));
+    }
+}
+
 #[test]
 fn attitudes_that_are_none_are_refused() {
     let copy = Copy::new();

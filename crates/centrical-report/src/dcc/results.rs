@@ -10,6 +10,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::administrative::{identification, software};
 use super::xml::Xml;
+use crate::document::method_text;
 use crate::evaluation::{
     COVERAGE_PROBABILITY, Expanded, ReadingError, equation, expanded, expanded_of_normal, reading_errors,
 };
@@ -27,7 +28,7 @@ pub(super) fn list(
     xml.element("dcc:measurementResults", |xml| {
         xml.element("dcc:measurementResult", |xml| {
             xml.content("dcc:name", messages.results, language);
-            methods(xml, laboratory, language);
+            methods(xml, result, laboratory, language);
             xml.element("dcc:usedSoftware", |xml| software(xml, result, language));
             equipment(xml, laboratory, language);
             influences(xml, result, laboratory, language);
@@ -43,13 +44,13 @@ pub(super) fn list(
     of_axes
 }
 
-fn methods(xml: &mut Xml, laboratory: &Laboratory, language: Language) {
+fn methods(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory, language: Language) {
     let messages = language.messages();
     xml.element("dcc:usedMethods", |xml| {
         xml.element("dcc:usedMethod", |xml| {
             xml.content("dcc:name", messages.method, language);
             let deviations = laboratory.method.deviations.as_deref().unwrap_or(messages.none);
-            let text = format!("{} {}: {deviations}.", messages.method_text, messages.deviations);
+            let text = format!("{} {}: {deviations}.", method_text(&result.model, language), messages.deviations);
             xml.content("dcc:description", &text, language);
             xml.optional("dcc:reference", laboratory.method.procedure.as_deref());
         });
@@ -111,6 +112,9 @@ fn influences(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
                 real(xml, result.model.gravity, &Unit::ACCELERATION.d_si(), None);
             });
         });
+        if !result.model.has_arm() {
+            return;
+        }
         influence(xml, ("centrical_speedUncertainty", messages.speed_uncertainty), language, |xml| {
             let kind = [("refType", "centrical_speedUncertainty")];
             xml.element_with("dcc:quantity", &kind, |xml| real(xml, result.model.speed_uncertainty, "\\one", None));

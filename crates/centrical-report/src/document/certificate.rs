@@ -1,6 +1,9 @@
 //! The calibration certificate on paper: the items of ISO/IEC 17025:2017, 7.8.2 and 7.8.4, in their order.
 
-use centrical_session::{Address, CalibrationResult, Condition, Contact, Laboratory, UnitHistoryReport, customary};
+use centrical_session::{
+    Address, CalibrationResult, Condition, Contact, Laboratory, ModelSummary, PositionSummary, UnitHistoryReport,
+    customary,
+};
 
 use super::axes::axes;
 use super::conformity::{conformity_table, rule};
@@ -144,6 +147,24 @@ fn dates(laboratory: &Laboratory, language: Language) -> Vec<Block> {
     vec![Block::heading(messages.date, 4), facts]
 }
 
+/// What was done: on the arm, at rest in attitudes of its own, or both.
+pub(crate) fn method_text(model: &ModelSummary, language: Language) -> String {
+    let messages = language.messages();
+    let rests: Vec<&PositionSummary> = model.positions.iter().filter(|position| position.is_free).collect();
+    if rests.is_empty() {
+        return messages.method_on_arm.to_owned();
+    }
+    let way = if model.has_arm() {
+        format!("{} {}", messages.method_on_arm, messages.method_with_rests)
+    } else {
+        messages.method_of_rests.to_owned()
+    };
+    let known: Vec<f64> = rests.iter().filter_map(|rest| rest.attitude_uncertainty).collect();
+    let uncertainty = known.iter().copied().fold(0.0, f64::max);
+    let uncertainty = format!("{} {}", language.scientific(uncertainty), language.unit("rad"));
+    format!("{way} {}", (messages.words.known_attitudes)(known.len(), rests.len(), &uncertainty))
+}
+
 /// 7.8.2.1 f, n.
 fn method(result: &CalibrationResult, laboratory: &Laboratory, language: Language) -> Vec<Block> {
     let (messages, method) = (language.messages(), &laboratory.method);
@@ -152,7 +173,7 @@ fn method(result: &CalibrationResult, laboratory: &Laboratory, language: Languag
         (messages.deviations, method.deviations.clone().unwrap_or_else(|| messages.none.to_owned())),
         (messages.software, format!("{} {}", result.program.name, result.program.version)),
     ]);
-    vec![Block::heading(messages.method, 6), Block::paragraph(messages.method_text), facts]
+    vec![Block::heading(messages.method, 6), Block::paragraph(&method_text(&result.model, language)), facts]
 }
 
 /// 7.8.4.1 b.
@@ -163,13 +184,16 @@ fn conditions(result: &CalibrationResult, laboratory: &Laboratory, language: Lan
         format!("{value} ± {range} {unit}")
     };
     let gravity = format!("{} {}", language.number(&result.model.gravity.to_string()), language.unit("m/s^2"));
+    // An empty fact is not shown.
+    let speed_uncertainty =
+        if result.model.has_arm() { language.scientific(result.model.speed_uncertainty) } else { String::new() };
     let facts = Block::facts([
         (messages.temperature, shown(environment.temperature, "°C")),
         (messages.humidity, environment.humidity.map(|c| shown(c, "%")).unwrap_or_default()),
         (messages.pressure, environment.pressure.map(|c| shown(c, &language.unit("kPa"))).unwrap_or_default()),
         (messages.unit_temperature, environment.unit_temperature.map(|c| shown(c, "°C")).unwrap_or_default()),
         (messages.gravity, gravity),
-        (messages.speed_uncertainty, language.scientific(result.model.speed_uncertainty)),
+        (messages.speed_uncertainty, speed_uncertainty),
     ]);
     vec![Block::heading(messages.conditions, 5), facts]
 }

@@ -170,10 +170,13 @@ pub(crate) const ENGLISH: Messages = Messages {
     own_premises: "the laboratory’s premises",
     replaces: "Replaces certificate",
     procedure: "Procedure",
-    method_text: "Calibration on a precision centrifuge by the method of A. V. Kozlov (Lomonosov Moscow State \
+    method_on_arm: "Calibration on a precision centrifuge by the method of A. V. Kozlov (Lomonosov Moscow State \
         University): time means of the readings in several mounting positions, radii and speeds and at rest; joint \
         estimation of the instrument and of the geometry of the experiment by weighted least squares on the exact \
         model.",
+    method_with_rests: "Rests off the centrifuge take part in the same estimation, by gravity.",
+    method_of_rests: "Static calibration by gravity: time means of the readings at rest in several attitudes; joint \
+        estimation of the instrument and of the attitudes by weighted least squares on the exact model.",
     deviations: "Additions, deviations, exclusions",
     none: "none",
     conditions: "Conditions of calibration",
@@ -264,6 +267,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     mark_place: "place for mark or seal",
     words: Words {
         axes: words::axes,
+        known_attitudes: words::known_attitudes,
         next_rest: words::next_rest,
         group: words::group,
         meaning: words::meaning,

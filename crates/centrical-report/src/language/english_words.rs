@@ -170,6 +170,14 @@ pub(super) fn rival(rival: Rival) -> &'static str {
     }
 }
 
+/// How many attitudes of all rests are known, and to what standard uncertainty at most.
+pub(super) fn known_attitudes(known: usize, all: usize, uncertainty: &str) -> String {
+    match known {
+        0 => "The attitudes are not known beforehand.".to_owned(),
+        _ => format!("Of {all} attitudes {known} are known, with a standard uncertainty of at most {uncertainty}."),
+    }
+}
+
 pub(super) fn next_rest(next: &NextAttitudeSummary) -> String {
     let brings = match (&next.parameter, next.parameter_factor) {
         (Some(parameter), Some(factor)) if next.gain == 0 => {

@@ -148,7 +148,10 @@ pub(crate) struct Messages {
     pub own_premises: &'static str,
     pub replaces: &'static str,
     pub procedure: &'static str,
-    pub method_text: &'static str,
+    pub method_on_arm: &'static str,
+    /// What follows it where rests off the arm are in the same fit.
+    pub method_with_rests: &'static str,
+    pub method_of_rests: &'static str,
     pub deviations: &'static str,
     pub none: &'static str,
     pub conditions: &'static str,
@@ -279,6 +282,8 @@ pub(crate) struct Messages {
 /// Words for what is one of several, in one language; each function names all of them.
 pub(crate) struct Words {
     pub axes: fn(&AxesName) -> String,
+    /// How many attitudes of all rests are known, and to what standard uncertainty at most.
+    pub known_attitudes: fn(usize, usize, &str) -> String,
     /// Which attitude to add, and what it brings.
     pub next_rest: fn(&NextAttitudeSummary) -> String,
     pub group: fn(Group) -> &'static str,

@@ -166,6 +166,14 @@ pub(super) fn rival(rival: Rival) -> &'static str {
     }
 }
 
+/// How many attitudes of all rests are known, and to what standard uncertainty at most.
+pub(super) fn known_attitudes(known: usize, all: usize, uncertainty: &str) -> String {
+    match known {
+        0 => "Ориентации заранее не известны.".to_owned(),
+        _ => format!("Из {all} ориентаций известны {known}, со стандартной неопределённостью не более {uncertainty}."),
+    }
+}
+
 pub(super) fn next_rest(next: &NextAttitudeSummary) -> String {
     let along = |sign: f64, way: &str| {
         let axes: Vec<String> = (1..=3).filter(|i| next.up[i - 1] * sign > 0.1).map(|i| i.to_string()).collect();
