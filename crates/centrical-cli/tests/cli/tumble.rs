@@ -131,6 +131,8 @@ fn a_certificate_of_rests_names_no_centrifuge() {
         let digital = fs::read_to_string(copy.out().join("certificate.xml")).unwrap();
         assert!(digital.contains("Static calibration by gravity") && digital.contains(attitudes));
         assert!(!digital.contains("Kozlov") && !digital.contains("centrical_speedUncertainty"));
+        let printed = fs::read_to_string(copy.out().join("certificate.html")).unwrap();
+        assert!(printed.contains("gravity in the fitted attitudes") && !printed.contains("plateau’s own speed"));
     }
 }
 

@@ -10,7 +10,7 @@ use super::conformity::{conformity_table, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Picture, Row, Section, Table};
 use super::drift::drift_facts;
 use super::objection::objection;
-use super::reading_error::error_table;
+use super::reading_error::{error_note, error_table};
 use super::rests_on::{self, counts_as_exact, rests_on_sentence};
 use super::switch_on::switch_on;
 use super::symbols::nominal_output;
@@ -279,7 +279,7 @@ fn adjustment(
             blocks.push(Block::paragraph(messages.errors_of_readings));
         }
         blocks.push(Block::Table(errors));
-        blocks.push(Block::paragraph(messages.residual_error_note));
+        blocks.push(Block::paragraph(error_note(result, language)));
     }
     blocks
 }

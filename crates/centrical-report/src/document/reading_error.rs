@@ -10,25 +10,34 @@ use crate::language::Language;
 /// What is shown of an error: along each axis root mean square and largest magnitude.
 type Size = [(f64, f64); 3];
 
-/// Before, after without the plateau's speed error, and the expanded uncertainty of compensation: the root mean square of
+/// Before, after (on an arm without the plateau's speed error), and the expanded uncertainty of compensation: the root mean square of
 /// each axis. None if the unit cannot be compensated.
 pub(super) fn headline_table(result: &CalibrationResult, language: Language) -> Option<Table> {
-    let [before, _, speed_free, uncertainty] = sizes(result, language)?;
-    let rows = [before, speed_free, uncertainty].map(|(name, size)| cells(name, size.map(|(rms, _)| rms), language));
-    Some(table(rows.map(Row::Cells).into(), language))
+    let mut sizes = sizes(result, language)?;
+    if result.model.has_arm() {
+        sizes.remove(1);
+    }
+    let rows = sizes.into_iter().map(|(name, size)| cells(name, size.map(|(rms, _)| rms), language));
+    Some(table(rows.map(Row::Cells).collect(), language))
 }
 
-/// Before, after, after without the plateau's speed error, and the expanded uncertainty of compensation: root mean squares,
+/// Before, after, on an arm also without the plateau's speed error, and the expanded uncertainty of compensation: root mean squares,
 /// then largest magnitudes. None if the unit cannot be compensated.
 pub(super) fn error_table(result: &CalibrationResult, language: Language) -> Option<Table> {
     let messages = language.messages();
     let sizes = sizes(result, language)?;
     let part = |heading: &str, of: fn((f64, f64)) -> f64| {
-        let rows = sizes.map(|(name, size)| Row::Cells(cells(name, size.map(of), language)));
+        let rows = sizes.iter().map(|(name, size)| Row::Cells(cells(name, size.map(of), language)));
         std::iter::once(Row::Group(heading.to_owned())).chain(rows).collect::<Vec<_>>()
     };
     let rows = [part(messages.root_mean_square, |(rms, _)| rms), part(messages.largest, |(_, largest)| largest)];
     Some(table(rows.concat(), language))
+}
+
+/// What [`error_table`] shows.
+pub(super) fn error_note(result: &CalibrationResult, language: Language) -> &'static str {
+    let messages = language.messages();
+    if result.model.has_arm() { messages.residual_error_note } else { messages.residual_error_note_of_rests }
 }
 
 fn table(rows: Vec<Row>, language: Language) -> Table {
@@ -60,15 +69,19 @@ fn cells(name: &str, values: [f64; 3], language: Language) -> Vec<String> {
     [name.to_owned(), language.unit(unit)].into_iter().chain(numbers).collect()
 }
 
-fn sizes(result: &CalibrationResult, language: Language) -> Option<[(&'static str, Size); 4]> {
+/// In this order: before, after, on an arm after without the speed error, uncertainty of compensation.
+fn sizes(result: &CalibrationResult, language: Language) -> Option<Vec<(&'static str, Size)>> {
     let messages = language.messages();
     let errors = &reading_errors(result)?;
-    Some([
+    let mut sizes = vec![
         (messages.before, size(errors, |e| e.before)),
         (messages.after, size(errors, |e| e.after)),
-        (messages.after_speed_free, size(errors, |e| e.speed_free)),
         (messages.compensation_uncertainty, size(errors, |e| e.prediction.map(expanded_of_normal))),
-    ])
+    ];
+    if result.model.has_arm() {
+        sizes.insert(2, (messages.after_speed_free, size(errors, |e| e.speed_free)));
+    }
+    Some(sizes)
 }
 
 /// Root mean square and largest magnitude along each axis.

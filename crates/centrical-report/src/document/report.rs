@@ -7,7 +7,7 @@ use super::conformity::{judged_in_words, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Section, Table, TableKind, Tone};
 use super::drift::drift_facts;
 use super::objection::{objection, pattern, rival};
-use super::reading_error::{error_table, headline_table};
+use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
 use super::switch_on::switch_on;
 use super::symbols::{nominal_output, symbols};
@@ -141,7 +141,8 @@ fn of_unit(unit: Option<&UnitStatement>, language: Language) -> Section {
 fn headline(result: &CalibrationResult, language: Language) -> Vec<Block> {
     let messages = language.messages();
     let Some(table) = headline_table(result, language) else { return Vec::new() };
-    vec![Block::heading(messages.headline, 4), Block::Table(table), Block::Note(messages.headline_note.to_owned())]
+    let note = if result.model.has_arm() { messages.headline_note } else { messages.headline_note_of_rests };
+    vec![Block::heading(messages.headline, 4), Block::Table(table), Block::Note(note.to_owned())]
 }
 
 /// The equations of the readings, and every symbol of them in words.
@@ -164,7 +165,7 @@ fn reading_errors(result: &CalibrationResult, language: Language) -> Vec<Block> 
     vec![
         Block::heading(messages.residual_error, 4),
         Block::Table(errors),
-        Block::Note(messages.residual_error_note.to_owned()),
+        Block::Note(error_note(result, language).to_owned()),
     ]
 }
 

@@ -31,6 +31,8 @@ pub(crate) const ENGLISH: Messages = Messages {
         force of the fitted geometry. The second row still holds the error of each plateau’s speed; the third is without \
         it, which along the arm leaves next to nothing, so it speaks for the axes across the arm and for rest. The last \
         row is the expanded uncertainty that the parameters leave in a compensated reading of the same force.",
+    residual_error_note_of_rests: "Over all rests, against the force of gravity in the fitted attitudes. The last row is \
+        the expanded uncertainty that the parameters leave in a compensated reading of the same force.",
     before: "Before compensation",
     after: "After compensation",
     after_speed_free: "After, less the speed error of each plateau",
@@ -239,6 +241,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     headline_note: "Over all plateaus of the calibrated range, against the specific force of the fitted geometry. The \
         compensated error is without what each plateau’s own speed explains, which along the arm is nearly \
         all of it; U is what the parameters leave in a compensated reading.",
+    headline_note_of_rests: "Over all rests, against the force of gravity in the fitted attitudes; U is what the \
+        parameters leave in a compensated reading.",
     root_mean_square: "Root mean square",
     largest: "Largest magnitude",
     error_model: "Error model of the unit",
