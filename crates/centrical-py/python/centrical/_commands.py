@@ -97,9 +97,11 @@ def tumble(
     given = [str(name) for name in terms] if terms is not None else None
     if attitudes is None and attitude_uncertainty is not None:
         raise ValueError("attitude_uncertainty: found one without attitudes, expected attitudes that are this uncertain")
-    if attitudes is not None and not isinstance(attitudes, (str, os.PathLike)):
-        attitudes = [[float(component) for component in up] for up in attitudes]
-    known = None if attitudes is None else (attitudes, attitude_uncertainty)
+    known: tuple[Path | list[list[float]], Quantity | None] | None = None
+    if isinstance(attitudes, (str, os.PathLike)):
+        known = (attitudes, attitude_uncertainty)
+    elif attitudes is not None:
+        known = ([[float(component) for component in up] for up in attitudes], attitude_uncertainty)
     at = (gravity, gravity_uncertainty)
     with Bar("finding rests") as shown:
         return Result(
