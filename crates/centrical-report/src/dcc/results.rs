@@ -112,13 +112,12 @@ fn influences(xml: &mut Xml, result: &CalibrationResult, laboratory: &Laboratory
                 real(xml, result.model.gravity, &Unit::ACCELERATION.d_si(), None);
             });
         });
-        if !result.model.has_arm() {
-            return;
+        if result.model.has_arm() {
+            influence(xml, ("centrical_speedUncertainty", messages.speed_uncertainty), language, |xml| {
+                let kind = [("refType", "centrical_speedUncertainty")];
+                xml.element_with("dcc:quantity", &kind, |xml| real(xml, result.model.speed_uncertainty, "\\one", None));
+            });
         }
-        influence(xml, ("centrical_speedUncertainty", messages.speed_uncertainty), language, |xml| {
-            let kind = [("refType", "centrical_speedUncertainty")];
-            xml.element_with("dcc:quantity", &kind, |xml| real(xml, result.model.speed_uncertainty, "\\one", None));
-        });
     });
 }
 

@@ -13,19 +13,19 @@ type Size = [(f64, f64); 3];
 /// Before, after (on an arm without the plateau's speed error), and the expanded uncertainty of compensation: the root mean square of
 /// each axis. None if the unit cannot be compensated.
 pub(super) fn headline_table(result: &CalibrationResult, language: Language) -> Option<Table> {
-    let mut sizes = sizes(result, language)?;
-    if result.model.has_arm() {
-        sizes.remove(1);
-    }
-    let rows = sizes.into_iter().map(|(name, size)| cells(name, size.map(|(rms, _)| rms), language));
-    Some(table(rows.map(Row::Cells).collect(), language))
+    let [before, after, speed_free, uncertainty] = sizes(result, language)?;
+    let after = if result.model.has_arm() { speed_free } else { after };
+    let rows = [before, after, uncertainty].map(|(name, size)| cells(name, size.map(|(rms, _)| rms), language));
+    Some(table(rows.map(Row::Cells).into(), language))
 }
 
 /// Before, after, on an arm also without the plateau's speed error, and the expanded uncertainty of compensation: root mean squares,
 /// then largest magnitudes. None if the unit cannot be compensated.
 pub(super) fn error_table(result: &CalibrationResult, language: Language) -> Option<Table> {
     let messages = language.messages();
-    let sizes = sizes(result, language)?;
+    let [before, after, speed_free, uncertainty] = sizes(result, language)?;
+    let speed_free = result.model.has_arm().then_some(speed_free);
+    let sizes: Vec<_> = [before, after].into_iter().chain(speed_free).chain([uncertainty]).collect();
     let part = |heading: &str, of: fn((f64, f64)) -> f64| {
         let rows = sizes.iter().map(|(name, size)| Row::Cells(cells(name, size.map(of), language)));
         std::iter::once(Row::Group(heading.to_owned())).chain(rows).collect::<Vec<_>>()
@@ -69,19 +69,15 @@ fn cells(name: &str, values: [f64; 3], language: Language) -> Vec<String> {
     [name.to_owned(), language.unit(unit)].into_iter().chain(numbers).collect()
 }
 
-/// In this order: before, after, on an arm after without the speed error, uncertainty of compensation.
-fn sizes(result: &CalibrationResult, language: Language) -> Option<Vec<(&'static str, Size)>> {
+fn sizes(result: &CalibrationResult, language: Language) -> Option<[(&'static str, Size); 4]> {
     let messages = language.messages();
     let errors = &reading_errors(result)?;
-    let mut sizes = vec![
+    Some([
         (messages.before, size(errors, |e| e.before)),
         (messages.after, size(errors, |e| e.after)),
+        (messages.after_speed_free, size(errors, |e| e.speed_free)),
         (messages.compensation_uncertainty, size(errors, |e| e.prediction.map(expanded_of_normal))),
-    ];
-    if result.model.has_arm() {
-        sizes.insert(2, (messages.after_speed_free, size(errors, |e| e.speed_free)));
-    }
-    Some(sizes)
+    ])
 }
 
 /// Root mean square and largest magnitude along each axis.
