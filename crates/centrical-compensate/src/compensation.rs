@@ -84,7 +84,7 @@ impl<T: AsRef<[Term]>> Compensation<T> {
         if f[0].is_nan() { Err(OutOfRange { reading, range: self.certificate.range }) } else { Ok(f) }
     }
 
-    /// Takes `W` readings, by axes, to specific forces; NaN on all axes where there is none. No branch depends on a
+    /// Takes `W` readings, by axes, to specific forces; NaN on all axes where no force within the range gives the reading. No branch depends on a
     /// reading, so that the lanes go into vectors and each is what it would be alone.
     #[inline(always)]
     pub(crate) fn invert<const W: usize>(&self, f: &mut Lanes<W>) {

@@ -4,8 +4,8 @@
 //! - A reading is `f' = f + E(f)`, `E(f)` a sum of monomial [`Term`]s [K4.1], [K4.2]; three newtonometers, instrument
 //!   axes, m/s^2 throughout.
 //! - [`Compensation::new`] certifies that the inverse is unique over the range asked for, by bounds on the
-//!   coefficients alone; only then are readings inverted. A reading of nothing within the range is refused.
-//! - The result is exact to rounding: what is left of Newton's iteration is below the last place of the range.
+//!   coefficients alone; only then are readings inverted. A reading that no force within the range gives is refused.
+//! - The result is exact to rounding: the remainder of Newton's iteration is below the last place of the range.
 //! - One reading or many, one thread or all, narrow vectors or wide, with `std` or without: the same bytes.
 //!
 //! ```

@@ -57,7 +57,7 @@ impl Server {
     /// host, so that a foreign name that resolves to this machine sees nothing.
     ///
     /// # Errors
-    /// [`Error`] when the address is none, is in use, or may not be opened.
+    /// [`Error`] when the address is invalid, is in use, or may not be opened.
     pub fn bind(address: &str, names: &[String]) -> Result<Self, Error> {
         let listener = bound(address)?;
         let at = listener.local_addr().map_err(|error| failed(address, &error))?;

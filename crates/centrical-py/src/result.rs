@@ -50,7 +50,7 @@ impl CalibrationResult {
         })
     }
 
-    /// The result of which `text` is the JSON.
+    /// The result that `text` holds as JSON.
     #[staticmethod]
     fn from_json(py: Python, text: &[u8]) -> PyResult<Self> {
         guarded(|| {

@@ -13,7 +13,7 @@ use crate::printing::Printing;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: centrical noise examples/ta-200 --plateau 2:1 --out noise")]
 pub struct Arguments {
-    /// A record in any supported format, or a session, of which one plateau is analysed
+    /// A record in any supported format, or a session and one plateau of it
     file: PathBuf,
     /// Plateau of the session [default: the longest at rest]
     #[arg(long, value_name = "MOUNTING:PLATEAU")]

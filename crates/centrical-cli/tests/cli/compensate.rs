@@ -71,7 +71,7 @@ fn readings_are_explained() {
     assert!(largest > 1e-3, "the compensation should do something, found {largest} m/s^2 at most");
 }
 
-/// Readings from beyond the range are counted, told, and nan; the exit code says so.
+/// Readings beyond the range are counted and become nan; the exit code says so.
 #[test]
 fn readings_from_beyond_the_range_are_told() {
     let copy = calibrated();
@@ -132,7 +132,7 @@ fn source_code() {
     assert!(header.contains(" * Compensation of "), "{header}");
 }
 
-/// Any format the program reads, told by its bytes: the same record gives the same specific forces.
+/// Any format, recognised by its bytes: the same record gives the same specific forces.
 #[test]
 fn any_format() {
     let copy = calibrated();
@@ -164,7 +164,7 @@ fn memory_does_not_grow_with_the_record() {
     assert!(long < short + 48 * 1024 * 1024, "{long} bytes after {short}");
 }
 
-/// Largest resident memory [B] of compensating a record of so many rows: the kernel keeps the largest so far, it is read
+/// Largest resident memory [B] of compensating a record of `rows` rows: the kernel keeps the largest so far, it is read
 /// until the program ends.
 #[cfg(target_os = "linux")]
 fn peak_memory(copy: &Copy, rows: u64) -> u64 {

@@ -52,7 +52,7 @@ fn files(folder: &Path) -> Files {
     files
 }
 
-/// Runs the binary in a folder, no file to become larger than so many blocks; `before` is told the shell first.
+/// Runs the binary in a folder; no file grows beyond `blocks` blocks; the shell runs `before` first.
 fn run(folder: &Path, before: &str, blocks: usize, arguments: &[&str]) -> Output {
     let binary = env!("CARGO_BIN_EXE_centrical");
     let script = format!("{before} ulimit -c 0; ulimit -f {blocks}; exec \"$0\" \"$@\"");
@@ -164,7 +164,7 @@ fn a_watch_goes_on_from_every_write() {
     dies_in_a_watch(&[&complete], "result.json", |length| (length - 1) / BLOCK);
 }
 
-/// Kills a watch, and makes it fail, in its write of a file, no file to become larger than so many blocks by its length.
+/// Kills a watch within its write of a file, and makes that write fail: no file grows beyond the blocks that `blocks` gives for its length.
 fn dies_in_a_watch(arguments: &[&str], file: &str, blocks: impl Fn(usize) -> usize) {
     let folder = TempDir::new().unwrap();
     let arguments = [&["watch"], arguments, &["--once", "--quiet", "0", "--out", "out"]].concat();

@@ -92,7 +92,7 @@ fn a_time_beside_the_plan() {
 }
 
 /// Goals that time reaches are met in the shortest time; goals that no time reaches are an error that says by how much; goals
-/// that type B alone misses are told.
+/// that type B alone misses are named.
 #[test]
 fn plans_for_goals() {
     let copy = Copy::new();
@@ -133,7 +133,7 @@ fn goals_are_met_by_both_types() {
     assert!(text.contains("TYPE B") && text.contains("% of its goal"), "{text}");
 }
 
-/// The worst of several scenarios is told with all of them, and an earlier result is what a plan is predicted for.
+/// The worst of several scenarios is shown with all of them, and an earlier result is what a plan is predicted for.
 #[test]
 fn plans_for_the_worst_case_and_for_a_known_unit() {
     let copy = Copy::new();

@@ -9,7 +9,7 @@ use crate::session::{Copy, example};
 /// A session calibrated.
 struct Calibrated {
     result: CalibrationResult,
-    /// What the terminal is told.
+    /// What the terminal shows.
     said: String,
     /// The sections on it of the reports in English and in Russian.
     sections: [String; 2],

@@ -1,4 +1,4 @@
-//! `centrical tumble` on the record of the examples and on records that are none.
+//! `centrical tumble` on the record of the examples and on records without rests.
 
 use std::fs;
 use std::process::Output;

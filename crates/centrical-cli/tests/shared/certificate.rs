@@ -33,7 +33,7 @@ fn certificate_with(session: &str, language: &str, options: &[&str]) -> (TempDir
     (folder, text)
 }
 
-/// Alterations that the schema must notice, one for each part of the certificate: a value that is none of its type, an
+/// Alterations that the schema must notice, one for each part of the certificate: a value of another type, an
 /// element that is missing, misplaced or unknown.
 const ALTERATIONS: [(&str, &str); 18] = [
     ("schemaVersion=\"3.3.0\"", "schemaVersion=\"9.9\""),

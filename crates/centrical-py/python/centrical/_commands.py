@@ -90,7 +90,7 @@ def tumble(
     attitude_uncertainty
         Their standard uncertainty [rad], or a text such as ``"0.1 deg"``.
     terms
-        Of the error model, as in ``experiment.toml``; bias, scale and misalignment if there are none.
+        Of the error model, as in ``experiment.toml``; bias, scale and misalignment by default.
     out
         A folder for ``result.json``, the rests as a session, the report and its plots.
     """
@@ -185,7 +185,7 @@ def noise(
     Parameters
     ----------
     source
-        A record, a session of which one ``plateau`` is analysed, or an array of readings, shape ``(n,)`` or ``(n, k)``,
+        A record, a session and one ``plateau`` of it, or an array of readings, shape ``(n,)`` or ``(n, k)``,
         which needs a ``rate``; it goes through a temporary file.
     rate
         Sampling rate [Hz], or a text such as ``"250 Hz"``, of readings without a column of time.

@@ -75,7 +75,7 @@ pub fn tumble(
     Ok(result.into())
 }
 
-/// Directions that are none, and a missing uncertainty, are errors of the call.
+/// Rows that are no direction, and a missing uncertainty, are errors of the call.
 fn checked(attitudes: Attitudes, uncertainty: Option<Amount>) -> PyResult<(Attitudes, f64)> {
     let uncertainty = Amount::optional(uncertainty, "attitude_uncertainty", Dimension::Angle)?;
     let missing =

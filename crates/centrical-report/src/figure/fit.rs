@@ -119,7 +119,7 @@ pub(super) fn singular_values(result: &CalibrationResult, language: Language) ->
         .with(Series::line(messages.limit, ends));
     let caption = if lost.is_empty() { messages.singular_caption_full } else { messages.singular_caption_short };
     if !lost.is_empty() {
-        // A singular value of nothing but rounding may be zero, which a logarithm has no place for.
+        // A singular value that is mere rounding may be zero, and zero has no logarithm.
         let floor = |p: &Point| Point::new(p.x, p.y.max(largest * f64::EPSILON));
         plot = plot.with(Series::markers(messages.lost, lost.iter().map(floor).collect()));
     }

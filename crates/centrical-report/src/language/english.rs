@@ -305,8 +305,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     rests_on_moves: "Moves most",
     rests_on_reading: "Error of a compensated reading",
     not_shown: "not shown at any size",
-    rests_on_sentence: "They presuppose that effects are absent of which this session would not have shown smaller sizes with a \
-        probability of 80 %. The three that would do most harm",
+    rests_on_sentence: "They presuppose that effects are absent. Below the sizes stated, this session would have shown an effect with a \
+        probability of less than 80 %. The three that would do most harm",
     below: "below",
     would_not_show: "it would not show; that size moves",
     would_never_show: "it would not show at any size; a typical size moves",

@@ -15,7 +15,7 @@ struct Sheet {
     left: f64,
     /// Width allowed for a letter of the legend.
     letter: f64,
-    /// About so many ticks along x and y.
+    /// Approximate number of ticks along x and y.
     ticks: [usize; 2],
 }
 

@@ -65,7 +65,7 @@ def calibrate(
     """Calibrates every session of a folder, a bucket's prefix or a manifest into ``out``, a folder or a prefix too.
 
     ``engine`` is the address of a Dask scheduler, its client, or an executor of :mod:`concurrent.futures`; processes on this
-    machine if there is none. The same call again makes only what is missing or changed; with ``again`` also the parts with sessions
+    machine by default. The same call again makes only what is missing or changed; with ``again`` also the parts with sessions
     that failed, for other limits. ``options`` are those of obstore for both places; credentials come from the environment of
     each worker.
     """
