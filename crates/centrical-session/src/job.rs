@@ -42,5 +42,5 @@ pub use self::reduced_session::write_reduced;
 pub use self::series::{SeriesRequest, calibrate_series};
 pub use self::settings_schema::{SettingsForm, settings_schema};
 pub use self::simulate::simulate_session;
-pub use self::tumble::{StatedAttitudes, Tumble, TumbleRequest, tumble};
+pub use self::tumble::{Tumble, TumbleRequest, tumble};
 pub use self::watch::{Following, LiveRequest, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest};

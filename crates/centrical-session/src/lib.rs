@@ -72,17 +72,18 @@ pub use document::{
 };
 pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, KnownAttitudes, Measured, MountingFiles, OutputUnit, Plan, Planning, PlateauMean, PlateauName,
-    PlateauTable, RestTable, Session, SpeedSource, Speeds, available_time, read_plateaus, write_plateaus,
+    ExpectedValues, KnownAttitudes, Measured, MountingFiles, OutputUnit, Plan, PlannedRests, Planning, PlateauMean,
+    PlateauName, PlateauTable, RestSource, RestTable, Session, SpeedSource, Speeds, StatedAttitudes, available_time,
+    read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn,
     FirstOutside, Following, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest,
-    Problem, Recorded, Series, SeriesRequest, SettingsForm, StatedAttitudes, Tumble, TumbleRequest, USUAL_LEVELS,
-    USUAL_TIMES, Watch, WatchEnd, WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate,
-    calibrate_reduced, calibrate_series, calibrate_without, collect_results, compare_results, compensate,
-    compensate_record, init, list_store, noise_of, plan, read_plan, read_planning, reduce, reduce_recorded,
-    reduce_without_inputs, select_model, settings_schema, simulate_session, subject, tumble, write_reduced,
+    Problem, Recorded, Series, SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch,
+    WatchEnd, WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
+    calibrate_series, calibrate_without, collect_results, compare_results, compensate, compensate_record, init,
+    list_store, noise_of, plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs, select_model,
+    settings_schema, simulate_session, subject, tumble, write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,

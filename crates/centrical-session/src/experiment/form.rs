@@ -5,7 +5,7 @@ mod entry_schemas;
 mod tables;
 
 pub(crate) use self::entries::{
-    ColumnEntry, ColumnTable, PriorValue, RecordEntry, Steps, TermEntry, TermList, TermTable,
+    AttitudeList, ColumnEntry, ColumnTable, PriorValue, RecordEntry, Steps, TermEntry, TermList, TermTable,
 };
 pub(crate) use self::tables::{
     CandidatesTable, CentrifugeTable, ColumnsTable, Form, MeasuredTable, ModelTable, MountingTable, PlanForm,

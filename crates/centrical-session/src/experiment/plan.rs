@@ -1,18 +1,21 @@
 //! Plans: the session form before anything is measured, or a preset experiment by name.
 
 use std::collections::BTreeMap;
+use std::iter::repeat_n;
 use std::path::{Path, PathBuf};
 
 use centrical::plan::{Noise, Normalised};
 use centrical::position::ThirdPosition;
-use centrical::{MeasurementModel, Parameter, TypeB, Weight};
+use centrical::{Kind, MeasurementModel, Parameter, TypeB, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;
 
 use super::form::{Form, PlanTable, PresetForm, PresetTable};
+use super::rests::{self, RestTable};
 use super::session::{Session, extensions, pair_relation, read_text};
 use super::speeds::preset_speeds;
 use super::toml_path::TomlPath;
+use super::uncertainty::ANY_BIAS;
 use super::{prior, schedule, terms};
 use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
@@ -54,6 +57,8 @@ struct Probe {
     plan: Option<ProbeTable>,
     #[serde(default)]
     mounting: Vec<ProbeMounting>,
+    #[serde(default)]
+    tumble: Vec<ProbeTumble>,
 }
 
 #[derive(Deserialize)]
@@ -64,6 +69,21 @@ struct ProbeTable {
 #[derive(Deserialize)]
 struct ProbeMounting {
     record: Option<toml::Value>,
+}
+
+#[derive(Deserialize)]
+struct ProbeTumble {
+    rests: Option<toml::Value>,
+}
+
+impl Probe {
+    /// Whether something is measured. Rests that are measured belong to a plan too, of an arm that is not.
+    fn is_measured(&self) -> bool {
+        let has_rests = self.tumble.iter().any(|tumble| tumble.rests.is_some());
+        self.plateaus.is_some()
+            || self.mounting.iter().any(|mounting| mounting.record.is_some())
+            || self.mounting.is_empty() && has_rests
+    }
 }
 
 impl Plan {
@@ -82,8 +102,7 @@ impl Plan {
         if probe.plan.as_ref().is_some_and(|plan| plan.preset.is_some()) {
             return Self::of_preset(path, &from_toml(path, &text)?).map(Some);
         }
-        let is_measured = probe.plateaus.is_some() || probe.mounting.iter().any(|m| m.record.is_some());
-        if is_measured && probe.plan.is_none() {
+        if probe.is_measured() && probe.plan.is_none() {
             return Ok(None);
         }
         let form = from_toml::<Form>(path, &text)?.with_schedules();
@@ -93,24 +112,22 @@ impl Plan {
 
     fn of_form(file: &Path, form: &Form, expected: &ExpectedValues) -> Result<Self, Error> {
         let mut session = Session::without_plateaus(file, form)?;
-        if !form.tumble.is_empty() {
-            let expected = "no [[tumble]] in a plan: rests are taken from records, by centrical tumble";
-            return Err(TomlPath::entry(file, "tumble", 0).unexpected("rests", "a table", expected));
-        }
         session.experiment.set_points =
             schedule::set_points(file, &form.mounting, session.experiment.centrifuge.rotation)?;
+        session.durations = schedule::durations(file, &form.mounting)?;
+        session.rest_tables.iter_mut().try_for_each(RestTable::read)?;
+        session.add_rests();
         let table = form.plan.as_ref();
         let of_table = |key: fn(&PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
         let (noise, usual) = noise(file, of_table(|t| &t.noise), of_table(|t| &t.floor), of_table(|t| &t.duration))?;
-        let durations =
-            schedule::durations(file, &form.mounting)?.into_iter().map(|duration| duration.unwrap_or(usual)).collect();
+        let durations = session.durations.iter().map(|duration| duration.unwrap_or(usual)).collect();
         let model = session.model()?;
         Ok(Self {
             file: file.to_owned(),
             title: session.title.clone(),
             nominal: expected_of(&model, expected),
             model,
-            weights: weights(&noise, durations),
+            weights: weights(&noise, durations, &session.rest_tables),
             noise,
         })
     }
@@ -130,9 +147,14 @@ impl Plan {
         let (noise, duration) = noise(file, table.noise.as_ref(), table.floor.as_ref(), table.duration.as_ref())?;
         let speeds = preset_speeds(file, &form.centrifuge)?;
         experiment.centrifuge.speed_uncertainty = speeds.expected_uncertainty();
-        let weights = weights(&noise, vec![duration; experiment.set_points.len()]);
+        let mut rest_tables = RestTable::named(file, &form.tumble)?;
+        rest_tables.iter_mut().try_for_each(RestTable::read)?;
+        let mut durations = vec![duration; experiment.set_points.len()];
+        durations.extend(rest_tables.iter().flat_map(|t| repeat_n(t.duration().unwrap_or(duration), t.count())));
+        rests::add_rests(&mut experiment, &rest_tables);
+        let weights = weights(&noise, durations, &rest_tables);
         let error_model = terms::error_model(file, &form.model.error_model)?;
-        let stated = TypeB { speed_scale: speeds.scale(), ..TypeB::default() };
+        let stated = TypeB { speed_scale: speeds.scale(), bias_change: ANY_BIAS, ..TypeB::default() };
         let model = MeasurementModel::new(experiment, error_model, &extensions(file, &form.model)?).with_stated(stated);
         Ok(Self {
             file: file.to_owned(),
@@ -161,9 +183,11 @@ pub(crate) fn expected_values(
     table.and_then(|table| table.nominal.as_ref()).map_or(Ok(ExpectedValues::new()), |name| earlier(&folder.join(name)))
 }
 
-/// The unknowns of `model` as expected, zero where nothing is expected.
+/// The unknowns of `model` as expected, zero where nothing is expected. A rest shares nothing but its number with one of an
+/// earlier calibration.
 pub(crate) fn expected_of(model: &MeasurementModel, expected: &ExpectedValues) -> Vec<f64> {
-    let value = |p: &Parameter| expected.get(&p.name).copied().unwrap_or(0.0);
+    let is_of_rest = |p: &Parameter| matches!(p.kind, Kind::Attitude { .. });
+    let value = |p: &Parameter| if is_of_rest(p) { 0.0 } else { expected.get(&p.name).copied().unwrap_or(0.0) };
     model.parameters().iter().map(value).collect()
 }
 
@@ -234,7 +258,15 @@ pub(crate) fn noise(
     Ok((noise, schedule::duration(&at, "duration", per_plateau)?.unwrap_or(USUAL_DURATION)))
 }
 
-/// The covariances of the means, the same on all axes.
-fn weights(noise: &Noise, durations: Vec<f64>) -> Vec<Weight> {
-    durations.into_iter().enumerate().map(|(set_point, duration)| noise.weight(set_point, duration)).collect()
+/// The covariances of the means, the same on all axes; of rests that are measured their own.
+fn weights(noise: &Noise, durations: Vec<f64>, rests: &[RestTable]) -> Vec<Weight> {
+    let count = durations.len() - rests.iter().map(RestTable::count).sum::<usize>();
+    let planned = |(set_point, duration)| noise.weight(set_point, duration);
+    let mut weights: Vec<Weight> = durations.into_iter().enumerate().map(planned).collect();
+    let mut of_rests = weights[count..].iter_mut();
+    for table in rests {
+        let own = of_rests.by_ref().take(table.count()).zip(&table.means);
+        own.for_each(|(weight, rest)| weight.covariance = rest.covariance);
+    }
+    weights
 }

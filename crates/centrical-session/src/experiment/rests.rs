@@ -1,42 +1,58 @@
-//! Rests in free attitudes: the tables that a session names under `[[tumble]]`.
+//! Rests in free attitudes: what a session or a plan names under `[[tumble]]`.
 //!
-//! A table of rests has the columns of a table of plateaus, a row for each rest. A table of attitudes says in the same row where up is
-//! then, in axes of the case:
-//!
-//! | column | what |
-//! |---|---|
-//! | `up_1` .. `up_3` | the direction of the vertical, of any length; zero where it is unknown |
+//! A table of rests has the columns of a table of plateaus, a row for each rest; the attitudes that are known of them are in the
+//! same order. A plan has attitudes alone, and a duration.
 
 use std::f64::consts::PI;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use centrical::Position;
-use centrical_table::{ColumnName, Extent, Field, Rule, TableReader, write_whole};
+use centrical::{Experiment, Mounting, Position, SetPoint};
 use nalgebra::Vector3;
 
-use super::form::TumbleTable;
+use super::form::{AttitudeList, TumbleTable};
 use super::plateaus::{PlateauMean, read_plateaus};
+use super::schedule;
+use super::stated_attitudes::{CUBE, MOST_UNCERTAIN, directions, read_attitudes};
 use super::toml_path::TomlPath;
 use crate::error::{Error, Place};
 use crate::quantity::Dimension;
 
-/// Rests in free attitudes, averaged, in a table of their own.
+/// The rests of one `[[tumble]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RestTable {
-    /// The table of their means.
-    pub file: PathBuf,
-    /// Their means, each of a mounting of its own.
+    /// Where they come from.
+    pub source: RestSource,
+    /// Their means, each of a mounting of its own; none of rests that are planned.
     pub means: Vec<PlateauMean>,
     /// What is known of their attitudes; `None` where only gravity shows them.
     pub attitudes: Option<KnownAttitudes>,
 }
 
+/// Where rests come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RestSource {
+    /// A table of their means.
+    Table(PathBuf),
+    /// A plan: nothing is measured yet.
+    Plan(PlannedRests),
+}
+
+/// Rests that are planned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedRests {
+    /// Where up is in each, axes of the case, of length 1.
+    pub up_b: Vec<Vector3<f64>>,
+    /// Duration of each, if it is stated [s].
+    pub duration: Option<f64>,
+    /// The table that the attitudes stand in, if they do.
+    pub file: Option<PathBuf>,
+}
+
 /// Attitudes of rests that are known beforehand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KnownAttitudes {
-    /// The table of attitudes.
-    pub file: PathBuf,
+    /// The table of attitudes, if they stand in one.
+    pub file: Option<PathBuf>,
     /// Standard uncertainty of each, about either horizontal axis [rad].
     pub uncertainty: f64,
     /// Where up is in each rest, axes of the case, of length 1; `None` where it is unknown.
@@ -44,49 +60,82 @@ pub struct KnownAttitudes {
 }
 
 impl RestTable {
-    /// The tables of `[[tumble]]` in the experiment file `file`, not read yet.
+    /// The rests of `[[tumble]]` in the experiment file `file`; their means are not read yet.
     ///
     /// # Errors
-    /// If one names a table of attitudes without their uncertainty, or the reverse.
+    /// If one has neither a table of rests nor attitudes, an uncertainty without attitudes, or a table and attitudes without
+    /// an uncertainty; if stated attitudes are none.
     pub(crate) fn named(file: &Path, tables: &[TumbleTable]) -> Result<Vec<Self>, Error> {
         let folder = file.parent().unwrap_or(Path::new(""));
         let named = tables.iter().enumerate().map(|(n, table)| {
             let at = TomlPath::entry(file, "tumble", n);
-            let attitudes = match (&table.attitudes, &table.attitude_uncertainty) {
-                (None, None) => None,
-                (Some(_), None) => {
-                    let expected = "the standard uncertainty of the attitudes, such as \"0.1 deg\"";
-                    return Err(at.unexpected("attitude_uncertainty", "no such key beside attitudes", expected));
+            match (&table.rests, &table.attitudes) {
+                (Some(rests), _) => Self::measured(&at, folder, table, rests),
+                (None, Some(attitudes)) => Self::planned(&at, folder, table, attitudes),
+                (None, None) => {
+                    let expected = "a table of rests; or attitudes, of rests that are planned";
+                    Err(at.unexpected("rests", "no such key", expected))
                 }
-                (None, Some(_)) => {
-                    let expected = "a table of the attitudes that are this uncertain";
-                    return Err(at.unexpected("attitudes", "no such key beside attitude_uncertainty", expected));
-                }
-                (Some(attitudes), Some(uncertainty)) => {
-                    let key = "attitude_uncertainty";
-                    let bounds = (f64::MIN_POSITIVE, MOST_UNCERTAIN);
-                    let meaning = "a standard uncertainty above 0 and up to 10 deg";
-                    let uncertainty = at.bounded(key, uncertainty, Dimension::Angle, bounds, meaning)?;
-                    Some(KnownAttitudes { file: folder.join(attitudes), uncertainty, up_b: Vec::new() })
-                }
-            };
-            Ok(Self { file: folder.join(&table.rests), means: Vec::new(), attitudes })
+            }
         });
         named.collect()
     }
 
-    /// Reads the means, and the attitudes where they are known.
+    fn measured(at: &TomlPath, folder: &Path, table: &TumbleTable, rests: &str) -> Result<Self, Error> {
+        if table.duration.is_some() {
+            let expected = "no such key beside rests, which have been measured";
+            return Err(at.unexpected("duration", "a duration", expected));
+        }
+        let attitudes = match (&table.attitudes, uncertainty(at, table)?) {
+            (None, None) => None,
+            (Some(_), None) => {
+                let expected = "the standard uncertainty of the attitudes, such as \"0.1 deg\"";
+                return Err(at.unexpected("attitude_uncertainty", "no such key beside attitudes", expected));
+            }
+            (None, Some(_)) => {
+                let expected = "a table of the attitudes that are this uncertain";
+                return Err(at.unexpected("attitudes", "no such key beside attitude_uncertainty", expected));
+            }
+            // A table may leave the attitude of a rest open: it is read with the means.
+            (Some(AttitudeList::Named(name)), Some(uncertainty)) if name != CUBE => {
+                Some(KnownAttitudes { file: Some(folder.join(name)), uncertainty, up_b: Vec::new() })
+            }
+            (Some(entry), Some(uncertainty)) => {
+                let (up_b, file) = directions(at, folder, entry)?;
+                Some(KnownAttitudes { file, uncertainty, up_b: up_b.into_iter().map(Some).collect() })
+            }
+        };
+        Ok(Self { source: RestSource::Table(folder.join(rests)), means: Vec::new(), attitudes })
+    }
+
+    fn planned(at: &TomlPath, folder: &Path, table: &TumbleTable, entry: &AttitudeList) -> Result<Self, Error> {
+        let (up_b, file) = directions(at, folder, entry)?;
+        let known = |uncertainty| KnownAttitudes {
+            file: file.clone(),
+            uncertainty,
+            up_b: up_b.iter().copied().map(Some).collect(),
+        };
+        let attitudes = uncertainty(at, table)?.map(known);
+        let duration = schedule::duration(at, "duration", table.duration.as_ref())?;
+        Ok(Self { source: RestSource::Plan(PlannedRests { up_b, duration, file }), means: Vec::new(), attitudes })
+    }
+
+    /// Reads the means, and the attitudes that a table has of them. Nothing is to be read of rests that are planned.
     ///
     /// # Errors
     /// If a table can not be read, a rest has a speed, the tables differ in length, or the attitude of a row is not that of its rest.
     pub(crate) fn read(&mut self) -> Result<(), Error> {
-        self.means = read_rests(&self.file)?;
+        let RestSource::Table(file) = &self.source else { return Ok(()) };
+        self.means = read_rests(file)?;
         let Some(attitudes) = &mut self.attitudes else { return Ok(()) };
-        attitudes.up_b = read_attitudes(&attitudes.file)?;
+        if let Some(file) = attitudes.file.as_ref() {
+            attitudes.up_b = read_attitudes(file)?;
+        }
+        let named = attitudes.file.as_ref().unwrap_or(file);
         if attitudes.up_b.len() != self.means.len() {
             let found = format!("{} rows", attitudes.up_b.len());
-            let expected = format!("a row for each of the {} rests of {}", self.means.len(), self.file.display());
-            return Err(Error::content(&attitudes.file, Place::Whole, found, expected));
+            let expected = format!("a row for each of the {} rests of {}", self.means.len(), file.display());
+            return Err(Error::content(named, Place::Whole, found, expected));
         }
         let rows = (1..).zip(self.means.iter().zip(&attitudes.up_b));
         for (row, (rest, up_b)) in rows.filter_map(|(row, (rest, up_b))| Some((row, (rest, up_b.as_ref()?)))) {
@@ -96,35 +145,86 @@ impl RestTable {
                 let found = format!("an attitude {:.0} deg from that of the mean reading", angle.to_degrees());
                 let expected = format!(
                     "the attitude of rest {row} of {}, in axes of the case that point about where the newtonometers do",
-                    self.file.display()
+                    file.display()
                 );
-                return Err(Error::content(&attitudes.file, place, found, expected));
+                return Err(Error::content(named, place, found, expected));
             }
         }
         Ok(())
     }
 
+    /// Number of rests.
+    pub fn count(&self) -> usize {
+        self.directions().count()
+    }
+
+    /// Nominal direction of the specific force in each rest, of any length: as it was measured, or as it is planned.
+    fn directions(&self) -> impl Iterator<Item = &Vector3<f64>> {
+        let planned = match &self.source {
+            RestSource::Plan(planned) => planned.up_b.as_slice(),
+            RestSource::Table(_) => &[],
+        };
+        self.means.iter().map(|rest| &rest.mean).chain(planned)
+    }
+
     /// The positions of the rests, numbered on from `first`. Where the vertical is, the attitude says, or else the mean.
-    pub(crate) fn positions(&self, first: usize) -> impl Iterator<Item = Position> {
-        (first..).zip(&self.means).enumerate().map(|(n, (number, rest))| {
+    fn positions(&self, first: usize) -> impl Iterator<Item = Position> {
+        (first..).zip(self.directions()).enumerate().map(|(n, (number, up))| {
             let id = format!("r{number}");
             let known =
                 self.attitudes.as_ref().and_then(|known| Some((known.up_b.get(n).copied()??, known.uncertainty)));
             match known {
                 Some((up_b, uncertainty)) => Position::known(id, &up_b, uncertainty),
-                None => Position::free(id, &rest.mean),
+                None => Position::free(id, up),
             }
         })
     }
 
+    /// Duration of each rest, if it is planned and stated [s].
+    pub fn duration(&self) -> Option<f64> {
+        match &self.source {
+            RestSource::Plan(planned) => planned.duration,
+            RestSource::Table(_) => None,
+        }
+    }
+
+    /// Whether the rests are planned, and nothing is measured of them.
+    pub fn is_planned(&self) -> bool {
+        matches!(self.source, RestSource::Plan(_))
+    }
+
     /// The files of the table.
     pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        std::iter::once(&self.file).chain(self.attitudes.iter().map(|known| &known.file))
+        let (rests, planned) = match &self.source {
+            RestSource::Table(file) => (Some(file), None),
+            RestSource::Plan(planned) => (None, planned.file.as_ref()),
+        };
+        let known = self.attitudes.iter().filter_map(|known| known.file.as_ref());
+        rests.into_iter().chain(planned.into_iter().chain(known).take(1))
     }
 }
 
-/// Attitudes that are less certain than this say nothing that gravity does not [rad].
-pub(crate) const MOST_UNCERTAIN: f64 = 10.0 * PI / 180.0;
+/// Adds a position, a mounting and a set point for each of the rests.
+pub(crate) fn add_rests(experiment: &mut Experiment, tables: &[RestTable]) {
+    let mut first = 1;
+    for table in tables {
+        for free in table.positions(first) {
+            let (position, mounting) = (experiment.positions.len(), experiment.mountings.len());
+            experiment.positions.push(free);
+            experiment.mountings.push(Mounting { position, arm_y: Vector3::zeros() });
+            experiment.set_points.push(SetPoint::at_rest(mounting, 0.0));
+        }
+        first += table.count();
+    }
+}
+
+/// The standard uncertainty of the attitudes [rad], if they are known.
+fn uncertainty(at: &TomlPath, table: &TumbleTable) -> Result<Option<f64>, Error> {
+    let bounds = (f64::MIN_POSITIVE, MOST_UNCERTAIN);
+    let meaning = "a standard uncertainty above 0 and up to 10 deg";
+    let bounded = |q| at.bounded("attitude_uncertainty", q, Dimension::Angle, bounds, meaning);
+    table.attitude_uncertainty.as_ref().map(bounded).transpose()
+}
 
 /// Farthest angle between a known attitude and the one of its mean [rad]: beyond it rows are out of order.
 const FARTHEST: f64 = PI / 6.0;
@@ -140,49 +240,3 @@ fn read_rests(table: &Path) -> Result<Vec<PlateauMean>, Error> {
         None => Ok(rests),
     }
 }
-
-/// Directions in the columns `up_1`, `up_2`, `up_3` of a table, of length 1; `None` for a row of zeros.
-///
-/// # Errors
-/// If the file can not be read, or lacks a column or a number.
-pub(crate) fn read_attitudes(file: &Path) -> Result<Vec<Option<Vector3<f64>>>, Error> {
-    let fields = UP.map(|name| Field {
-        name: ColumnName::Name(name.to_owned()),
-        expected: "a component of the direction of up".to_owned(),
-        rule: Rule::Any,
-    });
-    let mut table = TableReader::open(file, Extent::Whole, &fields, "a table of attitudes")?;
-    let mut rows = Vec::new();
-    while table.next_batch()?.is_some() {
-        for columns in table.batch() {
-            rows.extend((0..columns[0].len()).map(|row| Vector3::from_fn(|axis, _| columns[axis][row])));
-        }
-    }
-    let direction = |up_b: Vector3<f64>| {
-        // The squares of the components neither overflow nor vanish.
-        let length = up_b.amax();
-        // A direction that was written with length 1 is read again to its last digit.
-        let is_unit = (up_b.norm() - 1.0).abs() < 1e-15;
-        (length > 0.0).then(|| if is_unit { up_b } else { (up_b / length).normalize() })
-    };
-    Ok(rows.into_iter().map(direction).collect())
-}
-
-/// Writes a table of attitudes, every number to its last digit; the file appears whole or not at all.
-///
-/// # Errors
-/// If the file can not be written.
-pub(crate) fn write_attitudes(file: &Path, up_b: &[Option<Vector3<f64>>]) -> Result<(), Error> {
-    let mut text = format!("{}\n", UP.join(","));
-    for up_b in up_b {
-        // Writing to a String does not fail.
-        let _ = match up_b {
-            Some(up_b) => writeln!(text, "{},{},{}", up_b.x, up_b.y, up_b.z),
-            None => writeln!(text, "0,0,0"),
-        };
-    }
-    Ok(write_whole(file, text.as_bytes())?)
-}
-
-/// Columns of a table of attitudes.
-const UP: [&str; 3] = ["up_1", "up_2", "up_3"];

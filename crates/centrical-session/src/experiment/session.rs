@@ -6,9 +6,8 @@ use std::path::{Path, PathBuf};
 use centrical::TypeB;
 use centrical::reduction::{PulseTrain, Record, SpeedTrace};
 use centrical::{
-    Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, Mounting, PairRelation, Rotation, SetPoint, Site,
+    Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
 };
-use nalgebra::Vector3;
 
 use super::form::{Form, ModelTable, RecordEntry, SiteTable};
 use super::plateaus::{PlateauMean, PlateauTable};
@@ -17,7 +16,7 @@ use super::rests::RestTable;
 use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
 use super::unit::OutputUnit;
-use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
+use super::{attitude, columns, rests, schedule, speeds, terms, uncertainty, unit};
 use crate::error::{Error, quoted};
 use crate::quantity::Dimension;
 use crate::record::{Columns, read_pulses, read_records, read_telemetry};
@@ -149,18 +148,12 @@ impl Session {
         Ok(self)
     }
 
-    /// Adds a position, a mounting and a set point for each rest in a free attitude.
-    fn add_rests(&mut self) {
-        let experiment = &mut self.experiment;
-        let mut first = 1;
-        for table in &self.rest_tables {
-            for free in table.positions(first) {
-                let (position, mounting) = (experiment.positions.len(), experiment.mountings.len());
-                experiment.positions.push(free);
-                experiment.mountings.push(Mounting { position, arm_y: Vector3::zeros() });
-                experiment.set_points.push(SetPoint::at_rest(mounting, 0.0));
-            }
-            first += table.means.len();
+    /// Adds the rests of `[[tumble]]` to the experiment, behind all that is on the arm.
+    pub(crate) fn add_rests(&mut self) {
+        rests::add_rests(&mut self.experiment, &self.rest_tables);
+        if self.plateaus.is_none() {
+            let of_table = |table: &RestTable| std::iter::repeat_n(table.duration(), table.count());
+            self.durations.extend(self.rest_tables.iter().flat_map(of_table));
         }
     }
 
@@ -175,6 +168,14 @@ impl Session {
         self.experiment.positions.retain(|position| !position.is_free);
         self.experiment.set_points.retain(|set_point| set_point.mounting < on_arm);
         self.experiment.mountings.truncate(on_arm);
+        self.durations.truncate(self.experiment.set_points.len());
+    }
+
+    /// Refuses rests of which nothing is measured yet.
+    pub(crate) fn refuse_planned_rests(&self) -> Result<(), Error> {
+        let Some(planned) = self.rest_tables.iter().position(RestTable::is_planned) else { return Ok(()) };
+        let expected = "a table of rests, in a session that is measured";
+        Err(TomlPath::entry(&self.file, "tumble", planned).unexpected("rests", "rests that are planned", expected))
     }
 
     /// The session without rests in free attitudes.
@@ -187,7 +188,7 @@ impl Session {
 
     /// On an arm plateaus at rest alone show nothing of a centrifuge.
     fn refuse_rests_alone(&self) -> Result<(), Error> {
-        let is_of_rests = !self.experiment.has_arm() && self.rests().next().is_some();
+        let is_of_rests = !self.experiment.has_arm() && self.rest_tables.iter().any(|table| table.count() > 0);
         if !is_of_rests && self.experiment.set_points.iter().all(SetPoint::is_rest) {
             let at = TomlPath::entry(&self.file, "mounting", 0);
             return Err(at.unexpected("plateaus", "all plateaus at rest", "at least one plateau with a speed"));

@@ -28,7 +28,7 @@ const QUANTITIES: [&str; 12] = [
 ];
 
 /// Standard uncertainty of a change of bias of which nothing is known [m/s^2]: ten times a typical bias.
-const ANY_BIAS: f64 = 0.5;
+pub(crate) const ANY_BIAS: f64 = 0.5;
 
 /// Standard uncertainties, SI; `plateau_speed` is the same as `speed_uncertainty` of `[centrifuge]` or absent, and
 /// `speed_scale` the same as the scale of measured speeds, where both are stated.

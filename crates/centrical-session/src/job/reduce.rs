@@ -37,6 +37,7 @@ pub fn reduce(session: &Session, progress: OnProgress) -> Result<Reduced, Error>
 /// # Errors
 /// As [`reduce`].
 pub fn reduce_without_inputs(session: &Session, progress: OnProgress) -> Result<Reduced, Error> {
+    session.refuse_planned_rests()?;
     let reduced = match &session.plateaus {
         Some(table) => Reduced::of_table(&table.rows),
         None if session.mountings.is_empty() => Reduced::of_table(&[]),

@@ -1,10 +1,8 @@
 //! Calibration by gravity alone: a unit that was turned by hand or on a table and rested again and again.
 
-mod attitudes;
 mod calibrated;
 mod request;
 mod session_text;
 
-pub use self::attitudes::StatedAttitudes;
 pub use self::calibrated::{Tumble, tumble};
 pub use self::request::TumbleRequest;

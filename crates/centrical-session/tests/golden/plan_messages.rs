@@ -107,6 +107,62 @@ fn extensions_and_priors() {
     );
 }
 
+#[test]
+fn planned_rests() {
+    let plan = &format!("{OWN}\n[[tumble]]\nattitudes = [[0, 0, 1], [1, 0, 0]]\nduration = \"60 s\"\n");
+    let list = "[[0, 0, 1], [1, 0, 0]]\nduration = \"60 s\"";
+    compare(
+        plan,
+        &[
+            (
+                "attitudes =",
+                "atitudes =",
+                "line 76, column 1: found an unknown key `atitudes`, expected one of `rests`, `attitudes`, `duration`, `attitude_uncertainty`",
+            ),
+            (
+                "attitudes = [[0, 0, 1], [1, 0, 0]]\n",
+                "",
+                "[[tumble]] 1, rests: found no such key, expected a table of rests; or attitudes, of rests that are planned",
+            ),
+            (
+                "[1, 0, 0]",
+                "[0, 0.0, -0.0]",
+                "[[tumble]] 1, attitudes: found [0.0, 0.0, -0.0], expected the direction of up",
+            ),
+            (
+                "[1, 0, 0]",
+                "[nan, 0, 1]",
+                "[[tumble]] 1, attitudes: found [NaN, 0.0, 1.0], expected the direction of up",
+            ),
+            (
+                "[[0, 0, 1], [1, 0, 0]]",
+                "[]",
+                "[[tumble]] 1, attitudes: found an empty list, expected a direction of up for each rest",
+            ),
+            (
+                "[[0, 0, 1], [1, 0, 0]]",
+                "1",
+                "line 76, column 13: found integer `1`, expected \"cube\", the path of a table of attitudes, or a list of directions of up such as [0, 0, 1]",
+            ),
+            (
+                list,
+                "\"cube\"\nduration = \"0 s\"",
+                "[[tumble]] 1, duration: found \"0 s\", expected a duration from 1 ms to 1e7 s",
+            ),
+            (
+                list,
+                "\"cube\"\nattitude_uncertainty = \"20 deg\"",
+                "[[tumble]] 1, attitude_uncertainty: found \"20 deg\", expected a standard uncertainty above 0 and up to 10 deg",
+            ),
+            (
+                "attitudes = [[0, 0, 1], [1, 0, 0]]",
+                "rests = \"rests.csv\"",
+                "[[tumble]] 1, duration: found a duration, expected no such key beside rests, which have been measured",
+            ),
+        ],
+    );
+}
+
 /// Every prior in the unit it is written in.
 #[test]
 fn units_of_priors() {

@@ -4,10 +4,11 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use centrical::{Experiment, MeasurementModel, Mounting, Position, SetPoint};
+use centrical::observability::cube_directions;
+use centrical::{Experiment, History, MeasurementModel, Mounting, Position, SetPoint};
 use centrical_session::{
-    Axes, CalibrationResult, Method, PlateauMean, Session, TableFormat, calibrate, reduce, unwatched, write_plateaus,
-    write_reduced,
+    Axes, CalibrationResult, Method, PlateauMean, Session, TableFormat, calibrate, read_plan, reduce, unwatched,
+    write_plateaus, write_reduced,
 };
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 
@@ -221,6 +222,69 @@ attitude_uncertainty = "{UNCERTAINTY} rad"
     let ratio = sum / count;
     // Four standard deviations of a mean of squares.
     assert!((ratio - 1.0).abs() < 4.0 * (2.0 / count).sqrt(), "{ratio}");
+}
+
+/// A plan of rests on the faces, edges and corners of a cube is the plan of rests that are measured there with the planned noise.
+#[test]
+fn planned_rests_are_those_that_will_be_measured() {
+    const PLAN: &str = include_str!("../../../../examples/plans/four-positions.toml");
+    let folder = tempfile::tempdir().unwrap();
+    let plan = |tumble: &str| {
+        let file = folder.path().join("plan.toml");
+        fs::write(&file, format!("{PLAN}\n{tumble}")).unwrap();
+        read_plan(&file).unwrap().unwrap()
+    };
+    let alone = plan("");
+    for (durations, seconds) in [("", 60.0), ("duration = \"10 s\"", 10.0)] {
+        let planned = plan(&format!("[[tumble]]\nattitudes = \"cube\"\n{durations}"));
+        let weight = planned.noise.weight(0, seconds);
+        let rows = cube_directions().into_iter().enumerate().map(|(mounting, up_b)| PlateauMean {
+            mounting,
+            speed: 0.0,
+            speed_uncertainty: None,
+            angle: 0.0,
+            mean: up_b * 9.81523,
+            covariance: weight.covariance,
+            samples: 600,
+        });
+        write_plateaus(&folder.path().join("rests.csv"), &rows.collect::<Vec<_>>()).unwrap();
+        let measured = plan("[[tumble]]\nrests = \"rests.csv\"");
+        assert_eq!(planned.weights.len(), alone.weights.len() + 26);
+        assert_eq!(planned.weights, measured.weights);
+        assert_eq!(planned.weights[..alone.weights.len()], alone.weights);
+        let [a, b] = [&planned, &measured].map(|plan| plan.model.experiment());
+        assert_eq!(a.set_points.len(), b.set_points.len());
+        for (a, b) in a.set_points.iter().zip(&b.set_points) {
+            let history = History { memory: b.history.memory, ..a.history };
+            assert_eq!(SetPoint { history, ..*a }, *b);
+            // Sums of forces up to 400 m/s^2, with the roundings below.
+            assert!((a.history.memory - b.history.memory).amax() < 400.0 * 4.0 * f64::EPSILON);
+        }
+        for (a, b) in a.positions.iter().zip(&b.positions) {
+            // The mean is the direction times gravity: a rounding of each component.
+            assert!((a.p_zy - b.p_zy).amax() < 4.0 * f64::EPSILON, "{}", a.id);
+        }
+    }
+    // Known attitudes are not free, and have the turn against the case.
+    let known = plan("[[tumble]]\nattitudes = [[0, 0, 1], [0, 2, 0]]\nattitude_uncertainty = \"1 mrad\"");
+    assert!(known.model.parameters().find("case_turn_1").is_some());
+    let positions = &known.model.experiment().positions;
+    assert_eq!(positions.last().unwrap(), &Position::known("r2", &Vector3::y(), 1e-3));
+}
+
+/// What is planned is not measured: a session with records or plateaus does not take it.
+#[test]
+fn planned_rests_are_no_measurement() {
+    let folder = tempfile::tempdir().unwrap();
+    reduced_example(folder.path());
+    let file = folder.path().join("experiment.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, format!("{text}\n[[tumble]]\nattitudes = \"cube\"\n")).unwrap();
+    let session = Session::read(folder.path()).unwrap();
+    let message = calibrate(&session, Method::Exact, &unwatched).unwrap_err().to_string();
+    let expected =
+        "[[tumble]] 1, rests: found rests that are planned, expected a table of rests, in a session that is measured";
+    assert!(message.ends_with(expected), "{message}");
 }
 
 #[test]

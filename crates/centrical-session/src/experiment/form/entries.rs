@@ -54,6 +54,39 @@ pub(crate) enum RecordEntry {
     Three([String; 3]),
 }
 
+/// Attitudes of rests: where up is, in axes of the case.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum AttitudeList {
+    /// `cube`, or the path of a table.
+    Named(String),
+    /// Directions of any length.
+    Listed(Vec<[f64; 3]>),
+}
+
+impl<'de> Deserialize<'de> for AttitudeList {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ListVisitor;
+        impl<'de> Visitor<'de> for ListVisitor {
+            type Value = AttitudeList;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(
+                    "\"cube\", the path of a table of attitudes, or a list of directions of up such as [0, 0, 1]",
+                )
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<AttitudeList, E> {
+                Ok(AttitudeList::Named(name.to_owned()))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<AttitudeList, A::Error> {
+                Vec::deserialize(de::value::SeqAccessDeserializer::new(list)).map(AttitudeList::Listed)
+            }
+        }
+        deserializer.deserialize_any(ListVisitor)
+    }
+}
+
 impl<'de> Deserialize<'de> for RecordEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct EntryVisitor;

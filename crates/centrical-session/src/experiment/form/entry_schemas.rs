@@ -5,7 +5,8 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 
 use super::entries::{
-    ColumnEntry, ColumnLabel, ColumnTable, PriorTable, PriorValue, RecordEntry, Steps, StepsTable, TermList, TermTable,
+    AttitudeList, ColumnEntry, ColumnLabel, ColumnTable, PriorTable, PriorValue, RecordEntry, Steps, StepsTable,
+    TermList, TermTable,
 };
 use crate::quantity::Quantity;
 
@@ -71,6 +72,17 @@ impl JsonSchema for RecordEntry {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let three = json_schema!({ "type": "array", "items": { "type": "string" }, "minItems": 3, "maxItems": 3 });
         json_schema!({ "anyOf": [{ "type": "string" }, three] })
+    }
+}
+
+impl JsonSchema for AttitudeList {
+    fn schema_name() -> Cow<'static, str> {
+        "Attitudes".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let list = generator.subschema_for::<Vec<[f64; 3]>>();
+        json_schema!({ "anyOf": [{ "type": "string" }, list] })
     }
 }
 

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::entries::{ColumnEntry, PriorValue, RecordEntry, Steps, TermList, date_as_text, name_or_number};
+use super::entries::{
+    AttitudeList, ColumnEntry, PriorValue, RecordEntry, Steps, TermList, date_as_text, name_or_number,
+};
 use super::entry_schemas;
 use crate::quantity::Quantity;
 
@@ -158,6 +160,9 @@ pub(crate) struct PresetForm {
     pub centrifuge: PresetCentrifugeTable,
     /// The error model of the unit.
     pub model: ModelTable,
+    /// Rests in any attitudes beside it.
+    #[serde(default)]
+    pub tumble: Vec<TumbleTable>,
     /// Standard uncertainties of parameters and groups, by name.
     #[serde(default)]
     pub prior: BTreeMap<String, PriorValue>,
@@ -365,14 +370,17 @@ pub(crate) struct MountingTable {
     pub plateaus: Vec<PlateauEntry>,
 }
 
-/// Rests in attitudes of their own, which only gravity shows or which are known.
+/// Rests in attitudes of their own, which only gravity shows or which are known. Without `rests` they are planned.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TumbleTable {
     /// Path of a table of rests, such as `centrical tumble` writes: the columns of a table of plateaus.
-    pub rests: String,
-    /// Path of a table of the attitudes of the rests, where they are known: up in axes of the case, row by row.
-    pub attitudes: Option<String>,
+    pub rests: Option<String>,
+    /// Attitudes of the rests, up in axes of the case: "cube", a list of directions, or the path of a table. Those of a plan, or those
+    /// that are known of measured rests.
+    pub attitudes: Option<AttitudeList>,
+    /// Duration of each planned rest; that of [plan] if absent.
+    pub duration: Option<Quantity>,
     /// Standard uncertainty of these attitudes about each horizontal axis, such as "0.1 deg".
     pub attitude_uncertainty: Option<Quantity>,
 }

@@ -32,6 +32,7 @@ pub fn reduce_recorded(
     recorded: Vec<Recorded>,
     progress: OnProgress<usize>,
 ) -> Result<Reduced, Error> {
+    session.refuse_planned_rests()?;
     let (found, expected) = (recorded.len(), session.mountings.len());
     if found != expected {
         let expected = format!("{expected}, one for each mounting");

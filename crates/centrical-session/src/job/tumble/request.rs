@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical_table::ColumnName;
 
-use super::attitudes::StatedAttitudes;
+use crate::experiment::StatedAttitudes;
 
 /// Records of a unit that rested in attitudes that only gravity shows, and what is to be made of them.
 #[derive(Debug, Clone, PartialEq)]

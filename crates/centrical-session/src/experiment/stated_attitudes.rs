@@ -1,0 +1,182 @@
+//! Attitudes of rests as a laboratory states them: a list, a table or the directions of a cube, and which of them each rest is in.
+//!
+//! A table of attitudes says where up is, in axes of the case:
+//!
+//! | column | what |
+//! |---|---|
+//! | `up_1` .. `up_3` | the direction of the vertical, of any length; zero where it is unknown |
+
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use centrical::observability::cube_directions;
+use centrical_table::{ColumnName, Extent, Field, Rule, TableReader, write_whole};
+use nalgebra::Vector3;
+
+use super::form::AttitudeList;
+use super::toml_path::TomlPath;
+use crate::error::{Error, Place};
+
+/// Attitudes in which a laboratory lays a unit down, by a table or the faces of a cube, in any order and as often as it likes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StatedAttitudes {
+    /// Where up is, axes of the case, of length 1.
+    pub up_b: Vec<Vector3<f64>>,
+    /// Standard uncertainty of each, about either horizontal axis [rad].
+    pub uncertainty: f64,
+    /// The file that they were read from.
+    pub file: Option<PathBuf>,
+}
+
+impl StatedAttitudes {
+    /// The attitudes of `name`: the faces, edges and corners of a cube for `cube`, or else the rows of a table with the columns `up_1`,
+    /// `up_2`, `up_3`.
+    ///
+    /// # Errors
+    /// If the file can not be read, lacks a column, or has no row or one without a direction.
+    pub fn named(name: &Path, uncertainty: f64) -> Result<Self, Error> {
+        if name.as_os_str() == CUBE {
+            return Ok(Self { up_b: cube_directions(), uncertainty, file: None });
+        }
+        Ok(Self { up_b: read_directions(name)?, uncertainty, file: Some(name.to_owned()) })
+    }
+
+    /// The attitude of each rest of these mean forces: the nearest one, if it is nearer than any other could be. A rest beside all of
+    /// them keeps a free attitude.
+    ///
+    /// # Errors
+    /// If the uncertainty makes no sense, or no rest is in any of the attitudes; messages name `record` where no file states them.
+    pub(crate) fn of_rests(&self, means: &[Vector3<f64>], record: &Path) -> Result<Vec<Option<Vector3<f64>>>, Error> {
+        let file = self.file.as_deref().unwrap_or(record);
+        if !(self.uncertainty > 0.0 && self.uncertainty <= MOST_UNCERTAIN) {
+            let found = format!("attitudes uncertain by {} rad", self.uncertainty);
+            return Err(Error::content(file, Place::Whole, found, "a standard uncertainty above 0 and up to 10 deg"));
+        }
+        let within = NEAR.min(0.5 * self.smallest_angle());
+        let nearest = |mean: &Vector3<f64>| {
+            let near = self.up_b.iter().min_by(|a, b| a.angle(mean).total_cmp(&b.angle(mean)))?;
+            (near.angle(mean) < within).then_some(*near)
+        };
+        let attitudes: Vec<_> = means.iter().map(nearest).collect();
+        if attitudes.iter().all(Option::is_none) {
+            let found = format!(
+                "{} attitudes, none of them within {:.0} deg of any of the {} rests",
+                self.up_b.len(),
+                within.to_degrees(),
+                means.len()
+            );
+            let expected = "up in axes of the case that point about where the newtonometers do";
+            return Err(Error::content(file, Place::Whole, found, expected));
+        }
+        Ok(attitudes)
+    }
+
+    /// Smallest angle between two attitudes that are not the same one [rad].
+    fn smallest_angle(&self) -> f64 {
+        let pairs = self.up_b.iter().enumerate().flat_map(|(n, a)| self.up_b[..n].iter().map(|b| a.angle(b)));
+        pairs.filter(|angle| *angle > SAME).fold(PI, f64::min)
+    }
+}
+
+/// Attitudes that are less certain than this say nothing that gravity does not [rad].
+pub(crate) const MOST_UNCERTAIN: f64 = 10.0 * PI / 180.0;
+
+/// Farthest a rest may be from its attitude [rad]: the newtonometers' axes against the case, and errors before calibration.
+const NEAR: f64 = 10.0 * PI / 180.0;
+
+/// Attitudes closer than this are one, written twice [rad].
+const SAME: f64 = 1e-3;
+
+/// Directions of up as the key `attitudes` has them, of length 1, and the file that they stand in. Paths start from `folder`.
+///
+/// # Errors
+/// If a listed direction is none, or the file as [`StatedAttitudes::named`].
+pub(crate) fn directions(
+    at: &TomlPath,
+    folder: &Path,
+    entry: &AttitudeList,
+) -> Result<(Vec<Vector3<f64>>, Option<PathBuf>), Error> {
+    let listed = match entry {
+        AttitudeList::Named(name) if name == CUBE => return Ok((cube_directions(), None)),
+        AttitudeList::Named(name) => {
+            let file = folder.join(name);
+            return Ok((read_directions(&file)?, Some(file)));
+        }
+        AttitudeList::Listed(listed) => listed,
+    };
+    if listed.is_empty() {
+        return Err(at.unexpected("attitudes", "an empty list", "a direction of up for each rest"));
+    }
+    let direction = |up_b: &[f64; 3]| {
+        let found = || format!("{up_b:?}");
+        direction(Vector3::from(*up_b)).ok_or_else(|| at.unexpected("attitudes", found(), "the direction of up"))
+    };
+    Ok((listed.iter().map(direction).collect::<Result<_, _>>()?, None))
+}
+
+/// The rows of a table of attitudes, each with a direction.
+fn read_directions(file: &Path) -> Result<Vec<Vector3<f64>>, Error> {
+    let no_direction = |row: u64| {
+        let place = Place::Row { row, column: UP[0].to_owned() };
+        Error::content(file, place, "a row of zeros", "the direction of up")
+    };
+    let rows = (1..).zip(read_attitudes(file)?).map(|(row, up_b)| up_b.ok_or_else(|| no_direction(row)));
+    let up_b: Vec<Vector3<f64>> = rows.collect::<Result<_, _>>()?;
+    if up_b.is_empty() {
+        return Err(Error::content(file, Place::Whole, "no attitude", "a row for each attitude"));
+    }
+    Ok(up_b)
+}
+
+/// Directions in the columns `up_1`, `up_2`, `up_3` of a table, of length 1; `None` for a row of zeros.
+///
+/// # Errors
+/// If the file can not be read, or lacks a column or a number.
+pub(crate) fn read_attitudes(file: &Path) -> Result<Vec<Option<Vector3<f64>>>, Error> {
+    let fields = UP.map(|name| Field {
+        name: ColumnName::Name(name.to_owned()),
+        expected: "a component of the direction of up".to_owned(),
+        rule: Rule::Any,
+    });
+    let mut table = TableReader::open(file, Extent::Whole, &fields, "a table of attitudes")?;
+    let mut rows = Vec::new();
+    while table.next_batch()?.is_some() {
+        for columns in table.batch() {
+            rows.extend((0..columns[0].len()).map(|row| Vector3::from_fn(|axis, _| columns[axis][row])));
+        }
+    }
+    Ok(rows.into_iter().map(direction).collect())
+}
+
+/// A direction with length 1; `None` of zeros, or of numbers that are not finite.
+fn direction(up_b: Vector3<f64>) -> Option<Vector3<f64>> {
+    // The squares of the components neither overflow nor vanish.
+    let length = up_b.amax();
+    // A direction that was written with length 1 is read again to its last digit.
+    let is_unit = (up_b.norm() - 1.0).abs() < 1e-15;
+    let is_direction = length > 0.0 && up_b.iter().all(|component| component.is_finite());
+    is_direction.then(|| if is_unit { up_b } else { (up_b / length).normalize() })
+}
+
+/// Writes a table of attitudes, every number to its last digit; the file appears whole or not at all.
+///
+/// # Errors
+/// If the file can not be written.
+pub(crate) fn write_attitudes(file: &Path, up_b: &[Option<Vector3<f64>>]) -> Result<(), Error> {
+    let mut text = format!("{}\n", UP.join(","));
+    for up_b in up_b {
+        // Writing to a String does not fail.
+        let _ = match up_b {
+            Some(up_b) => writeln!(text, "{},{},{}", up_b.x, up_b.y, up_b.z),
+            None => writeln!(text, "0,0,0"),
+        };
+    }
+    Ok(write_whole(file, text.as_bytes())?)
+}
+
+/// The name of the faces, edges and corners of a cube.
+pub(crate) const CUBE: &str = "cube";
+
+/// Columns of a table of attitudes.
+const UP: [&str; 3] = ["up_1", "up_2", "up_3"];
