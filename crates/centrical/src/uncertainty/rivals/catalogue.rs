@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, Vector3};
 
 use super::columns::{Columns, Seen};
 use crate::fit::Calibration;
-use crate::model::{FitError, MeasurementModel, Parameter, Rival};
+use crate::model::{FitError, Kind, MeasurementModel, Parameter, Rival};
 
 /// The rivals of a calibration that act on its observations.
 pub struct Rivals<'c> {
@@ -20,6 +20,8 @@ pub(in crate::uncertainty) struct Suspect {
     /// Its unknowns, one per column.
     pub unknowns: Vec<Parameter>,
     pub columns: Columns,
+    /// Above which square a combination of them is seen.
+    pub least: DMatrix<f64>,
     /// What is seen of `s^T s`.
     pub seen: Seen,
 }
@@ -57,6 +59,7 @@ fn suspects(calibration: &Calibration, rivals: &[Rival]) -> Result<Vec<Suspect>,
     let linearised = data.observations().iter().map(|o| richer.linearise(&set_points[o.set_point], &x));
     let derivatives: Vec<HashMap<usize, Vector3<f64>>> =
         linearised.map(|at| at.columns.into_iter().collect()).collect();
+    let attitudes = attitude_uncertainties(calibration);
     let mut list = Vec::new();
     for &rival in rivals {
         let unknowns = rival.parameters(model.experiment(), model.error_model());
@@ -67,12 +70,27 @@ fn suspects(calibration: &Calibration, rivals: &[Rival]) -> Result<Vec<Suspect>,
             let derivative =
                 |n: usize, c: usize| derivatives[n].get(&(all.start + c)).copied().unwrap_or_else(Vector3::zeros);
             let columns = Columns::new(gain, acting, unknowns.len(), derivative);
-            let seen = Seen::of(columns.redundancy());
-            list.push(Suspect { rival, unknowns, columns, seen });
+            let least = columns.least(|n| attitudes[n]);
+            let seen = Seen::of(columns.redundancy(), &least);
+            list.push(Suspect { rival, unknowns, columns, least, seen });
         }
         first = all.end;
     }
     Ok(list)
+}
+
+/// Standard uncertainty of the attitude of each observation [rad]: of both tilts of a rest, 1 where one is undetermined, zero on the arm.
+fn attitude_uncertainties(calibration: &Calibration) -> Vec<f64> {
+    let (fit, model) = (calibration.fit(), calibration.data().model());
+    let experiment = model.experiment();
+    let mut squares = vec![0.0; experiment.positions.len()];
+    for (j, parameter) in model.parameters().iter().enumerate() {
+        if let Kind::Attitude { position, .. } = parameter.kind {
+            squares[position] += fit.standard_uncertainty(j).unwrap_or(1.0).powi(2);
+        }
+    }
+    let position = |n: usize| experiment.mountings[experiment.set_points[n].mounting].position;
+    calibration.data().observations().iter().map(|o| squares[position(o.set_point)].sqrt()).collect()
 }
 
 /// Where the further unknowns of a richer model begin: behind the terms if it has further terms, else at the end.

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use crate::fit::Gain;
 
 /// A combination of columns is seen when more than this part of its length is redundant.
-pub(in crate::uncertainty) const REDUNDANT: f64 = 1e-5;
+const REDUNDANT: f64 = 1e-5;
 
 /// Columns on the plateaus where they act.
 pub(in crate::uncertainty) struct Columns {
@@ -67,6 +67,18 @@ impl Columns {
         self.z.tr_mul(&self.z) - self.followed.tr_mul(&self.followed)
     }
 
+    /// The square `s^T s` above which a combination is seen: [`REDUNDANT`] squared, and what the uncertainty of attitudes makes. A
+    /// turn of observation `n` by its standard uncertainty `u_n` [rad] changes its rows by up to that part: such a rest of a column
+    /// follows the noise, and so would its test.
+    pub fn least(&self, u: impl Fn(usize) -> f64) -> DMatrix<f64> {
+        let mut least = DMatrix::identity(self.z.ncols(), self.z.ncols()) * REDUNDANT.powi(2);
+        for (place, n) in self.acting.iter().enumerate() {
+            let rows = self.z.rows(3 * place, 3);
+            least += rows.tr_mul(&rows) * u(*n).powi(2);
+        }
+        least
+    }
+
     /// `s_a^T s_b`.
     pub fn redundancy_with(&self, other: &Self) -> DMatrix<f64> {
         let mut product = DMatrix::zeros(self.z.ncols(), other.z.ncols());
@@ -89,9 +101,13 @@ impl Columns {
 }
 
 impl Seen {
-    pub fn of(square: DMatrix<f64>) -> Self {
+    /// What of `s^T s` is above the square `least`.
+    pub fn of(square: DMatrix<f64>, least: &DMatrix<f64>) -> Self {
         let eigen = SymmetricEigen::new(square);
-        let is_seen = |k: &usize| eigen.eigenvalues[*k] > REDUNDANT * REDUNDANT;
+        let is_seen = |k: &usize| {
+            let direction = eigen.eigenvectors.column(*k);
+            eigen.eigenvalues[*k] > direction.dot(&(least * direction))
+        };
         let seen: Vec<usize> = (0..eigen.eigenvalues.len()).filter(is_seen).collect();
         let values = seen.iter().map(|&k| eigen.eigenvalues[k]).collect();
         Self { values, vectors: eigen.eigenvectors.select_columns(&seen) }

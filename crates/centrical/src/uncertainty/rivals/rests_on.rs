@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{DVector, Vector3};
 
 use super::catalogue::{Rivals, Suspect};
-use super::columns::{Columns, REDUNDANT};
+use super::columns::Columns;
 use super::power::non_centrality;
 use crate::model::{FitError, Parameter, Rival};
 use crate::uncertainty::verdict::Level;
@@ -103,12 +103,12 @@ impl Rivals<'_> {
         needed: Option<f64>,
         forces_z: &[Vector3<f64>],
     ) -> Result<Option<(usize, Unseen)>, FitError> {
-        let Suspect { rival, unknowns, columns, .. } = suspect;
+        let Suspect { rival, unknowns, columns, least, .. } = suspect;
         let redundancy = columns.redundancy();
         let shifts = self.calibration.gain()?.shifts(&columns.followed);
         let candidates = unknowns.iter().enumerate().filter(|(c, _)| columns.lengths[*c] > 0.0);
         let candidates = candidates.filter_map(|(c, unknown)| {
-            let is_seen = redundancy[(c, c)] > REDUNDANT * REDUNDANT;
+            let is_seen = redundancy[(c, c)] > least[(c, c)];
             let size =
                 needed.filter(|_| is_seen).map(|needed| (needed / redundancy[(c, c)]).sqrt() / columns.lengths[c]);
             let moved = shifts.column(c) * (columns.lengths[c] * size.unwrap_or(unknown.typical));

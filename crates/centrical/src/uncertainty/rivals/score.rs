@@ -67,7 +67,7 @@ impl Rivals<'_> {
     fn is_told_from(&self, best: Rival, other: Rival, tested: usize) -> bool {
         let (Some(best), Some(other)) = (self.get(best), self.get(other)) else { return true };
         let (redundancy, along) = best.columns.beside(&other.columns, &other.seen.inverse());
-        let seen = Seen::of(redundancy);
+        let seen = Seen::of(redundancy, &best.least);
         let chance = tested as f64 * chi_squared_tail(seen.statistic(&along), seen.rank());
         Level::Reported.is_passed_by(chance)
     }
