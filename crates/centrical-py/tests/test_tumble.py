@@ -61,3 +61,10 @@ def test_what_is_no_record_of_rests():
         ct.tumble(RECORD, rate=-1.0)
     with pytest.raises((TypeError, ValueError)):
         ct.tumble(RECORD, readings=["f1", "f2"])
+
+
+def test_a_draft_takes_a_tumble(program, tmp_path):
+    ct.tumble(RECORD, gravity="9.81523 m/s^2", out=tmp_path / "tumbled")
+    draft = ct.init("examples/ta-200/records", tumble=tmp_path / "tumbled")
+    assert draft.to_json() == program("init", "examples/ta-200/records", "--tumble", tmp_path / "tumbled")
+    assert "[[tumble]]" in draft.text and 'gravity = "9.81523 m/s^2"' in draft.text

@@ -20,6 +20,9 @@ pub struct Arguments {
     /// The experiment file to write; a file that exists is not overwritten. Without it the draft is printed
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Folder of a tumble of the unit: its scale and bias, gravity, serial number and rests are taken
+    #[arg(long, value_name = "DIR")]
+    tumble: Option<PathBuf>,
     /// Positions to write out where the readings do not show them
     #[arg(long, value_name = "PRESET")]
     positions: Option<Positions>,
@@ -49,7 +52,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         _ => PathBuf::from("."),
     };
     let six_positions = arguments.positions == Some(Positions::Six);
-    let draft = init(&InitRequest { inputs: arguments.inputs.clone(), folder, six_positions })?;
+    let (inputs, tumble) = (arguments.inputs.clone(), arguments.tumble.clone());
+    let draft = init(&InitRequest { inputs, folder, tumble, six_positions })?;
     if let Some(file) = &arguments.out {
         write_whole(file, draft.text.as_bytes())?;
     }

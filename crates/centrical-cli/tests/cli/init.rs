@@ -1,6 +1,7 @@
 //! `centrical init` on the files of the example: what it asks for, and that the filled draft calibrates to the same numbers.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 
@@ -97,4 +98,50 @@ fn records_alone_are_asked_for_speeds_and_positions() {
     let draft = String::from_utf8_lossy(&output.stdout).into_owned();
     assert_eq!(draft.matches("[[position]]").count(), 6);
     assert_eq!(draft.matches("speed = \"?\"").count(), 9 * draft.matches("plateaus = [").count(), "{draft}");
+}
+
+/// A tumble of the unit gives gravity, serial number and rests, and scale and bias where the records are in counts.
+#[test]
+fn a_tumble_of_the_unit_fills_lines_in() {
+    let copy = Copy::new();
+    let record = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/tumble/record.csv");
+    let tumbled = |unit: &str, folder: &Path| {
+        let (record, folder) = (record.to_str().unwrap(), folder.to_str().unwrap());
+        let output =
+            copy.run(&["tumble", record, "--gravity", "9.81523", "--unit", unit, "--serial", "0001", "--out", folder]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    let folder = copy.session().join("tumbled");
+    tumbled("m/s^2", &folder);
+    let records = copy.session().join("records");
+    let telemetry = copy.session().join("telemetry");
+    let draft = |folder: &Path| {
+        let inputs = [&records, &telemetry].map(|input| input.to_str().unwrap());
+        copy.run(&["init", inputs[0], inputs[1], "--tumble", folder.to_str().unwrap()])
+    };
+    let output = draft(&folder);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    for line in ["gravity = \"9.81523 m/s^2\"  # GUESS", "serial = \"0001\"  # FOUND", "[[tumble]]\nrests = \""] {
+        assert!(text.contains(line), "{line} in {text}");
+    }
+    let rests = text.lines().find(|line| line.starts_with("rests = ")).unwrap().split('"').nth(1).unwrap().to_owned();
+    assert!(Path::new(&rests).is_file(), "{rests}");
+    // The same readings as counts are another unit than that of the records.
+    let counts = copy.session().join("counts");
+    tumbled("counts", &counts);
+    let output = draft(&counts);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        message.contains("found readings in m/s^2, expected the unit of the tumble, which is another"),
+        "{message}"
+    );
+    // A centrifuge session is no tumble.
+    let output = draft(&copy.session());
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        message.contains("found a session without rests, expected the folder of a result of centrical tumble"),
+        "{message}"
+    );
 }

@@ -376,14 +376,20 @@ def report(
 
 
 def init(
-    inputs: Path | Iterable[Path], *, out: Path | None = None, positions: Literal["six"] | None = None
+    inputs: Path | Iterable[Path],
+    *,
+    out: Path | None = None,
+    positions: Literal["six"] | None = None,
+    tumble: Path | None = None,
 ) -> Document:
     """Drafts ``experiment.toml`` from records and telemetry, or folders of them; ``text`` has the draft.
+
+    ``tumble``: the folder of a tumble of the unit, whose scale and bias, gravity, serial number and rests are taken.
 
     >>> ct.init(example / "records").guesses > 0
     True
     """
-    return Document(_native.init(paths(inputs), out, positions))
+    return Document(_native.init(paths(inputs), out, positions, tumble))
 
 
 def schema(form: Form, *, out: Path | None = None) -> Document:

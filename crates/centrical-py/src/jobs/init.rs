@@ -10,7 +10,13 @@ use crate::words::one_of;
 
 /// `centrical-draft/1`.
 #[pyfunction]
-pub fn init(py: Python, inputs: Vec<PathBuf>, out: Option<PathBuf>, positions: Option<&str>) -> PyResult<String> {
+pub fn init(
+    py: Python,
+    inputs: Vec<PathBuf>,
+    out: Option<PathBuf>,
+    positions: Option<&str>,
+    tumble: Option<PathBuf>,
+) -> PyResult<String> {
     let six_positions = positions.map_or(Ok(false), |word| one_of("positions", word, &[("six", true)]))?;
     progress::run(py, &None, |_| {
         if let Some(file) = out.as_ref().filter(|file| file.exists()) {
@@ -21,7 +27,7 @@ pub fn init(py: Python, inputs: Vec<PathBuf>, out: Option<PathBuf>, positions: O
             Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
             _ => PathBuf::from("."),
         };
-        let draft = session::init(&InitRequest { inputs, folder, six_positions })?;
+        let draft = session::init(&InitRequest { inputs, folder, tumble, six_positions })?;
         if let Some(file) = &out {
             write_whole(file, draft.text.as_bytes())?;
         }

@@ -9,22 +9,25 @@ mod attitude;
 mod draft;
 mod experiment_text;
 mod file_roles;
+mod path_text;
 mod raw;
 mod request;
 mod schedule;
 mod seats;
 mod sighting;
+mod tumbled;
 
 use std::path::{Path, PathBuf};
 
 pub use self::draft::{Draft, FillIn};
 pub use self::request::InitRequest;
+use self::tumbled::Tumbled;
 use crate::error::{Error, Place};
 
 /// Drafts an experiment file.
 ///
 /// # Errors
-/// [`Error`] when a file cannot be read, or when none is a record.
+/// [`Error`] when a file cannot be read, when none is a record, or when the tumble is of another unit of readings.
 pub fn init(request: &InitRequest) -> Result<Draft, Error> {
     let groups = file_roles::groups(&request.inputs)?;
     if groups.is_empty() {
@@ -33,5 +36,6 @@ pub fn init(request: &InitRequest) -> Result<Draft, Error> {
         return Err(Error::content(inputs, Place::Whole, "no record", expected));
     }
     let mountings = groups.into_iter().map(sighting::sight).collect::<Result<Vec<_>, _>>()?;
-    Ok(experiment_text::draft(&mountings, request))
+    let tumbled = request.tumble.as_deref().map(Tumbled::read).transpose()?;
+    experiment_text::draft(&mountings, tumbled.as_ref(), request)
 }

@@ -8,11 +8,15 @@ use centrical_table::{ColumnName, DecimalSign, TextForm};
 use super::attitude::{Attitude, attitude};
 use super::draft::{Draft, UNKNOWN};
 use super::file_roles::{FileColumns, Label};
+use super::path_text::{quoted, relative};
 use super::raw::{Extremes, Raw};
 use super::request::InitRequest;
 use super::schedule::{Set, schedules};
 use super::seats::seats;
 use super::sighting::SeenMounting;
+use super::tumbled::Tumbled;
+use crate::error::{Error, Place};
+use crate::experiment::OutputUnit as Output;
 use crate::quantity::Dimension;
 
 /// The six positions of the source: attitude and pair.
@@ -34,13 +38,20 @@ enum OutputUnit {
     Raw { name: &'static str, unit: &'static str, coarse: Option<Raw> },
 }
 
-/// Drafts the file from what the mountings show.
-pub(super) fn draft(mountings: &[SeenMounting], request: &InitRequest) -> Draft {
-    let findings = Findings::of(mountings);
+/// Drafts the file from what the mountings show, and a tumble of the unit.
+///
+/// # Errors
+/// If the records are in another unit than the tumble.
+pub(super) fn draft(
+    mountings: &[SeenMounting],
+    tumbled: Option<&Tumbled>,
+    request: &InitRequest,
+) -> Result<Draft, Error> {
+    let findings = Findings::of(mountings, tumbled)?;
     let mut draft = Draft::default();
     heading(&mut draft, mountings);
-    session(&mut draft);
-    unit(&mut draft, &findings.unit);
+    session(&mut draft, tumbled);
+    unit(&mut draft, &findings.unit, tumbled);
     machine(&mut draft);
     columns(&mut draft, mountings, &findings.unit);
     let ids = positions(&mut draft, &findings.attitudes, request.six_positions);
@@ -65,21 +76,27 @@ pub(super) fn draft(mountings: &[SeenMounting], request: &InitRequest) -> Draft 
         }
         draft.line("");
     }
+    if let Some(tumbled) = tumbled {
+        tumbled.rests(&mut draft, &request.folder);
+    }
     draft.text.truncate(draft.text.trim_end().len());
     draft.text.push('\n');
-    draft
+    Ok(draft)
 }
 
 impl Findings {
-    fn of(mountings: &[SeenMounting]) -> Self {
+    fn of(mountings: &[SeenMounting], tumbled: Option<&Tumbled>) -> Result<Self, Error> {
         let extremes: Vec<Option<Extremes>> = mountings.iter().map(SeenMounting::extremes).collect();
-        let unit = OutputUnit::of(mountings, &extremes);
+        let mut unit = OutputUnit::of(mountings, &extremes);
+        if let Some(tumbled) = tumbled {
+            unit.agree_with(tumbled, mountings)?;
+        }
         let in_si: Vec<Option<Extremes>> = extremes.iter().map(|e| e.as_ref()?.in_si(&unit.raw()?)).collect();
         let attitudes: Vec<Option<Attitude>> =
             in_si.iter().map(|e| e.as_ref().and_then(|e| attitude(&e.rest, &e.fast))).collect();
         let radii: Vec<Option<f64>> = in_si.iter().map(|e| e.as_ref().map(Extremes::radius)).collect();
         let radii = seats(&attitudes, &radii);
-        Self { unit, attitudes, radii, schedules: schedules(mountings) }
+        Ok(Self { unit, attitudes, radii, schedules: schedules(mountings) })
     }
 }
 
@@ -101,6 +118,33 @@ impl OutputUnit {
         match ["m/s^2", "g", "mg"].into_iter().find(is_near) {
             Some(unit) => Self::ByGravity(unit, norm),
             None => Self::Raw { name: "counts", unit: "counts", coarse: Raw::by_gravity(extremes) },
+        }
+    }
+
+    /// Takes scale and bias of a raw output from a tumble.
+    fn agree_with(&mut self, tumbled: &Tumbled, mountings: &[SeenMounting]) -> Result<(), Error> {
+        let is_same = match self {
+            Self::Raw { unit: "counts", .. } => tumbled.output_unit == Output::Counts,
+            Self::Raw { .. } => tumbled.output_unit == Output::Volts,
+            Self::Named(_) | Self::ByGravity(..) => tumbled.output_unit == Output::Acceleration,
+        };
+        match self {
+            _ if !is_same => {
+                let record = &mountings[0].group.records[0].path;
+                let found = format!("readings in {}", self.name());
+                Err(Error::content(record, Place::Whole, found, "the unit of the tumble, which is another"))
+            }
+            Self::Raw { coarse, .. } => {
+                *coarse = Some(tumbled.raw);
+                Ok(())
+            }
+            Self::Named(_) | Self::ByGravity(..) => Ok(()),
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Named(unit) | Self::ByGravity(unit, _) | Self::Raw { unit, .. } => unit,
         }
     }
 
@@ -148,16 +192,19 @@ fn heading(draft: &mut Draft, mountings: &[SeenMounting]) {
     draft.line("");
 }
 
-fn session(draft: &mut Draft) {
+fn session(draft: &mut Draft, tumbled: Option<&Tumbled>) {
     draft.line("[session]");
     draft.line("title = \"\"");
     draft.line("");
     draft.line("[site]");
-    draft.fill_in(
-        "[site] gravity",
-        &format!("gravity = {UNKNOWN}"),
-        "such as \"9.81523 m/s^2\"; 1e-5 of it is 1e-5 of every scale factor",
-    );
+    match tumbled {
+        Some(tumbled) => tumbled.gravity(draft),
+        None => draft.fill_in(
+            "[site] gravity",
+            &format!("gravity = {UNKNOWN}"),
+            "such as \"9.81523 m/s^2\"; 1e-5 of it is 1e-5 of every scale factor",
+        ),
+    }
     draft.fill_in(
         "[site] latitude",
         &format!("latitude = {UNKNOWN}"),
@@ -166,9 +213,14 @@ fn session(draft: &mut Draft) {
     draft.line("");
 }
 
-fn unit(draft: &mut Draft, unit: &OutputUnit) {
+fn unit(draft: &mut Draft, unit: &OutputUnit, tumbled: Option<&Tumbled>) {
     draft.line("[unit]");
-    draft.fill_in("[unit] serial", &format!("serial = {UNKNOWN}"), "the number on the unit; results are filed by it");
+    if let Some(tumbled) = tumbled.filter(|tumbled| !tumbled.serial.is_empty()) {
+        draft.found(&format!("serial = {}", quoted(&tumbled.serial)), &tumbled.how());
+    } else {
+        let reason = "the number on the unit; results are filed by it";
+        draft.fill_in("[unit] serial", &format!("serial = {UNKNOWN}"), reason);
+    }
     match unit {
         OutputUnit::Named(name @ ("m/s^2" | "g")) => {
             draft.found(&format!("output_unit = \"{name}\""), "the unit beside the names");
@@ -180,7 +232,10 @@ fn unit(draft: &mut Draft, unit: &OutputUnit) {
         OutputUnit::Raw { name, unit, coarse } => {
             let how = "the unit beside the names, or readings at rest that are no gravity in m/s^2, g or mg";
             draft.guess(&format!("output_unit = \"{unit}\""), how);
-            raw(draft, name, coarse.as_ref());
+            match tumbled {
+                Some(tumbled) => draft.found(&tumbled.raw_line(name), &tumbled.how()),
+                None => raw(draft, name, coarse.as_ref()),
+            }
         }
     }
     draft.fill_in(
@@ -291,10 +346,6 @@ fn column(name: &ColumnName) -> String {
     }
 }
 
-fn quoted(text: &str) -> String {
-    toml_edit::Value::from(text).to_string().trim().to_owned()
-}
-
 /// Writes the positions out; returns the id of each mounting's.
 fn positions(draft: &mut Draft, attitudes: &[Option<Attitude>], six: bool) -> Vec<Option<String>> {
     let mut distinct: Vec<Attitude> = Vec::new();
@@ -386,16 +437,4 @@ fn plateaus(draft: &mut Draft, mounting: &SeenMounting, schedule: &[Set], table:
         }
     }
     draft.line("]");
-}
-
-/// The path as the experiment file names it, with slashes.
-fn relative(path: &Path, folder: &Path) -> String {
-    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let (path, folder) = (absolute(path), absolute(folder));
-    let path = path.strip_prefix(&folder).map(Path::to_owned).unwrap_or(path);
-    path.components()
-        .map(|c| c.as_os_str().to_string_lossy().into_owned())
-        .collect::<Vec<_>>()
-        .join("/")
-        .replace("//", "/")
 }

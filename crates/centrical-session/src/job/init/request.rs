@@ -9,6 +9,8 @@ pub struct InitRequest {
     pub inputs: Vec<PathBuf>,
     /// Folder of the experiment file, which names the others relative to itself.
     pub folder: PathBuf,
+    /// Folder of a tumble of the unit: its scale and bias, gravity, and its rests are taken.
+    pub tumble: Option<PathBuf>,
     /// Whether to write the source's six positions out where the files do not show the positions.
     pub six_positions: bool,
 }

@@ -1,0 +1,91 @@
+//! What a tumble of the unit adds to the draft: scale and bias of a raw output, gravity, and the rests.
+
+use std::path::{Path, PathBuf};
+
+use super::draft::Draft;
+use super::path_text::{quoted, relative};
+use super::raw::Raw;
+use crate::error::{Error, Place};
+use crate::experiment::{OutputUnit, RestTable, Session};
+
+/// A unit that was calibrated by gravity alone.
+pub(super) struct Tumbled {
+    /// The folder, as it is named.
+    folder: String,
+    /// Its serial number, empty if none is stated.
+    pub serial: String,
+    /// What it puts out.
+    pub output_unit: OutputUnit,
+    /// Nominal scale and bias of a raw output, by which the means of the rests were made.
+    pub raw: Raw,
+    gravity: f64,
+    /// Standard uncertainty of gravity [m/s^2].
+    gravity_uncertainty: f64,
+    /// Names of the files of each table of rests, and the uncertainty of attitudes in the second of them [rad].
+    rests: Vec<(Vec<PathBuf>, Option<f64>)>,
+}
+
+impl Tumbled {
+    /// Reads the folder that `centrical tumble --out` wrote, or a file in it.
+    ///
+    /// # Errors
+    /// If it can not be read, or its session has no rests or a centrifuge.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let folder = if path.is_file() { path.parent().unwrap_or(Path::new("")) } else { path };
+        let session = Session::read(folder)?;
+        // Rests that are planned have no means.
+        let has_rests = session.rests().count() > 0 && session.rest_tables.iter().all(|table| !table.means.is_empty());
+        if !has_rests || !session.mountings.is_empty() {
+            let found = if has_rests { "a centrifuge session" } else { "a session without rests" };
+            return Err(Error::content(path, Place::Whole, found, "the folder of a result of centrical tumble"));
+        }
+        let scale = |axis: usize| session.columns.f[axis].scale;
+        Ok(Self {
+            folder: folder.display().to_string(),
+            serial: session.unit_serial.clone(),
+            output_unit: session.output_unit,
+            raw: Raw { scale: [0, 1, 2].map(|j| 1.0 / scale(j).factor), bias: [0, 1, 2].map(|j| scale(j).offset) },
+            gravity: session.experiment.site.gravity,
+            gravity_uncertainty: session.type_b.gravity,
+            rests: session.rest_tables.iter().map(of_table).collect(),
+        })
+    }
+
+    /// How a line of it was found.
+    pub fn how(&self) -> String {
+        format!("by the tumble in {}", self.folder)
+    }
+
+    /// The line of gravity, which is that of the same place.
+    pub fn gravity(&self, draft: &mut Draft) {
+        draft.guess(&format!("gravity = \"{:?} m/s^2\"", self.gravity), &format!("{}, if that was here", self.how()));
+    }
+
+    /// The nominal scale and bias under the key `name`, to their last digit: the means of the rests are made with them.
+    pub fn raw_line(&self, name: &str) -> String {
+        format!("{name} = {{ scale = {:?}, bias = {:?} }}", self.raw.scale, self.raw.bias)
+    }
+
+    /// The tables of rests, and the uncertainties beside them.
+    pub fn rests(&self, draft: &mut Draft, folder: &Path) {
+        if self.gravity_uncertainty > 0.0 {
+            draft.line("[uncertainty]");
+            draft.found(&format!("gravity = \"{:?} m/s^2\"", self.gravity_uncertainty), &self.how());
+            draft.line("");
+        }
+        for (files, uncertainty) in &self.rests {
+            draft.line("[[tumble]]");
+            for (key, file) in ["rests", "attitudes"].into_iter().zip(files) {
+                draft.found(&format!("{key} = {}", quoted(&relative(file, folder))), &self.how());
+            }
+            if let Some(uncertainty) = uncertainty {
+                draft.found(&format!("attitude_uncertainty = \"{uncertainty:?} rad\""), &self.how());
+            }
+            draft.line("");
+        }
+    }
+}
+
+fn of_table(table: &RestTable) -> (Vec<PathBuf>, Option<f64>) {
+    (table.files().cloned().collect(), table.attitudes.as_ref().map(|known| known.uncertainty))
+}
