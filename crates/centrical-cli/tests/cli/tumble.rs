@@ -200,7 +200,7 @@ fn counts_need_no_data_sheet() {
 #[test]
 fn records_that_show_nothing_are_refused() {
     let copy = Copy::new();
-    let row = |i: u32| format!("{},0.0{},0.02,9.8{}", f64::from(i) / 50.0, i % 7, i % 3);
+    let row = |i: u32| format!("{},0.0{},0.02{},9.8{}", f64::from(i) / 50.0, i % 7, i % 5, i % 3);
     let still: Vec<String> = (0..600).map(row).collect();
     fs::write(copy.out().join("still.csv"), format!("t,f1,f2,f3\n{}\n", still.join("\n"))).unwrap();
     let record = example("record.csv");
@@ -224,4 +224,43 @@ fn records_that_show_nothing_are_refused() {
     fs::copy(&record, copy.out().join("own/rests.csv")).unwrap();
     let text = refused(&["own/rests.csv", "--out", "own"]);
     assert!(text.contains("rests.csv"), "{text}");
+}
+
+/// What a laboratory does wrong and a fit would not say: a wrong unit, a dead newtonometer, an axis that never turns.
+#[test]
+fn mistakes_of_a_laboratory_are_named() {
+    let copy = Copy::new();
+    let text = fs::read_to_string(example("record.csv")).unwrap();
+    let rows: Vec<[f64; 4]> = (text.lines().skip(1))
+        .map(|line| {
+            let mut numbers = line.split(',').map(|number| number.parse().unwrap());
+            std::array::from_fn(|_| numbers.next().unwrap())
+        })
+        .collect();
+    let said_of = |change: &dyn Fn(&[f64; 4]) -> [f64; 3], arguments: &[&str], code: i32| {
+        let line = |row: &[f64; 4]| {
+            let [a, b, c] = change(row);
+            format!("{},{a:.7},{b:.7},{c:.7}", row[0])
+        };
+        let lines: Vec<String> = rows.iter().map(line).collect();
+        fs::write(copy.out().join("changed.csv"), format!("t,f1,f2,f3\n{}\n", lines.join("\n"))).unwrap();
+        let output = copy.run(&[&["tumble", "changed.csv", "--gravity", "9.81523"], arguments].concat());
+        assert_eq!(output.status.code(), Some(code), "{}", said(&output));
+        said(&output)
+    };
+    let g = 9.806_65;
+    let text = said_of(&|row| [row[1] / g, row[2] / g, row[3] / g], &[], 2);
+    assert!(text.contains("--unit g would fit") && text.contains("found rests of 1.0"), "{text}");
+    let text = said_of(&|row| [row[1], row[2], row[3]], &["--unit", "g"], 2);
+    assert!(text.contains("--unit m/s^2 would fit") && text.contains("found rests of 9.8"), "{text}");
+    let text = said_of(&|row| [row[1] * 415.0, row[2] * 413.0, row[3] * 415.0], &[], 2);
+    assert!(text.contains("--unit counts would fit"), "{text}");
+    let text = said_of(&|row| [row[1], 0.25, row[3]], &[], 2);
+    assert!(text.contains("found the same reading in all rows of column f2"), "{text}");
+    // Dead, but with noise.
+    let text = said_of(&|row| [row[1], 0.01 * (1e4 * row[0]).sin(), row[3]], &[], 2);
+    assert!(text.contains("found newtonometer 2 between -0.00") && text.contains("points up and others"), "{text}");
+    // Gravity shows neither signs nor the order of columns: that is said with the result.
+    let text = said_of(&|row| [row[2], -row[1], row[3]], &[], 0);
+    assert!(text.contains("gravity shows neither the sign of an axis nor which column is which"), "{text}");
 }

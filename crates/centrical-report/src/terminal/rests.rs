@@ -41,6 +41,10 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
     let worst = misfits.iter().fold(0.0_f64, |most, misfit| most.max(misfit.abs())) / MICRO_G;
     let of_size = format!("size of the compensated force less gravity: {rms:.0} ug RMS, {worst:.0} ug at most");
     screen.say(2, &of_size);
+    // The size of gravity is the same for a triad and its mirror image.
+    if known.is_empty() && !result.model.has_arm() {
+        screen.sentence(2, 4, "gravity shows neither the sign of an axis nor which column is which: check them");
+    }
     next_attitude(screen, result);
 }
 

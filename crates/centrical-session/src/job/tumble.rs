@@ -1,6 +1,7 @@
 //! Calibration by gravity alone: a unit that was turned by hand or on a table and rested again and again.
 
 mod calibrated;
+mod plausible;
 mod request;
 mod session_text;
 

@@ -1,12 +1,13 @@
 //! From records of a unit that was turned by hand to its calibration.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use centrical::reduction::{CoarseScale, PlateauMean, Record, coarse_scale, reduce_rests};
 use centrical::{OnProgress, advance};
 use centrical_table::{TableLines, refuse_inputs, write_whole};
 use nalgebra::Vector3;
 
+use super::plausible::{answers, first, has_unit, turns};
 use super::request::TumbleRequest;
 use super::session_text::{ATTITUDES, TABLE, session_text};
 use crate::document::{CalibrationResult, Method};
@@ -39,7 +40,9 @@ pub struct Tumble {
 pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> Result<Tumble, Error> {
     let mut records = Vec::with_capacity(request.files.len());
     for file in &request.files {
-        records.push(record(request, file, progress)?);
+        let record = record(request, file, progress)?;
+        answers(request, &record, file)?;
+        records.push(record);
     }
     let mut rests = rests(request, &records)?;
     advance(progress, 0)?;
@@ -54,6 +57,12 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         Some(coarse)
     };
     let means: Vec<Vector3<f64>> = rests.iter().map(|rest| rest.mean).collect();
+    if request.attitudes.is_none() {
+        turns(request, &means)?;
+    }
+    if coarse.is_none() {
+        has_unit(request, &means)?;
+    }
     let known = (request.attitudes.as_ref()).map(|stated| stated.of_rests(&means, &first(request))).transpose()?;
     let plateaus: Vec<ReducedPlateau> = rests.into_iter().map(ReducedPlateau::from).collect();
     let text = session_text(request, coarse.as_ref());
@@ -120,11 +129,6 @@ fn coarse(request: &TumbleRequest, rests: &[PlateauMean]) -> Result<CoarseScale,
         let expected = "rests with each axis about up and about down, six at least";
         Error::content(&first(request), Place::Whole, found, expected)
     })
-}
-
-/// The record that messages name.
-fn first(request: &TumbleRequest) -> PathBuf {
-    request.files.first().cloned().unwrap_or_default()
 }
 
 fn in_si(record: &mut Record, CoarseScale { scale, bias }: &CoarseScale) {
