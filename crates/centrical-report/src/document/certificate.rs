@@ -14,7 +14,7 @@ use super::reading_error::{error_note, error_table};
 use super::rests_on::{self, counts_as_exact, rests_on_sentence};
 use super::switch_on::switch_on;
 use super::symbols::nominal_output;
-use super::tables::cells;
+use super::tables::{cells, of_arm};
 use crate::evaluation::{UnitStatement, by_group, equations, expanded, symbol};
 use crate::language::Language;
 
@@ -184,9 +184,7 @@ fn conditions(result: &CalibrationResult, laboratory: &Laboratory, language: Lan
         format!("{value} ± {range} {unit}")
     };
     let gravity = format!("{} {}", language.number(&result.model.gravity.to_string()), language.unit("m/s^2"));
-    // An empty fact is not shown.
-    let speed_uncertainty =
-        if result.model.has_arm() { language.scientific(result.model.speed_uncertainty) } else { String::new() };
+    let speed_uncertainty = of_arm(&result.model, language.scientific(result.model.speed_uncertainty));
     let facts = Block::facts([
         (messages.temperature, shown(environment.temperature, "°C")),
         (messages.humidity, environment.humidity.map(|c| shown(c, "%")).unwrap_or_default()),

@@ -11,7 +11,7 @@ use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
 use super::switch_on::switch_on;
 use super::symbols::{nominal_output, symbols};
-use super::tables::{budget, parameters};
+use super::tables::{budget, of_arm, parameters};
 use crate::evaluation::{UnitStatement, UnitVerdict, by_group, equations};
 use crate::figure::{Figure, figures, positions};
 use crate::language::Language;
@@ -232,8 +232,7 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
     );
     let method =
         format!("{} ({}, {})", (words.method)(fit.method), (words.termination)(fit.termination), fit.iterations);
-    // Rests alone have no arm; an empty fact is not shown.
-    let of_arm = |fact: String| if model.has_arm() { fact } else { String::new() };
+    let of_arm = |fact: String| of_arm(model, fact);
     let facts = Block::facts([
         (messages.gravity, gravity),
         (messages.latitude, latitude.unwrap_or_default()),

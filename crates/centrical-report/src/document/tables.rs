@@ -1,6 +1,6 @@
 //! Tables of the report.
 
-use centrical_session::{BudgetSource, CalibrationResult, ParameterEstimate, customary};
+use centrical_session::{BudgetSource, CalibrationResult, ModelSummary, ParameterEstimate, customary};
 
 use super::content::{Align, Column, Row, Table, TableKind};
 use crate::evaluation::{expanded, symbol};
@@ -8,6 +8,11 @@ use crate::language::Language;
 
 /// What a source leaves is not shown below this part of the combined uncertainty.
 const NEGLIGIBLE: f64 = 1e-3;
+
+/// A fact that only an arm has: rests alone leave it empty, and an empty fact is not shown.
+pub(super) fn of_arm(model: &ModelSummary, fact: String) -> String {
+    if model.has_arm() { fact } else { String::new() }
+}
 
 /// Estimates with expanded uncertainties, in customary units and in SI, group by group.
 pub(super) fn parameters(result: &CalibrationResult, shown: &[&ParameterEstimate], language: Language) -> Table {

@@ -15,9 +15,9 @@ pub(super) fn figures(result: &CalibrationResult, language: Language) -> Vec<Fig
     let mut figures = Vec::new();
     if !errors.is_empty() {
         figures.push(before(&errors, language));
-        figures.push(after(&errors, language));
+        figures.push(after(&errors, result.model.has_arm(), language));
     }
-    figures.push(residuals(&result.plateaus, language));
+    figures.push(residuals(result, language));
     figures.push(normalised(&result.plateaus, language));
     figures
 }
@@ -30,14 +30,15 @@ fn before(errors: &[ReadingError], language: Language) -> Figure {
     Figure::new("before", messages.before, messages.before_caption, drawings)
 }
 
-fn after(errors: &[ReadingError], language: Language) -> Figure {
+fn after(errors: &[ReadingError], has_arm: bool, language: Language) -> Figure {
     let messages = language.messages();
     let drawings = panels(errors, messages.error_after_axis, language, |error, axis, load| {
         let value = error.speed_free[axis] / MICRO_G;
         let bar = expanded_of_normal(error.uncertainty[axis]) / MICRO_G;
         Point::new(load / STANDARD_GRAVITY, value).with_interval(value - bar, value + bar)
     });
-    Figure::new("after", messages.after, messages.after_caption, drawings)
+    let caption = if has_arm { messages.after_caption } else { messages.after_caption_of_rests };
+    Figure::new("after", messages.after, caption, drawings)
 }
 
 /// A panel for the error of each newtonometer, against the specific force along the axis that is loaded most; a series
@@ -62,9 +63,9 @@ fn panels(
     (0..3).map(panel).collect()
 }
 
-fn residuals(plateaus: &[PlateauSummary], language: Language) -> Figure {
+fn residuals(result: &CalibrationResult, language: Language) -> Figure {
     let messages = language.messages();
-    let numbered: Vec<(usize, &PlateauSummary)> = (1..).zip(plateaus).collect();
+    let numbered: Vec<(usize, &PlateauSummary)> = (1..).zip(&result.plateaus).collect();
     let point = |(n, plateau): &(usize, &PlateauSummary), axis: usize| {
         let value = plateau.residual[axis] / MICRO_G;
         let bar = expanded_of_normal(plateau.fit_covariance[axis][axis].sqrt()) / MICRO_G;
@@ -72,7 +73,8 @@ fn residuals(plateaus: &[PlateauSummary], language: Language) -> Figure {
     };
     let axes = (Axis::linear(messages.plateau_axis), Axis::linear(messages.residual_axis));
     let plot = by_axis(Plot::new(messages.residuals_title, axes.0, axes.1), &numbered, language, point);
-    of_plot("residuals", messages.residuals_caption, plot, language)
+    let caption = if result.model.has_arm() { messages.residuals_caption } else { messages.residuals_caption_of_rests };
+    of_plot("residuals", caption, plot, language)
 }
 
 fn normalised(plateaus: &[PlateauSummary], language: Language) -> Figure {

@@ -100,9 +100,13 @@ pub(crate) const ENGLISH: Messages = Messages {
     after_caption: "The same after compensation, less what an error of the plateau’s speed explains: points should keep \
         within their bars (k = 2) without a trend; along its own axis the speed explains nearly all, so that those points \
         lie at zero by construction.",
+    after_caption_of_rests: "The same after compensation, less what the attitude of each rest explains: points should keep within their bars \
+        (k = 2) without a trend. Across gravity a free attitude explains all, so that points lie at zero there by construction.",
     residuals_title: "Residuals by plateau",
     residuals_caption: "Mean reading less fitted model with bars of k = 2, speed error included: bars that miss \
         zero more often than one in twenty, or a pattern along the session, would mean a model that does not fit.",
+    residuals_caption_of_rests: "Mean reading of each rest less fitted model with bars of k = 2, the attitude included: bars that miss zero more \
+        often than one in twenty, or a pattern along the session, would mean a model that does not fit.",
     normalised_title: "Residuals over their standard uncertainty",
     normalised_caption: "Residuals made independent and divided by their standard uncertainty: about one in twenty \
         should lie outside ±2.",

@@ -87,8 +87,12 @@ pub(crate) struct Messages {
     pub error_after_axis: &'static str,
     pub before_caption: &'static str,
     pub after_caption: &'static str,
+    /// Of rests alone.
+    pub after_caption_of_rests: &'static str,
     pub residuals_title: &'static str,
     pub residuals_caption: &'static str,
+    /// Of rests alone.
+    pub residuals_caption_of_rests: &'static str,
     pub normalised_title: &'static str,
     pub normalised_caption: &'static str,
     pub plateau_axis: &'static str,
