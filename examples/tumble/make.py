@@ -47,11 +47,12 @@ def in_case(directions):
     return random.permutation(stated / np.linalg.norm(stated, axis=1, keepdims=True))
 
 
-def main():
-    random = np.random.default_rng(24)
-    directions = random.normal(size=(24, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    pieces, before = [], None
+def turned(random, directions, lasting, bumped=None):
+    """Direction of the specific force of each sample, and from and to of each rest in samples.
+
+    Each rest lasts a time between the two of `lasting` [s]; in the middle of rest `bumped` the unit is bumped.
+    """
+    pieces, rests, before = [], [], None
     for k, direction in enumerate(directions):
         if before is not None:
             count = int(RATE * random.uniform(1.0, 2.0))
@@ -59,16 +60,30 @@ def main():
             way = (1 - part) * before + part * direction + 0.3 * np.sin(np.pi * part) * random.normal(size=3)
             way *= (1 + 0.1 * random.normal(size=(count, 1))) / np.linalg.norm(way, axis=1, keepdims=True)
             pieces.append(way)
-        count = int(RATE * random.uniform(2.0, 4.0))
+        count = int(RATE * random.uniform(*lasting))
         rest = direction + TREMOR * np.cross(markov(random, count, 0.3), direction)
         rest /= np.linalg.norm(rest, axis=1, keepdims=True)
-        if k == 9:
+        if k == bumped:
             rest[count // 2 : count // 2 + 4] += 0.2 * random.normal(size=(4, 3))
+        start = sum(map(len, pieces))
+        rests.append((start, start + count))
         pieces.append(rest)
         before = direction
-    force = GRAVITY * np.concatenate(pieces)
+    return np.concatenate(pieces), rests
+
+
+def readings_of(random, force):
+    """What the unit reads of a specific force."""
     noise = WHITE * random.normal(size=force.shape) + SLOW * markov(random, len(force), 1.0)
-    readings = force + DF + force @ G0.T + noise
+    return force + DF + force @ G0.T + noise
+
+
+def main():
+    random = np.random.default_rng(24)
+    directions = random.normal(size=(24, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    way, _ = turned(random, directions, (2.0, 4.0), bumped=9)
+    readings = readings_of(random, GRAVITY * way)
     lines = [f"{i / RATE:.2f},{a:.4f},{b:.4f},{c:.4f}" for i, (a, b, c) in enumerate(readings)]
     (HERE / "record.csv").write_text("t,f1,f2,f3\n" + "\n".join(lines) + "\n")
     lines = [",".join(f"{component:.6f}" for component in up) for up in in_case(directions)]
