@@ -54,7 +54,8 @@ pub use self::observability::{
 };
 pub(crate) use self::plan::SCHEMA as PLAN_SCHEMA;
 pub use self::plan::{
-    CriterionName, FrontierRow, GoalReport, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport,
+    ChosenRest, ChosenRests, CriterionName, FrontierRow, GoalReport, PlanReport, PlannedMounting, PlannedPlateau,
+    ReasonReport,
 };
 pub use self::prediction::{PredictedParameter, PredictionReport};
 pub use self::reduction::{REDUCTION_SCHEMA, ReducedPlateauSummary, ReductionReport};

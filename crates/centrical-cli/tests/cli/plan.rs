@@ -206,3 +206,46 @@ fn assert_are_the_speeds(report: &Value, schedule: &str) {
         assert_eq!(quantity(line, "duration", "s"), Some(number("duration")), "{line}");
     }
 }
+
+/// Rests beside the arm in a plan: chosen, written out, and predicted by `observe` as by `plan`.
+#[test]
+fn plans_with_rests_beside_the_arm() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/plans/with-rests.toml");
+    let text = fs::read_to_string(example).unwrap().replace("count = 4", "count = 2");
+    for known in [false, true] {
+        let copy = Copy::new();
+        let attitudes = if known { "attitude_uncertainty = \"0.05 deg\"\n" } else { "" };
+        let text = text.replace("durations = [", &format!("{attitudes}durations = ["));
+        fs::write(copy.out().join("plan.toml"), text).unwrap();
+        let report = json(&copy, &["plan", "plan.toml", "--json", "--out", "schedule.toml"]);
+        let rests = report["rests"]["rests"].as_array().unwrap();
+        assert!(rests.len() > 3, "{report}");
+        assert_eq!(report["rests"]["attitude_uncertainty"].is_number(), known);
+        let observed = json(&copy, &["observe", "schedule.toml", "--json"]);
+        let of = |report: &Value| report["prediction"]["parameters"].as_array().unwrap().clone();
+        assert_eq!(of(&report).len(), of(&observed).len());
+        for (a, b) in of(&report).iter().zip(of(&observed)) {
+            let (u, v) = (a["combined"].as_f64().unwrap(), b["combined"].as_f64().unwrap());
+            assert!(a["name"] == b["name"] && (u / v - 1.0).abs() < 1e-9, "{a} {b}");
+        }
+        let text = String::from_utf8(copy.run(&["plan", "plan.toml"]).stdout).unwrap();
+        assert!(text.contains("RESTS beside the arm") && text.contains("rests beside the arm"), "{text}");
+    }
+}
+
+/// Rests alone: a plan without an arm, whose written schedule is one of rests alone.
+#[test]
+fn plans_of_rests_alone() {
+    let copy = Copy::new();
+    let plan = "[candidates]\nattitudes = \"cube\"\ndurations = [\"60 s\"]\n\n[cost]\nattitude = \"20 s\"\n\n\
+                [target]\ntime = \"30 min\"\n\n[site]\ngravity = \"9.81523 m/s^2\"\n\n[unit]\noutput_unit = \"m/s^2\"\n\n[model]\n\
+                error_model = [\"df_1\", \"df_2\", \"df_3\", \"G0_11\", \"G0_21\", \"G0_22\", \"G0_31\", \"G0_32\", \"G0_33\"]\n";
+    fs::write(copy.out().join("plan.toml"), plan).unwrap();
+    let report = json(&copy, &["plan", "plan.toml", "--json", "--frontier", "--out", "schedule.toml"]);
+    // Nine unknowns of the unit and one equation a rest: 22 rests of 80 s fill the time.
+    assert_eq!(report["mountings"].as_array().unwrap().len(), 0);
+    assert_eq!(report["rests"]["rests"].as_array().unwrap().len(), 22);
+    assert!(report["frontier"].as_array().unwrap().iter().all(|row| row["normalised"].is_null()));
+    let observed = json(&copy, &["observe", "schedule.toml", "--json"]);
+    assert_eq!(observed["plateaus"], 22);
+}

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 
 use centrical_session::harmless_line;
 use centrical_session::{
-    CriterionName, GoalReport, MICRO_G, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport, customary,
+    ChosenRests, CriterionName, GoalReport, MICRO_G, PlanReport, PlannedMounting, PlannedPlateau, ReasonReport,
+    customary,
 };
 
 use super::prediction::prediction_text;
@@ -25,6 +26,9 @@ pub fn plan_text(report: &PlanReport) -> Screen {
     for (number, mounting) in report.mountings.iter().enumerate() {
         one_mounting(&mut screen, number + 1, mounting);
     }
+    if let Some(rests) = &report.rests {
+        rests_beside(&mut screen, rests);
+    }
     screen.say(2, "Visits of one plateau come in separate runs through the speeds: each has a speed error of its own.");
     goals(&mut screen, report);
     screen.gap();
@@ -39,6 +43,10 @@ fn heading(screen: &mut Screen, report: &PlanReport) {
         screen.say(0, &format!("{}", harmless_line(&report.title)));
     }
     let visits: usize = report.mountings.iter().map(|m| m.plateaus.len()).sum();
+    let mut visited = counted(visits, "plateau");
+    if let Some(beside) = &report.rests {
+        visited = format!("{visited} and {} beside the arm", counted(beside.rests.len(), "rest"));
+    }
     let [measuring, ramps, set_ups] = report.time_by_use;
     screen.head(
         "PLAN",
@@ -46,7 +54,7 @@ fn heading(screen: &mut Screen, report: &PlanReport) {
             "{} in {}, {} of {}",
             span(report.time),
             counted(report.mountings.len(), "mounting"),
-            counted(visits, "plateau"),
+            visited,
             counted(report.candidates, "candidate")
         ),
     );
@@ -126,6 +134,23 @@ fn one_mounting(screen: &mut Screen, number: usize, mounting: &PlannedMounting) 
         let times = if same.len() > 1 { format!("{} x ", same.len()) } else { String::new() };
         let duration = format!("{times}{} s", digits(plateau.duration));
         table.row([format!("  {}", set(plateau)), duration, lost(&plateau.reason)].map(Cell::from));
+    }
+    screen.table(table);
+}
+
+/// The rests beside the arm: where up is in each.
+fn rests_beside(screen: &mut Screen, beside: &ChosenRests) {
+    let attitudes = match beside.attitude_uncertainty {
+        Some(u) => format!("attitudes known to {} deg", two_digits(u.to_degrees())),
+        None => "attitudes by gravity alone".to_owned(),
+    };
+    let (time, lost_all) = (span(beside.reason.time), lost(&beside.reason));
+    screen.say(2, &format!("RESTS beside the arm, {attitudes}, {time}; without them {lost_all}"));
+    let mut table = Table::new(1, [("", Align::Left), ("", Align::Right), ("", Align::Words)]);
+    for rest in &beside.rests {
+        let [x, y, z] = rest.up;
+        let up = format!("  up ({x:.2}, {y:.2}, {z:.2})");
+        table.row([up, format!("{} s", digits(rest.duration)), lost(&rest.reason)].map(Cell::from));
     }
     screen.table(table);
 }

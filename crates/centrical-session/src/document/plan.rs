@@ -47,8 +47,11 @@ pub struct PlanReport {
     pub time: f64,
     /// Time of measuring alone, of ramps and turns, of set-ups [s].
     pub time_by_use: [f64; 3],
-    /// The mountings in their order.
+    /// The mountings on the arm in their order.
     pub mountings: Vec<PlannedMounting>,
+    /// The rests beside the arm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rests: Option<ChosenRests>,
     /// What will be known.
     pub prediction: PredictionReport,
     /// Goals, for criterion "worst": name, wanted, predicted from noise and speeds, predicted with type B [SI].
@@ -82,6 +85,28 @@ pub struct PlannedMounting {
     pub reason: ReasonReport,
     /// Its plateaus.
     pub plateaus: Vec<PlannedPlateau>,
+}
+
+/// The rests beside the arm of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChosenRests {
+    /// Why they are there, all together.
+    pub reason: ReasonReport,
+    /// Standard uncertainty of the attitudes about each horizontal axis, where they are known [rad].
+    pub attitude_uncertainty: Option<f64>,
+    /// The rests in their order.
+    pub rests: Vec<ChosenRest>,
+}
+
+/// One rest beside the arm.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChosenRest {
+    /// Where up is, axes of the case, of length 1.
+    pub up: [f64; 3],
+    /// Duration [s].
+    pub duration: f64,
+    /// Why it is there.
+    pub reason: ReasonReport,
 }
 
 /// One kind of visit.

@@ -8,6 +8,7 @@ use centrical::{Experiment, MeasurementModel, STANDARD_GRAVITY, SetPoint};
 use super::form::{self, CandidatesTable, Form, MountingTable, Steps};
 use super::plan::{EarlierResult, ExpectedValues, expected_of, expected_values, noise};
 use super::prior;
+use super::rests::RestTable;
 use super::schedule::{FASTEST, duration};
 use super::session::{Session, named_extensions, read_text};
 use super::toml_path::TomlPath;
@@ -24,7 +25,7 @@ const MOST_REPEATS: usize = 20;
 const AVAILABLE: (f64, f64) = (1.0, 1e9);
 const AVAILABLE_TIME: &str = "a time from 1 s to 1e9 s";
 
-/// Over what a compensated reading is judged unless something else is said: the field's 200 g.
+/// Over what a compensated reading is judged on an arm unless something else is said: the field's 200 g. Rests alone show 1 g.
 const USUAL_RANGE: f64 = 200.0 * STANDARD_GRAVITY;
 
 /// What is to be planned.
@@ -38,6 +39,8 @@ pub struct Planning {
     pub task: Task,
     /// Over what a compensated reading is judged.
     pub range: ReadingRange,
+    /// The rests beside the arm that can be chosen: the last of the candidates, in this order.
+    pub rests: Option<RestTable>,
 }
 
 impl Planning {
@@ -49,24 +52,23 @@ impl Planning {
     pub fn read(path: &Path, time: Option<f64>, earlier: EarlierResult) -> Result<Self, Error> {
         let mut form = from_toml::<Form>(path, &read_text(path)?)?.with_schedules();
         let at = TomlPath::table(path, "candidates");
-        let Some(table) = form.candidates.take() else {
-            return Err(at.unexpected("radii", "no [candidates]", "what the plan is chosen from"));
-        };
-        if !form.mounting.is_empty() {
-            let expected = "no [[mounting]]: the plan chooses them from positions and radii";
-            return Err(at.unexpected("radii", format!("{} mountings", form.mounting.len()), expected));
-        }
-        form.mounting = mountings(&at, &table, &form)?;
+        form.mounting = mountings(&at, &form)?;
         form.target.time = time.map(Quantity::Number).or(form.target.time);
+        let form = form;
+        let table = stated(&at, &form)?;
         let mut session = Session::without_plateaus(path, &form)?;
-        session.experiment.set_points = set_points(&at, &table, &session.experiment)?;
+        if session.experiment.has_arm() {
+            session.experiment.set_points = set_points(&at, table, &session.experiment)?;
+        }
+        session.rest_tables = rests(path, &at, table)?;
+        session.add_rests();
         let expected = expected_values(path, form.plan.as_ref(), earlier)?;
         let scenarios = scenarios(path, &form, &session, &expected)?;
         let candidates = Candidates {
             scenarios,
             robustness: robustness(path, &form)?,
-            durations: durations(&at, &table)?,
-            repeats: repeats(&at, &table)?,
+            durations: durations(&at, table)?,
+            repeats: repeats(&at, table)?,
             costs: costs(path, &form)?,
         };
         let (criterion, time, range) = target(path, &form, &candidates.scenarios[0].model)?;
@@ -75,6 +77,7 @@ impl Planning {
             title: session.title.clone(),
             task: Task { candidates, criterion, time },
             range,
+            rests: session.rest_tables.pop(),
         })
     }
 
@@ -98,8 +101,40 @@ pub fn available_time(time: &Quantity) -> Result<f64, NotThatQuantity> {
     }
 }
 
+/// The candidates that a plan file states.
+fn stated<'f>(at: &TomlPath, form: &'f Form) -> Result<&'f CandidatesTable, Error> {
+    let expected = "what the plan is chosen from";
+    form.candidates.as_ref().ok_or_else(|| at.unexpected("radii", "no [candidates]", expected))
+}
+
+/// The rests beside the arm.
+fn rests(file: &Path, at: &TomlPath, table: &CandidatesTable) -> Result<Vec<RestTable>, Error> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let uncertain = table.attitude_uncertainty.as_ref();
+    match (&table.attitudes, uncertain) {
+        (Some(entry), _) => Ok(vec![RestTable::planned(at, folder, entry, uncertain)?]),
+        (None, None) => Ok(Vec::new()),
+        (None, Some(_)) => {
+            let expected = "the attitudes that are this uncertain";
+            Err(at.unexpected("attitudes", "no such key beside attitude_uncertainty", expected))
+        }
+    }
+}
+
 /// A mounting for every position and radius.
-fn mountings(at: &TomlPath, table: &CandidatesTable, form: &Form) -> Result<Vec<MountingTable>, Error> {
+fn mountings(at: &TomlPath, form: &Form) -> Result<Vec<MountingTable>, Error> {
+    let table = stated(at, form)?;
+    if !form.mounting.is_empty() {
+        let expected = "no [[mounting]]: the plan chooses them from positions and radii";
+        return Err(at.unexpected("radii", format!("{} mountings", form.mounting.len()), expected));
+    }
+    if !form.tumble.is_empty() {
+        let expected = "no [[tumble]]: the plan chooses rests from attitudes";
+        return Err(at.unexpected("attitudes", "rests in [[tumble]]", expected));
+    }
+    if !form.has_arm() {
+        return Ok(Vec::new());
+    }
     if table.radii.is_empty() {
         return Err(at.unexpected("radii", "none", "at least one radius"));
     }
@@ -211,6 +246,8 @@ fn costs(file: &Path, form: &Form) -> Result<Costs, Error> {
         ramp: time("ramp", &form.cost.ramp)?,
         turn: time("turn", &form.cost.turn)?,
         run_up: time("run_up", &form.cost.run_up)?,
+        table: time("table", &form.cost.table)?,
+        attitude: time("attitude", &form.cost.attitude)?,
     };
     if costs.seat > costs.position {
         let expected = "at most the cost of a change of position, which contains one";
@@ -264,7 +301,8 @@ fn target(file: &Path, form: &Form, model: &MeasurementModel) -> Result<(Criteri
     let table = &form.target;
     let time = table.time.as_ref().map(|q| at.bounded("time", q, Dimension::Time, AVAILABLE, AVAILABLE_TIME));
     let time = time.transpose()?;
-    let force = table.range.as_ref().map_or(Ok(USUAL_RANGE), |q| {
+    let usual = if model.experiment().has_arm() { USUAL_RANGE } else { STANDARD_GRAVITY };
+    let force = table.range.as_ref().map_or(Ok(usual), |q| {
         at.bounded("range", q, Dimension::Acceleration, (1e-3, 1e7), "a specific force from 1e-3 to 1e7 m/s^2")
     })?;
     let range = ReadingRange { force };

@@ -1,7 +1,6 @@
 //! Plans: the session form before anything is measured, or a preset experiment by name.
 
 use std::collections::BTreeMap;
-use std::iter::repeat_n;
 use std::path::{Path, PathBuf};
 
 use centrical::plan::{Noise, Normalised};
@@ -150,7 +149,7 @@ impl Plan {
         let mut rest_tables = RestTable::named(file, &form.tumble)?;
         rest_tables.iter_mut().try_for_each(RestTable::read)?;
         let mut durations = vec![duration; experiment.set_points.len()];
-        durations.extend(rest_tables.iter().flat_map(|t| repeat_n(t.duration().unwrap_or(duration), t.count())));
+        durations.extend(rest_tables.iter().flat_map(RestTable::durations).map(|stated| stated.unwrap_or(duration)));
         rests::add_rests(&mut experiment, &rest_tables);
         let weights = weights(&noise, durations, &rest_tables);
         let error_model = terms::error_model(file, &form.model.error_model)?;

@@ -15,7 +15,7 @@ use super::schedule;
 use super::stated_attitudes::{CUBE, MOST_UNCERTAIN, directions, read_attitudes};
 use super::toml_path::TomlPath;
 use crate::error::{Error, Place};
-use crate::quantity::Dimension;
+use crate::quantity::{Dimension, Quantity};
 
 /// The rests of one `[[tumble]]`.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +43,7 @@ pub struct PlannedRests {
     /// Where up is in each, axes of the case, of length 1.
     pub up_b: Vec<Vector3<f64>>,
     /// Duration of each, if it is stated [s].
-    pub duration: Option<f64>,
+    pub durations: Vec<Option<f64>>,
     /// The table that the attitudes stand in, if they do.
     pub file: Option<PathBuf>,
 }
@@ -71,7 +71,10 @@ impl RestTable {
             let at = TomlPath::entry(file, "tumble", n);
             match (&table.rests, &table.attitudes) {
                 (Some(rests), _) => Self::measured(&at, folder, table, rests),
-                (None, Some(attitudes)) => Self::planned(&at, folder, table, attitudes),
+                (None, Some(attitudes)) => {
+                    let planned = Self::planned(&at, folder, attitudes, table.attitude_uncertainty.as_ref())?;
+                    planned.lasting(&at, table)
+                }
                 (None, None) => {
                     let expected = "a table of rests; or attitudes, of rests that are planned";
                     Err(at.unexpected("rests", "no such key", expected))
@@ -82,11 +85,13 @@ impl RestTable {
     }
 
     fn measured(at: &TomlPath, folder: &Path, table: &TumbleTable, rests: &str) -> Result<Self, Error> {
-        if table.duration.is_some() {
-            let expected = "no such key beside rests, which have been measured";
-            return Err(at.unexpected("duration", "a duration", expected));
+        for (key, is_there) in [("duration", table.duration.is_some()), ("durations", !table.durations.is_empty())] {
+            if is_there {
+                let expected = "no such key beside rests, which have been measured";
+                return Err(at.unexpected(key, "a duration", expected));
+            }
         }
-        let attitudes = match (&table.attitudes, uncertainty(at, table)?) {
+        let attitudes = match (&table.attitudes, uncertainty(at, table.attitude_uncertainty.as_ref())?) {
             (None, None) => None,
             (Some(_), None) => {
                 let expected = "the standard uncertainty of the attitudes, such as \"0.1 deg\"";
@@ -108,16 +113,45 @@ impl RestTable {
         Ok(Self { source: RestSource::Table(folder.join(rests)), means: Vec::new(), attitudes })
     }
 
-    fn planned(at: &TomlPath, folder: &Path, table: &TumbleTable, entry: &AttitudeList) -> Result<Self, Error> {
+    /// Rests that are planned in these attitudes, known to `uncertain` if it is stated; paths start from `folder`.
+    ///
+    /// # Errors
+    /// If an attitude is none, or the uncertainty makes no sense.
+    pub(crate) fn planned(
+        at: &TomlPath,
+        folder: &Path,
+        entry: &AttitudeList,
+        uncertain: Option<&Quantity>,
+    ) -> Result<Self, Error> {
         let (up_b, file) = directions(at, folder, entry)?;
         let known = |uncertainty| KnownAttitudes {
             file: file.clone(),
             uncertainty,
             up_b: up_b.iter().copied().map(Some).collect(),
         };
-        let attitudes = uncertainty(at, table)?.map(known);
-        let duration = schedule::duration(at, "duration", table.duration.as_ref())?;
-        Ok(Self { source: RestSource::Plan(PlannedRests { up_b, duration, file }), means: Vec::new(), attitudes })
+        let attitudes = uncertainty(at, uncertain)?.map(known);
+        let durations = vec![None; up_b.len()];
+        Ok(Self { source: RestSource::Plan(PlannedRests { up_b, durations, file }), means: Vec::new(), attitudes })
+    }
+
+    /// Planned rests with the durations that their table states.
+    fn lasting(mut self, at: &TomlPath, table: &TumbleTable) -> Result<Self, Error> {
+        let RestSource::Plan(planned) = &mut self.source else { return Ok(self) };
+        if table.durations.is_empty() {
+            planned.durations.fill(schedule::duration(at, "duration", table.duration.as_ref())?);
+            return Ok(self);
+        }
+        if table.duration.is_some() {
+            return Err(at.unexpected("duration", "a duration", "no such key beside durations"));
+        }
+        if table.durations.len() != planned.up_b.len() {
+            let expected = format!("one for each of the {} attitudes", planned.up_b.len());
+            return Err(at.unexpected("durations", format!("{} durations", table.durations.len()), expected));
+        }
+        for (duration, stated) in planned.durations.iter_mut().zip(&table.durations) {
+            *duration = schedule::duration(at, "durations", Some(stated))?;
+        }
+        Ok(self)
     }
 
     /// Reads the means, and the attitudes that a table has of them. Nothing is to be read of rests that are planned.
@@ -180,11 +214,11 @@ impl RestTable {
         })
     }
 
-    /// Duration of each rest, if it is planned and stated [s].
-    pub fn duration(&self) -> Option<f64> {
+    /// Duration of each rest, where it is planned and stated [s].
+    pub fn durations(&self) -> Vec<Option<f64>> {
         match &self.source {
-            RestSource::Plan(planned) => planned.duration,
-            RestSource::Table(_) => None,
+            RestSource::Plan(planned) => planned.durations.clone(),
+            RestSource::Table(_) => vec![None; self.means.len()],
         }
     }
 
@@ -219,11 +253,11 @@ pub(crate) fn add_rests(experiment: &mut Experiment, tables: &[RestTable]) {
 }
 
 /// The standard uncertainty of the attitudes [rad], if they are known.
-fn uncertainty(at: &TomlPath, table: &TumbleTable) -> Result<Option<f64>, Error> {
+fn uncertainty(at: &TomlPath, stated: Option<&Quantity>) -> Result<Option<f64>, Error> {
     let bounds = (f64::MIN_POSITIVE, MOST_UNCERTAIN);
     let meaning = "a standard uncertainty above 0 and up to 10 deg";
     let bounded = |q| at.bounded("attitude_uncertainty", q, Dimension::Angle, bounds, meaning);
-    table.attitude_uncertainty.as_ref().map(bounded).transpose()
+    stated.map(bounded).transpose()
 }
 
 /// Farthest angle between a known attitude and the one of its mean [rad]: beyond it rows are out of order.

@@ -152,8 +152,7 @@ impl Session {
     pub(crate) fn add_rests(&mut self) {
         rests::add_rests(&mut self.experiment, &self.rest_tables);
         if self.plateaus.is_none() {
-            let of_table = |table: &RestTable| std::iter::repeat_n(table.duration(), table.count());
-            self.durations.extend(self.rest_tables.iter().flat_map(of_table));
+            self.durations.extend(self.rest_tables.iter().flat_map(RestTable::durations));
         }
     }
 
@@ -218,7 +217,7 @@ impl Session {
     /// Everything but the set points.
     pub(crate) fn without_plateaus(file: &Path, form: &Form) -> Result<Self, Error> {
         let folder = file.parent().unwrap_or(Path::new(""));
-        let has_arm = form.tumble.is_empty() || !form.mounting.is_empty() || !form.position.is_empty();
+        let has_arm = form.has_arm();
         if has_arm {
             refuse_missing_keys(file, form)?;
         }

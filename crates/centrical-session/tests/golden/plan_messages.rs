@@ -117,7 +117,7 @@ fn planned_rests() {
             (
                 "attitudes =",
                 "atitudes =",
-                "line 76, column 1: found an unknown key `atitudes`, expected one of `rests`, `attitudes`, `duration`, `attitude_uncertainty`",
+                "line 76, column 1: found an unknown key `atitudes`, expected one of `rests`, `attitudes`, `duration`, `durations`, `attitude_uncertainty`",
             ),
             (
                 "attitudes = [[0, 0, 1], [1, 0, 0]]\n",
@@ -148,6 +148,21 @@ fn planned_rests() {
                 list,
                 "\"cube\"\nduration = \"0 s\"",
                 "[[tumble]] 1, duration: found \"0 s\", expected a duration from 1 ms to 1e7 s",
+            ),
+            (
+                list,
+                "[[0, 0, 1], [1, 0, 0]]\ndurations = [\"60 s\"]",
+                "[[tumble]] 1, durations: found 1 durations, expected one for each of the 2 attitudes",
+            ),
+            (
+                list,
+                "[[0, 0, 1], [1, 0, 0]]\nduration = \"60 s\"\ndurations = [\"60 s\", \"30 s\"]",
+                "[[tumble]] 1, duration: found a duration, expected no such key beside durations",
+            ),
+            (
+                list,
+                "[[0, 0, 1], [1, 0, 0]]\ndurations = [\"60 s\", \"0 s\"]",
+                "[[tumble]] 1, durations: found \"0 s\", expected a duration from 1 ms to 1e7 s",
             ),
             (
                 list,
@@ -272,6 +287,27 @@ fn candidates_costs_and_targets() {
             "time = \"8 h\"",
             "[target.uncertainty]\ndR = \"1 um\"",
             "[target.uncertainty], dR: found dR_1[A] of the geometry, expected a parameter or group of the instrument, or \"reading\"",
+        ),
+        (
+            "repeats = 2",
+            "attitude_uncertainty = \"1 deg\"",
+            "[candidates], attitudes: found no such key beside attitude_uncertainty, expected the attitudes that are this uncertain",
+        ),
+        (
+            "repeats = 2",
+            "attitudes = [[0, 0, 0]]",
+            "[candidates], attitudes: found [0.0, 0.0, 0.0], expected the direction of up",
+        ),
+        (
+            "repeats = 2",
+            "attitudes = \"cube\"\nattitude_uncertainty = \"1 rad\"",
+            "[candidates], attitude_uncertainty: found \"1 rad\", expected a standard uncertainty above 0 and up to 10 deg",
+        ),
+        ("[target]", "table = \"-1 s\"\n\n[target]", "[cost], table: found \"-1 s\", expected a time from 0 to 1e7 s"),
+        (
+            "[site]",
+            "[[tumble]]\nrests = \"rests.csv\"\n\n[site]",
+            "[candidates], attitudes: found rests in [[tumble]], expected no [[tumble]]: the plan chooses rests from attitudes",
         ),
     ];
     for (from, to, expected) in cases {

@@ -161,19 +161,18 @@ impl Study {
         }
     }
 
-    /// Combinations lost without the plateaus `removed`, apart from the turns and shifts of positions that go with them.
+    /// Combinations lost without the plateaus `removed`, apart from the turns and shifts of positions that go with them. What a prior
+    /// knows is not lost.
     fn lost_without(&self, removed: &dyn Fn(&SetPoint) -> bool) -> usize {
         let set_points = &self.model().experiment().set_points;
         let weights: Vec<_> = self.weights().iter().filter(|w| !removed(&set_points[w.set_point])).copied().collect();
         let Ok(study) = Self::at_zero(self.model().clone(), weights) else {
             return self.observability().columns();
         };
-        let unused = self
-            .model()
-            .parameters()
-            .iter()
-            .enumerate()
-            .filter(|(j, parameter)| parameter.kind.is_of_position() && !study.acts(*j) && self.acts(*j));
+        let has_prior = |j: usize| self.model().priors().iter().any(|prior| prior.parameter == j);
+        let is_unused = |j: usize| !has_prior(j) && !study.acts(j) && self.acts(j);
+        let parameters = self.model().parameters().iter().enumerate();
+        let unused = parameters.filter(|(j, parameter)| parameter.kind.is_of_position() && is_unused(*j));
         study.observability().lost() - unused.count()
     }
 

@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use super::atom::Atoms;
 use super::criterion::Robustness;
 use super::error::PlanError;
-use crate::model::{Experiment, MeasurementModel, Weight};
+use crate::model::{Experiment, MeasurementModel, Mounting, SetPoint, Weight};
 
 /// White noise down to a floor: the variance of the mean of a plateau of duration `T` is `density^2 / 2T + floor^2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +55,10 @@ pub struct Costs {
     pub turn: f64,
     /// Run up from rest and back, once for each mounting.
     pub run_up: f64,
+    /// Moving the unit from the arm to the table, once for all rests beside the arm.
+    pub table: f64,
+    /// Laying the unit down in another attitude, once for each rest beside the arm.
+    pub attitude: f64,
 }
 
 /// All that can be chosen from. The scenarios share their experiment but not their unknowns; the first is the one that
@@ -67,7 +71,8 @@ pub struct Candidates {
     pub robustness: Robustness,
     /// Durations of a plateau [s], rising.
     pub durations: Vec<f64>,
-    /// How often one plateau may be visited: each visit has its own speed error.
+    /// How often one plateau on the arm may be visited: each visit has its own speed error. A rest beside the arm is visited once:
+    /// laid down again, the unit has another attitude, which is a candidate of its own.
     pub repeats: usize,
     /// Times beside the durations.
     pub costs: Costs,
@@ -82,7 +87,7 @@ pub struct Visit {
     pub duration: f64,
 }
 
-/// The visits that are chosen, in the order of the candidates' mountings.
+/// The visits that are chosen, in the order of the candidates' mountings: rests beside the arm last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     /// The visits.
@@ -92,7 +97,7 @@ pub struct Schedule {
 }
 
 impl Candidates {
-    /// The experiment with all candidates.
+    /// The experiment with all candidates. Mountings on the arm precede those of rests beside it.
     pub fn experiment(&self) -> &Experiment {
         self.scenarios[0].model.experiment()
     }
@@ -112,9 +117,14 @@ impl Candidates {
         self.overhead(visit.candidate) + visit.duration
     }
 
-    /// Time of a list of visits with the set-ups of the mountings they use [s].
+    /// Most visits of a candidate.
+    pub fn most_visits(&self, candidate: usize) -> usize {
+        if self.is_on_arm(candidate) { self.repeats } else { 1 }
+    }
+
+    /// Time of a list of visits with the set-ups that they need [s].
     pub fn time_of(&self, visits: &[Visit]) -> f64 {
-        let used = self.mountings_used(visits.iter().map(|visit| visit.candidate));
+        let used = self.set_ups_used(visits.iter().map(|visit| visit.candidate));
         self.set_up_time(&used) + visits.iter().map(|visit| self.visit_time(visit)).sum::<f64>()
     }
 
@@ -148,35 +158,69 @@ impl Candidates {
         self.overhead(atom.candidate) + self.durations[atom.duration]
     }
 
-    /// The mounting of an atom.
-    pub(super) fn mounting_of(&self, atom: usize) -> usize {
-        self.experiment().set_points[self.atoms().at(atom).candidate].mounting
+    /// Number of set-ups: one for each mounting on the arm, and a last one for all rests beside it together.
+    pub(super) fn set_ups(&self) -> usize {
+        let on_arm = self.mountings_on_arm();
+        on_arm + usize::from(on_arm < self.experiment().mountings.len())
     }
 
-    /// Which mountings some candidates belong to.
-    pub(super) fn mountings_used(&self, candidates: impl Iterator<Item = usize>) -> Vec<bool> {
-        let experiment = self.experiment();
-        let mut used = vec![false; experiment.mountings.len()];
-        candidates.for_each(|candidate| used[experiment.set_points[candidate].mounting] = true);
+    /// The set-up that a candidate needs: its mounting on the arm, or that of the table.
+    pub(super) fn set_up_of(&self, candidate: usize) -> usize {
+        let SetPoint { mounting, .. } = self.experiment().set_points[candidate];
+        if self.experiment().is_on_arm(mounting) { mounting } else { self.mountings_on_arm() }
+    }
+
+    /// The set-up of an atom.
+    pub(super) fn set_up_of_atom(&self, atom: usize) -> usize {
+        self.set_up_of(self.atoms().at(atom).candidate)
+    }
+
+    /// The mounting of a set-up; `None` for the table.
+    pub(super) fn mounting_of(&self, set_up: usize) -> Option<&Mounting> {
+        self.experiment().mountings.get(set_up).filter(|_| self.experiment().is_on_arm(set_up))
+    }
+
+    /// Which set-ups some candidates need.
+    pub(super) fn set_ups_used(&self, candidates: impl Iterator<Item = usize>) -> Vec<bool> {
+        let mut used = vec![false; self.set_ups()];
+        candidates.for_each(|candidate| used[self.set_up_of(candidate)] = true);
         used
     }
 
-    /// Set-ups of the mountings in use [s]: `position` for each position, `seat` for each further mounting in it, and the
-    /// run-up of each.
+    /// Time of the set-ups in use [s]: `position` for each position, `seat` for each further mounting in it, and the
+    /// run-up of each; `table` for the rests beside the arm.
     pub(super) fn set_up_time(&self, used: &[bool]) -> f64 {
-        let experiment = self.experiment();
-        let mut positions = vec![false; experiment.positions.len()];
+        let mut positions = vec![false; self.experiment().positions.len()];
         let mut time = 0.0;
-        for (mounting, _) in experiment.mountings.iter().zip(used).filter(|(_, used)| **used) {
+        for set_up in (0..used.len()).filter(|&set_up| used[set_up]) {
+            let Some(mounting) = self.mounting_of(set_up) else {
+                time += self.costs.table;
+                continue;
+            };
             let first = !std::mem::replace(&mut positions[mounting.position], true);
             time += self.costs.run_up + if first { self.costs.position } else { self.costs.seat };
         }
         time
     }
 
-    /// Ramp or turn before a visit of a candidate [s].
+    /// Number of mountings on the arm, which precede those beside it.
+    fn mountings_on_arm(&self) -> usize {
+        let experiment = self.experiment();
+        (0..experiment.mountings.len()).position(|m| !experiment.is_on_arm(m)).unwrap_or(experiment.mountings.len())
+    }
+
+    /// Whether a candidate is on the arm, and not a rest beside it.
+    pub(super) fn is_on_arm(&self, candidate: usize) -> bool {
+        self.experiment().is_on_arm(self.experiment().set_points[candidate].mounting)
+    }
+
+    /// Ramp, turn or laying down before a visit of a candidate [s].
     fn overhead(&self, candidate: usize) -> f64 {
-        if self.experiment().set_points[candidate].is_rest() { self.costs.turn } else { self.costs.ramp }
+        match (self.is_on_arm(candidate), self.experiment().set_points[candidate].is_rest()) {
+            (false, _) => self.costs.attitude,
+            (true, true) => self.costs.turn,
+            (true, false) => self.costs.ramp,
+        }
     }
 
     /// Refuses candidates from which no plan can be made.
@@ -190,12 +234,15 @@ impl Candidates {
         }
         let positive = |value: &f64| *value > 0.0 && value.is_finite();
         let costs = &self.costs;
-        let times = [costs.position, costs.seat, costs.ramp, costs.turn, costs.run_up];
+        let times = [costs.position, costs.seat, costs.ramp, costs.turn, costs.run_up, costs.table, costs.attitude];
         if !self.durations.iter().all(positive) || times.iter().any(|time| !(*time >= 0.0 && time.is_finite())) {
             return Err(PlanError::Time);
         }
         if costs.seat > costs.position {
             return Err(PlanError::SeatAbovePosition);
+        }
+        if self.experiment().mountings_on_arm().last().is_some_and(|last| last >= self.mountings_on_arm()) {
+            return Err(PlanError::RestsFirst);
         }
         if self.scenarios.iter().any(|s| s.nominal.len() != s.model.parameters().len()) {
             return Err(PlanError::Nominal);

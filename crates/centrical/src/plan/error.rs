@@ -17,6 +17,9 @@ pub enum PlanError {
     /// A re-seating costs more than a change of position, which contains one.
     #[error("found a re-seating dearer than a change of position, expected at most as much")]
     SeatAbovePosition,
+    /// A rest beside the arm precedes a mounting on it.
+    #[error("found a rest beside the arm before a mounting on it, expected all mountings on the arm first")]
+    RestsFirst,
     /// The scenarios are of different experiments.
     #[error("found scenarios of different experiments, expected the same candidates in all")]
     Experiments,

@@ -21,14 +21,14 @@ pub(super) struct IntegerSchedule {
     factors: Vec<Factor>,
 }
 
-/// The exchange of visits within a time, on some mountings.
+/// The exchange of visits within a time, on some set-ups.
 #[derive(Clone, Copy)]
 pub(super) struct Exchange<'a> {
     pub candidates: &'a Candidates,
     pub scenarios: &'a LinearisedScenarios,
     /// Available time, set-ups included [s].
     pub time: f64,
-    /// Mountings that may be used.
+    /// Set-ups that may be used.
     pub open: &'a [bool],
     /// Limit of exchanges that are tried.
     pub trials: usize,
@@ -58,22 +58,44 @@ impl IntegerSchedule {
         (0..self.visits.len()).flat_map(|x| (0..self.visits[x]).map(move |_| visit(x))).collect()
     }
 
-    /// Which mountings are used.
-    pub fn mountings(&self, candidates: &Candidates) -> Vec<bool> {
-        mountings_of(candidates, &self.visits)
+    /// Which set-ups are used.
+    pub fn set_ups(&self, candidates: &Candidates) -> Vec<bool> {
+        set_ups_of(candidates, &self.visits)
     }
 }
 
-fn mountings_of(candidates: &Candidates, visits: &[u32]) -> Vec<bool> {
+fn set_ups_of(candidates: &Candidates, visits: &[u32]) -> Vec<bool> {
     let atoms = candidates.atoms();
-    candidates.mountings_used((0..visits.len()).filter(|&x| visits[x] > 0).map(|x| atoms.at(x).candidate))
+    candidates.set_ups_used((0..visits.len()).filter(|&x| visits[x] > 0).map(|x| atoms.at(x).candidate))
 }
 
 impl Exchange<'_> {
-    /// A schedule near the continuous design `w`: the better one of two roundings, each filled with whatever brings most.
+    /// A schedule near the continuous design `w`: the best one of three roundings, each filled with whatever brings most.
     pub fn round(&self, w: &[f64]) -> IntegerSchedule {
-        let [by_size, in_order] = [self.rounded_by_size(w), self.rounded_in_order(w)];
-        if in_order.value < by_size.value { in_order } else { by_size }
+        let [mut best, in_order, short] = [self.rounded_by_size(w), self.rounded_in_order(w), self.rounded_short(w)];
+        for other in [in_order, short] {
+            if other.value < best.value {
+                best = other;
+            }
+        }
+        best
+    }
+
+    /// The shortest visit of each candidate while it fits, those of the most visits first: where time is short, what is seen at all
+    /// counts for more than how well.
+    fn rounded_short(&self, w: &[f64]) -> IntegerSchedule {
+        let atoms = self.candidates.atoms();
+        let all = |c: &usize| atoms.of(*c).map(|x| w[x]).sum::<f64>();
+        let mut candidates: Vec<usize> = (0..atoms.candidates).filter(|c| all(c) > 1e-3).collect();
+        candidates.sort_by(|a, b| all(b).total_cmp(&all(a)).then(a.cmp(b)));
+        let mut visits = vec![0; w.len()];
+        for x in candidates.into_iter().map(|c| atoms.of(c).start) {
+            visits[x] = 1;
+            if !self.is_within(&visits) {
+                visits[x] = 0;
+            }
+        }
+        self.fill(self.schedule(visits))
     }
 
     /// Visits wherever the parts before and here add up to one: a visit that neighbouring speeds share goes to one of them, so
@@ -84,10 +106,10 @@ impl Exchange<'_> {
             let mut visits = vec![0; w.len()];
             let mut carried = 0.0;
             for c in 0..atoms.candidates {
-                if c > 0 && self.mounting(c) != self.mounting(c - 1) {
+                if c > 0 && self.set_up(c) != self.set_up(c - 1) {
                     carried = 0.0;
                 }
-                let mut room = self.candidates.repeats as f64;
+                let mut room = self.candidates.most_visits(c) as f64;
                 for x in atoms.of(c) {
                     carried += scale * w[x];
                     let whole = (carried + 0.5 + 1e-6).floor().clamp(0.0, room);
@@ -215,7 +237,7 @@ impl Exchange<'_> {
 
     fn insights(&self, schedule: &IntegerSchedule) -> Vec<Vec<Option<Insight>>> {
         let of_scenario = |(scenario, factor): (&LinearisedScenario, &Factor)| {
-            let insight = |c: usize| self.open[self.mounting(c)].then(|| scenario.insight(factor, c));
+            let insight = |c: usize| self.open[self.set_up(c)].then(|| scenario.insight(factor, c));
             (0..self.candidates.len()).map(insight).collect()
         };
         self.scenarios.all.iter().zip(&schedule.factors).map(of_scenario).collect()
@@ -240,17 +262,17 @@ impl Exchange<'_> {
         duration.map(|duration| self.candidates.atoms().number(Atom { candidate: m.candidate, duration }))
     }
 
-    fn mounting(&self, candidate: usize) -> usize {
-        self.candidates.experiment().set_points[candidate].mounting
+    fn set_up(&self, candidate: usize) -> usize {
+        self.candidates.set_up_of(candidate)
     }
 
     /// All changes of one visit that the bounds allow.
     fn moves(&self, schedule: &IntegerSchedule) -> impl Iterator<Item = Move> {
         let atoms = self.candidates.atoms();
         let mut moves = Vec::new();
-        for candidate in (0..atoms.candidates).filter(|&c| self.open[self.mounting(c)]) {
+        for candidate in (0..atoms.candidates).filter(|&c| self.open[self.set_up(c)]) {
             let visits = &schedule.visits[atoms.of(candidate)];
-            let has_room = self.is_within_repeats(visits, 1);
+            let has_room = self.has_room(candidate, visits, 1);
             let ends = || (0..atoms.durations).map(Some).chain([None]);
             for from in ends().filter(|from| from.map_or(has_room, |d| visits[d] > 0)) {
                 moves.extend(ends().filter(|to| *to != from).map(|to| Move { candidate, from, to }));
@@ -265,9 +287,9 @@ impl Exchange<'_> {
         of(m.to) - of(m.from)
     }
 
-    /// What the set-up of each mounting would take more [s]; 0 where it is there already.
+    /// What each set-up would take more [s]; 0 where it is there already.
     fn set_ups(&self, schedule: &IntegerSchedule) -> Vec<f64> {
-        let mut used = schedule.mountings(self.candidates);
+        let mut used = schedule.set_ups(self.candidates);
         let before = self.candidates.set_up_time(&used);
         let mut more = vec![0.0; used.len()];
         for m in 0..used.len() {
@@ -280,7 +302,7 @@ impl Exchange<'_> {
     }
 
     fn price_with_set_up(&self, set_ups: &[f64], m: &Move) -> f64 {
-        self.price_of(m) + if m.from.is_none() { set_ups[self.mounting(m.candidate)] } else { 0.0 }
+        self.price_of(m) + if m.from.is_none() { set_ups[self.set_up(m.candidate)] } else { 0.0 }
     }
 
     fn apply(&self, visits: &mut [u32], m: &Move) {
@@ -290,18 +312,18 @@ impl Exchange<'_> {
 
     fn time_of(&self, visits: &[u32]) -> f64 {
         let of_atom = |x: usize| f64::from(visits[x]) * self.candidates.price(x);
-        let set_up = self.candidates.set_up_time(&mountings_of(self.candidates, visits));
+        let set_up = self.candidates.set_up_time(&set_ups_of(self.candidates, visits));
         set_up + (0..visits.len()).map(of_atom).sum::<f64>()
     }
 
     fn is_within(&self, visits: &[u32]) -> bool {
         let durations = self.candidates.durations.len();
-        visits.chunks(durations).all(|visits| self.is_within_repeats(visits, 0))
+        visits.chunks(durations).enumerate().all(|(c, visits)| self.has_room(c, visits, 0))
             && self.time_of(visits) <= self.time + 1e-9
     }
 
-    /// Whether a candidate may be visited as often as this, and some `more`.
-    fn is_within_repeats(&self, visits: &[u32], more: usize) -> bool {
-        visits.iter().map(|n| *n as usize).sum::<usize>() + more <= self.candidates.repeats
+    /// Whether a candidate may have these visits, and some `more`.
+    fn has_room(&self, candidate: usize, visits: &[u32], more: usize) -> bool {
+        visits.iter().map(|n| *n as usize).sum::<usize>() + more <= self.candidates.most_visits(candidate)
     }
 }

@@ -156,7 +156,9 @@ impl Task {
     fn everything(&self) -> Schedule {
         let candidates = &self.candidates;
         let longest = candidates.durations.last().copied().unwrap_or(0.0);
-        let visit = |n: usize| Visit { candidate: n % candidates.len(), duration: longest };
-        candidates.schedule((0..candidates.len() * candidates.repeats).map(visit).collect())
+        let visit = |candidate: usize| {
+            std::iter::repeat_n(Visit { candidate, duration: longest }, candidates.most_visits(candidate))
+        };
+        candidates.schedule((0..candidates.len()).flat_map(visit).collect())
     }
 }

@@ -1,4 +1,4 @@
-//! The rationale of a schedule: what is lost without each of its visits and mountings.
+//! The rationale of a schedule: what is lost without each of its visits and set-ups.
 
 use super::atom::Atom;
 use super::candidates::{Candidates, Schedule};
@@ -26,8 +26,9 @@ pub struct Reason {
 pub struct Rationale {
     /// By visit of the schedule.
     pub visits: Vec<Reason>,
-    /// By mounting of the candidates: all its visits together; `None` for one that is not used.
-    pub mountings: Vec<Option<Reason>>,
+    /// By set-up, all its visits together: the mountings of the candidates on the arm, then all rests beside it; `None` for one that
+    /// is not used.
+    pub set_ups: Vec<Option<Reason>>,
 }
 
 impl Rationale {
@@ -37,15 +38,14 @@ impl Rationale {
     /// As [`super::best_for_time`].
     pub fn of(candidates: &Candidates, criterion: &Criterion, schedule: &Schedule) -> Result<Self, PlanError> {
         let reference = Reference::new(candidates, criterion, schedule)?;
-        let set_points = &candidates.experiment().set_points;
-        let of_mounting = |m: usize| {
-            let there = |n: usize| set_points[schedule.visits[n].candidate].mounting == m;
+        let of_set_up = |set_up: usize| {
+            let there = |n: usize| candidates.set_up_of(schedule.visits[n].candidate) == set_up;
             let visits: Vec<usize> = (0..schedule.visits.len()).filter(|&n| there(n)).collect();
             (!visits.is_empty()).then(|| reference.without(&visits))
         };
         Ok(Self {
             visits: (0..schedule.visits.len()).map(|n| reference.without(&[n])).collect(),
-            mountings: (0..candidates.experiment().mountings.len()).map(of_mounting).collect(),
+            set_ups: (0..candidates.set_ups()).map(of_set_up).collect(),
         })
     }
 }

@@ -83,6 +83,7 @@ pub(crate) struct PlanTable {
 #[serde(deny_unknown_fields)]
 pub(crate) struct CandidatesTable {
     /// Radii of the seats, R0_1.
+    #[serde(default)]
     pub radii: Vec<Quantity>,
     /// Ids of positions; all if there is none.
     #[serde(default)]
@@ -94,6 +95,10 @@ pub(crate) struct CandidatesTable {
     /// Angles of plateaus at rest.
     #[serde(default)]
     pub rest_angles: Vec<Quantity>,
+    /// Attitudes of rests beside the arm, up in axes of the case: "cube", a list of directions, or the path of a table.
+    pub attitudes: Option<AttitudeList>,
+    /// Standard uncertainty of these attitudes about each horizontal axis; without it only gravity shows them.
+    pub attitude_uncertainty: Option<Quantity>,
     /// Durations of a plateau.
     pub durations: Vec<Quantity>,
     /// Visits of one plateau at most; 1 if absent.
@@ -117,6 +122,10 @@ pub(crate) struct CostTable {
     pub turn: Option<Quantity>,
     /// Time from rest to the fastest speed and back, for each mounting.
     pub run_up: Option<Quantity>,
+    /// Time to move the unit from the arm to the table, once for all rests beside the arm.
+    pub table: Option<Quantity>,
+    /// Time to lay the unit down in another attitude, for each rest beside the arm.
+    pub attitude: Option<Quantity>,
 }
 
 #[derive(Debug, Default, Deserialize, JsonSchema)]
@@ -381,6 +390,9 @@ pub(crate) struct TumbleTable {
     pub attitudes: Option<AttitudeList>,
     /// Duration of each planned rest; that of [plan] if absent.
     pub duration: Option<Quantity>,
+    /// Durations of the planned rests one by one.
+    #[serde(default)]
+    pub durations: Vec<Quantity>,
     /// Standard uncertainty of these attitudes about each horizontal axis, such as "0.1 deg".
     pub attitude_uncertainty: Option<Quantity>,
 }
@@ -394,6 +406,12 @@ pub(crate) struct ScheduleTable {
 }
 
 impl Form {
+    /// Whether the unit is on the arm: it is not where rests alone are stated.
+    pub fn has_arm(&self) -> bool {
+        let has_rests = self.candidates.as_ref().is_some_and(|candidates| candidates.attitudes.is_some());
+        !(has_rests || !self.tumble.is_empty()) || !self.mounting.is_empty() || !self.position.is_empty()
+    }
+
     /// The form with the common schedule in every mounting that has none of its own.
     pub fn with_schedules(mut self) -> Self {
         for mounting in self.mounting.iter_mut().filter(|mounting| mounting.plateaus.is_empty()) {

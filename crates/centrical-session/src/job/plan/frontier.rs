@@ -25,6 +25,7 @@ pub(super) fn frontier_rows(
     let times: Vec<f64> = request.frontier.iter().map(|factor| factor * time).collect();
     let points = frontier(candidates, criterion, &times, Effort::usual(candidates.len()), progress);
     let experiment = candidates.experiment();
+    let has_arm = experiment.has_arm();
     let uniform = with_set_points(candidates, &uniform_set_points(experiment));
     let normalised = with_set_points(candidates, &normalised_set_points(experiment, &request.levels));
     let root = |found: Option<(_, f64)>| found.map(|(_, value): (Schedule, f64)| value.sqrt());
@@ -35,7 +36,7 @@ pub(super) fn frontier_rows(
             bound: point.plan.bound.sqrt(),
             uniform: root(uniform.uniform(criterion, point.time)?),
             // Its speeds are its own, and so is its duration.
-            normalised: root(normalised.filled(criterion, point.time)?),
+            normalised: if has_arm { root(normalised.filled(criterion, point.time)?) } else { None },
         })
     };
     let rows = points.and_then(|points| points.into_iter().map(row).collect());
@@ -66,13 +67,13 @@ fn uniform_set_points(experiment: &Experiment) -> Vec<SetPoint> {
     chosen
 }
 
-/// [K5.5] on the same mountings: `Omega^2 = 10 g m / R*`, `R*` the largest radius; rest at 0 and pi.
+/// [K5.5] on the same mountings on the arm: `Omega^2 = 10 g m / R*`, `R*` the largest radius; rest at 0 and pi.
 fn normalised_set_points(experiment: &Experiment, levels: &[f64]) -> Vec<SetPoint> {
     let largest = experiment.mountings.iter().map(|m| m.arm_y.x).fold(0.0, f64::max);
     let unit = (10.0 * experiment.site.gravity / largest).sqrt();
     let sign = if experiment.set_points.iter().any(|s| s.omega < 0.0) { -1.0 } else { 1.0 };
     let mut chosen = Vec::new();
-    for mounting in 0..experiment.mountings.len() {
+    for mounting in experiment.mountings_on_arm() {
         for &m in levels {
             if m == 0.0 {
                 chosen.extend([0.0, std::f64::consts::PI].map(|angle| SetPoint::at_rest(mounting, angle)));

@@ -1,16 +1,18 @@
 //! The report of a plan.
 
-use centrical::plan::{Criterion, Goal, Plan, PlanError, Prediction, Rationale, Reached, Reason, Robustness, Task};
+use centrical::plan::{
+    Criterion, Goal, Plan, PlanError, Prediction, Rationale, Reached, Reason, Robustness, Task, Visit,
+};
 use centrical::{Group, OnProgress, SetPoint};
 
 use super::frontier::frontier_rows;
 use super::request::PlanRequest;
 use crate::document::{
-    CriterionName, GoalReport, PLAN_SCHEMA, PlanReport, PlannedMounting, PlannedPlateau, PredictionReport, Program,
-    ReasonReport,
+    ChosenRest, ChosenRests, CriterionName, GoalReport, PLAN_SCHEMA, PlanReport, PlannedMounting, PlannedPlateau,
+    PredictionReport, Program, ReasonReport,
 };
 use crate::error::Error;
-use crate::experiment::Planning;
+use crate::experiment::{Planning, RestSource};
 
 /// The report of a plan.
 ///
@@ -60,6 +62,7 @@ pub(super) fn report(
         time: schedule.time,
         time_by_use: [measuring, visits - measuring, schedule.time - visits],
         mountings: mountings(task, plan, &rationale),
+        rests: rests(planning, plan, &rationale),
         goals: goals(task, &prediction),
         prediction: PredictionReport::of(&prediction, planning.range, request.coverage)
             .map_err(|source| failed(PlanError::from(source)))?,
@@ -71,8 +74,8 @@ fn mountings(task: &Task, plan: &Plan, rationale: &Rationale) -> Vec<PlannedMoun
     let experiment = task.candidates.experiment();
     let visits = &plan.schedule.visits;
     let mut mountings = Vec::new();
-    for (m, of_mounting) in rationale.mountings.iter().enumerate() {
-        let Some(of_mounting) = of_mounting else { continue };
+    let on_arm = experiment.mountings_on_arm().zip(&rationale.set_ups);
+    for (m, of_mounting) in on_arm.filter_map(|(m, reason)| Some((m, reason.as_ref()?))) {
         let there = |n: &usize| experiment.set_points[visits[*n].candidate].mounting == m;
         let plateau = |n: usize| {
             let SetPoint { omega, angle, .. } = experiment.set_points[visits[n].candidate];
@@ -91,6 +94,23 @@ fn mountings(task: &Task, plan: &Plan, rationale: &Rationale) -> Vec<PlannedMoun
         });
     }
     mountings
+}
+
+/// The rests beside the arm, which are the last candidates.
+fn rests(planning: &Planning, plan: &Plan, rationale: &Rationale) -> Option<ChosenRests> {
+    let table = planning.rests.as_ref()?;
+    let RestSource::Plan(planned) = &table.source else { return None };
+    let first = planning.task.candidates.len() - table.count();
+    let reasons = rationale.visits.iter().zip(&plan.schedule.visits);
+    let rest = |(why, visit): (&Reason, &Visit)| {
+        let up = planned.up_b[visit.candidate.checked_sub(first)?];
+        Some(ChosenRest { up: up.into(), duration: visit.duration, reason: reason(&planning.task, why) })
+    };
+    Some(ChosenRests {
+        reason: reason(&planning.task, rationale.set_ups.last()?.as_ref()?),
+        attitude_uncertainty: table.attitudes.as_ref().map(|known| known.uncertainty),
+        rests: reasons.filter_map(rest).collect(),
+    })
 }
 
 fn reason(task: &Task, reason: &Reason) -> ReasonReport {

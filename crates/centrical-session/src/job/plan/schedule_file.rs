@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::document::{PlanReport, PlannedMounting, PlannedPlateau};
+use crate::document::{ChosenRest, ChosenRests, PlanReport, PlannedMounting, PlannedPlateau};
 use crate::error::Error;
 use crate::quantity::Dimension::{self, Angle, Speed, Time};
 use crate::settings::{editable, read_settings};
@@ -34,9 +34,8 @@ impl PlanReport {
         let mut text = document.to_string();
         text.truncate(text.trim_end().len());
         text.push('\n');
-        for mounting in &self.mountings {
-            text.push_str(&mounting.text());
-        }
+        self.mountings.iter().for_each(|mounting| text.push_str(&mounting.text()));
+        self.rests.iter().for_each(|rests| text.push_str(&rests.text()));
         Ok(text)
     }
 }
@@ -52,6 +51,20 @@ impl PlannedMounting {
         let plateaus: String = self.plateaus.iter().map(plateau).collect();
         let (position, radius) = (&self.position, self.radius);
         format!("\n[[mounting]]\nposition = {position:?}\narm = [{radius:?}, 0, 0]\nplateaus = [\n{plateaus}]\n")
+    }
+}
+
+impl ChosenRests {
+    fn text(&self) -> String {
+        let list = |of: fn(&ChosenRest) -> String| {
+            let lines: String = self.rests.iter().map(|rest| format!("  {},\n", of(rest))).collect();
+            format!("[\n{lines}]\n")
+        };
+        let attitudes = list(|rest| format!("{:?}", rest.up));
+        let durations = list(|rest| text(rest.duration, Time, "s"));
+        let known = |u| format!("attitude_uncertainty = {}\n", text(u, Angle, "deg"));
+        let known = self.attitude_uncertainty.map_or(String::new(), known);
+        format!("\n[[tumble]]\n{known}attitudes = {attitudes}durations = {durations}")
     }
 }
 

@@ -95,10 +95,11 @@ impl<'a> Model<'a> {
     fn steepest(&self) -> (Option<Conversion>, Option<Conversion>) {
         let (mut up, mut down): (Option<Conversion>, Option<Conversion>) = (None, None);
         for group in &self.groups {
-            let all: f64 = self.polytope.atoms.of(self.candidate(group.start)).map(|x| self.w[x]).sum();
+            let candidate = self.candidate(group.start);
+            let all: f64 = self.polytope.atoms.of(candidate).map(|x| self.w[x]).sum();
             let can_leave = |i: usize| self.w[self.active[i]] - self.polytope.low[self.active[i]] > NOTHING;
             let can_enter = |i: usize| self.polytope.high[self.active[i]] - self.w[self.active[i]] > NOTHING;
-            let idle = self.polytope.repeats - all > NOTHING;
+            let idle = self.polytope.most[candidate] - all > NOTHING;
             let ends = || group.clone().map(Some).chain([None]);
             for from in ends().filter(|from| from.map_or(idle, can_leave)) {
                 for to in ends().filter(|to| *to != from && to.is_none_or(can_enter)) {
@@ -158,7 +159,7 @@ impl<'a> Model<'a> {
         }
         for (c, rate) in idle.into_iter().filter(|(_, rate)| *rate > 0.0) {
             let all: f64 = self.polytope.atoms.of(c).map(|x| self.w[x]).sum();
-            limit = limit.min((self.polytope.repeats - all) / rate);
+            limit = limit.min((self.polytope.most[c] - all) / rate);
         }
         let mut curvature = 0.0;
         for &(i, a) in &direction {
@@ -197,7 +198,7 @@ impl Worth<'_> {
 
     /// Visits of a candidate that are not used.
     fn idle(&self, candidate: usize) -> f64 {
-        self.polytope.repeats - self.polytope.atoms.of(candidate).map(|y| self.w[y]).sum::<f64>()
+        self.polytope.most[candidate] - self.polytope.atoms.of(candidate).map(|y| self.w[y]).sum::<f64>()
     }
 
     /// By how much the criterion would fall if the atom went where its worth and its bounds draw it.

@@ -75,7 +75,7 @@ impl<'a> Objective<'a> {
             support += part * at.smooth.support;
             of_priors += part * at.scenario.prior_part(&at.factor, &at.smooth.columns);
         }
-        let (most, lambda) = self.polytope.most(&sensitivity);
+        let (most, lambda) = self.polytope.greatest(&sensitivity);
         Point { scenarios, value, sensitivity, lambda, bound: support - (of_priors + most).ln() }
     }
 }

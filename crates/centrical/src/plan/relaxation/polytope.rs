@@ -17,8 +17,8 @@ pub(in crate::plan) struct Polytope {
     pub high: Vec<f64>,
     /// The atoms.
     pub atoms: Atoms,
-    /// Most visits of a candidate.
-    pub repeats: f64,
+    /// Most visits of each candidate.
+    pub most: Vec<f64>,
 }
 
 impl Polytope {
@@ -35,11 +35,11 @@ impl Polytope {
     /// Whether there is a design at all.
     pub fn is_feasible(&self) -> bool {
         self.spent(&self.low) <= self.time * (1.0 + 1e-12)
-            && (0..self.atoms.candidates).all(|c| self.low[self.atoms.of(c)].iter().sum::<f64>() <= self.repeats)
+            && (0..self.atoms.candidates).all(|c| self.low[self.atoms.of(c)].iter().sum::<f64>() <= self.most[c])
     }
 
     /// An upper bound of `sum gain w` over the polytope, tight but for rounding, and its multiplier.
-    pub fn most(&self, gain: &[f64]) -> (f64, f64) {
+    pub fn greatest(&self, gain: &[f64]) -> (f64, f64) {
         let steepest = gain.iter().zip(&self.price).map(|(g, t)| g / t.max(1e-9)).fold(0.0, f64::max);
         let (mut below, mut above) = (0.0, steepest);
         let mut best = self.lagrangian(gain, 0.0).0.min(self.lagrangian(gain, steepest).0);
@@ -60,7 +60,7 @@ impl Polytope {
         let (mut value, mut spent) = (lambda * self.time, 0.0);
         let mut best: Vec<(f64, usize)> = Vec::with_capacity(self.atoms.durations);
         for c in 0..self.atoms.candidates {
-            let mut left = self.repeats;
+            let mut left = self.most[c];
             best.clear();
             for x in self.atoms.of(c) {
                 let worth = gain[x] - lambda * self.price[x];
@@ -88,8 +88,8 @@ impl Polytope {
         for c in 0..self.atoms.candidates {
             let atoms = self.atoms.of(c);
             let (sum, low): (f64, f64) = (w[atoms.clone()].iter().sum(), self.low[atoms.clone()].iter().sum());
-            if sum > self.repeats {
-                let part = ((self.repeats - low) / (sum - low)).max(0.0);
+            if sum > self.most[c] {
+                let part = ((self.most[c] - low) / (sum - low)).max(0.0);
                 atoms.for_each(|x| w[x] = self.low[x] + part * (w[x] - self.low[x]));
             }
         }
@@ -103,7 +103,7 @@ impl Polytope {
 
     /// Every atom that may be visited for the same part of the time.
     pub fn spread(&self) -> Vec<f64> {
-        let room = |x: usize| (self.high[x] - self.low[x]).min(self.repeats);
+        let room = |x: usize| (self.high[x] - self.low[x]).min(self.most[self.atoms.at(x).candidate]);
         let all: f64 = (0..self.price.len()).map(|x| room(x) * self.price[x]).sum();
         let part = ((self.time - self.spent(&self.low)) / all).min(1.0);
         (0..self.price.len()).map(|x| self.low[x] + part * room(x)).collect()

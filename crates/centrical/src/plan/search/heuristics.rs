@@ -1,4 +1,4 @@
-//! Schedules sought on the way: on the mountings that a node's continuous design uses, on all, and on sets that differ from
+//! Schedules sought on the way: on the set-ups that a node's continuous design uses, on all, and on sets that differ from
 //! those of the incumbent by one.
 
 use rayon::prelude::*;
@@ -30,7 +30,7 @@ pub(super) struct Heuristics<'a> {
     pub time: f64,
     pub effort: Effort,
     pub incumbent: Incumbent,
-    /// Sets of mountings for which a schedule has been sought.
+    /// Sets of set-ups for which a schedule has been sought.
     tried: Vec<Vec<bool>>,
 }
 
@@ -39,13 +39,13 @@ impl<'a> Heuristics<'a> {
         Self { problem, time, effort, incumbent: Incumbent::new(wanted), tried: Vec::new() }
     }
 
-    /// Seeks a schedule on a set of mountings alone, from the continuous design of another time.
+    /// Seeks a schedule on a set of set-ups alone, from the continuous design of another time.
     pub fn seek_on(&mut self, set: Vec<bool>, start: &[f64]) {
         let restricted = self.restricted(&set, start);
         self.round(set, restricted, true);
     }
 
-    /// Seeks a schedule on the mountings that the node's continuous design uses.
+    /// Seeks a schedule on the set-ups that the node's continuous design uses.
     pub fn seek(&mut self, node: &Node, is_thorough: bool) {
         if let Some(set) = self.affordable(node).filter(|set| !self.tried.contains(set)) {
             let restricted = self.restricted(&set, &node.relaxed.visits);
@@ -53,9 +53,9 @@ impl<'a> Heuristics<'a> {
         }
     }
 
-    /// Seeks a schedule on all mountings, if their set-ups leave time to measure.
+    /// Seeks a schedule on all set-ups, if they leave time to measure.
     pub fn seek_on_all(&mut self, root: &Node) {
-        let all = vec![true; self.problem.mountings()];
+        let all = vec![true; self.problem.set_ups()];
         let fits = self.problem.candidates.set_up_time(&all) < self.time;
         if fits && self.effort.nodes > 1 && !self.tried.contains(&all) {
             let relaxed = self.restricted(&all, &root.relaxed.visits);
@@ -63,14 +63,14 @@ impl<'a> Heuristics<'a> {
         }
     }
 
-    /// One mounting left out, or taken in besides, as long as that is better.
-    pub fn exchange_mountings(&mut self) {
+    /// One set-up left out, or taken in besides, as long as that is better.
+    pub fn exchange_set_ups(&mut self) {
         if self.effort.nodes <= 1 {
             return;
         }
         loop {
             let Some(best) = self.incumbent.best.clone() else { return };
-            let used = best.mountings(self.problem.candidates);
+            let used = best.set_ups(self.problem.candidates);
             let visits: Vec<f64> = best.visits.iter().map(|n| f64::from(*n)).collect();
             let other = |m: usize| {
                 let mut set = used.clone();
@@ -94,18 +94,18 @@ impl<'a> Heuristics<'a> {
         }
     }
 
-    /// The incumbent with visits exchanged, on its mountings; if there is none, the schedule of the cheapest start.
+    /// The incumbent with visits exchanged, on its set-ups; if there is none, the schedule of the cheapest start.
     pub fn polished(&self) -> IntegerSchedule {
         let (set, best) = match &self.incumbent.best {
-            Some(best) => (best.mountings(self.problem.candidates), Some(best.clone())),
-            None => (vec![true; self.problem.mountings()], None),
+            Some(best) => (best.set_ups(self.problem.candidates), Some(best.clone())),
+            None => (vec![true; self.problem.set_ups()], None),
         };
         let exchange = self.problem.exchange(self.time, &set, self.effort.trials);
         let start = || exchange.fill(exchange.schedule(vec![0; self.problem.candidates.atoms().count()]));
         exchange.improve(best.unwrap_or_else(start))
     }
 
-    /// The continuous design on a set of mountings that are all set up.
+    /// The continuous design on a set of set-ups that are all made.
     fn restricted(&self, set: &[bool], start: &[f64]) -> Option<Relaxed> {
         let mut node = Node::on(set);
         node.relax(self.problem, self.time, self.incumbent.precision(None), Some(start)).then_some(node.relaxed)
@@ -177,10 +177,10 @@ impl<'a> Heuristics<'a> {
         polytope.low.iter().map(|low| *low as u32).collect()
     }
 
-    /// The mountings that the continuous design uses, the least used left out until their set-ups leave time to measure.
+    /// The set-ups that the continuous design uses, the least used left out until they leave time to measure.
     fn affordable(&self, node: &Node) -> Option<Vec<bool>> {
         let times = node.times(self.problem);
-        let decisions = times.iter().zip(&node.mountings);
+        let decisions = times.iter().zip(&node.set_ups);
         let mut set: Vec<bool> = decisions.map(|(time, decided)| decided.unwrap_or(*time > 2e-3 * self.time)).collect();
         loop {
             let set_up = self.problem.candidates.set_up_time(&set);

@@ -3,11 +3,11 @@
 use super::problem::Problem;
 use crate::plan::relaxation::{Polytope, Precision, Relaxed, relax};
 
-/// What is decided about the mountings.
+/// What is decided about the set-ups.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
-    /// By mounting: set up, closed, or not decided.
-    pub mountings: Vec<Option<bool>>,
+    /// By set-up: made, closed, or not decided.
+    pub set_ups: Vec<Option<bool>>,
     /// Least set-up time of its schedules that are better than the incumbent [s].
     pub set_up: f64,
     pub relaxed: Relaxed,
@@ -24,30 +24,30 @@ pub(super) struct OpenNodes {
 
 impl Node {
     /// A node with these decisions, without a continuous design yet.
-    pub fn new(mountings: Vec<Option<bool>>) -> Self {
+    pub fn new(set_ups: Vec<Option<bool>>) -> Self {
         let relaxed = Relaxed { visits: Vec::new(), value: f64::INFINITY, bound: f64::NEG_INFINITY, models: 0 };
-        Self { mountings, set_up: 0.0, relaxed }
+        Self { set_ups, set_up: 0.0, relaxed }
     }
 
-    /// The node of a set of mountings alone, all of them set up.
+    /// The node of a set of set-ups alone, all of them made.
     pub fn on(set: &[bool]) -> Self {
         Self::new(set.iter().copied().map(Some).collect())
     }
 
-    /// Which mountings are set up.
+    /// Which set-ups are made.
     pub fn paid(&self) -> Vec<bool> {
-        self.mountings.iter().map(|m| *m == Some(true)).collect()
+        self.set_ups.iter().map(|m| *m == Some(true)).collect()
     }
 
-    /// Which mountings are not closed.
+    /// Which set-ups are not closed.
     pub fn open(&self) -> Vec<bool> {
-        self.mountings.iter().map(|m| *m != Some(false)).collect()
+        self.set_ups.iter().map(|m| *m != Some(false)).collect()
     }
 
-    /// The node with another mounting decided.
-    pub fn with(&self, mounting: usize, set_up: bool) -> Self {
+    /// The node with another set-up decided.
+    pub fn with(&self, set_up: usize, is_made: bool) -> Self {
         let mut child = self.clone();
-        child.mountings[mounting] = Some(set_up);
+        child.set_ups[set_up] = Some(is_made);
         child
     }
 
@@ -70,19 +70,19 @@ impl Node {
         self.relax(problem, time, precision, Some(&start))
     }
 
-    /// Time of the continuous design in each mounting [s].
+    /// Time of the continuous design in each set-up [s].
     pub fn times(&self, problem: &Problem) -> Vec<f64> {
-        let mut times = vec![0.0; problem.mountings()];
+        let mut times = vec![0.0; problem.set_ups()];
         for (x, w) in self.relaxed.visits.iter().enumerate() {
-            times[problem.candidates.mounting_of(x)] += w * problem.candidates.price(x);
+            times[problem.candidates.set_up_of_atom(x)] += w * problem.candidates.price(x);
         }
         times
     }
 
-    /// The undecided mounting that the continuous design uses most.
+    /// The undecided set-up that the continuous design uses most.
     pub fn undecided(&self, problem: &Problem, time: f64) -> Option<usize> {
         let used = self.times(problem);
-        let undecided = (0..used.len()).filter(|&m| self.mountings[m].is_none() && used[m] > 1e-6 * time);
+        let undecided = (0..used.len()).filter(|&m| self.set_ups[m].is_none() && used[m] > 1e-6 * time);
         undecided.max_by(|&a, &b| used[a].total_cmp(&used[b]).then(b.cmp(&a)))
     }
 
@@ -94,48 +94,51 @@ impl Node {
         let times = self.times(problem);
         let proportional: f64 = times.iter().zip(&factors).map(|(time, factor)| time * (factor - 1.0)).sum();
         let is_least = self.set_up > time - left + proportional;
-        let factor = |x: usize| if is_least { 1.0 } else { factors[candidates.mounting_of(x)] };
-        let repeats = candidates.repeats as f64;
-        let high = |x: usize| if self.mountings[candidates.mounting_of(x)] == Some(false) { 0.0 } else { repeats };
+        let factor = |x: usize| if is_least { 1.0 } else { factors[candidates.set_up_of_atom(x)] };
         let atoms = candidates.atoms();
+        let most: Vec<f64> = (0..candidates.len()).map(|c| candidates.most_visits(c) as f64).collect();
+        let high = |x: usize| {
+            if self.set_ups[candidates.set_up_of_atom(x)] == Some(false) { 0.0 } else { most[atoms.at(x).candidate] }
+        };
         Polytope {
             price: (0..atoms.count()).map(|x| candidates.price(x) * factor(x)).collect(),
             time: if is_least { time - self.set_up } else { left },
             low: vec![0.0; atoms.count()],
             high: (0..atoms.count()).map(high).collect(),
             atoms,
-            repeats,
+            most,
         }
     }
 
-    /// Time left by the set-ups that are decided [s], and the factor by which visits of each mounting cost more where its
-    /// set-up is paid in proportion to the time in it.
+    /// Time left by the set-ups that are decided [s], and the factor by which visits in each set-up cost more where it is
+    /// paid in proportion to the time in it.
     fn in_proportion(&self, problem: &Problem, time: f64) -> (f64, Vec<f64>) {
         let candidates = problem.candidates;
         let experiment = candidates.experiment();
         let paid = self.paid();
         let time = time - candidates.set_up_time(&paid);
-        // Most time that can be spent in a mounting, and in a position.
+        // Most time that can be spent in a set-up, and in a position.
         let longest = |c: usize| candidates.atoms().of(c).map(|x| candidates.price(x)).fold(0.0, f64::max);
-        let mut in_mounting = vec![0.0; problem.mountings()];
-        for (c, set_point) in experiment.set_points.iter().enumerate() {
-            in_mounting[set_point.mounting] += longest(c) * candidates.repeats as f64;
+        let mut in_set_up = vec![0.0; problem.set_ups()];
+        for c in 0..candidates.len() {
+            in_set_up[candidates.set_up_of(c)] += longest(c) * candidates.most_visits(c) as f64;
         }
+        let position = |set_up: usize| candidates.mounting_of(set_up).map(|mounting| mounting.position);
         let mut in_position = vec![0.0; experiment.positions.len()];
-        for (mounting, most) in experiment.mountings.iter().zip(&in_mounting) {
-            in_position[mounting.position] += most;
+        for (set_up, most) in in_set_up.iter().enumerate() {
+            position(set_up).into_iter().for_each(|k| in_position[k] += most);
         }
         let costs = &candidates.costs;
         let surcharge = |m: usize| {
             if paid[m] {
                 return 0.0;
             }
-            let k = experiment.mountings[m].position;
-            let has_paid = experiment.mountings.iter().zip(&paid).any(|(other, paid)| *paid && other.position == k);
+            let Some(k) = position(m) else { return costs.table / in_set_up[m].min(time) };
+            let has_paid = (0..paid.len()).any(|other| paid[other] && position(other) == Some(k));
             let of_position = if has_paid { 0.0 } else { (costs.position - costs.seat) / in_position[k].min(time) };
-            (costs.seat + costs.run_up) / in_mounting[m].min(time) + of_position
+            (costs.seat + costs.run_up) / in_set_up[m].min(time) + of_position
         };
-        (time, (0..problem.mountings()).map(|m| 1.0 + surcharge(m).max(0.0)).collect())
+        (time, (0..problem.set_ups()).map(|m| 1.0 + surcharge(m).max(0.0)).collect())
     }
 }
 

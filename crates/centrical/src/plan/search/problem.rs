@@ -54,16 +54,16 @@ impl<'a> Problem<'a> {
         Ok(Self { candidates, scenarios, watch: Watch::new(progress) })
     }
 
-    /// Number of mountings.
-    pub fn mountings(&self) -> usize {
-        self.candidates.experiment().mountings.len()
+    /// Number of set-ups.
+    pub fn set_ups(&self) -> usize {
+        self.candidates.set_ups()
     }
 
-    /// Time of the cheapest mounting with its shortest visit [s].
+    /// Time of the cheapest set-up with its shortest visit [s].
     pub fn least_time(&self) -> f64 {
         let of_atom = |x: usize| {
-            let mut used = vec![false; self.mountings()];
-            used[self.candidates.mounting_of(x)] = true;
+            let mut used = vec![false; self.set_ups()];
+            used[self.candidates.set_up_of_atom(x)] = true;
             self.candidates.set_up_time(&used) + self.candidates.price(x)
         };
         (0..self.candidates.atoms().count()).map(of_atom).fold(f64::INFINITY, f64::min)
@@ -74,7 +74,7 @@ impl<'a> Problem<'a> {
         if time.is_finite() && time >= least { Ok(()) } else { Err(PlanError::TooShort { found: time, least }) }
     }
 
-    /// The exchange of visits within a time, on the mountings that are `open`.
+    /// The exchange of visits within a time, on the set-ups that are `open`.
     pub fn exchange<'b>(&'b self, time: f64, open: &'b [bool], trials: usize) -> Exchange<'b> {
         Exchange { candidates: self.candidates, scenarios: &self.scenarios, time, open, trials, watch: &self.watch }
     }
@@ -86,26 +86,26 @@ impl<'a> Problem<'a> {
 
     /// Every candidate as often and as long as possible.
     pub fn everything(&self) -> IntegerSchedule {
-        self.everything_on(&vec![true; self.mountings()])
+        self.everything_on(&vec![true; self.set_ups()])
     }
 
-    /// Every candidate of a set of mountings as often and as long as possible.
+    /// Every candidate of some set-ups as often and as long as possible.
     pub fn everything_on(&self, set: &[bool]) -> IntegerSchedule {
         self.schedule(self.most_visits(set))
     }
 
-    /// A schedule with everything on one mounting more.
-    pub fn with_everything_on(&self, schedule: &IntegerSchedule, mounting: usize) -> IntegerSchedule {
-        let mut set = vec![false; self.mountings()];
-        set[mounting] = true;
+    /// A schedule with everything on one set-up more.
+    pub fn with_everything_on(&self, schedule: &IntegerSchedule, set_up: usize) -> IntegerSchedule {
+        let mut set = vec![false; self.set_ups()];
+        set[set_up] = true;
         self.exchange(f64::INFINITY, &set, 0).with(schedule, &self.most_visits(&set))
     }
 
     fn most_visits(&self, set: &[bool]) -> Vec<u32> {
         let atoms = self.candidates.atoms();
-        let repeats = u32::try_from(self.candidates.repeats).unwrap_or(u32::MAX);
-        let is_longest = |x: usize| atoms.at(x).duration + 1 == atoms.durations;
-        let visits = |x: usize| if is_longest(x) && set[self.candidates.mounting_of(x)] { repeats } else { 0 };
+        let most = |c: usize| u32::try_from(self.candidates.most_visits(c)).unwrap_or(u32::MAX);
+        let is_meant = |x: usize| atoms.at(x).duration + 1 == atoms.durations && set[self.candidates.set_up_of_atom(x)];
+        let visits = |x: usize| if is_meant(x) { most(atoms.at(x).candidate) } else { 0 };
         (0..atoms.count()).map(visits).collect()
     }
 }

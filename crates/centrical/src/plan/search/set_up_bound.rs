@@ -1,8 +1,8 @@
-//! Which mountings no schedule can do without, hence the least cost of the set-ups.
+//! Which set-ups no schedule can do without, hence their least cost.
 //!
-//! More information never raises a criterion. A set of mountings is useless for a value if it does not reach that even with
-//! every candidate as often and as long as possible; so are its subsets, and a schedule below the value uses a mounting outside
-//! of each such set. The cheapest mountings that do so are a hitting set. The sets to be hit are found as they are needed: the
+//! More information never raises a criterion. A set of set-ups is useless for a value if it does not reach that even with
+//! every candidate as often and as long as possible; so are its subsets, and a schedule below the value uses a set-up outside
+//! of each such set. The cheapest set-ups that do so are a hitting set. The sets to be hit are found as they are needed: the
 //! cheapest hitting set so far, if it is useless, is enlarged as long as it remains so, and is the next one (Moreno-Centeno and
 //! Karp 2013, "The implicit hitting set approach").
 
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use super::problem::Problem;
 
-/// The least cost of set-ups, with the sets of mountings that have been valued for it.
+/// The least cost of set-ups, with the sets of them that have been valued for it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct SetUpBound {
     /// Largest useless sets.
@@ -20,7 +20,7 @@ pub(super) struct SetUpBound {
 }
 
 impl SetUpBound {
-    /// Least set-up time [s] of the mountings of a schedule whose criterion has a logarithm below `value`: all of `set_up` are
+    /// Least set-up time [s] of a schedule whose criterion has a logarithm below `value`: all of `set_up` are
     /// among them and only `open` ones. `None` if there is no such schedule. `value` may not rise from call to call.
     pub fn least(&mut self, problem: &Problem, set_up: &[bool], open: &[bool], value: f64) -> Option<f64> {
         loop {
@@ -39,7 +39,7 @@ impl SetUpBound {
     }
 }
 
-/// A useless set with all mountings that leave it so.
+/// A useless set with all set-ups that leave it so.
 fn enlarged(problem: &Problem, mut set: Vec<bool>, value: f64) -> Vec<bool> {
     let mut everything = problem.everything_on(&set);
     for m in 0..set.len() {
@@ -53,7 +53,7 @@ fn enlarged(problem: &Problem, mut set: Vec<bool>, value: f64) -> Vec<bool> {
     set
 }
 
-/// The search for the cheapest set with a mounting outside of each useless one.
+/// The search for the cheapest set with a set-up outside of each useless one.
 struct Cheapest<'a> {
     problem: &'a Problem<'a>,
     open: &'a [bool],

@@ -16,7 +16,7 @@ pub(super) struct Shortest<'a> {
     problem: &'a Problem<'a>,
     resolution: f64,
     effort: Effort,
-    /// Which sets of mountings can meet the goals: the same in any time.
+    /// Which sets of set-ups can meet the goals: the same in any time.
     set_up_bound: SetUpBound,
     /// No schedule is shorter than this [s].
     below: f64,
@@ -42,8 +42,8 @@ impl<'a> Shortest<'a> {
             return Err(out_of_reach);
         }
         let mut set_up_bound = SetUpBound::default();
-        let all = vec![true; problem.mountings()];
-        let none = vec![false; problem.mountings()];
+        let all = vec![true; problem.set_ups()];
+        let none = vec![false; problem.set_ups()];
         // Everything meets the goals, so some set does; one that only just does so is left to `everything`.
         let set_up = set_up_bound.least(problem, &none, &all, f64::MIN_POSITIVE).unwrap_or(0.0);
         let below = problem.least_time().max(set_up);
@@ -90,7 +90,7 @@ impl<'a> Shortest<'a> {
         }
     }
 
-    /// Effort of the many searches on the way: mountings exchanged, no branches.
+    /// Effort of the many searches on the way: set-ups exchanged, no branches.
     fn quick(&self) -> Effort {
         Effort { nodes: self.effort.nodes.min(Effort::FAIR.nodes), ..Effort::FAIR }
     }
@@ -111,9 +111,9 @@ impl<'a> Shortest<'a> {
         Tree::new(self.problem, time, effort)
     }
 
-    /// The shortest plan on the mountings of one that meets the goals.
+    /// The shortest plan on the set-ups of one that meets the goals.
     fn shortened(&self, mut plan: Plan) -> Plan {
-        let used = self.problem.candidates.mountings_used(plan.schedule.visits.iter().map(|visit| visit.candidate));
+        let used = self.problem.candidates.set_ups_used(plan.schedule.visits.iter().map(|visit| visit.candidate));
         let mut low = self.below.max(self.problem.candidates.set_up_time(&used));
         while plan.schedule.time / low > 1.0 + 0.5 * self.resolution && !self.problem.watch.is_stopped() {
             let middle = (low * plan.schedule.time).sqrt();

@@ -1,11 +1,12 @@
-//! Branch and bound. A node has decided on some mountings: their set-ups are paid in full, or they are closed. Its continuous
-//! design bounds all schedules below it. The most used mounting is decided first, the node of the lowest bound divided first, as
+//! Branch and bound. A node has decided on some set-ups, each that of a mounting, or of the table for all rests beside the arm: they
+//! are paid in full, or closed. Its continuous
+//! design bounds all schedules below it. The most used set-up is decided first, the node of the lowest bound divided first, as
 //! far as the effort goes. The lowest bound of the ends says how far the schedule can be from the best. Visits are not branched
 //! on, so where the time hardly suffices for the set-ups, whole visits leave some percent open.
 //!
-//! **The bound is valid.** Let a schedule belong to a node: it uses the mountings that are set up and perhaps some that are not
+//! **The bound is valid.** Let a schedule belong to a node: it uses the set-ups that are paid and perhaps some that are not
 //! decided, none that is closed. (1) Its visits are a point of the node's polytope: the repeats are the schedule's own; and
-//! the charge of an undecided mounting, `f x / U` for the time `x` in it, is at most its set-up `f`, since no schedule spends
+//! the charge of an undecided set-up, `f x / U` for the time `x` in it, is at most its cost `f`, since no schedule spends
 //! more than `U` in it: every candidate as often and as long as possible, or all the available time. The difference between
 //! a position and a seat is paid so once for the position, by the time in all its undecided mountings together. So the
 //! schedule pays at least what the polytope asks for. Or the polytope asks for the least cost of the set-ups of a schedule of
@@ -56,7 +57,7 @@ impl<'a> Tree<'a> {
         if !self.is_over() {
             self.heuristics.seek_on_all(&root);
         }
-        self.heuristics.exchange_mountings();
+        self.heuristics.exchange_set_ups();
         if let Some(mut root) = self.with_least_set_up(root) {
             self.relax_again(&mut root);
             self.open.nodes.push(root);
@@ -72,7 +73,7 @@ impl<'a> Tree<'a> {
         self.into_plan()
     }
 
-    /// The best schedule on a set of mountings alone, sought from the continuous design of another time.
+    /// The best schedule on a set of set-ups alone, sought from the continuous design of another time.
     pub fn run_on(mut self, set: Vec<bool>, start: &[f64]) -> Plan {
         self.heuristics.seek_on(set, start);
         self.into_plan()
@@ -80,7 +81,7 @@ impl<'a> Tree<'a> {
 
     fn root(&self) -> Node {
         let Heuristics { problem, time, incumbent, .. } = &self.heuristics;
-        let mut root = Node::new(vec![None; problem.mountings()]);
+        let mut root = Node::new(vec![None; problem.set_ups()]);
         root.relax(problem, *time, incumbent.precision(None), None);
         root
     }
@@ -108,7 +109,7 @@ impl<'a> Tree<'a> {
     /// Gives a node a new continuous design from its present one; whether any design fits into it.
     fn relax_again(&self, node: &mut Node) -> bool {
         let Heuristics { problem, time, incumbent, .. } = &self.heuristics;
-        let loose = node.mountings.contains(&None).then_some(LOOSE);
+        let loose = node.set_ups.contains(&None).then_some(LOOSE);
         node.relax_again(problem, *time, incumbent.precision(loose))
     }
 
@@ -126,11 +127,11 @@ impl<'a> Tree<'a> {
         Some(node)
     }
 
-    /// Two nodes that decide on a mounting more, or none at the end of a branch.
+    /// Two nodes that decide on a set-up more, or none at the end of a branch.
     fn children(&mut self, mut node: Node) -> Vec<Node> {
         let is_out_of_nodes = self.open.count >= self.heuristics.effort.nodes;
         let undecided = |tree: &Self, node: &Node| node.undecided(tree.heuristics.problem, tree.heuristics.time);
-        let is_loose = node.mountings.contains(&None) && node.relaxed.bound < self.open.bound;
+        let is_loose = node.set_ups.contains(&None) && node.relaxed.bound < self.open.bound;
         if is_loose && (is_out_of_nodes || undecided(self, &node).is_none()) {
             let Heuristics { problem, time, incumbent, .. } = &self.heuristics;
             node.relax_again(problem, *time, incumbent.precision(None));
@@ -148,7 +149,7 @@ impl<'a> Tree<'a> {
         let Heuristics { problem, time, .. } = self.heuristics;
         let best = self.heuristics.polished();
         let start: Vec<f64> = best.visits.iter().map(|n| f64::from(*n)).collect();
-        let polytope = Node::on(&best.mountings(problem.candidates)).polytope(problem, time);
+        let polytope = Node::on(&best.set_ups(problem.candidates)).polytope(problem, time);
         let continuous = relax(&problem.watch, &problem.scenarios, &polytope, Some(&start), Precision::of(5e-4));
         let continuous = continuous.or_better(start, best.value);
         Plan::new(problem, &best, continuous, self.open.lowest(), self.open.count)
