@@ -16,6 +16,7 @@ mod plan;
 mod prediction;
 mod priors;
 mod rests;
+mod rests_line;
 mod rests_on;
 mod rivals;
 mod screen;

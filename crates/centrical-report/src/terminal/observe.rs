@@ -7,6 +7,7 @@ use centrical_session::{
 
 use super::prediction::prediction_text;
 use super::priors::priors as prior_table;
+use super::rests_line::{extent, rests_name};
 use super::screen::Screen;
 use crate::number::{counted, two_digits};
 
@@ -191,6 +192,12 @@ fn uncertainties(screen: &mut Screen, report: &ObservabilityReport) {
         let same = rest.iter().take_while(|p| p.group == first.group && p.unit == first.unit).count();
         let (line, others) = rest.split_at(same);
         let (factor, unit) = customary(&first.unit, first.group);
+        rest = others;
+        if first.group == Group::Attitude {
+            let all = extent(line.iter().map(|p| p.standard_uncertainty.map(|u| u * factor)));
+            screen.sentence(2, 11, &format!("{unit:\u{a0}<9}{} {all}", rests_name(line.len())));
+            continue;
+        }
         let shown: Vec<String> = line
             .iter()
             .map(|p| {
@@ -199,6 +206,5 @@ fn uncertainties(screen: &mut Screen, report: &ObservabilityReport) {
             })
             .collect();
         screen.sentence(2, 11, &format!("{unit:\u{a0}<9}{}", shown.join(", ")));
-        rest = others;
     }
 }

@@ -1,8 +1,9 @@
 //! What will be known, as text for the terminal.
 
-use centrical::STANDARD_GRAVITY;
-use centrical_session::{MICRO_G, PredictionReport, customary};
+use centrical::{Group, STANDARD_GRAVITY};
+use centrical_session::{MICRO_G, PredictedParameter, PredictionReport, customary};
 
+use super::rests_line::{extent, rests_name};
 use super::rests_on::rests_on_text;
 use super::screen::Screen;
 use super::symbols::legend;
@@ -27,7 +28,8 @@ fn parameters(screen: &mut Screen, prediction: &PredictionReport) {
     let [a, combined, k, expanded] = numbers;
     let names = [("", Align::Left), ("unit", Align::Left)];
     let mut table = Table::new(2, [names[0], names[1], a, combined, k, expanded, ("", Align::Words)]);
-    for p in &prediction.parameters {
+    let (attitudes, others): (Vec<_>, Vec<_>) = prediction.parameters.iter().partition(|p| p.group == Group::Attitude);
+    for p in others {
         let (factor, unit) = customary(&p.unit, p.group);
         let names: [Cell; 2] = [p.name.as_str().into(), unit.into()];
         let known = (p.type_a, p.combined, p.expanded);
@@ -39,6 +41,13 @@ fn parameters(screen: &mut Screen, prediction: &PredictionReport) {
             ["-".into(), "-".into(), Cell::default(), "-".into(), "not determined".into()]
         };
         table.row(names.into_iter().chain(cells));
+    }
+    if let Some(first) = attitudes.first() {
+        let (factor, unit) = customary(&first.unit, first.group);
+        let of = |u: fn(&PredictedParameter) -> Option<f64>| extent(attitudes.iter().map(|p| u(p).map(|u| u * factor)));
+        let [a, combined, expanded] = [of(|p| p.type_a), of(|p| p.combined), of(|p| p.expanded)];
+        let cells = [rests_name(attitudes.len()), unit.to_owned(), a, combined, String::new(), expanded, String::new()];
+        table.row(cells.map(Cell::from));
     }
     screen.table(table);
     screen.say(2, &format!("expanded = k x combined, for a probability of {:.2} %", 100.0 * prediction.coverage));

@@ -2,6 +2,7 @@
 
 use centrical::Group;
 
+use super::rests_line::rests_name;
 use super::table::{Align, Table};
 
 /// A row for each prior: its parameter, and the standard uncertainty after the data over that before. The known attitudes of rests stand
@@ -18,7 +19,7 @@ pub(super) fn priors<'p>(given: impl Iterator<Item = (&'p str, Group, f64)>) -> 
     }
     if !attitudes.is_empty() {
         let (low, high) = attitudes.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), r| (low.min(*r), high.max(*r)));
-        table.row([format!("theta of {} rests", attitudes.len() / 2).into(), format!("{low:.3} to {high:.3}").into()]);
+        table.row([rests_name(attitudes.len()).into(), format!("{low:.3} to {high:.3}").into()]);
     }
     table
 }

@@ -409,7 +409,7 @@ impl Form {
     /// Whether the unit is on the arm: it is not where rests alone are stated.
     pub fn has_arm(&self) -> bool {
         let has_rests = self.candidates.as_ref().is_some_and(|candidates| candidates.attitudes.is_some());
-        !(has_rests || !self.tumble.is_empty()) || !self.mounting.is_empty() || !self.position.is_empty()
+        !has_rests && self.tumble.is_empty() || !self.mounting.is_empty() || !self.position.is_empty()
     }
 
     /// The form with the common schedule in every mounting that has none of its own.

@@ -57,8 +57,8 @@ impl PlannedMounting {
 impl ChosenRests {
     fn text(&self) -> String {
         let list = |of: fn(&ChosenRest) -> String| {
-            let lines: String = self.rests.iter().map(|rest| format!("  {},\n", of(rest))).collect();
-            format!("[\n{lines}]\n")
+            let lines: Vec<String> = self.rests.iter().map(of).collect();
+            format!("[\n  {},\n]\n", lines.join(",\n  "))
         };
         let attitudes = list(|rest| format!("{:?}", rest.up));
         let durations = list(|rest| text(rest.duration, Time, "s"));

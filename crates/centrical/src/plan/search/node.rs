@@ -126,7 +126,9 @@ impl Node {
         let position = |set_up: usize| candidates.mounting_of(set_up).map(|mounting| mounting.position);
         let mut in_position = vec![0.0; experiment.positions.len()];
         for (set_up, most) in in_set_up.iter().enumerate() {
-            position(set_up).into_iter().for_each(|k| in_position[k] += most);
+            if let Some(k) = position(set_up) {
+                in_position[k] += most;
+            }
         }
         let costs = &candidates.costs;
         let surcharge = |m: usize| {
