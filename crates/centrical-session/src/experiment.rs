@@ -24,7 +24,7 @@ pub use self::plan::{ExpectedValues, Plan};
 pub use self::plateau_name::PlateauName;
 pub(crate) use self::plateaus::write_plateaus_parquet;
 pub use self::plateaus::{PlateauMean, PlateauTable, read_plateaus, write_plateaus};
-pub use self::rests::{KnownAttitudes, PlannedRests, RestSource, RestTable};
+pub use self::rests::{KnownAttitudes, PlannedRests, RecordedRests, RestSource, RestTable};
 pub(crate) use self::session::{EXPERIMENT_FILE, read_text};
 pub use self::session::{MountingFiles, Session};
 pub use self::speeds::{Measured, SpeedSource, Speeds};

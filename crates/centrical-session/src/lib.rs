@@ -73,8 +73,8 @@ pub use document::{
 pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
     ExpectedValues, KnownAttitudes, Measured, MountingFiles, OutputUnit, Plan, PlannedRests, Planning, PlateauMean,
-    PlateauName, PlateauTable, RestSource, RestTable, Session, SpeedSource, Speeds, StatedAttitudes, available_time,
-    read_plateaus, write_plateaus,
+    PlateauName, PlateauTable, RecordedRests, RestSource, RestTable, Session, SpeedSource, Speeds, StatedAttitudes,
+    available_time, read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn,

@@ -107,27 +107,13 @@ impl Reduced {
         plateaus.filter(|(_, set_point)| session.experiment.is_on_arm(set_point.mounting)).map(row).collect()
     }
 
-    /// With the rests of the session, which are averaged already, behind its plateaus.
-    pub(crate) fn with_rests(mut self, session: &Session) -> Self {
-        self.plateaus.extend(session.rests().map(ReducedPlateau::from));
+    /// With rests in attitudes of their own behind the plateaus on the arm.
+    pub(crate) fn with_rests(mut self, rests: Vec<ReducedPlateau>) -> Self {
+        self.plateaus.extend(rests);
         if !self.speeds.is_empty() {
             self.speeds.resize(self.plateaus.len(), None);
         }
         self
-    }
-
-    /// Rests in free attitudes as rows of a table, a mounting each.
-    pub(crate) fn rests(&self) -> Vec<TabledPlateau> {
-        let row = |(mounting, plateau): (usize, &ReducedPlateau)| TabledPlateau {
-            mounting,
-            speed: 0.0,
-            speed_uncertainty: None,
-            angle: 0.0,
-            mean: plateau.mean,
-            covariance: plateau.covariance,
-            samples: plateau.samples,
-        };
-        self.plateaus.iter().enumerate().map(row).collect()
     }
 
     /// The set points of the session, with measured speeds where it measures them. A plateau that spins without a measured
@@ -185,6 +171,20 @@ impl Reduced {
         let fitted = self.plateaus.iter().enumerate().filter(|(set_point, _)| !self.held_out.contains(set_point));
         fitted.map(observation).collect()
     }
+}
+
+/// Rests in attitudes of their own as rows of a table, a mounting each.
+pub(crate) fn rest_rows(rests: &[ReducedPlateau]) -> Vec<TabledPlateau> {
+    let row = |(mounting, plateau): (usize, &ReducedPlateau)| TabledPlateau {
+        mounting,
+        speed: 0.0,
+        speed_uncertainty: None,
+        angle: 0.0,
+        mean: plateau.mean,
+        covariance: plateau.covariance,
+        samples: plateau.samples,
+    };
+    rests.iter().enumerate().map(row).collect()
 }
 
 impl From<PlateauMean> for ReducedPlateau {

@@ -30,7 +30,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read(&arguments.session)?;
     let bar = progress::reading(&session, arguments.printing);
-    let reduced = reduce_without_inputs(&session, &progress::on(&bar))?;
+    let (session, reduced) = reduce_without_inputs(&session, &progress::on(&bar))?;
     bar.finish_and_clear();
     write_reduced(&session, &reduced, arguments.format.into(), &arguments.out)?;
     let samples: u64 = reduced.plateaus.iter().map(|plateau| plateau.samples).sum();

@@ -62,20 +62,22 @@ fn calibrated(
     hold_out: &[PlateauName],
     work: &Work,
 ) -> Result<centrical_session::CalibrationResult, centrical_session::Error> {
-    let (session, mut reduced): (Session, Reduced) = match origin {
+    let fitted = |session: &Session, mut reduced: Reduced| {
+        reduced.held_out = hold_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
+        calibrate_reduced(session, &reduced, method, &|bytes| work.advance(bytes))
+    };
+    match origin {
         Origin::Plateaus(columns) => {
             let session = session.with_plateaus(&columns)?;
-            let reduced = reduce_without_inputs(&session, &|bytes| work.advance(bytes))?;
-            (session, reduced)
+            let (session, reduced) = reduce_without_inputs(&session, &|bytes| work.advance(bytes))?;
+            fitted(&session, reduced)
         }
         Origin::Records(recorded) => {
             work.expect(recorded.len() as u64);
-            let reduced = reduce_recorded(&session, recorded, &|count| work.count(count))?;
-            (session, reduced)
+            let (session, reduced) = reduce_recorded(&session, recorded, &|count| work.count(count))?;
+            fitted(&session, reduced)
         }
-    };
-    reduced.held_out = hold_out.iter().map(|name| name.set_point(&session)).collect::<Result<_, _>>()?;
-    calibrate_reduced(&session, &reduced, method, &|bytes| work.advance(bytes))
+    }
 }
 
 fn recorded((t, f, telemetry, pulses): &OfMounting) -> PyResult<Recorded> {

@@ -15,7 +15,7 @@ pub fn reduce(py: Python, session: PathBuf, out: PathBuf, format: &str, shown: S
     progress::run(py, &shown, |work| {
         let session = Session::read(&session)?;
         work.expect(2 * session.record_bytes());
-        let reduced = reduce_without_inputs(&session, &|bytes| work.advance(bytes))?;
+        let (session, reduced) = reduce_without_inputs(&session, &|bytes| work.advance(bytes))?;
         write_reduced(&session, &reduced, format, &out)?;
         ReductionReport::of(&session, &reduced, &out).to_json()
     })

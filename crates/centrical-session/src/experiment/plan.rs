@@ -73,12 +73,13 @@ struct ProbeMounting {
 #[derive(Deserialize)]
 struct ProbeTumble {
     rests: Option<toml::Value>,
+    record: Option<toml::Value>,
 }
 
 impl Probe {
     /// Whether something is measured. Rests that are measured belong to a plan too, of an arm that is not.
     fn is_measured(&self) -> bool {
-        let has_rests = self.tumble.iter().any(|tumble| tumble.rests.is_some());
+        let has_rests = self.tumble.iter().any(|tumble| tumble.rests.is_some() || tumble.record.is_some());
         self.plateaus.is_some()
             || self.mounting.iter().any(|mounting| mounting.record.is_some())
             || self.mounting.is_empty() && has_rests
@@ -114,6 +115,7 @@ impl Plan {
         session.experiment.set_points =
             schedule::set_points(file, &form.mounting, session.experiment.centrifuge.rotation)?;
         session.durations = schedule::durations(file, &form.mounting)?;
+        rests::refuse_records(file, &session.rest_tables)?;
         session.rest_tables.iter_mut().try_for_each(RestTable::read)?;
         session.add_rests();
         let table = form.plan.as_ref();
@@ -147,6 +149,7 @@ impl Plan {
         let speeds = preset_speeds(file, &form.centrifuge)?;
         experiment.centrifuge.speed_uncertainty = speeds.expected_uncertainty();
         let mut rest_tables = RestTable::named(file, &form.tumble)?;
+        rests::refuse_records(file, &rest_tables)?;
         rest_tables.iter_mut().try_for_each(RestTable::read)?;
         let mut durations = vec![duration; experiment.set_points.len()];
         durations.extend(rest_tables.iter().flat_map(RestTable::durations).map(|stated| stated.unwrap_or(duration)));

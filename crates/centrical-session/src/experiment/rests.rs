@@ -1,7 +1,7 @@
 //! Rests in free attitudes: what a session or a plan names under `[[tumble]]`.
 //!
 //! A table of rests has the columns of a table of plateaus, a row for each rest; the attitudes that are known of them are in the
-//! same order. A plan has attitudes alone, and a duration.
+//! same order. A record has rests that are still to be found, in attitudes of any order. A plan has attitudes alone, and a duration.
 
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use centrical::{Experiment, Mounting, Position, SetPoint};
 use nalgebra::Vector3;
 
-use super::form::{AttitudeList, TumbleTable};
+use super::form::{AttitudeList, RecordEntry, TumbleTable};
 use super::plateaus::{PlateauMean, read_plateaus};
 use super::schedule;
-use super::stated_attitudes::{CUBE, MOST_UNCERTAIN, directions, read_attitudes};
+use super::stated_attitudes::{CUBE, MOST_UNCERTAIN, StatedAttitudes, directions, read_attitudes};
 use super::toml_path::TomlPath;
 use crate::error::{Error, Place};
 use crate::quantity::{Dimension, Quantity};
@@ -22,7 +22,7 @@ use crate::quantity::{Dimension, Quantity};
 pub struct RestTable {
     /// Where they come from.
     pub source: RestSource,
-    /// Their means, each of a mounting of its own; none of rests that are planned.
+    /// Their means, each of a mounting of its own; none of rests that are planned, or still to be found in a record.
     pub means: Vec<PlateauMean>,
     /// What is known of their attitudes; `None` where only gravity shows them.
     pub attitudes: Option<KnownAttitudes>,
@@ -33,8 +33,19 @@ pub struct RestTable {
 pub enum RestSource {
     /// A table of their means.
     Table(PathBuf),
+    /// A record of the unit as it is turned and left alone.
+    Record(RecordedRests),
     /// A plan: nothing is measured yet.
     Plan(PlannedRests),
+}
+
+/// Rests that are to be found in a record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedRests {
+    /// The record, or three, one for each newtonometer.
+    pub files: Vec<PathBuf>,
+    /// Attitudes in which the unit was laid down, in any order, where they are known.
+    pub attitudes: Option<StatedAttitudes>,
 }
 
 /// Rests that are planned.
@@ -69,14 +80,18 @@ impl RestTable {
         let folder = file.parent().unwrap_or(Path::new(""));
         let named = tables.iter().enumerate().map(|(n, table)| {
             let at = TomlPath::entry(file, "tumble", n);
-            match (&table.rests, &table.attitudes) {
-                (Some(rests), _) => Self::measured(&at, folder, table, rests),
-                (None, Some(attitudes)) => {
+            match (&table.rests, &table.record, &table.attitudes) {
+                (Some(_), Some(_), _) => {
+                    Err(at.unexpected("record", "a record beside a table of rests", "one or the other"))
+                }
+                (Some(rests), None, _) => Self::measured(&at, folder, table, rests),
+                (None, Some(record), _) => Self::recorded(&at, folder, table, record),
+                (None, None, Some(attitudes)) => {
                     let planned = Self::planned(&at, folder, attitudes, table.attitude_uncertainty.as_ref())?;
                     planned.lasting(&at, table)
                 }
-                (None, None) => {
-                    let expected = "a table of rests; or attitudes, of rests that are planned";
+                (None, None, None) => {
+                    let expected = "a table of rests; or record, their record; or attitudes, of rests that are planned";
                     Err(at.unexpected("rests", "no such key", expected))
                 }
             }
@@ -85,32 +100,30 @@ impl RestTable {
     }
 
     fn measured(at: &TomlPath, folder: &Path, table: &TumbleTable, rests: &str) -> Result<Self, Error> {
-        for (key, is_there) in [("duration", table.duration.is_some()), ("durations", !table.durations.is_empty())] {
-            if is_there {
-                let expected = "no such key beside rests, which have been measured";
-                return Err(at.unexpected(key, "a duration", expected));
-            }
-        }
-        let attitudes = match (&table.attitudes, uncertainty(at, table.attitude_uncertainty.as_ref())?) {
-            (None, None) => None,
-            (Some(_), None) => {
-                let expected = "the standard uncertainty of the attitudes, such as \"0.1 deg\"";
-                return Err(at.unexpected("attitude_uncertainty", "no such key beside attitudes", expected));
-            }
-            (None, Some(_)) => {
-                let expected = "a table of the attitudes that are this uncertain";
-                return Err(at.unexpected("attitudes", "no such key beside attitude_uncertainty", expected));
-            }
+        refuse_duration(at, table)?;
+        let attitudes = match known(at, table)? {
+            None => None,
             // A table may leave the attitude of a rest open: it is read with the means.
-            (Some(AttitudeList::Named(name)), Some(uncertainty)) if name != CUBE => {
+            Some((AttitudeList::Named(name), uncertainty)) if name != CUBE => {
                 Some(KnownAttitudes { file: Some(folder.join(name)), uncertainty, up_b: Vec::new() })
             }
-            (Some(entry), Some(uncertainty)) => {
+            Some((entry, uncertainty)) => {
                 let (up_b, file) = directions(at, folder, entry)?;
                 Some(KnownAttitudes { file, uncertainty, up_b: up_b.into_iter().map(Some).collect() })
             }
         };
         Ok(Self { source: RestSource::Table(folder.join(rests)), means: Vec::new(), attitudes })
+    }
+
+    fn recorded(at: &TomlPath, folder: &Path, table: &TumbleTable, record: &RecordEntry) -> Result<Self, Error> {
+        refuse_duration(at, table)?;
+        let stated = |(entry, uncertainty)| {
+            let (up_b, file) = directions(at, folder, entry)?;
+            Ok::<_, Error>(StatedAttitudes { up_b, uncertainty, file })
+        };
+        let attitudes = known(at, table)?.map(stated).transpose()?;
+        let files = record.paths().map(|name| folder.join(name)).collect();
+        Ok(Self { source: RestSource::Record(RecordedRests { files, attitudes }), means: Vec::new(), attitudes: None })
     }
 
     /// Rests that are planned in these attitudes, known to `uncertain` if it is stated; paths start from `folder`.
@@ -196,7 +209,7 @@ impl RestTable {
     fn directions(&self) -> impl Iterator<Item = &Vector3<f64>> {
         let planned = match &self.source {
             RestSource::Plan(planned) => planned.up_b.as_slice(),
-            RestSource::Table(_) => &[],
+            RestSource::Table(_) | RestSource::Record(_) => &[],
         };
         self.means.iter().map(|rest| &rest.mean).chain(planned)
     }
@@ -218,7 +231,7 @@ impl RestTable {
     pub fn durations(&self) -> Vec<Option<f64>> {
         match &self.source {
             RestSource::Plan(planned) => planned.durations.clone(),
-            RestSource::Table(_) => vec![None; self.means.len()],
+            RestSource::Table(_) | RestSource::Record(_) => vec![None; self.means.len()],
         }
     }
 
@@ -227,14 +240,26 @@ impl RestTable {
         matches!(self.source, RestSource::Plan(_))
     }
 
+    /// What is said of a record in which the rests are to be found.
+    pub fn record(&self) -> Option<&RecordedRests> {
+        match &self.source {
+            RestSource::Record(recorded) => Some(recorded),
+            RestSource::Table(_) | RestSource::Plan(_) => None,
+        }
+    }
+
     /// The files of the table.
     pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        let (rests, planned) = match &self.source {
-            RestSource::Table(file) => (Some(file), None),
-            RestSource::Plan(planned) => (None, planned.file.as_ref()),
+        let (rests, attitudes) = match &self.source {
+            RestSource::Table(file) => {
+                (std::slice::from_ref(file), self.attitudes.as_ref().and_then(|known| known.file.as_ref()))
+            }
+            RestSource::Record(recorded) => {
+                (recorded.files.as_slice(), recorded.attitudes.as_ref().and_then(|stated| stated.file.as_ref()))
+            }
+            RestSource::Plan(planned) => (&[][..], planned.file.as_ref()),
         };
-        let known = self.attitudes.iter().filter_map(|known| known.file.as_ref());
-        rests.into_iter().chain(planned.into_iter().chain(known).take(1))
+        rests.iter().chain(attitudes)
     }
 }
 
@@ -249,6 +274,39 @@ pub(crate) fn add_rests(experiment: &mut Experiment, tables: &[RestTable]) {
             experiment.set_points.push(SetPoint::at_rest(mounting, 0.0));
         }
         first += table.count();
+    }
+}
+
+/// Refuses rests that are still to be found in a record: a plan is read without one.
+pub(crate) fn refuse_records(file: &Path, tables: &[RestTable]) -> Result<(), Error> {
+    let Some(recorded) = tables.iter().position(|table| table.record().is_some()) else { return Ok(()) };
+    let expected = "rests, a table of them as `centrical tumble` writes it, or attitudes to be planned";
+    Err(TomlPath::entry(file, "tumble", recorded).unexpected("record", "a record in a plan", expected))
+}
+
+/// What has been measured lasted as long as it did.
+fn refuse_duration(at: &TomlPath, table: &TumbleTable) -> Result<(), Error> {
+    for (key, is_there) in [("duration", table.duration.is_some()), ("durations", !table.durations.is_empty())] {
+        if is_there {
+            return Err(at.unexpected(key, "a duration", "no such key beside rests, which have been measured"));
+        }
+    }
+    Ok(())
+}
+
+/// Attitudes that are known of measured rests, and their standard uncertainty [rad]; one without the other says nothing.
+fn known<'a>(at: &TomlPath, table: &'a TumbleTable) -> Result<Option<(&'a AttitudeList, f64)>, Error> {
+    match (&table.attitudes, uncertainty(at, table.attitude_uncertainty.as_ref())?) {
+        (None, None) => Ok(None),
+        (Some(entry), Some(uncertainty)) => Ok(Some((entry, uncertainty))),
+        (Some(_), None) => {
+            let expected = "the standard uncertainty of the attitudes, such as \"0.1 deg\"";
+            Err(at.unexpected("attitude_uncertainty", "no such key beside attitudes", expected))
+        }
+        (None, Some(_)) => {
+            let expected = "a table of the attitudes that are this uncertain";
+            Err(at.unexpected("attitudes", "no such key beside attitude_uncertainty", expected))
+        }
     }
 }
 

@@ -12,7 +12,7 @@ use centrical::{
 use super::form::{Form, ModelTable, RecordEntry, SiteTable};
 use super::plateaus::{PlateauMean, PlateauTable};
 use super::prior::{self, PriorEntry};
-use super::rests::RestTable;
+use super::rests::{RecordedRests, RestTable};
 use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
 use super::unit::OutputUnit;
@@ -129,8 +129,10 @@ impl Session {
         session.rest_tables.iter_mut().try_for_each(read)?;
         session.refuse_rests_alone()?;
         session.add_rests();
-        // Whatever is wrong with the priors is said before any record is read.
-        session.model()?;
+        // Whatever is wrong with the priors is said before any record is read, unless they may be of rests that are to be found.
+        if session.rest_records().next().is_none() {
+            session.model()?;
+        }
         Ok(session)
     }
 
@@ -156,6 +158,19 @@ impl Session {
         }
     }
 
+    /// The `[[tumble]]` whose rests are to be found in a record, with their numbers from 0.
+    pub(crate) fn rest_records(&self) -> impl Iterator<Item = (usize, &RecordedRests)> {
+        self.rest_tables.iter().enumerate().filter_map(|(number, table)| Some((number, table.record()?)))
+    }
+
+    /// The session with other tables of rests, such as those that were found in records.
+    pub(crate) fn with_rest_tables(mut self, tables: Vec<RestTable>) -> Self {
+        self.forget_rests();
+        self.rest_tables = tables;
+        self.add_rests();
+        self
+    }
+
     /// The means of the rests in free attitudes.
     pub fn rests(&self) -> impl Iterator<Item = &PlateauMean> {
         self.rest_tables.iter().flat_map(|table| &table.means)
@@ -179,15 +194,14 @@ impl Session {
 
     /// The session without rests in free attitudes.
     #[must_use]
-    pub fn on_arm(mut self) -> Self {
-        self.forget_rests();
-        self.rest_tables = Vec::new();
-        self
+    pub fn on_arm(self) -> Self {
+        self.with_rest_tables(Vec::new())
     }
 
     /// On an arm plateaus at rest alone show nothing of a centrifuge.
     fn refuse_rests_alone(&self) -> Result<(), Error> {
-        let is_of_rests = !self.experiment.has_arm() && self.rest_tables.iter().any(|table| table.count() > 0);
+        let has_rests = |table: &RestTable| table.count() > 0 || table.record().is_some();
+        let is_of_rests = !self.experiment.has_arm() && self.rest_tables.iter().any(has_rests);
         if !is_of_rests && self.experiment.set_points.iter().all(SetPoint::is_rest) {
             let at = TomlPath::entry(&self.file, "mounting", 0);
             return Err(at.unexpected("plateaus", "all plateaus at rest", "at least one plateau with a speed"));
@@ -307,9 +321,11 @@ impl Session {
         self.speeds.measured.map_or(1.0, |measured| measured.pulses_per_revolution)
     }
 
-    /// Size of the records [bytes]; zero for a session that comes already averaged, and of records that are not there.
+    /// Size of the records [bytes]; of a session that comes already averaged those of its rests alone. Records that are not there
+    /// have none.
     pub fn record_bytes(&self) -> u64 {
-        let files = self.mountings.iter().filter(|_| self.plateaus.is_none()).flat_map(MountingFiles::records);
+        let of_arm = self.mountings.iter().filter(|_| self.plateaus.is_none()).flat_map(MountingFiles::records);
+        let files = of_arm.chain(self.rest_records().flat_map(|(_, recorded)| &recorded.files));
         files.filter_map(|file| fs::metadata(file).ok()).map(|metadata| metadata.len()).sum()
     }
 

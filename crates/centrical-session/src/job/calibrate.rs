@@ -24,8 +24,8 @@ impl Problem {
     /// # Errors
     /// [`Error`] naming the file, the place, what was found and what was expected.
     pub fn of(session: &Session, progress: OnProgress) -> Result<Self, Error> {
-        let reduced = reduce(session, progress)?;
-        let model = reduced.model(session)?;
+        let (session, reduced) = reduce(session, progress)?;
+        let model = reduced.model(&session)?;
         Ok(Self { model, reduced })
     }
 }
@@ -49,9 +49,9 @@ pub fn calibrate_without(
     method: Method,
     progress: OnProgress,
 ) -> Result<CalibrationResult, Error> {
-    let mut reduced = reduce(session, progress)?;
-    reduced.held_out = held_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
-    calibrate_reduced(session, &reduced, method, progress)
+    let (session, mut reduced) = reduce(session, progress)?;
+    reduced.held_out = held_out.iter().map(|name| name.set_point(&session)).collect::<Result<_, _>>()?;
+    calibrate_reduced(&session, &reduced, method, progress)
 }
 
 /// Fits a session that is reduced already, from files or from memory. `progress` is called with 0 after every step.

@@ -23,8 +23,8 @@ pub fn subject(path: &Path, progress: OnProgress) -> Result<Subject, Error> {
 }
 
 fn of_session(session: &Session, progress: OnProgress) -> Result<Subject, Error> {
-    let reduced = reduce(session, progress)?;
-    let model = reduced.model(session)?;
+    let (session, reduced) = reduce(session, progress)?;
+    let model = reduced.model(&session)?;
     Ok(Subject {
         file: session.file.clone(),
         title: session.title.clone(),

@@ -3,8 +3,10 @@
 mod in_memory;
 mod mounting;
 mod pooling;
+mod rests;
 mod scheduler;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use centrical::OnProgress;
@@ -13,37 +15,44 @@ use rayon::prelude::*;
 
 pub use self::in_memory::{Recorded, reduce_recorded};
 use self::pooling::pooled;
+use self::rests::with_all_rests;
+pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size};
 use self::scheduler::Scheduler;
 use crate::error::Error;
 use crate::experiment::Session;
 use crate::record::Input;
 use crate::reduced::Reduced;
 
-/// Reads and reduces the records of a session, or takes its plateau table. `progress` is called with the number
-/// of bytes read, from any thread; most bytes are read twice. The outcome does not depend on the number of threads.
+/// Reads and reduces the records of a session, or takes its plateau table. The session that comes back has the rests that were
+/// found in its records, and is the one to which the means belong. `progress` is called with the number of bytes read, from any
+/// thread; most bytes are read twice. The outcome does not depend on the number of threads.
 ///
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
-pub fn reduce(session: &Session, progress: OnProgress) -> Result<Reduced, Error> {
-    let mut reduced = reduce_without_inputs(session, progress)?;
+pub fn reduce<'s>(session: &'s Session, progress: OnProgress) -> Result<(Cow<'s, Session>, Reduced), Error> {
+    let (session, mut reduced) = reduce_without_inputs(session, progress)?;
     let folder = session.file.parent().unwrap_or(Path::new(""));
     let inputs = session.files().into_par_iter().map(|file| Input::of(folder, file, progress));
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
-    Ok(reduced)
+    Ok((session, reduced))
 }
 
 /// The same without the hashes of the files, where nobody asks for them.
 ///
 /// # Errors
 /// As [`reduce`].
-pub fn reduce_without_inputs(session: &Session, progress: OnProgress) -> Result<Reduced, Error> {
+pub fn reduce_without_inputs<'s>(
+    session: &'s Session,
+    progress: OnProgress,
+) -> Result<(Cow<'s, Session>, Reduced), Error> {
     session.refuse_planned_rests()?;
     let reduced = match &session.plateaus {
         Some(table) => Reduced::of_table(&table.rows),
         None if session.mountings.is_empty() => Reduced::of_table(&[]),
         None => from_records(session, progress)?,
     };
-    Ok(reduced.with_rests(session))
+    let (session, rests) = with_all_rests(session, progress)?;
+    Ok((session, reduced.with_rests(rests)))
 }
 
 fn from_records(session: &Session, progress: OnProgress) -> Result<Reduced, Error> {

@@ -43,8 +43,12 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
     let rows = reduced.table(session);
     // Speeds that single plateaus of the schedule state as measured: the table has a column for them.
     let of_plateaus = session.speeds.measured.is_none() && rows.iter().any(|row| row.speed_uncertainty.is_some());
+    // Rests alone have tables of their own.
+    let name = (!session.mountings.is_empty()).then_some(name);
     let text = experiment(&session.file, name, of_plateaus.then_some(session.speeds.set_uncertainty))?;
-    write(&folder.join(name), &rows)?;
+    if let Some(name) = name {
+        write(&folder.join(name), &rows)?;
+    }
     for (table, [means, attitudes]) in session.rest_tables.iter().zip(&rests) {
         write_plateaus(means, &table.means)?;
         if let Some(known) = &table.attitudes {
@@ -54,9 +58,9 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
     Ok(write_whole(&experiment_file, text.as_bytes())?)
 }
 
-/// The experiment file with the table instead of records, and all else, comments too, as it was. With `uncertainty` it says
+/// The experiment file with the table, if there is one, instead of records, and all else, comments too, as it was. With `uncertainty` it says
 /// that plateaus state measured speeds, the others as uncertain as this.
-fn experiment(file: &Path, table: &str, uncertainty: Option<f64>) -> Result<String, Error> {
+fn experiment(file: &Path, table: Option<&str>, uncertainty: Option<f64>) -> Result<String, Error> {
     let text = read_text(file)?;
     let mut document = editable(file, &text)?;
     match document.get_mut("mounting") {
@@ -79,7 +83,9 @@ fn experiment(file: &Path, table: &str, uncertainty: Option<f64>) -> Result<Stri
     {
         measured.insert("from", value(SpeedSource::Plateaus.name()));
     }
-    document.insert("plateaus", value(table));
+    if let Some(table) = table {
+        document.insert("plateaus", value(table));
+    }
     if let Some(Item::ArrayOfTables(tumbles)) = document.get_mut("tumble") {
         tumbles.iter_mut().enumerate().for_each(|(n, tumble)| rename_rests(n, tumble));
     } else if let Some(Item::Value(Value::Array(tumbles))) = document.get_mut("tumble") {
@@ -95,10 +101,11 @@ fn rest_files(n: usize) -> [String; 2] {
 }
 
 fn rename_rests(n: usize, tumble: &mut dyn TableLike) {
-    for (key, name) in ["rests", "attitudes"].into_iter().zip(rest_files(n)) {
-        if tumble.contains_key(key) {
-            tumble.insert(key, value(name));
-        }
+    let [rests, attitudes] = rest_files(n);
+    tumble.remove("record");
+    tumble.insert("rests", value(rests));
+    if tumble.contains_key("attitudes") {
+        tumble.insert("attitudes", value(attitudes));
     }
 }
 

@@ -28,8 +28,8 @@ fn the_result_has_the_bytes_of_that_from_files() {
     let text = fs::read_to_string(&files.file).unwrap();
     let memory = Session::parse(&text, &files.file).unwrap();
     assert_eq!(memory, files);
-    let of_files = reduce(&files, &unwatched).unwrap();
-    let mut of_memory = reduce_recorded(&memory, recorded(&files), &unwatched).unwrap();
+    let (_, of_files) = reduce(&files, &unwatched).unwrap();
+    let (_, mut of_memory) = reduce_recorded(&memory, recorded(&files), &unwatched).unwrap();
     // Memory has no files to be known by.
     assert!(of_memory.inputs.is_empty());
     of_memory.inputs.clone_from(&of_files.inputs);
@@ -47,7 +47,7 @@ fn numbers_are_in_the_units_of_the_columns() {
     let session = Session::parse(&text.replace("output_unit = \"m/s^2\"", volts), &files.file).unwrap();
     let mut in_volts = recorded(&files);
     in_volts.iter_mut().flat_map(|r| r.record.f_z.iter_mut().flatten()).for_each(|f| *f *= 0.5);
-    let plateaus = |session, recorded| reduce_recorded(session, recorded, &unwatched).unwrap().plateaus;
+    let plateaus = |session, recorded| reduce_recorded(session, recorded, &unwatched).unwrap().1.plateaus;
     assert_eq!(format!("{:?}", plateaus(&session, in_volts)), format!("{:?}", plateaus(&files, recorded(&files))));
 }
 
@@ -76,7 +76,7 @@ fn what_is_no_record_is_refused() {
 fn plateaus_from_memory_are_those_of_a_file() {
     let session = Session::read(&example()).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let reduced = reduce(&session, &unwatched).unwrap();
+    let (_, reduced) = reduce(&session, &unwatched).unwrap();
     write_reduced(&session, &reduced, TableFormat::Csv, folder.path()).unwrap();
     let from_file = Session::read(folder.path()).unwrap();
     let rows = &from_file.plateaus.as_ref().unwrap().rows;

@@ -6,6 +6,7 @@ mod predictions;
 #[path = "../../../centrical/tests/common/random.rs"]
 mod random;
 mod record_writer;
+mod rest_records;
 mod rests;
 mod session_forms;
 mod stopping;

@@ -70,7 +70,7 @@ fn jobs_on_records() {
 #[test]
 fn a_fit() {
     let session = session();
-    let reduced = reduce(&session, &unwatched).unwrap();
+    let (_, reduced) = reduce(&session, &unwatched).unwrap();
     is_stopped(|caller| calibrate_reduced(&session, &reduced, Method::Exact, &|n| caller.asked(n)));
 }
 

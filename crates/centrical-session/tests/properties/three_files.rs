@@ -45,7 +45,7 @@ fn equal_stamps_are_joined_row_by_row() {
     let (_folder, session) = split(|_, _, t| Some(t));
     assert!(session.record(0).unwrap() == whole());
     assert_eq!(session.files().len(), Session::read(Path::new(EXAMPLE)).unwrap().files().len() + 2);
-    let means = |session: &Session| format!("{:?}", reduce_without_inputs(session, &unwatched).unwrap().plateaus);
+    let means = |session: &Session| format!("{:?}", reduce_without_inputs(session, &unwatched).unwrap().1.plateaus);
     assert_eq!(means(&session), means(&Session::read(Path::new(EXAMPLE)).unwrap()));
 }
 

@@ -201,7 +201,7 @@ fn threads_change_nothing() {
     let session = laboratory.split("near", near_rates);
     let means = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| format!("{:?}", reduce_without_inputs(&session, &unwatched).unwrap().plateaus))
+        pool.install(|| format!("{:?}", reduce_without_inputs(&session, &unwatched).unwrap().1.plateaus))
     };
     assert_eq!(means(1), means(3));
     // A mean of neighbours has other noise than they have: of noise, the session says nothing.

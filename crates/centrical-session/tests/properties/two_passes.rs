@@ -47,7 +47,7 @@ fn from_files_as_from_memory() {
     let means: Vec<_> = mountings.iter().flat_map(|mounting| plateau_means(mounting, &noise)).collect();
     let folder = TempDir::new().unwrap();
     for session in [&session, &as_parquet(folder.path())] {
-        let reduced = reduce_without_inputs(session, &unwatched).unwrap();
+        let (_, reduced) = reduce_without_inputs(session, &unwatched).unwrap();
         assert_eq!(reduced.plateaus.len(), means.len());
         for (from_file, mean) in reduced.plateaus.iter().zip(&means) {
             assert_eq!((from_file.mean, from_file.covariance), (mean.mean, mean.covariance));

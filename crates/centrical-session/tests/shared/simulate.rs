@@ -62,8 +62,8 @@ fn compare(name: &str, seed: u64) {
     let out = folder.path().join("session");
     simulate_session(&theirs, &truth, seed, TableFormat::Parquet, &out, &unwatched).unwrap();
 
-    let ours = reduce(&Session::read(&out).unwrap(), &unwatched).unwrap().observations();
-    let theirs = reduce(&theirs, &unwatched).unwrap().observations();
+    let ours = reduce(&Session::read(&out).unwrap(), &unwatched).unwrap().1.observations();
+    let theirs = reduce(&theirs, &unwatched).unwrap().1.observations();
     assert_eq!(ours.len(), theirs.len());
     let mut squares = Vector3::zeros();
     for ((a, b), set_point) in ours.iter().zip(&theirs).zip(&truth.model.experiment().set_points) {

@@ -54,6 +54,16 @@ pub(crate) enum RecordEntry {
     Three([String; 3]),
 }
 
+impl RecordEntry {
+    /// The path, or the three.
+    pub fn paths(&self) -> impl Iterator<Item = &String> {
+        match self {
+            Self::One(path) => std::slice::from_ref(path).iter(),
+            Self::Three(paths) => paths.iter(),
+        }
+    }
+}
+
 /// Attitudes of rests: where up is, in axes of the case.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum AttitudeList {

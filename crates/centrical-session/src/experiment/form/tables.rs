@@ -379,12 +379,15 @@ pub(crate) struct MountingTable {
     pub plateaus: Vec<PlateauEntry>,
 }
 
-/// Rests in attitudes of their own, which only gravity shows or which are known. Without `rests` they are planned.
+/// Rests in attitudes of their own, which only gravity shows or which are known. Without `rests` and `record` they are planned.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TumbleTable {
     /// Path of a table of rests, such as `centrical tumble` writes: the columns of a table of plateaus.
     pub rests: Option<String>,
+    /// File of the readings while the unit is turned and left alone again and again, or three files, one for each newtonometer. The
+    /// rests are found in it.
+    pub record: Option<RecordEntry>,
     /// Attitudes of the rests, up in axes of the case: "cube", a list of directions, or the path of a table. Those of a plan, or those
     /// that are known of measured rests.
     pub attitudes: Option<AttitudeList>,

@@ -75,7 +75,7 @@ impl Series {
         Ok(Self { file: session.record_file(mounting)?.to_owned(), t: inside.t.to_vec(), columns })
     }
 
-    /// The readings of one plateau of a session, in the window that a calibration would use; without a name those of
+    /// The readings of one plateau on the arm of a session, in the window that a calibration would use; without a name those of
     /// the longest plateau at rest. Its name as well.
     ///
     /// # Errors
@@ -85,7 +85,8 @@ impl Series {
         name: Option<PlateauName>,
         progress: OnProgress,
     ) -> Result<(Self, PlateauName), Error> {
-        let reduced = reduce(session, progress)?;
+        let session = &session.clone().on_arm();
+        let (_, reduced) = reduce(session, progress)?;
         let set_points = &session.experiment.set_points;
         let length = |k: &usize| reduced.plateaus[*k].window.map_or(0.0, |[from, to]| to - from);
         let longest = || {

@@ -1,11 +1,14 @@
 //! Records that are in memory: the same reduction, without files.
 
+use std::borrow::Cow;
+
 use centrical::reduction::{PulseTrain, Record, ReducedMounting, ReductionError, SpeedTrace, Survey, average, locate};
 use centrical::{OnProgress, advance};
 use rayon::prelude::*;
 
 use super::mounting::{OfRecord, counts_pulses, schedule};
 use super::pooling::pooled;
+use super::rests::with_all_rests;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::RecordOverview;
@@ -23,15 +26,16 @@ pub struct Recorded {
 }
 
 /// Reduces the mountings of a session from memory, one of `recorded` for each; the numbers are those of
-/// [`reduce`](super::reduce) on files with the same values. `progress` is called with the number of mountings reduced.
+/// [`reduce`](super::reduce) on files with the same values. The session that comes back has the rests that were found in its
+/// records, which are files. `progress` is called with the number of mountings reduced.
 ///
 /// # Errors
 /// [`Error`] naming the mounting, what was found and what was expected; [`Error::Stopped`].
-pub fn reduce_recorded(
-    session: &Session,
+pub fn reduce_recorded<'s>(
+    session: &'s Session,
     recorded: Vec<Recorded>,
     progress: OnProgress<usize>,
-) -> Result<Reduced, Error> {
+) -> Result<(Cow<'s, Session>, Reduced), Error> {
     session.refuse_planned_rests()?;
     let (found, expected) = (recorded.len(), session.mountings.len());
     if found != expected {
@@ -46,7 +50,9 @@ pub fn reduce_recorded(
     });
     // Which error is the first does not depend on the threads.
     let mountings: Vec<Result<OfRecord, Error>> = mountings.collect();
-    Ok(pooled(session, mountings.into_iter().collect::<Result<_, _>>()?)?.with_rests(session))
+    let reduced = pooled(session, mountings.into_iter().collect::<Result<_, _>>()?)?;
+    let (session, rests) = with_all_rests(session, &|_| progress(0))?;
+    Ok((session, reduced.with_rests(rests)))
 }
 
 fn reduce_mounting(session: &Session, number: usize, recorded: Recorded) -> Result<OfRecord, Error> {

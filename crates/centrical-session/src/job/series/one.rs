@@ -42,7 +42,7 @@ pub(super) fn calibrated(path: &Path, request: &SeriesRequest, progress: OnProgr
 
 fn try_calibrate(path: &Path, request: &SeriesRequest, progress: OnProgress) -> Result<Done, Error> {
     let session = Session::read(path)?;
-    let reduced = reduce(&session, progress)?;
+    let (session, reduced) = reduce(&session, progress)?;
     let result: CalibrationResult = calibrate_reduced(&session, &reduced, request.method, progress)?;
     let text = result.to_json()?;
     let row = result.row(text.as_bytes());

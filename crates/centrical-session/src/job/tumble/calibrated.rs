@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical::reduction::{CoarseScale, PlateauMean, Record, coarse_scale, reduce_rests};
+use centrical::reduction::{CoarseScale, PlateauMean, Record, coarse_scale};
 use centrical::{OnProgress, advance};
 use centrical_table::{TableLines, refuse_inputs, write_whole};
 use nalgebra::Vector3;
@@ -15,9 +15,10 @@ use crate::error::{Error, Place};
 use crate::experiment::{EXPERIMENT_FILE, Session, write_attitudes, write_plateaus};
 use crate::job::calibrate::calibrate_reduced;
 use crate::job::noise::Series;
+use crate::job::reduce::find_rests;
 use crate::quantity::Dimension;
 use crate::record::{Input, Scale, named_columns};
-use crate::reduced::{Reduced, ReducedPlateau};
+use crate::reduced::{Reduced, ReducedPlateau, rest_rows};
 
 /// A calibration by rests.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +71,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
     let inputs = request.inputs().map(|file| Input::of(file.parent().unwrap_or(Path::new("")), file, progress));
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
     let session = Session::parse_with(&text, &folder.join(EXPERIMENT_FILE), |table| {
-        table.means = reduced.rests();
+        table.means = rest_rows(&reduced.plateaus);
         if let (Some(table), Some(known)) = (&mut table.attitudes, &known) {
             table.up_b.clone_from(known);
         }
@@ -89,7 +90,7 @@ impl Tumble {
         let names = [TABLE, ATTITUDES, EXPERIMENT_FILE, "result.json"];
         let outputs @ [table, attitudes, experiment, result] = &names.map(|name| folder.join(name));
         refuse_inputs(outputs, &request.inputs().collect::<Vec<_>>())?;
-        write_plateaus(table, &self.reduced.rests())?;
+        write_plateaus(table, &rest_rows(&self.reduced.plateaus))?;
         for known in self.session.rest_tables.iter().filter_map(|table| table.attitudes.as_ref()) {
             write_attitudes(attitudes, &known.up_b)?;
         }
@@ -107,25 +108,16 @@ fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<
     Ok(Record { t: series.t, f_z: std::array::from_fn(|_| columns.next().unwrap_or_default()) })
 }
 
-/// The rests of all records. A single one shows nothing.
+/// The rests of all records.
 fn rests(request: &TumbleRequest, records: &[Record]) -> Result<Vec<PlateauMean>, Error> {
-    let slices: Vec<_> = records.iter().map(Record::as_slice).collect();
-    let refused = |source| Error::Reduction { file: first(request), mounting: 1, source: Box::new(source) };
-    let rests: Vec<PlateauMean> = reduce_rests(&slices).map_err(refused)?.into_iter().flatten().collect();
-    if rests.len() < 2 {
-        let found = format!("{} in which the unit rests", count(rests.len(), "stretch", "stretches"));
-        let expected = "a unit that is turned, left alone for a second or more, and turned again";
-        return Err(Error::content(&first(request), Place::Whole, found, expected));
-    }
-    Ok(rests)
+    Ok(find_rests(records, &first(request))?.into_iter().flatten().collect())
 }
 
 /// The coarse scale and bias of readings in counts or volts.
 fn coarse(request: &TumbleRequest, rests: &[PlateauMean]) -> Result<CoarseScale, Error> {
     let means: Vec<Vector3<f64>> = rests.iter().map(|rest| rest.mean).collect();
     coarse_scale(&means, request.gravity).ok_or_else(|| {
-        let found =
-            format!("{} that do not show scale and bias of {}", count(rests.len(), "rest", "rests"), request.unit);
+        let found = format!("{} rests that do not show scale and bias of {}", rests.len(), request.unit);
         let expected = "rests with each axis about up and about down, six at least";
         Error::content(&first(request), Place::Whole, found, expected)
     })
@@ -135,8 +127,4 @@ fn in_si(record: &mut Record, CoarseScale { scale, bias }: &CoarseScale) {
     for (axis, values) in record.f_z.iter_mut().enumerate() {
         Scale { offset: bias[axis], factor: 1.0 / scale[axis] }.apply(values);
     }
-}
-
-fn count(number: usize, one: &str, many: &str) -> String {
-    format!("{number} {}", if number == 1 { one } else { many })
 }

@@ -8,14 +8,12 @@ use nalgebra::Vector3;
 
 use super::request::TumbleRequest;
 use crate::error::{Error, Place};
+use crate::job::reduce::{is_of_gravity, mean_size};
 use crate::quantity::Dimension;
 
 /// Least part of the size of the rests through which each newtonometer is turned: half of its range, as by a turn of 6 deg. With less
 /// its scale is its bias, and the fit goes astray.
 const LEAST_TURN: f64 = 0.1;
-
-/// Most that the size of a rest may differ from gravity, as a factor: no scale factor is as far off its unit.
-const MOST_OFF: f64 = 1.3;
 
 /// Units that readings are mistaken for.
 const UNITS: [&str; 3] = ["m/s^2", "g", "mg"];
@@ -38,8 +36,8 @@ pub(super) fn answers(request: &TumbleRequest, record: &Record, file: &Path) -> 
 /// # Errors
 /// If rests of these mean forces [m/s^2] are no longer than gravity is, or not as long.
 pub(super) fn has_unit(request: &TumbleRequest, means: &[Vector3<f64>]) -> Result<(), Error> {
-    let size = size(means);
-    let is_gravity = |size: f64| (request.gravity / MOST_OFF..request.gravity * MOST_OFF).contains(&size);
+    let size = mean_size(means);
+    let is_gravity = |size: f64| is_of_gravity(size, request.gravity);
     if is_gravity(size) {
         return Ok(());
     }
@@ -57,7 +55,7 @@ pub(super) fn has_unit(request: &TumbleRequest, means: &[Vector3<f64>]) -> Resul
 pub(super) fn turns(request: &TumbleRequest, means: &[Vector3<f64>]) -> Result<(), Error> {
     let (low, high) = means.iter().fold((means[0], means[0]), |(low, high), mean| (low.inf(mean), high.sup(mean)));
     let is_asked = |axis: usize| request.terms.iter().any(|term| *term == format!("G0_{0}{0}", axis + 1));
-    let turned = |axis: usize| 0.5 * (high - low)[axis] / size(means);
+    let turned = |axis: usize| 0.5 * (high - low)[axis] / mean_size(means);
     if let Some(axis) = (0..3).find(|axis| is_asked(*axis) && turned(*axis) < LEAST_TURN) {
         let found = format!(
             "newtonometer {} between {:.3} and {:.3} m/s^2 in all {} rests",
@@ -70,11 +68,6 @@ pub(super) fn turns(request: &TumbleRequest, means: &[Vector3<f64>]) -> Result<(
         return Err(Error::content(&first(request), Place::Whole, found, expected));
     }
     Ok(())
-}
-
-/// Root mean square of the sizes of the rests [m/s^2].
-fn size(means: &[Vector3<f64>]) -> f64 {
-    (means.iter().map(Vector3::norm_squared).sum::<f64>() / means.len() as f64).sqrt()
 }
 
 /// The record that messages name.

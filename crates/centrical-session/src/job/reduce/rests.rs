@@ -1,0 +1,104 @@
+//! Rests in attitudes of their own: those of tables as they are, those of records found and averaged.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use centrical::reduction::{PlateauMean, Record, reduce_rests};
+use centrical::{OnProgress, advance};
+use nalgebra::Vector3;
+
+use crate::error::{Error, Place};
+use crate::experiment::{KnownAttitudes, RecordedRests, RestTable, Session};
+use crate::record::read_records;
+use crate::reduced::{ReducedPlateau, rest_rows};
+
+/// The rests of all records, record by record in the order of time: one search for a tumble and for a session. The colour of the
+/// noise is pooled over all of them. Messages name `file`.
+///
+/// # Errors
+/// If a record is invalid, or there are fewer than two rests: a single one shows nothing.
+pub(crate) fn find_rests(records: &[Record], file: &Path) -> Result<Vec<Vec<PlateauMean>>, Error> {
+    let slices: Vec<_> = records.iter().map(Record::as_slice).collect();
+    let refused = |source| Error::Reduction { file: file.to_owned(), mounting: 1, source: Box::new(source) };
+    let rests = reduce_rests(&slices).map_err(refused)?;
+    let count: usize = rests.iter().map(Vec::len).sum();
+    if count < 2 {
+        let stretches = if count == 1 { "stretch" } else { "stretches" };
+        let found = format!("{count} {stretches} in which the unit rests");
+        let expected = "a unit that is turned, left alone for a second or more, and turned again";
+        return Err(Error::content(file, Place::Whole, found, expected));
+    }
+    Ok(rests)
+}
+
+/// Root mean square of the sizes of rests [m/s^2].
+pub(crate) fn mean_size(means: &[Vector3<f64>]) -> f64 {
+    (means.iter().map(Vector3::norm_squared).sum::<f64>() / means.len() as f64).sqrt()
+}
+
+/// Whether rests of this size [m/s^2] are of gravity, or readings in another unit: no scale factor is as far off its unit.
+pub(crate) fn is_of_gravity(size: f64, gravity: f64) -> bool {
+    /// Most that the size of a rest may differ from gravity, as a factor.
+    const MOST_OFF: f64 = 1.3;
+    (gravity / MOST_OFF..gravity * MOST_OFF).contains(&size)
+}
+
+/// The session with all its rests, and these averaged: those that are to be found in records are found. `progress` is called
+/// with the number of bytes read.
+///
+/// # Errors
+/// [`Error`] naming the record, what was found and what was expected.
+pub(super) fn with_all_rests<'s>(
+    session: &'s Session,
+    progress: OnProgress,
+) -> Result<(Cow<'s, Session>, Vec<ReducedPlateau>), Error> {
+    let mut records = Vec::new();
+    for (_, recorded) in session.rest_records() {
+        records.push(record(session, recorded, progress)?);
+    }
+    let Some(file) = session.rest_records().flat_map(|(_, recorded)| recorded.files.first()).next() else {
+        let averaged = session.rests().map(ReducedPlateau::from).collect();
+        return Ok((Cow::Borrowed(session), averaged));
+    };
+    let mut found = find_rests(&records, file)?.into_iter();
+    let mut rests = Vec::new();
+    let mut tables = session.rest_tables.clone();
+    for table in &mut tables {
+        let of_table: Vec<ReducedPlateau> = match table.record() {
+            Some(_) => found.next().unwrap_or_default().into_iter().map(ReducedPlateau::from).collect(),
+            None => table.means.iter().map(ReducedPlateau::from).collect(),
+        };
+        fill(table, &of_table, session.experiment.site.gravity)?;
+        rests.extend(of_table);
+    }
+    Ok((Cow::Owned(session.clone().with_rest_tables(tables)), rests))
+}
+
+/// A record with its unit turned and left alone, in SI.
+fn record(session: &Session, recorded: &RecordedRests, progress: OnProgress) -> Result<Record, Error> {
+    let files: Vec<&Path> = recorded.files.iter().map(AsRef::as_ref).collect();
+    let record = read_records(&files, &session.columns)?;
+    let bytes = files.iter().filter_map(|file| file.metadata().ok()).map(|metadata| metadata.len()).sum();
+    advance(progress, bytes)?;
+    Ok(record)
+}
+
+/// Fills a table with the rests that were found in its record, each in the nearest of the attitudes that are stated.
+fn fill(table: &mut RestTable, rests: &[ReducedPlateau], gravity: f64) -> Result<(), Error> {
+    let Some(recorded) = table.record() else { return Ok(()) };
+    let means: Vec<Vector3<f64>> = rests.iter().map(|rest| rest.mean).collect();
+    let file = recorded.files.first().map_or(Path::new(""), AsRef::as_ref);
+    let size = mean_size(&means);
+    if !means.is_empty() && !is_of_gravity(size, gravity) {
+        let found = format!("rests of {size:.4} m/s^2 on average");
+        let expected = format!("rests of gravity, {gravity:.5} m/s^2, by the output_unit or the scale in [unit]");
+        return Err(Error::content(file, Place::Whole, found, expected));
+    }
+    let known = recorded.attitudes.as_ref().map(|stated| {
+        let up_b = stated.of_rests(&means, file)?;
+        Ok::<_, Error>(KnownAttitudes { file: stated.file.clone(), uncertainty: stated.uncertainty, up_b })
+    });
+    table.attitudes = known.transpose()?;
+    table.means = rest_rows(rests);
+    Ok(())
+}
