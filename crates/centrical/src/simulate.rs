@@ -4,7 +4,8 @@
 //! [`MeasurementModel::reading_at`], so that the mean over whole revolutions of a perfect sensor's record is the
 //! plateau model's reading (test `mean_of_a_record_is_the_reading`). Ramps, settling, speed errors and durations are
 //! the centrifuge's ([`Machine`]), noise is the unit's ([`Sensor`]), lost and spoilt samples are the
-//! recorder's ([`Recorder`]), and the telemetry has a clock of its own ([`Tachometer`]).
+//! recorder's ([`Recorder`]), and the telemetry has a clock of its own ([`Tachometer`]). Rests in attitudes of their own are one
+//! record of a unit that is turned in between ([`Hand`]).
 //!
 //! Everything follows from the seed: each imperfection of each mounting draws from a generator of its own, so
 //! nothing depends on the number of threads, and switching one imperfection on leaves the others as they were.
@@ -12,25 +13,35 @@
 
 mod draw;
 mod equipment;
+mod markov;
 mod motion;
 mod pulses;
 mod record;
 mod response;
 mod sensor_noise;
 mod telemetry;
+mod tumble;
 
 pub use equipment::{
-    Coloured, Counter, Equipment, Losses, Machine, Recorder, Sensor, SimulationError, Spikes, Tachometer,
+    Bumps, Coloured, Counter, Equipment, Hand, Losses, Machine, Recorder, Sensor, SimulationError, Spikes, Tachometer,
+    Tremor,
 };
 pub use motion::TruePlateau;
 pub use record::Records;
 pub use telemetry::Telemetry;
+pub use tumble::TrueRest;
 
-use crate::model::{ArmMotion, MeasurementModel, Parameters, SetPoint};
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use crate::model::{ArmMotion, Kind, MeasurementModel, Parameter, SetPoint};
 use draw::Draw;
 use motion::Motion;
-use record::Physics;
+use record::{Physics, Signal};
+use response::Response;
 use sensor_noise::Sampling;
+use tumble::{Felt, HandMotion, Held};
 
 /// Readings beyond this [m/s^2] are of a truth in a mistaken unit.
 const LARGEST_READING: f64 = 1e9;
@@ -46,8 +57,17 @@ pub struct Simulation<'a> {
     truth: &'a [f64],
     equipment: &'a Equipment,
     seed: u64,
-    /// Duration of each plateau in place of the machine's [s]; empty for the machine's.
+    /// Duration of each plateau in place of the machine's and the hand's [s]; empty for theirs.
     durations: &'a [f64],
+}
+
+/// Rests of a simulated session in attitudes of their own, in one record.
+#[derive(Debug, Clone)]
+pub struct SimulatedTumble<'a> {
+    simulation: Simulation<'a>,
+    /// The first mounting, which names its random draws.
+    first: usize,
+    motion: HandMotion,
 }
 
 /// One mounting of a simulated session.
@@ -83,7 +103,7 @@ impl<'a> Simulation<'a> {
         Ok(simulation)
     }
 
-    /// The session with a duration for every set point [s] in place of [`Machine::plateau`].
+    /// The session with a duration for every set point [s] in place of [`Machine::plateau`] and [`Hand::rest`].
     ///
     /// # Errors
     /// [`SimulationError`] when their number differs from that of the set points, or one of them is not positive.
@@ -114,15 +134,15 @@ impl<'a> Simulation<'a> {
 
     /// Whether every plateau has samples, and the session not more than can be written.
     fn check_samples(&self) -> Result<(), SimulationError> {
-        let Equipment { machine, recorder, tachometer, .. } = self.equipment;
+        let Equipment { machine, recorder, tachometer, hand, .. } = self.equipment;
         let set_points = self.model.experiment().set_points.len();
-        let duration = |n: usize| self.durations.get(n).copied().unwrap_or(machine.plateau);
-        let shortest = (0..set_points).map(duration).fold(f64::INFINITY, f64::min) * recorder.rate;
+        let shortest = (0..set_points).map(|n| self.duration(n)).fold(f64::INFINITY, f64::min) * recorder.rate;
         if shortest < 2.0 {
             let (of, expected) = ("in a plateau", "two or more");
             return Err(SimulationError::Samples { setting: "recorder.rate", found: shortest, of, expected });
         }
-        let of_plateau = |n: usize| duration(n) + machine.plateau_spread + machine.ramp;
+        let on_the_way = (machine.plateau_spread + machine.ramp).max(hand.rest_spread + hand.turn + hand.turn_spread);
+        let of_plateau = |n: usize| self.duration(n) + on_the_way;
         let all: f64 = (0..set_points).map(of_plateau).sum();
         let (samples, reports) = (all * recorder.rate, all * tachometer.rate);
         if samples > MOST_SAMPLES {
@@ -136,12 +156,45 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
+    /// Least duration of plateau `n` [s].
+    fn duration(&self, n: usize) -> f64 {
+        let experiment = self.model.experiment();
+        let is_on_arm = experiment.is_on_arm(experiment.set_points[n].mounting);
+        let usual = if is_on_arm { self.equipment.machine.plateau } else { self.equipment.hand.rest };
+        self.durations.get(n).copied().unwrap_or(usual)
+    }
+
+    /// The plateaus of a mounting with their least durations [s].
+    fn schedule(&self, mounting: usize) -> Vec<(SetPoint, f64)> {
+        let visited = self.model.experiment().set_points.iter().enumerate().filter(|(_, s)| s.mounting == mounting);
+        visited.map(|(n, set_point)| (*set_point, self.duration(n))).collect()
+    }
+
+    /// The rests in attitudes of their own that are `mountings` of the experiment, as they follow each other in one record.
+    pub fn tumble(&self, mountings: Range<usize>) -> SimulatedTumble<'a> {
+        let (first, change) = (mountings.start, self.bias_change());
+        let held = |mounting: usize| {
+            let physics = Physics::new(self.model, self.truth, mounting);
+            self.schedule(mounting).into_iter().map(move |(_, duration)| {
+                let (force, disturbance) = physics.at_rest();
+                Held { duration, force, disturbance: disturbance + change }
+            })
+        };
+        let rests: Vec<Held> = mountings.flat_map(held).collect();
+        let motion = HandMotion::new(&rests, &self.equipment.hand, self.seed, first);
+        SimulatedTumble { simulation: *self, first, motion }
+    }
+
+    /// Change of each bias from the arm to the rests [m/s^2]: the unit was switched off in between. Zero without an arm.
+    pub fn bias_change(&self) -> Vector3<f64> {
+        let size = if self.model.experiment().has_arm() { self.equipment.hand.bias_change } else { 0.0 };
+        let mut random = Draw::Rests.stream_of(self.seed, 0, CHANGE);
+        Vector3::from_fn(|_, _| size * random.normal())
+    }
+
     /// One mounting, by its index in the experiment.
     pub fn mounting(&self, mounting: usize) -> SimulatedMounting<'a> {
-        let set_points = &self.model.experiment().set_points;
-        let duration = |n: usize| self.durations.get(n).copied().unwrap_or(self.equipment.machine.plateau);
-        let visited = set_points.iter().enumerate().filter(|(_, s)| s.mounting == mounting);
-        let schedule: Vec<(SetPoint, f64)> = visited.map(|(n, s)| (*s, duration(n))).collect();
+        let schedule = self.schedule(mounting);
         let random = Draw::Motion.stream(self.seed, mounting);
         let motion = Motion::new(&schedule, &self.equipment.machine, random);
         SimulatedMounting { simulation: *self, mounting, motion }
@@ -164,7 +217,8 @@ impl SimulatedMounting<'_> {
         let Simulation { model, truth, equipment, seed, .. } = self.simulation;
         let (interval, duration) = (1.0 / equipment.recorder.rate, self.duration());
         let sampling = Sampling { seed, mounting: self.mounting, interval, duration };
-        Records::new(Physics::new(model, truth, self.mounting), &self.motion, equipment, &sampling)
+        let physics = Physics::new(model, truth, self.mounting);
+        Records::new(Signal::Arm { physics, motion: &self.motion, segment: 0 }, equipment, &sampling)
     }
 
     /// The centrifuge's telemetry.
@@ -181,8 +235,45 @@ impl SimulatedMounting<'_> {
     }
 }
 
-/// Unknowns drawn from a normal law of `size` times the typical magnitude of each.
-pub fn draw_truth(parameters: &Parameters, size: f64, seed: u64) -> Vec<f64> {
-    let mut random = Draw::Truth.stream(seed, 0);
-    parameters.iter().map(|p| size * p.typical * random.normal()).collect()
+impl SimulatedTumble<'_> {
+    /// The rests in their order.
+    pub fn rests(&self) -> Vec<TrueRest> {
+        self.motion.rests().collect()
+    }
+
+    /// The record, a stretch of it at a time.
+    pub fn records(&self) -> Records<'_> {
+        let Simulation { model, truth, equipment, seed, .. } = self.simulation;
+        let interval = 1.0 / equipment.recorder.rate;
+        let sampling = Sampling { seed, mounting: self.first, interval, duration: self.motion.duration() };
+        let response = Response::new(model.error_model(), model.parameters().coefficients(truth));
+        let felt = Felt::new(&self.motion, &equipment.hand, interval, seed, self.first);
+        Records::new(Signal::Hand { response, felt }, equipment, &sampling)
+    }
+}
+
+/// Streams of the attitudes of rests.
+const ERRORS: usize = 0;
+const ATTITUDES: usize = 1;
+const CHANGE: usize = 2;
+
+/// Unknowns drawn from a normal law of `size` times the typical magnitude of each; attitudes of rests that are known from one of
+/// their stated uncertainty. Rests leave the draws of the unit and the arm as they are.
+pub fn draw_truth(model: &MeasurementModel, size: f64, seed: u64) -> Vec<f64> {
+    let (mut random, mut of_rests) = (Draw::Truth.stream(seed, 0), Draw::Rests.stream_of(seed, 0, ERRORS));
+    let mut drawn = |parameter: &Parameter| match parameter.kind {
+        Kind::Attitude { position, .. } => {
+            let known = model.experiment().positions[position].attitude_uncertainty;
+            known.unwrap_or(size * parameter.typical) * of_rests.normal()
+        }
+        Kind::CaseTurn(_) => size * parameter.typical * of_rests.normal(),
+        _ => size * parameter.typical * random.normal(),
+    };
+    model.parameters().iter().map(&mut drawn).collect()
+}
+
+/// Directions of up in `count` attitudes, instrument axes: all directions are as likely. `number` counts the tumbles of a session.
+pub fn draw_attitudes(count: usize, seed: u64, number: usize) -> Vec<Vector3<f64>> {
+    let mut random = Draw::Rests.stream_of(seed, number, ATTITUDES);
+    (0..count).map(|_| Vector3::from_fn(|_, _| random.normal()).normalize()).collect()
 }

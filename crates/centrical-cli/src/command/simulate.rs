@@ -36,18 +36,13 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let plan = Session::read(&arguments.plan)?;
     let truth = Truth::read(&arguments.truth, &plan, arguments.seed)?;
-    let bar = progress::mountings("simulating", plan.experiment.mountings.len(), arguments.printing);
-    simulate_session(
-        &plan,
-        &truth,
-        arguments.seed,
-        arguments.format.into(),
-        &arguments.out,
-        &progress::counting(&bar),
-    )?;
+    let plan = &truth.plan;
+    let records = plan.mountings.len() + plan.rest_tables.len();
+    let bar = progress::mountings("simulating", records, arguments.printing);
+    simulate_session(&truth, arguments.seed, arguments.format.into(), &arguments.out, &progress::counting(&bar))?;
     bar.finish_and_clear();
     arguments
         .printing
-        .show(Screen::default, || SimulationReport::of(&plan, arguments.seed, &arguments.out).to_json())?;
+        .show(Screen::default, || SimulationReport::of(plan, arguments.seed, &arguments.out).to_json())?;
     Ok(Outcome::Done)
 }

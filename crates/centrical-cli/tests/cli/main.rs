@@ -26,6 +26,7 @@ mod report;
 mod served;
 mod session;
 mod simulate;
+mod simulated_rests;
 mod speeds;
 mod steadiness;
 mod trust;

@@ -23,8 +23,9 @@ pub fn simulate(
     progress::run(py, &shown, |work| {
         let plan = Session::read(&plan)?;
         let truth = Truth::read(&truth, &plan, seed)?;
-        work.expect(plan.experiment.mountings.len() as u64);
-        simulate_session(&plan, &truth, seed, format, &out, &|count| work.count(count))?;
-        SimulationReport::of(&plan, seed, &out).to_json()
+        let plan = &truth.plan;
+        work.expect((plan.mountings.len() + plan.rest_tables.len()) as u64);
+        simulate_session(&truth, seed, format, &out, &|count| work.count(count))?;
+        SimulationReport::of(plan, seed, &out).to_json()
     })
 }

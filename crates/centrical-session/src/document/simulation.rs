@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::json;
 use super::result::Program;
 use crate::error::Error;
-use crate::experiment::Session;
+use crate::experiment::{RestTable, Session};
 
 /// Name of the schema's present version.
 pub const SIMULATION_SCHEMA: &str = "centrical-simulation/1";
@@ -29,19 +29,24 @@ pub struct SimulationReport {
     pub mountings: usize,
     /// Plateaus of all mountings.
     pub plateaus: usize,
+    /// Rests of all tumbles; absent without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rests: Option<usize>,
 }
 
 impl SimulationReport {
-    /// The session that `plan` describes, simulated into `folder`.
+    /// The session that `plan` describes, simulated into `folder`; each of its rests is planned.
     pub fn of(plan: &Session, seed: u64, folder: &Path) -> Self {
+        let rests: usize = plan.rest_tables.iter().map(RestTable::count).sum();
         Self {
             schema: SIMULATION_SCHEMA,
             program: Program::this(),
             title: plan.title.clone(),
             seed,
             folder: folder.display().to_string(),
-            mountings: plan.experiment.mountings.len(),
-            plateaus: plan.experiment.set_points.len(),
+            mountings: plan.mountings.len(),
+            plateaus: plan.experiment.set_points.len() - rests,
+            rests: (!plan.rest_tables.is_empty()).then_some(rests),
         }
     }
 

@@ -1,7 +1,8 @@
 //! `truth.json`: what was simulated, schema `centrical-truth/1`.
 
-use centrical::SetPoint;
-use centrical::simulate::{Counter, Equipment, Tachometer, TruePlateau};
+use centrical::simulate::{Counter, Equipment, Hand, Tachometer, TruePlateau, TrueRest};
+use centrical::{Kind, Parameter, SetPoint};
+use nalgebra::Vector3;
 use serde_json::{Value, json};
 
 use crate::experiment::Session;
@@ -18,18 +19,32 @@ pub(crate) struct Written {
     pub clock_drift: f64,
 }
 
-/// The truth as JSON text.
-pub(crate) fn truth_json(plan: &Session, truth: &Truth, seed: u64, mountings: &[Written]) -> String {
+/// A session as it was simulated and written.
+#[derive(Debug)]
+pub(crate) struct WrittenSession {
+    pub mountings: Vec<Written>,
+    /// The rests of each `[[tumble]]`.
+    pub tumbles: Vec<Vec<TrueRest>>,
+    /// Change of each bias from the arm to the rests [m/s^2].
+    pub bias_change: Vector3<f64>,
+}
+
+/// The truth as JSON text. Attitudes of rests are with the rests: a calibration counts them from other nominal ones.
+pub(crate) fn truth_json(truth: &Truth, seed: u64, written: &WrittenSession) -> String {
+    let WrittenSession { mountings, tumbles, bias_change } = written;
     let parameters = truth.model.parameters().iter().zip(&truth.values);
-    let parameters: Vec<Value> =
-        parameters.map(|(p, value)| json!({"name": p.name, "value": value, "unit": p.unit})).collect();
+    let is_of_rest = |p: &Parameter| matches!(p.kind, Kind::Attitude { .. });
+    let parameters: Vec<Value> = parameters
+        .filter(|(p, _)| !is_of_rest(p))
+        .map(|(p, value)| json!({"name": p.name, "value": value, "unit": p.unit}))
+        .collect();
     let clocks: Vec<Value> = (1..)
         .zip(mountings)
         .map(|(m, w)| json!({"mounting": m, "offset": w.clock_offset, "drift": w.clock_drift}))
         .collect();
     let plateaus: Vec<Value> =
-        mountings.iter().enumerate().flat_map(|(m, written)| plateaus_of(plan, m, &written.plateaus)).collect();
-    let whole = json!({
+        mountings.iter().enumerate().flat_map(|(m, written)| plateaus_of(&truth.plan, m, &written.plateaus)).collect();
+    let mut whole = json!({
         "schema": SCHEMA,
         "program": {"name": "centrical", "version": env!("CARGO_PKG_VERSION")},
         "seed": seed,
@@ -38,7 +53,27 @@ pub(crate) fn truth_json(plan: &Session, truth: &Truth, seed: u64, mountings: &[
         "telemetry_clocks": clocks,
         "plateaus": plateaus,
     });
+    if !tumbles.is_empty() {
+        whole["settings"]["hand"] = hand(&truth.equipment.hand);
+        whole["rests"] = tumbles.iter().enumerate().flat_map(|(n, rests)| rests_of(n, rests)).collect();
+        whole["bias_change"] = json!(bias_change.as_slice());
+    }
     format!("{whole:#}\n")
+}
+
+/// The rests of `[[tumble]]` number `n` from 0: tumble from 1, index from 0, up in instrument axes.
+fn rests_of(n: usize, rests: &[TrueRest]) -> Vec<Value> {
+    let rest = |(index, TrueRest { window, up_z }): (usize, &TrueRest)| json!({"tumble": n + 1, "index": index, "up": up_z.as_slice(), "window": window});
+    rests.iter().enumerate().map(rest).collect()
+}
+
+/// What turns the unit, under the names that a truth file gives it, SI.
+fn hand(hand: &Hand) -> Value {
+    json!({
+        "rest": hand.rest, "rest_spread": hand.rest_spread, "turn": hand.turn, "turn_spread": hand.turn_spread,
+        "shake": hand.shake, "tremor": {"deviation": hand.tremor.deviation, "time": hand.tremor.time},
+        "bumps": {"probability": hand.bumps.probability, "size": hand.bumps.size}, "bias_change": hand.bias_change,
+    })
 }
 
 /// The plateaus of mounting `m`, named as in `result.json`: mounting from 1, index from 0.
@@ -54,7 +89,7 @@ fn plateaus_of(plan: &Session, m: usize, plateaus: &[TruePlateau]) -> Vec<Value>
 
 /// The equipment under the names that a truth file gives them, SI.
 fn equipment(equipment: &Equipment) -> Value {
-    let Equipment { machine, sensor, recorder, tachometer, counter } = equipment;
+    let Equipment { machine, sensor, recorder, tachometer, counter, .. } = equipment;
     let mut settings = json!({
         "machine": {
             "plateau": machine.plateau, "plateau_spread": machine.plateau_spread, "ramp": machine.ramp,

@@ -248,6 +248,24 @@ impl RestTable {
         }
     }
 
+    /// The rests as a plan of a record has them: in the attitudes that are stated, or else in those that `draw` gives.
+    pub(crate) fn as_planned(&self, draw: impl FnOnce() -> Vec<Vector3<f64>>) -> Self {
+        let Some(RecordedRests { attitudes, .. }) = self.record() else { return self.clone() };
+        let up_b = attitudes.as_ref().map_or_else(draw, |stated| stated.up_b.clone());
+        let known = |stated: &StatedAttitudes| KnownAttitudes {
+            file: stated.file.clone(),
+            uncertainty: stated.uncertainty,
+            up_b: stated.up_b.iter().copied().map(Some).collect(),
+        };
+        let file = attitudes.as_ref().and_then(|stated| stated.file.clone());
+        let durations = vec![None; up_b.len()];
+        Self {
+            attitudes: attitudes.as_ref().map(known),
+            source: RestSource::Plan(PlannedRests { up_b, durations, file }),
+            means: Vec::new(),
+        }
+    }
+
     /// The files of the table.
     pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
         let (rests, attitudes) = match &self.source {

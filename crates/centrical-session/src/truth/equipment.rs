@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
-use centrical::simulate::{Coloured, Counter, Equipment, Losses, Machine, Recorder, Sensor, Spikes, Tachometer};
+use centrical::simulate::{
+    Bumps, Coloured, Counter, Equipment, Hand, Losses, Machine, Recorder, Sensor, Spikes, Tachometer, Tremor,
+};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::error::Error;
 use crate::experiment::{SpeedSource, Speeds, TomlPath};
-use crate::quantity::Dimension::{Acceleration, Frequency, Ratio, Speed, Time};
+use crate::quantity::Dimension::{Acceleration, Angle, Frequency, Ratio, Speed, Time};
 use crate::quantity::{Dimension, Quantity};
 
 /// A quantity that may be left out.
@@ -92,6 +94,36 @@ pub(crate) struct CounterTable {
     plateau_error: Given,
 }
 
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct HandTable {
+    /// Rests where the plan states no attitudes.
+    rests: Option<usize>,
+    rest: Given,
+    rest_spread: Given,
+    turn: Given,
+    turn_spread: Given,
+    shake: Given,
+    tremor: TremorTable,
+    bumps: BumpsTable,
+    bias_change: Given,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct TremorTable {
+    deviation: Given,
+    time: Given,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct BumpsTable {
+    /// Per rest.
+    probability: Given,
+    size: Given,
+}
+
 impl Given {
     /// In SI, or `otherwise`.
     fn or(&self, otherwise: f64, at: &TomlPath, key: &str, dimension: Dimension) -> Result<f64, Error> {
@@ -101,14 +133,16 @@ impl Given {
 
 /// The tables of a truth file.
 pub(crate) type Tables<'a> =
-    (&'a MachineTable, &'a SensorTable, &'a RecorderTable, &'a TachometerTable, &'a CounterTable);
+    (&'a MachineTable, &'a SensorTable, &'a RecorderTable, &'a TachometerTable, &'a CounterTable, &'a HandTable);
 
 /// The equipment as the tables of `file` give it. Plateaus' speeds err as `speeds` states that they are set, and measured
-/// speeds as it states that they are measured, unless the tables say otherwise.
+/// speeds as it states that they are measured, unless the tables say otherwise. So do biases change between the arm and rests, by
+/// `bias_change` [m/s^2].
 pub(crate) fn equipment(
     file: &Path,
-    (machine, sensor, recorder, tachometer, counter): Tables,
+    (machine, sensor, recorder, tachometer, counter, hand): Tables,
     speeds: &Speeds,
+    bias_change: f64,
 ) -> Result<Equipment, Error> {
     // Where the plateaus state measured speeds, the plan's are those.
     let speed_error = if speeds.is_in_files() { speeds.set_uncertainty } else { speeds.expected_uncertainty() };
@@ -130,6 +164,7 @@ pub(crate) fn equipment(
         sensor: sensor.read(&TomlPath::table(file, "sensor"), &Sensor::default())?,
         recorder: recorder.read(&TomlPath::table(file, "recorder"), &Recorder::default())?,
         tachometer: tachometer.read(&TomlPath::table(file, "tachometer"), &usual)?,
+        hand: hand.read(&TomlPath::table(file, "hand"), &Hand { bias_change, ..Hand::default() })?,
     };
     equipment.check().map_err(|source| Error::Simulation { file: file.to_owned(), source })?;
     Ok(equipment)
@@ -206,6 +241,29 @@ impl CounterTable {
             jitter: self.jitter.or(usual.jitter, at, "jitter", Time)?,
             scale_error: self.scale_error.or(usual.scale_error, at, "scale_error", Ratio)?,
             plateau_error: self.plateau_error.or(usual.plateau_error, at, "plateau_error", Ratio)?,
+        })
+    }
+}
+
+impl HandTable {
+    fn read(&self, at: &TomlPath, usual: &Hand) -> Result<Hand, Error> {
+        let Hand { tremor, bumps, .. } = usual;
+        Ok(Hand {
+            rests: self.rests.unwrap_or(usual.rests),
+            rest: self.rest.or(usual.rest, at, "rest", Time)?,
+            rest_spread: self.rest_spread.or(usual.rest_spread, at, "rest_spread", Time)?,
+            turn: self.turn.or(usual.turn, at, "turn", Time)?,
+            turn_spread: self.turn_spread.or(usual.turn_spread, at, "turn_spread", Time)?,
+            shake: self.shake.or(usual.shake, at, "shake", Acceleration)?,
+            tremor: Tremor {
+                deviation: self.tremor.deviation.or(tremor.deviation, at, "tremor.deviation", Angle)?,
+                time: self.tremor.time.or(tremor.time, at, "tremor.time", Time)?,
+            },
+            bumps: Bumps {
+                probability: self.bumps.probability.or(bumps.probability, at, "bumps.probability", Ratio)?,
+                size: self.bumps.size.or(bumps.size, at, "bumps.size", Acceleration)?,
+            },
+            bias_change: self.bias_change.or(usual.bias_change, at, "bias_change", Acceleration)?,
         })
     }
 }

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use centrical::simulate::{Equipment, draw_truth};
+use centrical::simulate::{Equipment, draw_attitudes, draw_truth};
 use centrical::{Extension, MeasurementModel, Parameter};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::equipment::{CounterTable, MachineTable, RecorderTable, SensorTable, TachometerTable, equipment};
+use super::equipment::{CounterTable, HandTable, MachineTable, RecorderTable, SensorTable, TachometerTable, equipment};
 use crate::error::Error;
 use crate::experiment::{Session, TomlPath};
 use crate::quantity::{Dimension, Quantity};
@@ -19,6 +19,8 @@ use crate::settings::{from_toml, read_settings};
 pub struct Truth {
     /// The truth file.
     pub file: PathBuf,
+    /// The plan, each of its rests in an attitude.
+    pub plan: Session,
     /// The measurement model, with the extensions whose parameters the file names.
     pub model: MeasurementModel,
     /// True values in the order of the model's parameters, SI.
@@ -51,6 +53,9 @@ pub(crate) struct TruthForm {
     /// The counter of pulses.
     #[serde(default)]
     counter: CounterTable,
+    /// What turns the unit between rests.
+    #[serde(default)]
+    hand: HandTable,
 }
 
 /// Largest standard deviation of drawn parameters, in typical magnitudes.
@@ -75,11 +80,15 @@ impl Truth {
     pub fn read(file: &Path, plan: &Session, seed: u64) -> Result<Self, Error> {
         let text = read_settings(file, "a truth file")?;
         let form: TruthForm = from_toml(file, &text)?;
-        let (model, sources) = model(plan, &form);
+        let tables = (&form.machine, &form.sensor, &form.recorder, &form.tachometer, &form.counter, &form.hand);
+        let equipment = equipment(file, tables, &plan.speeds, plan.type_b.bias_change)?;
+        let attitudes = |number| draw_attitudes(equipment.hand.rests, seed, number);
+        let tables = plan.rest_tables.iter().enumerate();
+        let rests = tables.map(|(number, table)| table.as_planned(|| attitudes(number))).collect();
+        let plan = plan.clone().with_rest_tables(rests);
+        let (model, sources) = model(&plan, &form);
         let values = values(file, &form, &model, sources, seed)?;
-        let tables = (&form.machine, &form.sensor, &form.recorder, &form.tachometer, &form.counter);
-        let equipment = equipment(file, tables, &plan.speeds)?;
-        Ok(Self { file: file.to_owned(), model, values, equipment })
+        Ok(Self { file: file.to_owned(), plan, model, values, equipment })
     }
 }
 
@@ -110,7 +119,7 @@ fn values(
         let expected = "typical magnitudes, from 0 to a million of them";
         return Err(TomlPath::table(file, "typical").unexpected("size", format!("{size:?}"), expected));
     }
-    let mut values = draw_truth(parameters, size, seed);
+    let mut values = draw_truth(model, size, seed);
     values[sources..].fill(0.0);
     for (name, quantity) in &form.parameters {
         let Some(j) = parameters.find(name) else {

@@ -120,10 +120,10 @@ fn a_simulation_leaves_no_part_of_a_record() {
     fs::write(&truth, "typical = { size = 1.0 }\n[machine]\nplateau = \"2 s\"\nramp = \"1 s\"\n").unwrap();
     let truth = Truth::read(&truth, &plan, 1).unwrap();
     let whole = TempDir::new().unwrap();
-    simulate_session(&plan, &truth, 1, TableFormat::Csv, whole.path(), &unwatched).unwrap();
+    simulate_session(&truth, 1, TableFormat::Csv, whole.path(), &unwatched).unwrap();
     is_stopped(|caller| {
         let out = TempDir::new().unwrap();
-        let simulated = simulate_session(&plan, &truth, 1, TableFormat::Csv, out.path(), &|n: usize| caller.asked(n));
+        let simulated = simulate_session(&truth, 1, TableFormat::Csv, out.path(), &|n: usize| caller.asked(n));
         assert_eq!(simulated.is_ok(), out.path().join("experiment.toml").exists());
         for entry in fs::read_dir(out.path().join("records")).unwrap() {
             let file = entry.unwrap().path();

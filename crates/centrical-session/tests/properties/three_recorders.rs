@@ -34,7 +34,7 @@ impl Laboratory {
             .unwrap();
         let truth = Truth::read(&file, &plan, seed).unwrap();
         let whole = folder.path().join("whole");
-        simulate_session(&plan, &truth, seed, TableFormat::Parquet, &whole, &unwatched).unwrap();
+        simulate_session(&truth, seed, TableFormat::Parquet, &whole, &unwatched).unwrap();
         Self { session: Session::read(&whole).unwrap(), truth: truth.values, folder }
     }
 

@@ -60,7 +60,7 @@ fn compare(name: &str, seed: u64) {
     fs::write(&file, truth_file(&truth)).unwrap();
     let truth = Truth::read(&file, &theirs, seed).unwrap();
     let out = folder.path().join("session");
-    simulate_session(&theirs, &truth, seed, TableFormat::Parquet, &out, &unwatched).unwrap();
+    simulate_session(&truth, seed, TableFormat::Parquet, &out, &unwatched).unwrap();
 
     let ours = reduce(&Session::read(&out).unwrap(), &unwatched).unwrap().1.observations();
     let theirs = reduce(&theirs, &unwatched).unwrap().1.observations();

@@ -33,6 +33,10 @@ pub(super) enum Draw {
     MeasuredSpeed = 12,
     /// Times of the counter's pulses.
     Counter = 13,
+    /// Durations, tremor and bumps of a unit in a hand.
+    Hand = 14,
+    /// Attitudes of rests and their errors, and the change of the bias.
+    Rests = 15,
 }
 
 impl Draw {

@@ -15,6 +15,8 @@ pub struct Equipment {
     pub tachometer: Tachometer,
     /// The counter of revolutions.
     pub counter: Counter,
+    /// What turns the unit between rests in attitudes of their own.
+    pub hand: Hand,
 }
 
 /// The centrifuge's operation and its errors.
@@ -61,6 +63,47 @@ pub struct Coloured {
     pub deviation: f64,
     /// Correlation time [s].
     pub time: f64,
+}
+
+/// What turns a unit from one rest to the next, a hand or a table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hand {
+    /// Number of rests where nothing states their attitudes.
+    pub rests: usize,
+    /// Least duration of a rest that states none [s].
+    pub rest: f64,
+    /// A rest lasts up to this longer, uniformly [s].
+    pub rest_spread: f64,
+    /// Least duration of a turn [s].
+    pub turn: f64,
+    /// A turn lasts up to this longer, uniformly [s].
+    pub turn_spread: f64,
+    /// Standard deviation of the acceleration of the unit in the middle of a turn [m/s^2].
+    pub shake: f64,
+    /// Tremor of the attitude.
+    pub tremor: Tremor,
+    /// Knocks in the midst of rests.
+    pub bumps: Bumps,
+    /// Standard deviation of the change of each bias between the arm and the rests [m/s^2]; of no effect without an arm.
+    pub bias_change: f64,
+}
+
+/// Tremor of an attitude, first-order Gauss-Markov about each instrument axis. The size of gravity stays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tremor {
+    /// Standard deviation [rad].
+    pub deviation: f64,
+    /// Correlation time [s].
+    pub time: f64,
+}
+
+/// Knocks that last 0.05 s.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bumps {
+    /// Probability per rest.
+    pub probability: f64,
+    /// Standard deviation of a reading while it lasts [m/s^2].
+    pub size: f64,
 }
 
 /// The recorder, which loses or spoils some samples.
@@ -173,6 +216,28 @@ impl Default for Counter {
     }
 }
 
+impl Default for Hand {
+    fn default() -> Self {
+        Self {
+            rests: 24,
+            rest: 4.0,
+            rest_spread: 0.0,
+            turn: 1.0,
+            turn_spread: 0.0,
+            shake: 0.0,
+            tremor: Tremor::default(),
+            bumps: Bumps::default(),
+            bias_change: 0.0,
+        }
+    }
+}
+
+impl Default for Tremor {
+    fn default() -> Self {
+        Self { deviation: 0.0, time: 0.3 }
+    }
+}
+
 /// Why a session cannot be simulated.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SimulationError {
@@ -238,7 +303,7 @@ impl Equipment {
     /// # Errors
     /// [`SimulationError::Setting`], the first that is not.
     pub fn check(&self) -> Result<(), SimulationError> {
-        let Self { machine, sensor, recorder, tachometer, counter } = self;
+        let Self { machine, sensor, recorder, tachometer, counter, hand } = self;
         time("machine.plateau", machine.plateau)?;
         magnitude("machine.plateau_spread", machine.plateau_spread)?;
         time("machine.ramp", machine.ramp)?;
@@ -272,7 +337,24 @@ impl Equipment {
         bounded("counter.per_revolution", counter.per_revolution, |n| (1e-3..=1e6).contains(&n), "from 1e-3 to 1e6")?;
         magnitude("counter.jitter", counter.jitter)?;
         error("counter.scale_error", counter.scale_error)?;
-        ratio("counter.plateau_error", counter.plateau_error)
+        ratio("counter.plateau_error", counter.plateau_error)?;
+        hand.check()
+    }
+}
+
+impl Hand {
+    fn check(&self) -> Result<(), SimulationError> {
+        bounded("hand.rests", self.rests as f64, |n| (1.0..=1e4).contains(&n), "a number of rests, 1 to 10000")?;
+        time("hand.rest", self.rest)?;
+        magnitude("hand.rest_spread", self.rest_spread)?;
+        time("hand.turn", self.turn)?;
+        magnitude("hand.turn_spread", self.turn_spread)?;
+        magnitude("hand.shake", self.shake)?;
+        ratio("hand.tremor.deviation", self.tremor.deviation)?;
+        time("hand.tremor.time", self.tremor.time)?;
+        ratio("hand.bumps.probability", self.bumps.probability)?;
+        magnitude("hand.bumps.size", self.bumps.size)?;
+        magnitude("hand.bias_change", self.bias_change)
     }
 }
 

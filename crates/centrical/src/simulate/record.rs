@@ -7,6 +7,7 @@ use super::equipment::Equipment;
 use super::motion::Motion;
 use super::response::Response;
 use super::sensor_noise::{Sampling, SensorNoise};
+use super::tumble::Felt;
 use crate::model::{ArmMotion, MeasurementModel, MountedUnit};
 use crate::reduction::Record;
 
@@ -19,32 +20,27 @@ const ROOM: usize = 8200;
 /// The record of one mounting, a stretch at a time, in memory that does not grow with the record.
 #[derive(Debug, Clone)]
 pub struct Records<'a> {
-    motion: &'a Motion,
+    signal: Signal<'a>,
     /// Samples per second [Hz].
     rate: f64,
-    physics: Physics<'a>,
     noise: [SensorNoise; 3],
     transmission: Transmission,
-    /// Segment of the motion that the last sample was in.
-    segment: usize,
     /// Next sample and number of samples.
     next: u64,
     count: u64,
 }
 
 impl<'a> Records<'a> {
-    pub(super) fn new(physics: Physics<'a>, motion: &'a Motion, equipment: &Equipment, sampling: &Sampling) -> Self {
+    pub(super) fn new(signal: Signal<'a>, equipment: &Equipment, sampling: &Sampling) -> Self {
         let rate = equipment.recorder.rate;
         // Lengths are finite and not negative, and a cast to an integer saturates.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let count = (sampling.duration * rate) as u64 + 1;
         Self {
-            motion,
+            signal,
             rate,
-            physics,
             noise: [0, 1, 2].map(|axis| SensorNoise::new(&equipment.sensor, sampling, axis)),
             transmission: Transmission::new(equipment, sampling),
-            segment: 0,
             next: 0,
             count,
         }
@@ -53,7 +49,35 @@ impl<'a> Records<'a> {
     /// Sample `n`: its time [s] and the sensor's output without noise [m/s^2].
     fn sample(&mut self, n: u64) -> (f64, Vector3<f64>) {
         let t = n as f64 / self.rate;
-        (t, self.physics.reading(&self.motion.at(t, &mut self.segment)))
+        (t, self.signal.at(t))
+    }
+}
+
+/// The sensor's output without noise.
+#[derive(Debug, Clone)]
+pub(super) enum Signal<'a> {
+    /// On the arm.
+    Arm {
+        physics: Physics<'a>,
+        motion: &'a Motion,
+        /// Segment of the motion that the last sample was in, 0 at first.
+        segment: usize,
+    },
+    /// In a hand.
+    Hand { response: Response, felt: Felt<'a> },
+}
+
+impl Signal<'_> {
+    /// At time `t` [s], which ascends from call to call [m/s^2].
+    #[inline]
+    fn at(&mut self, t: f64) -> Vector3<f64> {
+        match self {
+            Self::Arm { physics, motion, segment } => physics.reading(&motion.at(t, segment)),
+            Self::Hand { response, felt } => {
+                let (force, disturbance) = felt.at(t);
+                response.reading(&force) + disturbance
+            }
+        }
     }
 }
 
@@ -97,6 +121,12 @@ impl<'a> Physics<'a> {
         let response = Response::new(model.error_model(), model.parameters().coefficients(truth));
         let rigid = (!model.changes_with_speed()).then(|| model.mounted_unit(mounting, truth, 0.0));
         Self { model, truth, mounting, response, rigid }
+    }
+
+    /// Specific force of the unit at rest, and what is added to its readings [m/s^2].
+    pub fn at_rest(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let unit = self.model.mounted_unit(self.mounting, self.truth, 0.0);
+        (unit.specific_force(&ArmMotion { angle: 0.0, speed: 0.0, acceleration: 0.0 }), unit.disturbance)
     }
 
     #[inline]

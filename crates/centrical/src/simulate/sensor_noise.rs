@@ -4,6 +4,7 @@ use std::f64::consts::{LN_2, PI};
 
 use super::draw::Draw;
 use super::equipment::Sensor;
+use super::markov::Markov;
 use crate::statistics::Random;
 
 /// The sampling of one record.
@@ -21,7 +22,7 @@ pub(super) struct Sampling {
 #[derive(Debug, Clone)]
 pub(super) struct SensorNoise {
     white: White,
-    coloured: GaussMarkov,
+    coloured: Markov,
     flicker: Flicker,
     walk: Walk,
     /// Slope of the bias, per sample [m/s^2].
@@ -35,7 +36,7 @@ impl SensorNoise {
         let coloured = &sensor.coloured;
         Self {
             white: White { deviation: sensor.white, random: random(Draw::White) },
-            coloured: GaussMarkov::new(coloured.deviation, interval / coloured.time, random(Draw::Coloured)),
+            coloured: Markov::new(coloured.deviation, interval / coloured.time, random(Draw::Coloured)),
             flicker: Flicker::new(sensor.bias_instability, duration / interval, random(Draw::Flicker)),
             walk: Walk { step: sensor.random_walk * interval.sqrt(), value: 0.0, random: random(Draw::Walk) },
             slope: sensor.drift * interval * random(Draw::Drift).normal(),
@@ -59,34 +60,6 @@ impl White {
     #[inline]
     fn next(&mut self) -> f64 {
         if self.deviation == 0.0 { 0.0 } else { self.deviation * self.random.normal() }
-    }
-}
-
-/// `x(n) = phi x(n-1) + sqrt(1 - phi^2) deviation e(n)`, `phi = exp(-interval / time)`; stationary from the beginning.
-#[derive(Debug, Clone)]
-struct GaussMarkov {
-    phi: f64,
-    innovation: f64,
-    value: f64,
-    random: Random,
-}
-
-impl GaussMarkov {
-    /// `step`: the interval over the correlation time.
-    fn new(deviation: f64, step: f64, mut random: Random) -> Self {
-        let phi = (-step).exp();
-        let innovation = deviation * (-(-2.0 * step).exp_m1()).sqrt();
-        Self { phi, innovation, value: deviation * random.normal(), random }
-    }
-
-    #[inline]
-    fn next(&mut self) -> f64 {
-        if self.innovation == 0.0 {
-            return 0.0;
-        }
-        let value = self.value;
-        self.value = self.phi * value + self.innovation * self.random.normal();
-        value
     }
 }
 

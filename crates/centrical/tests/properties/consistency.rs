@@ -3,9 +3,7 @@
 use centrical::plan::Normalised;
 use centrical::position::ThirdPosition;
 use centrical::reduction::{NoiseModel, PlateauMean, Record, ReducedMounting, ScheduledPlateau, plateau_means, reduce};
-use centrical::simulate::{
-    Coloured, Counter, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes, Tachometer, draw_truth,
-};
+use centrical::simulate::{Coloured, Equipment, Losses, Machine, Recorder, Sensor, Simulation, Spikes, draw_truth};
 use centrical::{Fit, MeasurementModel, Observation, PairRelation, linear};
 use nalgebra::{DVector, Matrix3};
 
@@ -60,8 +58,7 @@ fn rough() -> Equipment {
             gaps: Losses { probability: 1e-3, length: 1.0 },
             repeats: 1e-4,
         },
-        tachometer: Tachometer::default(),
-        counter: Counter::default(),
+        ..Equipment::default()
     }
 }
 
@@ -130,7 +127,7 @@ fn the_error_of_all_parameters_is_as_stated() {
     assert_eq!(n, 49);
     let (mut stated, mut without_colour, mut residuals) = (0.0, 0.0, 0.0);
     for seed in 0..SESSIONS {
-        let truth = draw_truth(model.parameters(), 1.0, seed);
+        let truth = draw_truth(&model, 1.0, seed);
         let means = means(&model, &truth, seed);
         let fit = calibrated(&model, &means, |mean| mean.covariance);
         let square = weighted_square(&fit, &truth);

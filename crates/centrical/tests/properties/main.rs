@@ -30,6 +30,7 @@ mod rivals;
 mod selection;
 mod simulate;
 mod simulated_noise;
+mod simulated_rests;
 mod speeds;
 mod stated;
 mod steady;

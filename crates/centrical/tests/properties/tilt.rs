@@ -39,7 +39,7 @@ fn means(model: &MeasurementModel, truth: &[f64], seed: u64) -> Vec<PlateauMean>
 /// The comparison for a session whose true tilt has that size [rad]; `change` is done to every term.
 fn comparison(tilt: [f64; 2], seed: u64, change: impl Fn(&mut [Vector3<f64>; 2])) -> TiltComparison {
     let model = kozlov(experiment(ThirdPosition::AxisOneDown, PairRelation::Common, &[1.0, 0.5]));
-    let mut truth = draw_truth(model.parameters(), 1.0, seed);
+    let mut truth = draw_truth(&model, 1.0, seed);
     truth[..2].copy_from_slice(&tilt);
     let means = means(&model, &truth, seed);
     let observation =

@@ -16,3 +16,13 @@ pub(crate) fn pulses_path(mounting: usize, format: TableFormat) -> String {
 pub(crate) fn telemetry_path(mounting: usize, format: TableFormat) -> String {
     format!("telemetry/m{:02}.{}", mounting + 1, format.extension())
 }
+
+/// Path of the record of the rests of `[[tumble]]` number `tumble`, from 0, within the session's folder.
+pub(crate) fn tumble_path(tumble: usize, format: TableFormat) -> String {
+    format!("records/tumble-{}.{}", tumble + 1, format.extension())
+}
+
+/// Name of the table of their attitudes.
+pub(crate) fn attitudes_path(tumble: usize) -> String {
+    format!("attitudes-{}.csv", tumble + 1)
+}

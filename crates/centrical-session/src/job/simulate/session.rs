@@ -4,117 +4,153 @@
 use std::io;
 use std::path::Path;
 
-use centrical::simulate::{SimulatedMounting, Simulation};
-use centrical::{OnProgress, advance};
+use centrical::simulate::{Records, SimulatedMounting, Simulation, TrueRest};
+use centrical::{OnProgress, SetPoint, advance};
 use centrical_table::{ColumnName, TableFormat, claim_folder, create_folder, refuse_inputs, write_table, write_whole};
 use rayon::prelude::*;
 
-use super::files::{pulses_path, record_path, telemetry_path};
+use super::files::{attitudes_path, pulses_path, record_path, telemetry_path, tumble_path};
 use super::session_text::{counts_pulses, with_files};
-use crate::document::{Written, truth_json};
+use crate::document::{Written, WrittenSession, truth_json};
 use crate::error::{Error, Place};
-use crate::experiment::{EXPERIMENT_FILE, OutputUnit, Session};
+use crate::experiment::{EXPERIMENT_FILE, OutputUnit, RestTable, Session, write_attitudes};
 use crate::record::Column;
 use crate::truth::Truth;
 
-/// Simulates the session that `plan` describes and writes it to `folder`. `progress` is called with the number of mountings that
+/// Simulates the session of the plan of `truth` and writes it to `folder`. `progress` is called with the number of records that
 /// were written, from any thread; the files do not depend on the number of threads.
 ///
 /// # Errors
 /// [`Error`] when the folder holds a session already, the plan brings plateaus already averaged or columns without
 /// names, or a file cannot be written; [`Error::Stopped`].
 pub fn simulate_session(
-    plan: &Session,
     truth: &Truth,
     seed: u64,
     format: TableFormat,
     folder: &Path,
     progress: OnProgress<usize>,
 ) -> Result<(), Error> {
+    let plan = &truth.plan;
     let _claim = claim_folder(folder)?;
     let experiment_file = folder.join(EXPERIMENT_FILE);
     if experiment_file.exists() {
         return Err(Error::content(&experiment_file, Place::Whole, "a session", "a folder without one"));
     }
-    if let Some(parameter) = truth.model.of_history(&truth.values) {
-        let found = format!("{}, which acts through what came before a plateau", parameter.name);
-        return Err(Error::content(
-            &truth.file,
-            Place::Whole,
-            found,
-            "effects that act at an instant: it cannot be simulated",
-        ));
-    }
+    refuse_history(truth)?;
     let columns = Headers::of(plan)?;
     let text = with_files(plan, format)?;
-    // Plateaus last as long as the plan says, or as the machine makes them.
-    let stated = plan.durations.iter().map(|duration| duration.unwrap_or(truth.equipment.machine.plateau));
-    let durations: Vec<f64> = stated.collect();
+    let durations = durations(truth);
     let simulation = Simulation::new(&truth.model, &truth.values, &truth.equipment, seed)
         .and_then(|simulation| simulation.with_durations(&durations))
         .map_err(|source| Error::Simulation { file: truth.file.clone(), source })?;
-    let mountings = 0..plan.experiment.mountings.len();
+    let (mountings, tumbles) = (0..plan.mountings.len(), 0..plan.rest_tables.len());
     let mut outputs = vec![experiment_file.clone(), folder.join("truth.json")];
-    outputs.extend(
-        mountings.clone().flat_map(|m| [record_path(m, format), telemetry_path(m, format)]).map(|f| folder.join(f)),
-    );
+    outputs.extend(mountings.clone().map(|m| folder.join(record_path(m, format))));
+    outputs.extend(mountings.clone().map(|m| folder.join(telemetry_path(m, format))));
+    outputs.extend(tumbles.clone().flat_map(|n| [tumble_path(n, format), attitudes_path(n)]).map(|f| folder.join(f)));
     refuse_inputs(&outputs, &[vec![truth.file.as_path()], plan.files()].concat())?;
     create_folder(&folder.join("records"))?;
-    create_folder(&folder.join("telemetry"))?;
+    if !mountings.is_empty() {
+        create_folder(&folder.join("telemetry"))?;
+    }
     if counts_pulses(plan) {
         create_folder(&folder.join("pulses"))?;
     }
-    let mountings = mountings.into_par_iter().map(|m| {
-        let written = write_mounting(plan, &columns, &simulation.mounting(m), format, folder, m, progress)?;
-        advance(progress, 1)?;
-        Ok(written)
-    });
+    let output = Output { plan, headers: &columns, format, folder, progress };
+    let mountings = mountings.into_par_iter().map(|m| output.mounting(&simulation.mounting(m), m));
     let mountings = mountings.collect::<Result<Vec<Written>, Error>>()?;
-    write_whole(&folder.join("truth.json"), truth_json(plan, truth, seed, &mountings).as_bytes())?;
+    let tumbles = tumbles.into_par_iter().map(|n| output.tumble(&simulation, n));
+    let tumbles = tumbles.collect::<Result<Vec<Vec<TrueRest>>, Error>>()?;
+    let written = WrittenSession { mountings, tumbles, bias_change: simulation.bias_change() };
+    write_whole(&folder.join("truth.json"), truth_json(truth, seed, &written).as_bytes())?;
     // Last, so that a folder with an experiment file is a whole session.
     Ok(write_whole(&experiment_file, text.as_bytes())?)
 }
 
-/// The record and the telemetry of one mounting.
-fn write_mounting(
-    plan: &Session,
-    headers: &Headers,
-    mounting: &SimulatedMounting,
-    format: TableFormat,
-    folder: &Path,
-    m: usize,
-    progress: OnProgress<usize>,
-) -> Result<Written, Error> {
-    let [f1, f2, f3] = &plan.columns.f;
-    let columns = [&plan.columns.time, f1, f2, f3];
-    let record = mounting.records().map(|stretch| {
-        advance(progress, 0).map_err(io::Error::other)?;
-        let [f1, f2, f3] = stretch.f_z;
-        let mut rows = raw([stretch.t, f1, f2, f3], columns);
-        if plan.output_unit == OutputUnit::Counts {
-            rows[1..].iter_mut().flatten().for_each(|value| *value = value.round());
-        }
-        Ok(rows)
-    });
-    let written = write_table(&folder.join(record_path(m, format)), format, &headers.record, record);
-    // A caller who stops the work is the reason why the file could not be written.
-    advance(progress, 0)?;
-    written?;
+/// An instant of a record does not know what came before it.
+fn refuse_history(truth: &Truth) -> Result<(), Error> {
+    let Some(parameter) = truth.model.of_history(&truth.values) else { return Ok(()) };
+    let found = format!("{}, which acts through what came before a plateau", parameter.name);
+    let expected = "effects that act at an instant: it cannot be simulated";
+    Err(Error::content(&truth.file, Place::Whole, found, expected))
+}
 
-    let telemetry = mounting.telemetry();
-    let sense = plan.experiment.centrifuge.rotation.sign();
-    let speed = telemetry.omega.iter().map(|omega| sense * omega + 0.0).collect();
-    let rows = raw([telemetry.t, speed], [&plan.columns.telemetry_time, &plan.columns.speed]);
-    write_table(&folder.join(telemetry_path(m, format)), format, &headers.telemetry, std::iter::once(Ok(rows)))?;
-    if counts_pulses(plan) {
-        let rows = raw([mounting.pulses()], [&plan.columns.pulse]);
-        write_table(&folder.join(pulses_path(m, format)), format, &headers.pulses, std::iter::once(Ok(rows)))?;
+/// Plateaus last as long as the plan says, or as the machine makes them; rests as the hand does.
+fn durations(truth: &Truth) -> Vec<f64> {
+    let (experiment, equipment) = (truth.model.experiment(), &truth.equipment);
+    let usual = |set_point: &SetPoint| {
+        if experiment.is_on_arm(set_point.mounting) { equipment.machine.plateau } else { equipment.hand.rest }
+    };
+    let pairs = experiment.set_points.iter().zip(&truth.plan.durations);
+    pairs.map(|(set_point, stated)| stated.unwrap_or_else(|| usual(set_point))).collect()
+}
+
+/// Where the tables of a session go.
+struct Output<'a> {
+    plan: &'a Session,
+    headers: &'a Headers<'a>,
+    format: TableFormat,
+    folder: &'a Path,
+    progress: OnProgress<'a, usize>,
+}
+
+impl Output<'_> {
+    /// The record and the telemetry of one mounting.
+    fn mounting(&self, mounting: &SimulatedMounting, m: usize) -> Result<Written, Error> {
+        let Self { plan, headers, format, folder, progress } = *self;
+        self.record(mounting.records(), &record_path(m, format))?;
+        let telemetry = mounting.telemetry();
+        let sense = plan.experiment.centrifuge.rotation.sign();
+        let speed = telemetry.omega.iter().map(|omega| sense * omega + 0.0).collect();
+        let rows = raw([telemetry.t, speed], [&plan.columns.telemetry_time, &plan.columns.speed]);
+        let file = folder.join(telemetry_path(m, format));
+        write_table(&file, format, &headers.telemetry, std::iter::once(Ok(rows)))?;
+        if counts_pulses(plan) {
+            let rows = raw([mounting.pulses()], [&plan.columns.pulse]);
+            let file = folder.join(pulses_path(m, format));
+            write_table(&file, format, &headers.pulses, std::iter::once(Ok(rows)))?;
+        }
+        advance(progress, 1)?;
+        Ok(Written {
+            plateaus: mounting.plateaus(),
+            clock_offset: telemetry.clock_offset,
+            clock_drift: telemetry.clock_drift,
+        })
     }
-    Ok(Written {
-        plateaus: mounting.plateaus(),
-        clock_offset: telemetry.clock_offset,
-        clock_drift: telemetry.clock_drift,
-    })
+
+    /// The record of the rests of one `[[tumble]]`, and the attitudes that are known of them where a table states them.
+    fn tumble(&self, simulation: &Simulation, n: usize) -> Result<Vec<TrueRest>, Error> {
+        let tables = &self.plan.rest_tables;
+        let first = self.plan.mountings.len() + tables[..n].iter().map(RestTable::count).sum::<usize>();
+        let tumble = simulation.tumble(first..first + tables[n].count());
+        self.record(tumble.records(), &tumble_path(n, self.format))?;
+        if let Some(known) = tables[n].attitudes.as_ref().filter(|known| known.file.is_some()) {
+            let up_b: Vec<_> = known.up_b.iter().copied().filter(Option::is_some).collect();
+            write_attitudes(&self.folder.join(attitudes_path(n)), &up_b)?;
+        }
+        advance(self.progress, 1)?;
+        Ok(tumble.rests())
+    }
+
+    /// A record, as the unit puts it out.
+    fn record(&self, records: Records, path: &str) -> Result<(), Error> {
+        let Self { plan, headers, format, folder, progress } = *self;
+        let [f1, f2, f3] = &plan.columns.f;
+        let columns = [&plan.columns.time, f1, f2, f3];
+        let rows = records.map(|stretch| {
+            advance(progress, 0).map_err(io::Error::other)?;
+            let [f1, f2, f3] = stretch.f_z;
+            let mut rows = raw([stretch.t, f1, f2, f3], columns);
+            if plan.output_unit == OutputUnit::Counts {
+                rows[1..].iter_mut().flatten().for_each(|value| *value = value.round());
+            }
+            Ok(rows)
+        });
+        let written = write_table(&folder.join(path), format, &headers.record, rows);
+        // A caller who stops the work is the reason why the file could not be written.
+        advance(progress, 0)?;
+        Ok(written?)
+    }
 }
 
 /// From SI to the numbers of the file.

@@ -1,14 +1,14 @@
-//! The plan's text as the session's: every mounting names its files; all else stays as it was written.
+//! The plan's text as the session's: every mounting and every tumble names its files; all else stays as it was written.
 
 use centrical_table::TableFormat;
-use toml_edit::{Item, TableLike, Value, value};
+use toml_edit::{DocumentMut, Item, TableLike, Value, value};
 
-use super::files::{pulses_path, record_path, telemetry_path};
+use super::files::{attitudes_path, pulses_path, record_path, telemetry_path, tumble_path};
 use crate::error::{Error, Place};
-use crate::experiment::{Session, SpeedSource};
+use crate::experiment::{RestTable, Session, SpeedSource};
 use crate::settings::{editable, read_settings};
 
-/// The text of the plan with `record` and `telemetry` of every mounting.
+/// The text of the plan with `record` and `telemetry` of every mounting, and `record` of every tumble.
 pub(crate) fn with_files(plan: &Session, format: TableFormat) -> Result<String, Error> {
     let file = &plan.file;
     if plan.plateaus.is_some() {
@@ -17,15 +17,11 @@ pub(crate) fn with_files(plan: &Session, format: TableFormat) -> Result<String, 
     }
     let mut document = editable(file, &read_settings(file, "a plan")?)?;
     let has_pulses = counts_pulses(plan);
-    match document.get_mut("mounting") {
-        Some(Item::ArrayOfTables(tables)) => {
-            (tables.iter_mut().enumerate()).for_each(|(m, t)| name(t, m, format, has_pulses));
-        }
-        Some(Item::Value(Value::Array(list))) => {
-            let tables = list.iter_mut().filter_map(Value::as_inline_table_mut);
-            tables.enumerate().for_each(|(m, table)| name(table, m, format, has_pulses));
-        }
-        _ => {}
+    for (m, table) in tables_of(&mut document, "mounting").into_iter().enumerate() {
+        name(table, m, format, has_pulses);
+    }
+    for (n, (table, rests)) in tables_of(&mut document, "tumble").into_iter().zip(&plan.rest_tables).enumerate() {
+        name_tumble(table, n, format, rests);
     }
     if let Some(columns) = document.get_mut("columns").and_then(Item::as_table_like_mut) {
         // The files that are written begin with their header.
@@ -46,5 +42,30 @@ fn name(table: &mut dyn TableLike, mounting: usize, format: TableFormat, has_pul
     table.insert("telemetry", value(telemetry_path(mounting, format)));
     if has_pulses {
         table.insert("pulses", value(pulses_path(mounting, format)));
+    }
+}
+
+/// The tables of an array, in either form of TOML.
+fn tables_of<'a>(document: &'a mut DocumentMut, name: &str) -> Vec<&'a mut dyn TableLike> {
+    match document.get_mut(name) {
+        Some(Item::ArrayOfTables(tables)) => tables.iter_mut().map(|table| table as &mut dyn TableLike).collect(),
+        Some(Item::Value(Value::Array(list))) => {
+            let tables = list.iter_mut().filter_map(Value::as_inline_table_mut);
+            tables.map(|table| table as &mut dyn TableLike).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The rests that were planned are now in a record, in the attitudes that are known of them.
+fn name_tumble(table: &mut dyn TableLike, tumble: usize, format: TableFormat, rests: &RestTable) {
+    for key in ["rests", "duration"] {
+        table.remove(key);
+    }
+    table.insert("record", value(tumble_path(tumble, format)));
+    match &rests.attitudes {
+        None => drop(table.remove("attitudes")),
+        Some(known) if known.file.is_some() => drop(table.insert("attitudes", value(attitudes_path(tumble)))),
+        Some(_) => {}
     }
 }

@@ -1,0 +1,132 @@
+//! `simulate` of sessions with rests in attitudes of their own: calibrating them gives the truth back.
+
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use nalgebra::{DMatrix, DVector};
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::program;
+use crate::session::example;
+
+const TRUTH: &str = r#"
+typical = { size = 1.0 }
+[sensor]
+white = "0.3 mg"
+coloured = { deviation = "0.05 mg", time = "0.2 s" }
+[hand]
+rest = "5 s"
+rest_spread = "3 s"
+turn_spread = "1 s"
+shake = "1 m/s^2"
+tremor = { deviation = "1 mrad" }
+"#;
+
+/// A plan of rests alone.
+const ALONE: &str = r#"
+[session]
+title = "rests"
+date = ""
+[site]
+gravity = "9.81523 m/s^2"
+[unit]
+serial = ""
+output_unit = "counts"
+counts = { scale = [4e5, 4.1e5, -4.2e5], bias = [0, 100.5, -3] }
+[model]
+error_model = ["df_1", "df_2", "df_3", "G0_11", "G0_21", "G0_22", "G0_31", "G0_32", "G0_33"]
+"#;
+
+fn done(run: &Output) {
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+}
+
+fn json(file: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()
+}
+
+fn simulated(folder: &TempDir, plan: &str, seed: &str, out: &str) -> Value {
+    let file = folder.path().join("plan.toml");
+    fs::write(&file, plan).unwrap();
+    fs::write(folder.path().join("truth.toml"), TRUTH).unwrap();
+    let mut command = program::centrical();
+    command.arg("simulate").arg(file).arg("--truth").arg(folder.path().join("truth.toml"));
+    let run = command.args(["--seed", seed, "--json", "--out"]).arg(folder.path().join(out)).output().unwrap();
+    done(&run);
+    serde_json::from_slice(&run.stdout).unwrap()
+}
+
+/// Squared error of the parameters of the truth over their covariance, and their number.
+fn squared_error(session: &Path) -> (f64, usize) {
+    let run = program::centrical().args(["calibrate", "--json"]).arg(session).output().unwrap();
+    done(&run);
+    let (result, truth): (Value, _) = (serde_json::from_slice(&run.stdout).unwrap(), json(&session.join("truth.json")));
+    let found = result["parameters"].as_array().unwrap();
+    let place = |name: &Value| found.iter().position(|p| p["name"] == *name).unwrap();
+    let truth: Vec<(usize, f64)> = truth["parameters"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|p| (place(&p["name"]), p["value"].as_f64().unwrap()))
+        .collect();
+    let uncertainty = |j: usize| found[j]["standard_uncertainty"].as_f64().unwrap();
+    let error = |(j, truth): &(usize, f64)| (found[*j]["value"].as_f64().unwrap() - truth) / uncertainty(*j);
+    let error = DVector::from_iterator(truth.len(), truth.iter().map(error));
+    let correlation = DMatrix::from_fn(truth.len(), truth.len(), |a, b| {
+        let (i, j) = (truth[a].0, truth[b].0);
+        result["covariance"][i][j].as_f64().unwrap() / (uncertainty(i) * uncertainty(j))
+    });
+    (correlation.cholesky().unwrap().l().solve_lower_triangular(&error).unwrap().norm_squared(), truth.len())
+}
+
+/// Rests alone in drawn attitudes, and in known ones: of a cube, of a table beside the plan.
+#[test]
+fn rests_alone_give_the_truth_back() {
+    let folder = TempDir::new().unwrap();
+    let table = "up_1,up_2,up_3\n0,0,1\n0,0,-1\n0,2,0\n0,-1,0\n1,0,0\n-1,0,0\n0,1,1\n1,0,1\n1,1,0\n1,-1,0\n";
+    fs::write(folder.path().join("where.csv"), table).unwrap();
+    let cases = [
+        ("record = \"not-there.csv\"\n", 24, 9, "record = \"records/tumble-1.csv\""),
+        ("attitudes = \"cube\"\nduration = \"6 s\"\n", 26, 9, "record ="),
+        ("attitudes = \"cube\"\nattitude_uncertainty = \"1 mrad\"\n", 26, 12, "attitudes = \"cube\""),
+        ("attitudes = \"where.csv\"\nattitude_uncertainty = \"1 mrad\"\n", 10, 12, "attitudes = \"attitudes-1.csv\""),
+    ];
+    for (n, (tumble, rests, parameters, named)) in cases.into_iter().enumerate() {
+        let out = format!("session{n}");
+        let report = simulated(&folder, &format!("{ALONE}[[tumble]]\n{tumble}"), "4", &out);
+        assert_eq!((&report["rests"], &report["mountings"]), (&rests.into(), &0.into()));
+        let session = folder.path().join(&out);
+        let text = fs::read_to_string(session.join("experiment.toml")).unwrap();
+        assert!(text.contains(named) && !text.contains("duration"), "{text}");
+        assert_eq!(json(&session.join("truth.json"))["rests"].as_array().unwrap().len(), rests);
+        let (squared, count) = squared_error(&session);
+        assert_eq!(count, parameters, "{tumble}");
+        // The 99.99 % band of chi^2 with 9 and with 12 degrees of freedom.
+        assert!((0.4..39.0).contains(&squared), "{tumble}: {squared}");
+    }
+}
+
+/// An arm with rests after a switch-off: the arm's records are those of the plan without rests, and the calibration knows of the change
+/// of the bias that the truth tells.
+#[test]
+fn an_arm_with_rests_gives_the_truth_back() {
+    let folder = TempDir::new().unwrap();
+    let plan = fs::read_to_string(example().join("experiment.toml")).unwrap();
+    let tumble = "[uncertainty]\nbias_change = \"2 mg\"\n[[tumble]]\nrecord = \"tumble.csv\"\n";
+    simulated(&folder, &plan, "9", "arm");
+    let report = simulated(&folder, &format!("{plan}\n{tumble}"), "9", "both");
+    assert_eq!((&report["rests"], &report["mountings"], &report["plateaus"]), (&24.into(), &12.into(), &108.into()));
+    let [arm, both] = ["arm", "both"].map(|out| folder.path().join(out));
+    for record in ["records/m03.csv", "telemetry/m12.csv"] {
+        assert!(fs::read(arm.join(record)).unwrap() == fs::read(both.join(record)).unwrap(), "{record}");
+    }
+    let truth = json(&both.join("truth.json"));
+    let change: Vec<f64> = truth["bias_change"].as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).collect();
+    assert!(change.iter().all(|change| *change != 0.0 && change.abs() < 4.0 * 2e-3 * 9.80665), "{change:?}");
+    let (squared, count) = squared_error(&both);
+    assert_eq!(count, 49);
+    // The 99.9 % band of chi^2 with 49 degrees of freedom.
+    assert!((20.0..86.0).contains(&squared), "{squared}");
+}
