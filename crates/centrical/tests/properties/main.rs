@@ -25,6 +25,7 @@ mod prior;
 mod recursive;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod reduction;
+mod repeated_rests;
 mod rests;
 mod rivals;
 mod selection;

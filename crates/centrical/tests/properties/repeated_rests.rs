@@ -1,0 +1,67 @@
+//! Calibrations with rests in attitudes of their own, repeated: each run draws the attitudes, the change of the bias and gravity anew.
+
+use centrical::observability::cube_directions;
+use centrical::position::ThirdPosition::AxisOneUp;
+use centrical::uncertainty::{Method, MonteCarlo, Settings, monte_carlo};
+use centrical::{Data, Experiment, MeasurementModel, Mounting, PairRelation, Position, SetPoint, TypeB, unwatched};
+use nalgebra::Vector3;
+
+use crate::common::{Random, experiment, kozlov, observations, truth};
+
+const RUNS: usize = 400;
+
+/// The usual arm, or none, with rests of a cube; attitudes are known to `uncertainty` [rad] or free.
+fn with_cube(has_arm: bool, uncertainty: Option<f64>) -> Experiment {
+    let mut experiment = experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]);
+    if !has_arm {
+        experiment.positions.clear();
+        experiment.mountings.clear();
+        experiment.set_points.clear();
+    }
+    for (n, up) in cube_directions().iter().enumerate() {
+        let id = format!("r{}", n + 1);
+        experiment.set_points.push(SetPoint::at_rest(experiment.mountings.len(), 0.0));
+        experiment.mountings.push(Mounting { position: experiment.positions.len(), arm_y: Vector3::zeros() });
+        experiment.positions.push(match uncertainty {
+            Some(uncertainty) => Position::known(id, up, uncertainty),
+            None => Position::free(id, up),
+        });
+    }
+    experiment
+}
+
+fn repeated(model: &MeasurementModel) -> MonteCarlo {
+    let x = truth(model, 1.0, &mut Random::new(5));
+    let data = Data::new(model, observations(model, &x)).unwrap();
+    let settings = Settings { runs: RUNS, seed: 8, coverage: 0.95, method: Method::Exact };
+    monte_carlo(&data, &x, &settings, &unwatched).unwrap()
+}
+
+/// The squared error over the covariance is that of the number of unknowns, and so is chi^2, each within its sampling error: free
+/// attitudes and known ones, with an arm after a switch-off and alone.
+#[test]
+fn errors_of_repeated_rests_are_as_large_as_stated() {
+    for has_arm in [false, true] {
+        for uncertainty in [None, Some(1e-3)] {
+            let stated = TypeB { gravity: 1e-4, bias_change: 2e-3, ..TypeB::default() };
+            let mut model = kozlov(with_cube(has_arm, uncertainty));
+            if !has_arm {
+                // Of rests alone squares of the reading look like biases.
+                let mut error_model = model.error_model().clone();
+                error_model.terms.retain(|term| term.monomial.degree() < 2);
+                model = MeasurementModel::new(model.experiment().clone(), error_model, &[]);
+            }
+            let case = format!("arm {has_arm}, attitudes {uncertainty:?}");
+            let monte_carlo = repeated(&model.with_stated(stated));
+            assert_eq!((monte_carlo.runs, monte_carlo.failures), (RUNS, 0), "{case}");
+            for square in [&monte_carlo.weighted_square, &monte_carlo.chi_squared] {
+                let degrees = square.degrees_of_freedom as f64;
+                let error = (square.mean - degrees) / (2.0 * degrees / RUNS as f64).sqrt();
+                // Eight figures: beyond 4.5 standard deviations once in twenty thousand; Kolmogorov's distance the same.
+                assert!(error.abs() < 4.5, "{case}: {} of {degrees}", square.mean);
+                let distance = square.distance_from_chi_squared();
+                assert!(distance < 2.3 / (RUNS as f64).sqrt(), "{case}: {distance} from chi^2");
+            }
+        }
+    }
+}
