@@ -10,6 +10,7 @@ use std::time::Duration;
 use centrical_report::write_history_plot;
 use centrical_session::{
     self as session, Error, Following, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder, refuse_inputs,
+    with_rests_there,
 };
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -155,14 +156,12 @@ fn follow(
     stop: &AtomicBool,
     events: &Sender<Event>,
 ) -> Result<Option<Box<session::CalibrationResult>>, Error> {
-    let session = Session::read(session)?.on_arm();
+    let session = Session::read_before_rests(session)?;
     let _claim = claim_folder(&request.out)?;
     let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "result.json"];
     refuse_inputs(&outputs.map(|name| request.out.join(name)), &session.files())?;
-    let model = session.model()?;
-    let mut following = Following::resume(request, &session, &model)?;
     let mut reported = Ok(());
-    let end = following.run(stop, &mut |event| {
+    let mut hear = |event: WatchEvent| {
         let has_gone = match message(&event) {
             Ok(event) => event.is_some_and(|event| events.send(event).is_err()),
             Err(error) => {
@@ -173,8 +172,16 @@ fn follow(
         if has_gone {
             stop.store(true, Ordering::Relaxed);
         }
-    })?;
-    write_history_plot(&model, &request.out)?;
+    };
+    let end = loop {
+        let session = with_rests_there(&session, request.quiet)?;
+        let model = session.model()?;
+        let end = Following::resume(request, &session, &model)?.run(stop, &mut hear)?;
+        write_history_plot(&model, &request.out)?;
+        if let Some(end) = end {
+            break end;
+        }
+    };
     reported?;
     Ok(match end {
         WatchEnd::Stopped { .. } => None,

@@ -83,7 +83,7 @@ pub use job::{
     WatchEnd, WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
     calibrate_series, calibrate_without, collect_results, compare_results, compensate, compensate_record, init,
     list_store, noise_of, plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs, select_model,
-    settings_schema, simulate_session, subject, tumble, write_reduced,
+    settings_schema, simulate_session, subject, tumble, with_rests_there, write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,

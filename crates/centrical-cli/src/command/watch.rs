@@ -4,9 +4,10 @@ use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use centrical_report::{Screen, counted, states_text, terminal_table, verdict_text, watch_table, write_history_plot};
+use centrical_report::{counted, states_text, terminal_table, verdict_text, watch_table, write_history_plot};
 use centrical_session::{
     Error, Following, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder, refuse_inputs,
+    with_rests_there,
 };
 
 #[cfg(feature = "serve")]
@@ -68,13 +69,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let session = Session::read(&arguments.session)?;
-    if !session.rest_tables.is_empty() {
-        let mut screen = Screen::default();
-        screen.say(0, "The rests of [[tumble]] are not watched: `centrical calibrate` adds them.");
-        remark(&screen);
-    }
-    let session = session.on_arm();
+    let session = Session::read_before_rests(&arguments.session)?;
     #[cfg(feature = "serve")]
     let mut server = arguments.serving.bind()?;
     #[cfg(feature = "serve")]
@@ -84,7 +79,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let _claim = claim_folder(&arguments.out)?;
     let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "watch-live.json", "result.json"];
     refuse_inputs(&outputs.map(|name| arguments.out.join(name)), &session.files())?;
-    let model = session.model()?;
     let request = WatchRequest {
         out: arguments.out.clone(),
         false_alarm: arguments.false_alarm,
@@ -97,21 +91,32 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         once: arguments.once,
         live,
     };
-    let mut following = Following::resume(&request, &session, &model)?;
-    let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
-    remark(&states_text(&model, &order));
     let alarm = Alarm::new(arguments.on_alarm.as_deref(), &session.file);
     #[cfg(feature = "serve")]
-    let url = server.take().map(|server| serve(server, Watched::new(&arguments.out))).transpose()?;
+    let mut url = None;
     let mut shown = Ok(());
-    let end = following.run(asked_to_end(), &mut |event| {
-        alarm.hear(&event);
-        let outcome = if arguments.json { show_line(&event) } else { show(&event, &arguments.target) };
-        if shown.is_ok() {
-            shown = outcome;
+    let end = loop {
+        let session = with_rests_there(&session, request.quiet)?;
+        let model = session.model()?;
+        let mut following = Following::resume(&request, &session, &model)?;
+        let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
+        remark(&states_text(&model, &order));
+        #[cfg(feature = "serve")]
+        if let Some(server) = server.take() {
+            url = Some(serve(server, Watched::new(&arguments.out))?);
         }
-    })?;
-    write_history_plot(&model, &arguments.out)?;
+        let end = following.run(asked_to_end(), &mut |event| {
+            alarm.hear(&event);
+            let outcome = if arguments.json { show_line(&event) } else { show(&event, &arguments.target) };
+            if shown.is_ok() {
+                shown = outcome;
+            }
+        })?;
+        write_history_plot(&model, &arguments.out)?;
+        if let Some(end) = end {
+            break end;
+        }
+    };
     shown?;
     match end {
         WatchEnd::Stopped { plateaus } => {

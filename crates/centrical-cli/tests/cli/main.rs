@@ -32,5 +32,6 @@ mod steadiness;
 mod trust;
 mod tumble;
 mod watch;
+mod watched_rests;
 mod way_in;
 mod width;

@@ -164,6 +164,20 @@ fn a_watch_killed_anywhere_ends_with_the_same_bytes() {
     }
 }
 
+/// What is stated in `[uncertainty]` is among the unknowns of a watch: it goes on from its own state.
+#[test]
+fn a_watch_with_stated_uncertainties_resumes() {
+    let copy = averaged();
+    copy.edit("experiment.toml", |text| format!("{text}\n[uncertainty]\ngravity = \"1e-5 m/s^2\"\n"));
+    let arguments = ["watch", copy.session().to_str().unwrap(), "--once"].map(str::to_owned);
+    let state = || fs::read(copy.out().join("watch.json")).unwrap();
+    let run = || copy.run(&arguments.each_ref().map(String::as_str)).status.code();
+    assert_eq!(run(), Some(0));
+    let before = state();
+    assert_eq!(run(), Some(0));
+    assert!(before == state() && lines(&copy.out()) == 108);
+}
+
 /// Starts a watch and kills it when it has written a plateau more, and `later`; whether it had ended by then.
 fn killed_after_a_plateau(copy: &Copy, later: Duration) -> bool {
     let before = lines(&copy.out());

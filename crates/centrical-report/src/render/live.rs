@@ -367,9 +367,11 @@ impl Panel<'_> {
 
     /// `4:3, 189.2 rpm`, without markup.
     fn label(&self, plateau: &PlateauLabel) -> String {
-        let PlateauLabel { mounting, plateau, omega, angle, .. } = *plateau;
+        let PlateauLabel { mounting, plateau, omega, angle, rest, .. } = *plateau;
         let words = self.words;
-        if omega == 0.0 {
+        if let Some(rest) = rest {
+            format!("{} r{rest}", words.rest)
+        } else if omega == 0.0 {
             format!("{mounting}:{plateau}, {} {}°", words.rest_at, self.language.fixed(angle.to_degrees(), 0))
         } else {
             format!("{mounting}:{plateau}, {} {}", self.language.fixed(omega * RPM, 1), words.rpm)

@@ -68,11 +68,13 @@ pub fn states_text(model: &MeasurementModel, order: &[usize]) -> Screen {
     screen
 }
 
-/// `4:3, 189.2 rpm`.
+/// `4:3, 189.2 rpm`; `rest r7` in an attitude of its own.
 fn label(session: &Session, set_point: usize) -> String {
     let PlateauName { mounting, plateau } = PlateauName::of(session, set_point);
     let set = &session.experiment.set_points[set_point];
-    if set.is_rest() {
+    if let Some(rest) = session.rest_of(set.mounting) {
+        format!("rest r{rest}")
+    } else if set.is_rest() {
         format!("{mounting}:{plateau}, rest at {:.0} deg", set.angle.to_degrees())
     } else {
         format!("{mounting}:{plateau}, {:.1} rpm", set.omega * 30.0 / PI)

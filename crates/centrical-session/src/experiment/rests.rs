@@ -240,6 +240,11 @@ impl RestTable {
         matches!(self.source, RestSource::Plan(_))
     }
 
+    /// Whether its rests are measured, and not read or found yet.
+    pub fn is_awaited(&self) -> bool {
+        !self.is_planned() && self.means.is_empty()
+    }
+
     /// What is said of a record in which the rests are to be found.
     pub fn record(&self) -> Option<&RecordedRests> {
         match &self.source {

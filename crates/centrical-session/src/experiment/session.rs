@@ -98,6 +98,15 @@ impl Session {
         Self::parse(&read_text(&file)?, &file)
     }
 
+    /// [`Session::read`] of a session whose tables of rests need not be there yet: they are not read.
+    ///
+    /// # Errors
+    /// As [`Session::read`].
+    pub fn read_before_rests(path: &Path) -> Result<Self, Error> {
+        let file = if path.is_dir() { path.join(EXPERIMENT_FILE) } else { path.to_owned() };
+        Self::parse_with(&read_text(&file)?, &file, |_| Ok(()))
+    }
+
     /// The session of an experiment file with this `text`. Messages name `file`, which need not exist, and paths start from its
     /// folder.
     ///
@@ -130,7 +139,7 @@ impl Session {
         session.refuse_rests_alone()?;
         session.add_rests();
         // Whatever is wrong with the priors is said before any record is read, unless they may be of rests that are to be found.
-        if session.rest_records().next().is_none() {
+        if !session.rest_tables.iter().any(RestTable::is_awaited) {
             session.model()?;
         }
         Ok(session)
@@ -176,6 +185,11 @@ impl Session {
         self.rest_tables.iter().flat_map(|table| &table.means)
     }
 
+    /// Number from 1 of the rest in an attitude of its own that is a mounting; `None` on the arm.
+    pub fn rest_of(&self, mounting: usize) -> Option<usize> {
+        (mounting + 1).checked_sub(self.mountings.len()).filter(|rest| *rest > 0)
+    }
+
     /// Takes away what [`Session::add_rests`] added.
     fn forget_rests(&mut self) {
         let on_arm = self.experiment.mountings_on_arm().count();
@@ -200,7 +214,7 @@ impl Session {
 
     /// On an arm plateaus at rest alone show nothing of a centrifuge.
     fn refuse_rests_alone(&self) -> Result<(), Error> {
-        let has_rests = |table: &RestTable| table.count() > 0 || table.record().is_some();
+        let has_rests = |table: &RestTable| table.count() > 0 || table.is_awaited();
         let is_of_rests = !self.experiment.has_arm() && self.rest_tables.iter().any(has_rests);
         if !is_of_rests && self.experiment.set_points.iter().all(SetPoint::is_rest) {
             let at = TomlPath::entry(&self.file, "mounting", 0);

@@ -15,8 +15,7 @@ use rayon::prelude::*;
 
 pub use self::in_memory::{Recorded, reduce_recorded};
 use self::pooling::pooled;
-use self::rests::with_all_rests;
-pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size};
+pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size, with_all_rests};
 use self::scheduler::Scheduler;
 use crate::error::Error;
 use crate::experiment::Session;

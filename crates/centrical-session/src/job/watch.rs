@@ -5,8 +5,10 @@ mod board;
 mod following;
 mod growth;
 mod progress;
+mod rests;
 
 pub use self::arrivals::Watch;
 pub use self::board::LiveRequest;
 pub use self::following::{Following, WatchEnd, WatchEvent, WatchRequest};
 pub use self::progress::WatchProgress;
+pub use self::rests::with_rests_there;

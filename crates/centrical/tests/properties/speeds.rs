@@ -35,7 +35,7 @@ fn measured(
     seed: u64,
     is_counted: bool,
 ) -> Vec<(f64, f64, Option<MeasuredSpeed>)> {
-    let values = draw_truth(&model, 1.0, seed);
+    let values = draw_truth(model, 1.0, seed);
     let simulation = Simulation::new(model, &values, equipment, seed).unwrap();
     let (mut set, mut of_truth, mut readings) = (Vec::new(), Vec::new(), Vec::new());
     for m in 0..mountings {

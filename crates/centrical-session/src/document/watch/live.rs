@@ -100,6 +100,9 @@ pub struct PlateauLabel {
     pub omega: f64,
     /// Carousel angle at rest [rad].
     pub angle: f64,
+    /// Number of a rest in an attitude of its own, from 1; absent on the arm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest: Option<usize>,
 }
 
 impl PlateauLabel {
@@ -107,7 +110,7 @@ impl PlateauLabel {
     pub fn of(session: &Session, set_point: usize) -> Self {
         let PlateauName { mounting, plateau } = PlateauName::of(session, set_point);
         let SetPoint { omega, angle, .. } = session.experiment.set_points[set_point];
-        Self { set_point, mounting, plateau, omega, angle }
+        Self { set_point, mounting, plateau, omega, angle, rest: session.rest_of(mounting - 1) }
     }
 }
 

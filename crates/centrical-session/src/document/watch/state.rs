@@ -25,7 +25,7 @@ pub struct WatchState {
     schema: String,
     /// The experiment file that the state belongs to.
     experiment: Input,
-    /// Point of linearisation reached, SI, in the order of the unknowns.
+    /// Point of linearisation reached, SI, in the order of the unknowns; empty where it is not known.
     pub point: Vec<f64>,
     /// Point of linearisation of the plateaus before the last, where it is another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -74,7 +74,8 @@ impl WatchState {
         Ok(Self { schema: SCHEMA.to_owned(), experiment, point: Vec::new(), reference: None, plateaus: Vec::new() })
     }
 
-    /// The state in `file`, or the one before the first plateau if there is no such file.
+    /// The state in `file`, or the one before the first plateau if there is no such file. `unknowns` are those of a fit: parameters and
+    /// influences.
     ///
     /// # Errors
     /// [`Error`] when the file is of another form or belongs to another experiment file.
@@ -85,7 +86,7 @@ impl WatchState {
         }
         let expected = "the state of a watched session";
         let text = read_result(file, expected)?;
-        let state: Self = from_json(file, 1, &text, expected)?;
+        let mut state: Self = from_json(file, 1, &text, expected)?;
         let refuse = |found: String, expected: &str| Err(Error::content(file, Place::Whole, found, expected));
         let other = state.schema != fresh.schema || state.experiment != fresh.experiment;
         let count = session.experiment.set_points.len();
@@ -95,10 +96,13 @@ impl WatchState {
             return Err(Error::content(file, Place::Whole, found, expected));
         }
         // What the program writes is always so; what another hand wrote is blamed here, not where it is used.
-        for point in [&state.point].into_iter().chain(&state.reference) {
-            if !point.is_empty() && point.len() != unknowns {
-                return refuse(format!("a point of {} unknowns", point.len()), &format!("one of {unknowns}"));
+        let lengths: Vec<usize> = [&state.point].into_iter().chain(&state.reference).map(Vec::len).collect();
+        if let Some(length) = lengths.into_iter().find(|length| *length > 0 && *length != unknowns) {
+            if session.rest_tables.is_empty() {
+                return refuse(format!("a point of {length} unknowns"), &format!("one of {unknowns}"));
             }
+            // Rests have joined since: their unknowns have no place in it, and the next plateau brings another point.
+            (state.point, state.reference) = (Vec::new(), None);
         }
         let mut come = vec![false; count];
         for plateau in &state.plateaus {

@@ -48,7 +48,7 @@ pub(crate) fn is_of_gravity(size: f64, gravity: f64) -> bool {
 ///
 /// # Errors
 /// [`Error`] naming the record, what was found and what was expected.
-pub(super) fn with_all_rests<'s>(
+pub(crate) fn with_all_rests<'s>(
     session: &'s Session,
     progress: OnProgress,
 ) -> Result<(Cow<'s, Session>, Vec<ReducedPlateau>), Error> {
@@ -56,7 +56,7 @@ pub(super) fn with_all_rests<'s>(
     for (_, recorded) in session.rest_records() {
         records.push(record(session, recorded, progress)?);
     }
-    let Some(file) = session.rest_records().flat_map(|(_, recorded)| recorded.files.first()).next() else {
+    let Some(file) = session.rest_records().find_map(|(_, recorded)| recorded.files.first()) else {
         let averaged = session.rests().map(ReducedPlateau::from).collect();
         return Ok((Cow::Borrowed(session), averaged));
     };

@@ -125,7 +125,7 @@ impl Output<'_> {
         let tumble = simulation.tumble(first..first + tables[n].count());
         self.record(tumble.records(), &tumble_path(n, self.format))?;
         if let Some(known) = tables[n].attitudes.as_ref().filter(|known| known.file.is_some()) {
-            let up_b: Vec<_> = known.up_b.iter().copied().filter(Option::is_some).collect();
+            let up_b: Vec<_> = known.up_b.iter().copied().flatten().map(Some).collect();
             write_attitudes(&self.folder.join(attitudes_path(n)), &up_b)?;
         }
         advance(self.progress, 1)?;

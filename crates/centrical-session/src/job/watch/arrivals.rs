@@ -12,6 +12,7 @@ use centrical::reduction::{
 use centrical::{Observation, SetPoint, linear};
 
 use super::growth::Growth;
+use super::rests;
 use crate::error::Error;
 use crate::experiment::{PlateauMean, Session, SpeedSource};
 use crate::record::{read_growing_pulses, read_growing_records, read_growing_telemetry};
@@ -25,6 +26,8 @@ use crate::record::{read_growing_pulses, read_growing_records, read_growing_tele
 pub struct Watch<'s> {
     session: &'s Session,
     quiet: Duration,
+    /// Whether the rests in attitudes of their own have come.
+    has_rests: bool,
     /// Mountings of which every plateau has come.
     finished: Vec<ReducedMounting>,
     /// Measured speeds of the plateaus that have come, by set point.
@@ -55,6 +58,7 @@ impl<'s> Watch<'s> {
         Self {
             session,
             quiet,
+            has_rests: false,
             finished: Vec::new(),
             speeds: BTreeMap::new(),
             come: 0,
@@ -64,8 +68,13 @@ impl<'s> Watch<'s> {
         }
     }
 
-    /// Whether all plateaus of the schedule have come.
+    /// Whether all plateaus of the schedule have come, and all rests in attitudes of their own.
     pub fn is_complete(&self) -> bool {
+        self.has_arm() && rests::awaited(self.session).is_none()
+    }
+
+    /// Whether all plateaus on the arm have come.
+    fn has_arm(&self) -> bool {
         self.session.plateaus.is_some() && self.come > 0 || self.finished.len() == self.session.mountings.len()
     }
 
@@ -103,7 +112,8 @@ impl<'s> Watch<'s> {
         &self.speeds
     }
 
-    /// Plateaus that have come since the last look, in the order of the schedule, each with the noise of its own and the
+    /// Plateaus that have come since the last look: rests in attitudes of their own that the session has, with the first look, and
+    /// those on the arm in the order of the schedule, each with the noise of its own and the
     /// earlier mountings as far as it was known.
     ///
     /// A record that cannot be made out and has not been left alone yet is waited for, with a [`Watch::note`].
@@ -111,6 +121,8 @@ impl<'s> Watch<'s> {
     /// # Errors
     /// [`Error`] when a record that has been left alone is wrong.
     pub fn look(&mut self) -> Result<Vec<Observation>, Error> {
+        let mut arrivals = if self.has_rests { Vec::new() } else { rests::observations(self.session) };
+        self.has_rests = true;
         if let Some(table) = &self.session.plateaus {
             let fresh = table.rows.iter().enumerate().skip(self.come);
             let observation = |(set_point, row): (usize, &PlateauMean)| Observation {
@@ -118,12 +130,14 @@ impl<'s> Watch<'s> {
                 mean: row.mean,
                 covariance: row.covariance,
             };
-            let arrivals: Vec<_> = fresh.map(observation).collect();
-            self.come += arrivals.len();
-            return Ok(arrivals);
+            arrivals.extend(fresh.map(observation));
+            self.come = table.rows.len();
+        } else {
+            while self.finished.len() < self.session.mountings.len() && self.look_at_current(&mut arrivals)? {}
         }
-        let mut arrivals = Vec::new();
-        while self.finished.len() < self.session.mountings.len() && self.look_at_current(&mut arrivals)? {}
+        if let Some(file) = rests::awaited(self.session).filter(|_| self.has_arm()) {
+            self.note = Some(format!("waiting for {}", file.display()));
+        }
         Ok(arrivals)
     }
 

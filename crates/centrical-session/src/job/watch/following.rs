@@ -16,6 +16,7 @@ use nalgebra::Vector3;
 use super::arrivals::Watch;
 use super::board::{Board, LiveRequest};
 use super::progress::WatchProgress;
+use super::rests;
 use crate::document::{
     CalibrationResult, LiveStatus, Method, WatchState, WatchedPlateau, append_history, keep_history,
 };
@@ -102,10 +103,14 @@ impl<'a> Following<'a> {
     /// [`Error`] when the request names an unknown group or plateau, or the folder holds the state of another session.
     pub fn resume(request: &'a WatchRequest, session: &'a Session, model: &'a MeasurementModel) -> Result<Self, Error> {
         check_groups(&request.groups, session, model)?;
+        // Rests that have not come yet can be held out too.
+        let is_known =
+            |name: &&PlateauName| name.mounting <= session.mountings.len() || rests::awaited(session).is_none();
         let held_out: Vec<usize> =
-            request.hold_out.iter().map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
+            request.hold_out.iter().filter(is_known).map(|name| name.set_point(session)).collect::<Result<_, _>>()?;
         let state_file = request.out.join(STATE_FILE);
-        let mut state = WatchState::resume(session, model.parameters().len(), &state_file)?;
+        let unknowns = model.parameters().len() + model.influences().len();
+        let mut state = WatchState::resume(session, unknowns, &state_file)?;
         keep_history(&request.out.join(HISTORY_FILE), state.plateaus.len())?;
         // One that has been taken up before is held out from now on.
         state.plateaus.iter_mut().for_each(|plateau| plateau.held_out |= held_out.contains(&plateau.set_point));
@@ -139,17 +144,20 @@ impl<'a> Following<'a> {
         Ok(Some(board))
     }
 
-    /// Looks at the session again and again, until its schedule is complete or `stop` is raised.
+    /// Looks at the session again and again, until its schedule is complete or `stop` is raised; `None` when the files of further
+    /// rests have come, and the watch has to go on with the session [`with_rests_there`](super::with_rests_there).
     ///
     /// # Errors
     /// [`Error`] when a finished record is wrong, or the folder does not take the state.
-    pub fn run(&mut self, stop: &AtomicBool, report: &mut dyn FnMut(WatchEvent)) -> Result<WatchEnd, Error> {
+    pub fn run(&mut self, stop: &AtomicBool, report: &mut dyn FnMut(WatchEvent)) -> Result<Option<WatchEnd>, Error> {
         let mut board = self.board.take();
         let end = self.follow(stop, report, board.as_mut());
         if let Some(board) = &mut board {
             match &end {
-                Ok(WatchEnd::Stopped { .. }) => board.write_as(LiveStatus::Stopped, None)?,
-                Ok(WatchEnd::Complete(result)) => {
+                // The next watch writes it anew.
+                Ok(None) => {}
+                Ok(Some(WatchEnd::Stopped { .. })) => board.write_as(LiveStatus::Stopped, None)?,
+                Ok(Some(WatchEnd::Complete(result))) => {
                     board.judge(result.objections().is_empty());
                     board.write_as(LiveStatus::Complete, None)?;
                 }
@@ -165,7 +173,7 @@ impl<'a> Following<'a> {
         stop: &AtomicBool,
         report: &mut dyn FnMut(WatchEvent),
         mut board: Option<&mut Board>,
-    ) -> Result<WatchEnd, Error> {
+    ) -> Result<Option<WatchEnd>, Error> {
         let mut watch = Watch::new(self.session, self.request.quiet);
         let (mut note, mut is_frozen) = (None, false);
         loop {
@@ -174,7 +182,7 @@ impl<'a> Following<'a> {
             for observation in arrivals {
                 if stop.load(Ordering::Relaxed) {
                     self.keep()?;
-                    return Ok(self.stopped());
+                    return Ok(Some(self.stopped()));
                 }
                 let speed = watch.speed(observation.set_point);
                 let observation = self.at_set_speed(observation, speed);
@@ -193,7 +201,7 @@ impl<'a> Following<'a> {
                 board.write(&watch, LiveStatus::Following, watch.note())?;
             }
             if watch.is_complete() {
-                return self.finish();
+                return self.finish().map(Some);
             }
             if watch.note() != note.as_deref() {
                 note = watch.note().map(str::to_owned);
@@ -206,10 +214,14 @@ impl<'a> Following<'a> {
             is_frozen = frozen.is_some();
             if self.request.once {
                 watch.without_quiet().iter().for_each(|note| report(WatchEvent::Waiting(note)));
-                return Ok(self.stopped());
+                return Ok(Some(self.stopped()));
+            }
+            if rests::have_come(self.session, self.request.quiet) {
+                self.keep()?;
+                return Ok(None);
             }
             if stop.load(Ordering::Relaxed) {
-                return Ok(self.stopped());
+                return Ok(Some(self.stopped()));
             }
             wait(self.request.interval, stop);
         }

@@ -1,0 +1,52 @@
+//! Rests in attitudes of their own, which join a watch when their files are there.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use centrical::{Observation, unwatched};
+
+use crate::error::Error;
+use crate::experiment::{RestTable, Session};
+use crate::job::reduce::with_all_rests;
+
+/// The session with the rests of every `[[tumble]]` whose files are there and have been left alone for the time called `quiet`. One whose
+/// files are not is waited for, and so are those after it: rests are numbered in the order of the file.
+///
+/// # Errors
+/// [`Error`] when a table or a record that has been left alone is wrong.
+pub fn with_rests_there(session: &Session, quiet: Duration) -> Result<Session, Error> {
+    let mut tables = session.rest_tables.clone();
+    let waited_for = tables.iter().position(|table| !is_there(table, quiet)).unwrap_or(tables.len());
+    let later = tables.split_off(waited_for);
+    tables.iter_mut().try_for_each(RestTable::read)?;
+    let there = session.clone().with_rest_tables(tables);
+    let (filled, _) = with_all_rests(&there, &unwatched)?;
+    let tables = filled.rest_tables.iter().cloned().chain(later).collect();
+    Ok(session.clone().with_rest_tables(tables))
+}
+
+/// The file of rests that is waited for, if one is.
+pub(super) fn awaited(session: &Session) -> Option<&PathBuf> {
+    let table = session.rest_tables.iter().find(|table| table.is_awaited())?;
+    table.files().find(|file| !file.exists()).or_else(|| table.files().next())
+}
+
+/// Whether the rests that are waited for have come.
+pub(super) fn have_come(session: &Session, quiet: Duration) -> bool {
+    session.rest_tables.iter().find(|table| table.is_awaited()).is_some_and(|table| is_there(table, quiet))
+}
+
+/// The rests of the session as data of a fit.
+pub(super) fn observations(session: &Session) -> Vec<Observation> {
+    let first = session.experiment.set_points.len() - session.rests().count();
+    let rests = (first..).zip(session.rests());
+    rests.map(|(set_point, rest)| Observation { set_point, mean: rest.mean, covariance: rest.covariance }).collect()
+}
+
+/// Whether all files of a table are there and have not changed for the time called `quiet`.
+fn is_there(table: &RestTable, quiet: Duration) -> bool {
+    table.files().all(|file| {
+        let changed = file.metadata().and_then(|metadata| metadata.modified()).ok();
+        changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age >= quiet)
+    })
+}
