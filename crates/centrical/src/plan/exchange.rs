@@ -70,20 +70,15 @@ fn set_ups_of(candidates: &Candidates, visits: &[u32]) -> Vec<bool> {
 }
 
 impl Exchange<'_> {
-    /// A schedule near the continuous design `w`: the best one of three roundings, each filled with whatever brings most.
+    /// A schedule near the continuous design `w`: the better one of two roundings, each filled with whatever brings most.
     pub fn round(&self, w: &[f64]) -> IntegerSchedule {
-        let [mut best, in_order, short] = [self.rounded_by_size(w), self.rounded_in_order(w), self.rounded_short(w)];
-        for other in [in_order, short] {
-            if other.value < best.value {
-                best = other;
-            }
-        }
-        best
+        let [by_size, in_order] = [self.rounded_by_size(w), self.rounded_in_order(w)];
+        if in_order.value < by_size.value { in_order } else { by_size }
     }
 
     /// The shortest visit of each candidate while it fits, those of the most visits first: where time is short, what is seen at all
     /// counts for more than how well.
-    fn rounded_short(&self, w: &[f64]) -> IntegerSchedule {
+    pub fn rounded_short(&self, w: &[f64]) -> IntegerSchedule {
         let atoms = self.candidates.atoms();
         let all = |c: &usize| atoms.of(*c).map(|x| w[x]).sum::<f64>();
         let mut candidates: Vec<usize> = (0..atoms.candidates).filter(|c| all(c) > 1e-3).collect();
