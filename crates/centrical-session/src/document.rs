@@ -72,7 +72,7 @@ pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};
 pub use self::steadiness::{
     DriftSummary, LeftOutSummary, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary, TiltVerdict,
 };
-pub(crate) use self::truth::{Written, WrittenSession, truth_json};
+pub(crate) use self::truth::{Written, WrittenSession, WrittenTumble, truth_json};
 pub use self::watch::{
     GroupProgress, HistoryEntry, HistoryEstimate, InnovationSummary, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost,
     LivePlateau, LiveRecord, LiveReport, LiveSpeed, LiveStatus, PlateauLabel, WatchState, WatchedPlateau,

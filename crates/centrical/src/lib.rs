@@ -66,8 +66,8 @@ pub use model::{
     ArmMotion, Centrifuge, Course, Difference, EARTH_RATE, Effect, ErrorModel, Experiment, Extension, Extra, FitError,
     Group, History, Influence, Kind, Law, Linearisation, MeasurementModel, Mounting, NULL_HOLD, Observation,
     PairRelation, Parameter, Parameters, Position, Prior, PriorError, PriorUse, ReferencePoint, Rival, Rotation,
-    STANDARD_GRAVITY, SetPoint, Site, Source, Term, TypeB, Unit, Weight, carousel, hat, is_rotation, linear, position,
-    rotation, rotation_rate,
+    STANDARD_GRAVITY, SetPoint, Site, Source, SwitchOn, Term, TypeB, Unit, Weight, carousel, hat, is_rotation, linear,
+    position, rotation, rotation_rate,
 };
 pub use nalgebra;
 pub use observability::{Combination, NullDirection, Observability, RANK_TOLERANCE, Study};

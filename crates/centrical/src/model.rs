@@ -49,7 +49,7 @@ pub use measurement::{Linearisation, MeasurementModel};
 pub use observation::{Observation, Weight};
 pub use parameter::{NULL_HOLD, Parameter};
 pub use parameters::Parameters;
-pub use position::Position;
+pub use position::{Position, SwitchOn};
 pub use prior::{Prior, PriorError, PriorUse};
 pub use rival::Rival;
 pub use stated::{Influence, Source, TypeB};

@@ -172,8 +172,9 @@ impl<'a> Simulation<'a> {
 
     /// The rests in attitudes of their own that are `mountings` of the experiment, as they follow each other in one record.
     pub fn tumble(&self, mountings: Range<usize>) -> SimulatedTumble<'a> {
-        let (first, change) = (mountings.start, self.bias_change());
+        let first = mountings.start;
         let held = |mounting: usize| {
+            let change = self.bias_change(mounting);
             let physics = Physics::new(self.model, self.truth, mounting);
             self.schedule(mounting).into_iter().map(move |(_, duration)| {
                 let (force, disturbance) = physics.at_rest();
@@ -185,10 +186,13 @@ impl<'a> Simulation<'a> {
         SimulatedTumble { simulation: *self, first, motion }
     }
 
-    /// Change of each bias from the arm to the rests [m/s^2]: the unit was switched off in between. Zero without an arm.
-    pub fn bias_change(&self) -> Vector3<f64> {
-        let size = if self.model.experiment().has_arm() { self.equipment.hand.bias_change } else { 0.0 };
-        let mut random = Draw::Rests.stream_of(self.seed, 0, CHANGE);
+    /// Change of each bias from the reference, the switch-on of the arm or else of the first rest, to that of a mounting [m/s^2].
+    pub fn bias_change(&self, mounting: usize) -> Vector3<f64> {
+        let experiment = self.model.experiment();
+        let number = experiment.positions[experiment.mountings[mounting].position].switch_on.number;
+        let other = experiment.other_switch_ons().into_iter().find(|other| other.number == number);
+        let size = other.map_or(0.0, |other| other.bias_change.unwrap_or(self.equipment.hand.bias_change));
+        let mut random = Draw::Rests.stream_of(self.seed, number, CHANGE);
         Vector3::from_fn(|_, _| size * random.normal())
     }
 

@@ -123,10 +123,53 @@ fn an_arm_with_rests_gives_the_truth_back() {
         assert!(fs::read(arm.join(record)).unwrap() == fs::read(both.join(record)).unwrap(), "{record}");
     }
     let truth = json(&both.join("truth.json"));
-    let change: Vec<f64> = truth["bias_change"].as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).collect();
+    let change = changes(&truth)[0];
     assert!(change.iter().all(|change| *change != 0.0 && change.abs() < 4.0 * 2e-3 * 9.80665), "{change:?}");
     let (squared, count) = squared_error(&both);
     assert_eq!(count, 49);
     // The 99.9 % band of chi^2 with 49 degrees of freedom.
+    assert!((20.0..86.0).contains(&squared), "{squared}");
+}
+
+/// Changes of the bias of each tumble, as the truth has them [m/s^2].
+fn changes(truth: &Value) -> Vec<[f64; 3]> {
+    let change = |tumble: &Value| [0, 1, 2].map(|axis| tumble["bias_change"][axis].as_f64().unwrap());
+    truth["tumbles"].as_array().unwrap().iter().map(change).collect()
+}
+
+/// Two tumbles have changes of bias of their own, unless they name the same switch-on: stated to be of one, what were two is refused.
+#[test]
+fn each_tumble_has_its_own_change_of_bias() {
+    let folder = TempDir::new().unwrap();
+    let plan = fs::read_to_string(example().join("experiment.toml")).unwrap();
+    let tumble = |more: &str| format!("[[tumble]]\nrecord = \"x.csv\"\n{more}\n");
+    let of_their_own = [tumble("bias_change = \"2 mg\""), tumble("bias_change = \"1 mg\"")].concat();
+    simulated(&folder, &format!("{plan}\n{of_their_own}"), "11", "own");
+    let own = folder.path().join("own");
+    let [one, other] = changes(&json(&own.join("truth.json")))[..] else { panic!("two tumbles") };
+    assert!((0..3).all(|axis| (one[axis] - other[axis]).abs() > 1e-4), "{one:?} {other:?}");
+    let (squared, count) = squared_error(&own);
+    // The 99.9 % band of chi^2 with 49 degrees of freedom.
+    assert!(count == 49 && (20.0..86.0).contains(&squared), "{squared}");
+    let file = own.join("experiment.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    let refused = |text: &str| {
+        fs::write(&file, text).unwrap();
+        let run = program::centrical().args(["calibrate", "--json"]).arg(&own).output().unwrap();
+        (run.status.code(), String::from_utf8(run.stderr).unwrap())
+    };
+    let named = text.replace("bias_change", "switch_on = \"monday\"\nbias_change");
+    let (code, message) = refused(&named);
+    assert!(
+        code == Some(2) && message.contains("[[tumble]] 2, bias_change: found \"1 mg\", expected the same"),
+        "{message}"
+    );
+    assert_eq!(refused(&named.replace("\"1 mg\"", "\"2 mg\"")).0, Some(1));
+    let together = [tumble("switch_on = \"a\""), tumble("switch_on = \"a\"\nbias_change = \"2 mg\"")].concat();
+    simulated(&folder, &format!("{plan}\n{together}"), "11", "together");
+    let together = folder.path().join("together");
+    let [one, other] = changes(&json(&together.join("truth.json")))[..] else { panic!("two tumbles") };
+    assert_eq!(one, other);
+    let (squared, _) = squared_error(&together);
     assert!((20.0..86.0).contains(&squared), "{squared}");
 }

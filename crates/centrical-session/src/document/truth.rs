@@ -23,15 +23,21 @@ pub(crate) struct Written {
 #[derive(Debug)]
 pub(crate) struct WrittenSession {
     pub mountings: Vec<Written>,
-    /// The rests of each `[[tumble]]`.
-    pub tumbles: Vec<Vec<TrueRest>>,
-    /// Change of each bias from the arm to the rests [m/s^2].
+    /// Each `[[tumble]]`.
+    pub tumbles: Vec<WrittenTumble>,
+}
+
+/// A `[[tumble]]` as it was simulated and written.
+#[derive(Debug)]
+pub(crate) struct WrittenTumble {
+    pub rests: Vec<TrueRest>,
+    /// Change of each bias from the switch-on of the arm, or of the first tumble, to that of its rests [m/s^2].
     pub bias_change: Vector3<f64>,
 }
 
 /// The truth as JSON text. Attitudes of rests are with the rests: a calibration counts them from other nominal ones.
 pub(crate) fn truth_json(truth: &Truth, seed: u64, written: &WrittenSession) -> String {
-    let WrittenSession { mountings, tumbles, bias_change } = written;
+    let WrittenSession { mountings, tumbles } = written;
     let parameters = truth.model.parameters().iter().zip(&truth.values);
     let is_of_rest = |p: &Parameter| matches!(p.kind, Kind::Attitude { .. });
     let parameters: Vec<Value> = parameters
@@ -55,8 +61,10 @@ pub(crate) fn truth_json(truth: &Truth, seed: u64, written: &WrittenSession) -> 
     });
     if !tumbles.is_empty() {
         whole["settings"]["hand"] = hand(&truth.equipment.hand);
-        whole["rests"] = tumbles.iter().enumerate().flat_map(|(n, rests)| rests_of(n, rests)).collect();
-        whole["bias_change"] = json!(bias_change.as_slice());
+        whole["rests"] = tumbles.iter().enumerate().flat_map(|(n, tumble)| rests_of(n, &tumble.rests)).collect();
+        let tumble =
+            |(n, tumble): (usize, &WrittenTumble)| json!({"tumble": n, "bias_change": tumble.bias_change.as_slice()});
+        whole["tumbles"] = (1..).zip(tumbles).map(tumble).collect();
     }
     format!("{whole:#}\n")
 }

@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
-use centrical::{Experiment, Mounting, Position, SetPoint};
+use centrical::{Experiment, Mounting, Position, SetPoint, SwitchOn};
 use nalgebra::Vector3;
 
 use super::form::{AttitudeList, RecordEntry, TumbleTable};
@@ -26,6 +26,8 @@ pub struct RestTable {
     pub means: Vec<PlateauMean>,
     /// What is known of their attitudes; `None` where only gravity shows them.
     pub attitudes: Option<KnownAttitudes>,
+    /// When the unit was on.
+    pub switch_on: SwitchOn,
 }
 
 /// Where rests come from.
@@ -80,7 +82,8 @@ impl RestTable {
         let folder = file.parent().unwrap_or(Path::new(""));
         let named = tables.iter().enumerate().map(|(n, table)| {
             let at = TomlPath::entry(file, "tumble", n);
-            match (&table.rests, &table.record, &table.attitudes) {
+            let switch_on = switch_on(file, tables, n)?;
+            let rests = match (&table.rests, &table.record, &table.attitudes) {
                 (Some(_), Some(_), _) => {
                     Err(at.unexpected("record", "a record beside a table of rests", "one or the other"))
                 }
@@ -94,9 +97,15 @@ impl RestTable {
                     let expected = "a table of rests; or record, their record; or attitudes, of rests that are planned";
                     Err(at.unexpected("rests", "no such key", expected))
                 }
-            }
+            };
+            Ok(Self { switch_on, ..rests? })
         });
         named.collect()
+    }
+
+    /// Rests in the first switch-on, without means.
+    fn of(source: RestSource, attitudes: Option<KnownAttitudes>) -> Self {
+        Self { source, means: Vec::new(), attitudes, switch_on: SwitchOn { number: 1, bias_change: None } }
     }
 
     fn measured(at: &TomlPath, folder: &Path, table: &TumbleTable, rests: &str) -> Result<Self, Error> {
@@ -112,7 +121,7 @@ impl RestTable {
                 Some(KnownAttitudes { file, uncertainty, up_b: up_b.into_iter().map(Some).collect() })
             }
         };
-        Ok(Self { source: RestSource::Table(folder.join(rests)), means: Vec::new(), attitudes })
+        Ok(Self::of(RestSource::Table(folder.join(rests)), attitudes))
     }
 
     fn recorded(at: &TomlPath, folder: &Path, table: &TumbleTable, record: &RecordEntry) -> Result<Self, Error> {
@@ -123,7 +132,7 @@ impl RestTable {
         };
         let attitudes = known(at, table)?.map(stated).transpose()?;
         let files = record.paths().map(|name| folder.join(name)).collect();
-        Ok(Self { source: RestSource::Record(RecordedRests { files, attitudes }), means: Vec::new(), attitudes: None })
+        Ok(Self::of(RestSource::Record(RecordedRests { files, attitudes }), None))
     }
 
     /// Rests that are planned in these attitudes, known to `uncertain` if it is stated; paths start from `folder`.
@@ -144,7 +153,7 @@ impl RestTable {
         };
         let attitudes = uncertainty(at, uncertain)?.map(known);
         let durations = vec![None; up_b.len()];
-        Ok(Self { source: RestSource::Plan(PlannedRests { up_b, durations, file }), means: Vec::new(), attitudes })
+        Ok(Self::of(RestSource::Plan(PlannedRests { up_b, durations, file }), attitudes))
     }
 
     /// Planned rests with the durations that their table states.
@@ -220,10 +229,11 @@ impl RestTable {
             let id = format!("r{number}");
             let known =
                 self.attitudes.as_ref().and_then(|known| Some((known.up_b.get(n).copied()??, known.uncertainty)));
-            match known {
+            let position = match known {
                 Some((up_b, uncertainty)) => Position::known(id, &up_b, uncertainty),
                 None => Position::free(id, up),
-            }
+            };
+            position.in_switch_on(self.switch_on)
         })
     }
 
@@ -268,6 +278,7 @@ impl RestTable {
             attitudes: attitudes.as_ref().map(known),
             source: RestSource::Plan(PlannedRests { up_b, durations, file }),
             means: Vec::new(),
+            switch_on: self.switch_on,
         }
     }
 
@@ -305,6 +316,29 @@ pub(crate) fn refuse_records(file: &Path, tables: &[RestTable]) -> Result<(), Er
     let Some(recorded) = tables.iter().position(|table| table.record().is_some()) else { return Ok(()) };
     let expected = "rests, a table of them as `centrical tumble` writes it, or attitudes to be planned";
     Err(TomlPath::entry(file, "tumble", recorded).unexpected("record", "a record in a plan", expected))
+}
+
+/// When the unit was on in `[[tumble]]` number `n` from 0: a switch-on of its own, numbered from 1, or that of the first entry with the
+/// same name. Its change of bias may be stated in any of them.
+fn switch_on(file: &Path, tables: &[TumbleTable], n: usize) -> Result<SwitchOn, Error> {
+    let is_same = |other: &&(usize, &TumbleTable)| {
+        other.0 == n || tables[n].switch_on.is_some() && other.1.switch_on == tables[n].switch_on
+    };
+    let tables: Vec<(usize, &TumbleTable)> = tables.iter().enumerate().collect();
+    let number = tables.iter().find(is_same).map_or(n, |(first, _)| *first) + 1;
+    let mut bias_change = None;
+    for (other, table) in tables.iter().filter(is_same) {
+        let Some(quantity) = &table.bias_change else { continue };
+        let at = TomlPath::entry(file, "tumble", *other);
+        // Beyond it a unit was mistaken.
+        let meaning = "a standard uncertainty from 0 to 10 m/s^2";
+        let stated = at.bounded("bias_change", quantity, Dimension::Acceleration, (0.0, 10.0), meaning)?;
+        if bias_change.replace(stated).is_some_and(|before| before != stated) {
+            let expected = "the same in all [[tumble]] of one switch_on";
+            return Err(at.unexpected("bias_change", quantity.to_string(), expected));
+        }
+    }
+    Ok(SwitchOn { number, bias_change })
 }
 
 /// What has been measured lasted as long as it did.

@@ -111,10 +111,12 @@ pub enum Effect {
         /// What it follows.
         follows: Course,
     },
-    /// Change of the bias of a newtonometer between the arm and the rests in free attitudes, after a switch-off [m/s^2].
+    /// Change of the bias of a newtonometer from the switch-on of the arm, or of the first rest, to another one [m/s^2].
     BiasChange {
         /// Newtonometer.
         axis: usize,
+        /// Number of the other switch-on.
+        switch_on: usize,
     },
     /// An error of rounding common to repeated rests of one mounting at one angle [m/s^2].
     Rounding {

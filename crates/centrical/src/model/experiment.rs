@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::position::Position;
+use super::position::{Position, SwitchOn};
 
 /// Standard gravity, exact by definition [m/s^2]: what "1 g" means in every quantity shown to people.
 pub const STANDARD_GRAVITY: f64 = 9.80665;
@@ -210,6 +210,20 @@ impl Experiment {
     /// Whether any position is on the arm.
     pub fn has_arm(&self) -> bool {
         self.positions.iter().any(|position| !position.is_free)
+    }
+
+    /// The switch-ons whose biases may differ from those of the reference, each once: of the arm if there is one, or else of the first
+    /// rest.
+    pub fn other_switch_ons(&self) -> Vec<SwitchOn> {
+        let reference = if self.has_arm() { Some(0) } else { self.positions.first().map(|p| p.switch_on.number) };
+        let mut others: Vec<SwitchOn> = Vec::new();
+        for switch_on in self.positions.iter().map(|position| position.switch_on) {
+            let is_known = others.iter().any(|other| other.number == switch_on.number);
+            if Some(switch_on.number) != reference && !is_known {
+                others.push(switch_on);
+            }
+        }
+        others
     }
 
     /// Whether a mounting is on the arm, and not a rest in a free attitude.

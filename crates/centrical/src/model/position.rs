@@ -18,28 +18,49 @@ pub struct Position {
     /// Standard uncertainty of a free attitude that is known, about each horizontal axis [rad]: `p_zy` takes the vertical to axes of
     /// the case, against which the instrument is turned by `case_turn`. `None` where only gravity shows the attitude, and on the arm.
     pub attitude_uncertainty: Option<f64>,
+    /// From when to when the unit was on without a break.
+    pub switch_on: SwitchOn,
+}
+
+/// A time through which the unit was on without a break: its biases stay.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SwitchOn {
+    /// Its number; 0 is that of the arm.
+    pub number: usize,
+    /// Standard uncertainty of the change of each bias against the reference, the switch-on of the arm or else of the first rest
+    /// [m/s^2]; `None`: the one stated for all, [`TypeB::bias_change`](super::TypeB::bias_change).
+    pub bias_change: Option<f64>,
 }
 
 impl Position {
     /// A position on the arm.
     pub fn on_arm(id: impl Into<String>, p_zy: Matrix3<f64>, pair: impl Into<String>) -> Self {
-        Self { id: id.into(), p_zy, pair: pair.into(), is_free: false, attitude_uncertainty: None }
+        let (id, pair) = (id.into(), pair.into());
+        Self { id, p_zy, pair, is_free: false, attitude_uncertainty: None, switch_on: SwitchOn::default() }
     }
 
     /// A rest in an attitude of its own, where the specific force points about along `f_z` (instrument axes, of any length
-    /// but zero). Of the attitudes with this vertical it takes the one nearest to the reference axes.
+    /// but zero). Of the attitudes with this vertical it takes the one nearest to the reference axes. Rests are of one switch-on, another
+    /// one than that of the arm.
     pub fn free(id: impl Into<String>, f_z: &Vector3<f64>) -> Self {
         let id = id.into();
         // Opposite vectors have no shortest rotation between them; half a turn about axis 1 is one of many.
         let half_turn = || Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
         let p_zy = Rotation3::rotation_between(&Vector3::z(), f_z).unwrap_or_else(half_turn).into_inner();
-        Self { pair: id.clone(), id, p_zy, is_free: true, attitude_uncertainty: None }
+        let switch_on = SwitchOn { number: 1, bias_change: None };
+        Self { pair: id.clone(), id, p_zy, is_free: true, attitude_uncertainty: None, switch_on }
     }
 
     /// A rest in an attitude that is known to `standard_uncertainty` about each horizontal axis [rad]: the vertical points along
     /// `up_b`, axes of the case.
     pub fn known(id: impl Into<String>, up_b: &Vector3<f64>, standard_uncertainty: f64) -> Self {
         Self { attitude_uncertainty: Some(standard_uncertainty), ..Self::free(id, up_b) }
+    }
+
+    /// The position in a switch-on.
+    #[must_use]
+    pub fn in_switch_on(self, switch_on: SwitchOn) -> Self {
+        Self { switch_on, ..self }
     }
 }
 

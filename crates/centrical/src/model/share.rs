@@ -76,7 +76,9 @@ impl MeasurementModel {
             Effect::Disturbance { axis, follows } => {
                 Share::Reading(Vector3::ith(axis, self.course(set_point, axis, follows)))
             }
-            Effect::BiasChange { axis } => only(!experiment.is_on_arm(here), Share::Reading(along(axis))),
+            Effect::BiasChange { axis, switch_on } => {
+                only(experiment.positions[position].switch_on.number == switch_on, Share::Reading(along(axis)))
+            }
             Effect::Rounding { axis, first } => {
                 only(set_point.history.repeats == Some(first), Share::Reading(along(axis)))
             }

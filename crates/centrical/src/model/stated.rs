@@ -8,6 +8,7 @@ use super::effect::Effect;
 use super::error_model::ErrorModel;
 use super::experiment::{Experiment, SetPoint};
 use super::kind::Kind;
+use super::position::SwitchOn;
 use super::rival::Rival;
 
 /// Standard uncertainties that a laboratory states (GUM type B), SI; zero where there is none.
@@ -29,8 +30,8 @@ pub struct TypeB {
     pub proof_masses: f64,
     /// Of the nominal attitude of each position, about each instrument axis [rad].
     pub attitude: f64,
-    /// Of the change of each bias between the arm and rests in free attitudes, where the unit was switched off in between
-    /// [m/s^2]; of no effect where the experiment has not both.
+    /// Of the change of each bias between two switch-ons, of the arm and of rests in free attitudes, where the latter state none of their
+    /// own [m/s^2].
     pub bias_change: f64,
     /// Smallest step of the reading [m/s^2], not a standard uncertainty: it leaves a rectangular error of `step/sqrt(12)`
     /// on each mean (GUM, F.2.2.1), independent of the others.
@@ -67,7 +68,7 @@ pub enum Source {
     ProofMasses,
     /// Nominal attitudes.
     Attitude,
-    /// Change of the bias between the arm and rests in free attitudes.
+    /// Change of the bias from one switch-on to another, of the arm and of rests in free attitudes.
     BiasChange,
     /// Resolution of the reading.
     Resolution,
@@ -167,9 +168,10 @@ impl TypeB {
         for (position, axis) in on_arm.flat_map(|k| (0..3).map(move |axis| (k, axis))) {
             add(Source::Attitude, Effect::PositionTurn { position, axis }, self.attitude);
         }
-        if experiment.has_arm() {
-            for axis in (0..3).filter(|_| experiment.positions.iter().any(|position| position.is_free)) {
-                add(Source::BiasChange, Effect::BiasChange { axis }, self.bias_change);
+        for SwitchOn { number: switch_on, bias_change } in experiment.other_switch_ons() {
+            for axis in 0..3 {
+                let u = bias_change.unwrap_or(self.bias_change);
+                add(Source::BiasChange, Effect::BiasChange { axis, switch_on }, u);
             }
         }
         for first in repeated_rests(experiment) {

@@ -84,7 +84,7 @@ pub struct Hand {
     pub tremor: Tremor,
     /// Knocks in the midst of rests.
     pub bumps: Bumps,
-    /// Standard deviation of the change of each bias between the arm and the rests [m/s^2]; of no effect without an arm.
+    /// Standard deviation of the change of each bias from one switch-on to another that states none of its own [m/s^2].
     pub bias_change: f64,
 }
 

@@ -62,7 +62,7 @@ fn a_rest_reads_what_the_model_says() {
     let equipment = Equipment { hand, ..Equipment::default() };
     let truth = draw_truth(&model, 1.0, 3);
     let simulation = Simulation::new(&model, &truth, &equipment, 3).unwrap();
-    let change = simulation.bias_change();
+    let change = simulation.bias_change(model.experiment().mountings.len() - 1);
     assert!(change.iter().all(|change| *change != 0.0));
     let (tumble_made, set_points) = (tumble(&simulation, &model), rests(&model));
     let (made, samples) = (tumble_made.rests(), record(&tumble_made));
@@ -110,7 +110,9 @@ fn the_means_of_simulated_rests_are_as_uncertain_as_stated() {
         for rest in &found {
             let is_within = |made: &[f64; 2]| rest.window[0] > made[0] - 0.1 && rest.window[1] < made[1] + 0.1;
             let n = made.iter().position(|made| is_within(&made.window)).expect("a rest that was made");
-            let error = rest.mean - model.reading(&rests(&model)[n], &truth) - simulation.bias_change();
+            let set_point = rests(&model)[n];
+            let expected = model.reading(&set_point, &truth) + simulation.bias_change(set_point.mounting);
+            let error = rest.mean - expected;
             squares += error.dot(&rest.covariance.cholesky().unwrap().solve(&error));
             count += 3.0;
         }

@@ -133,7 +133,7 @@ impl ModelSummary {
 
 impl PositionSummary {
     fn new(position: &Position) -> Self {
-        let Position { id, p_zy, pair, is_free, attitude_uncertainty } = position;
+        let Position { id, p_zy, pair, is_free, attitude_uncertainty, .. } = position;
         Self {
             id: id.clone(),
             pair: pair.clone(),

@@ -398,6 +398,11 @@ pub(crate) struct TumbleTable {
     pub durations: Vec<Quantity>,
     /// Standard uncertainty of these attitudes about each horizontal axis, such as "0.1 deg".
     pub attitude_uncertainty: Option<Quantity>,
+    /// Standard uncertainty of the change of each bias between these rests and the arm, or else the first rests; that of [uncertainty] if
+    /// absent.
+    pub bias_change: Option<Quantity>,
+    /// Name of the time through which the unit was on without a break, if it is that of other rests too.
+    pub switch_on: Option<String>,
 }
 
 /// The schedule common to mountings.

@@ -4,14 +4,14 @@
 use std::io;
 use std::path::Path;
 
-use centrical::simulate::{Records, SimulatedMounting, Simulation, TrueRest};
+use centrical::simulate::{Records, SimulatedMounting, Simulation};
 use centrical::{OnProgress, SetPoint, advance};
 use centrical_table::{ColumnName, TableFormat, claim_folder, create_folder, refuse_inputs, write_table, write_whole};
 use rayon::prelude::*;
 
 use super::files::{attitudes_path, pulses_path, record_path, telemetry_path, tumble_path};
 use super::session_text::{counts_pulses, with_files};
-use crate::document::{Written, WrittenSession, truth_json};
+use crate::document::{Written, WrittenSession, WrittenTumble, truth_json};
 use crate::error::{Error, Place};
 use crate::experiment::{EXPERIMENT_FILE, OutputUnit, RestTable, Session, write_attitudes};
 use crate::record::Column;
@@ -60,8 +60,8 @@ pub fn simulate_session(
     let mountings = mountings.into_par_iter().map(|m| output.mounting(&simulation.mounting(m), m));
     let mountings = mountings.collect::<Result<Vec<Written>, Error>>()?;
     let tumbles = tumbles.into_par_iter().map(|n| output.tumble(&simulation, n));
-    let tumbles = tumbles.collect::<Result<Vec<Vec<TrueRest>>, Error>>()?;
-    let written = WrittenSession { mountings, tumbles, bias_change: simulation.bias_change() };
+    let tumbles = tumbles.collect::<Result<Vec<WrittenTumble>, Error>>()?;
+    let written = WrittenSession { mountings, tumbles };
     write_whole(&folder.join("truth.json"), truth_json(truth, seed, &written).as_bytes())?;
     // Last, so that a folder with an experiment file is a whole session.
     Ok(write_whole(&experiment_file, text.as_bytes())?)
@@ -119,7 +119,7 @@ impl Output<'_> {
     }
 
     /// The record of the rests of one `[[tumble]]`, and the attitudes that are known of them where a table states them.
-    fn tumble(&self, simulation: &Simulation, n: usize) -> Result<Vec<TrueRest>, Error> {
+    fn tumble(&self, simulation: &Simulation, n: usize) -> Result<WrittenTumble, Error> {
         let tables = &self.plan.rest_tables;
         let first = self.plan.mountings.len() + tables[..n].iter().map(RestTable::count).sum::<usize>();
         let tumble = simulation.tumble(first..first + tables[n].count());
@@ -129,7 +129,7 @@ impl Output<'_> {
             write_attitudes(&self.folder.join(attitudes_path(n)), &up_b)?;
         }
         advance(self.progress, 1)?;
-        Ok(tumble.rests())
+        Ok(WrittenTumble { rests: tumble.rests(), bias_change: simulation.bias_change(first) })
     }
 
     /// A record, as the unit puts it out.
