@@ -63,6 +63,6 @@ pub use rows::Rows;
 pub use stamp::{StampKind, Stamps};
 pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm};
 pub use write::{
-    ClaimedFolder, Decimals, TableFormat, TableWriter, TypedWriter, abandon_files, claim_folder, create_folder,
-    parquet_bytes, refuse_inputs, write_stream, write_table, write_whole,
+    ClaimedFolder, Decimals, Outputs, TableFormat, TableWriter, TypedWriter, abandon_files, claim_folder,
+    create_folder, parquet_bytes, refuse_inputs, write_stream, write_table, write_whole,
 };

@@ -22,7 +22,7 @@ pub use self::file::{write_stream, write_whole};
 pub use self::folder::{ClaimedFolder, claim_folder, create_folder};
 use self::lines::TextTable;
 use self::output::SteadyFile;
-pub use self::outputs::refuse_inputs;
+pub use self::outputs::{Outputs, refuse_inputs};
 use self::parquet::{Layout, ParquetTable};
 use self::row_groups::RowGroups;
 pub use self::text_lines::Decimals;

@@ -6,8 +6,8 @@ use centrical_report::{
     Screen, UnitStatement, read_issuer, states_text, terminal_table, unit_text, verdict_text, write_all_documents,
 };
 use centrical_session::{
-    CalibrationResult, Error, Method, Place, PlateauName, ResultObjection, Session, add_result, calibrate_without,
-    claim_folder, refuse_inputs,
+    CalibrationResult, Error, Method, Place, PlateauName, ResultObjection, Session, Store, add_result,
+    calibrate_without, claim_folder, refuse_inputs,
 };
 
 use crate::command::report::{Documents, is_within_limits};
@@ -71,7 +71,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         (None, true) => None,
     };
     let laboratory = arguments.documents.laboratory.as_deref();
-    refuse_inputs(&outputs(out, file.as_deref()), &[session.files(), laboratory.into_iter().collect()].concat())?;
+    let inputs = [session.files(), laboratory.into_iter().collect()].concat();
+    refuse_inputs(&outputs(out, file.as_deref()), &inputs)?;
+    arguments.store.as_deref().map_or(Ok(()), |store| Store::refuse_inputs(store, &inputs))?;
     if out.is_none() {
         file.as_deref().map_or(Ok(()), |file| refuse_another_unit(file, &session))?;
     }

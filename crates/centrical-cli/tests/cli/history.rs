@@ -110,6 +110,50 @@ fn a_series_gives_the_table_of_its_sessions_also_after_a_kill() {
     assert_eq!(list(folder.path(), &["killed"]).len(), 8);
 }
 
+/// An input that the command would replace or remove is refused, by whatever name, and stays as it was.
+#[test]
+fn what_is_read_is_not_written() {
+    let (folder, names) = sessions(1);
+    let (session, store) = (folder.path().join(&names[0]), folder.path().join("store"));
+    let text = fs::read_to_string(session.join("experiment.toml")).unwrap().replace("broken\n", "");
+    let table = fs::read(session.join("plateaus.csv")).unwrap();
+    let refused = |arguments: &[&str], output: &str, input: &str| {
+        let ended = run(folder.path(), arguments);
+        let message = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert_eq!(ended.status.code(), Some(2), "{arguments:?}: {message}");
+        let said = message.contains(&format!("{output}: found an input of the same command ("));
+        assert!(said && message.contains(&format!("{input})")), "{message}");
+    };
+    // The table of a series is the table of plateaus; its list is the same file by another name.
+    for (plateaus, output) in [("series.csv", "series.csv"), ("plateaus.csv", "series.jsonl")] {
+        fs::write(session.join("experiment.toml"), text.replace("plateaus.csv", plateaus)).unwrap();
+        fs::write(session.join(plateaus), &table).unwrap();
+        if output != plateaus {
+            fs::hard_link(session.join(plateaus), session.join(output)).unwrap();
+        }
+        refused(&["series", &names[0], "--out", &names[0]], &format!("{}/{output}", names[0]), plateaus);
+        assert!(fs::read(session.join(plateaus)).unwrap() == table);
+        fs::remove_file(session.join(output)).unwrap();
+    }
+    // What a killed writer left in a store is removed by the next one.
+    fs::write(session.join("experiment.toml"), &text).unwrap();
+    fs::write(session.join("plateaus.csv"), &table).unwrap();
+    assert!(run(folder.path(), &["calibrate", &names[0], "--out", "a", "--store", "store", "-q"]).status.success());
+    fs::hard_link(session.join("plateaus.csv"), store.join("rows/left.tmp")).unwrap();
+    refused(&["calibrate", &names[0], "--out", "b", "--store", "store"], "store/rows/left.tmp", "plateaus.csv");
+    assert!(!folder.path().join("b/result.json").exists());
+    fs::remove_file(store.join("rows/left.tmp")).unwrap();
+    fs::hard_link(folder.path().join("a/result.json"), store.join("rows/left.tmp")).unwrap();
+    refused(&["history", "add", "store", "a"], "store/rows/left.tmp", "a/result.json");
+    fs::remove_file(store.join("rows/left.tmp")).unwrap();
+    // The copies of a store are never replaced: another store can be made from them, and the same.
+    let copy = fs::read_dir(store.join("results")).unwrap().next().unwrap().unwrap().path();
+    for (to, said) in [("store", "0 new, 1 known\n"), ("other", "1 new, 0 known\n")] {
+        let added = run(folder.path(), &["history", "add", to, copy.to_str().unwrap()]);
+        assert_eq!(String::from_utf8_lossy(&added.stdout), said);
+    }
+}
+
 /// Sixteen processes add results to one store, and each is killed after a few milliseconds, whatever it does. What was added stays whole, and
 /// the same commands once more leave every result once.
 #[test]

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use centrical::{OnProgress, Stopped};
-use centrical_table::claim_folder;
+use centrical_table::{Outputs, claim_folder};
 
 use self::ledger::Ledger;
 pub use self::request::SeriesRequest;
@@ -18,6 +18,7 @@ use self::table::write_tables;
 use self::workers::Workers;
 use crate::document::SeriesSummary;
 use crate::error::Error;
+use crate::experiment::Session;
 use crate::store::Store;
 
 /// Calibrates sessions, one on each core, and writes the table of all. A session that fails becomes a row with its message. A session
@@ -25,7 +26,7 @@ use crate::store::Store;
 /// done, and with 0 in between.
 ///
 /// # Errors
-/// [`Error`] if the folder does not take a file; [`Error::Stopped`], after what was done is written.
+/// [`Error`] if the folder does not take a file, or a file to be written is one of a session, before anything is written; [`Error::Stopped`], after what was done is written.
 pub fn calibrate_series(
     sessions: &[PathBuf],
     request: &SeriesRequest,
@@ -33,21 +34,26 @@ pub fn calibrate_series(
 ) -> Result<SeriesSummary, Error> {
     let _claim = claim_folder(&request.out)?;
     let store = Store::create(&request.out)?;
-    let mut ledger = Ledger::open(&request.out.join("series.jsonl"), request.method)?;
+    let outputs = Outputs::of(&[request.files().to_vec(), store.replaced()?].concat())?;
+    let mut ledger = Ledger::read(&request.ledger(), request.method)?;
     let sessions: BTreeSet<&Path> = sessions.iter().map(PathBuf::as_path).collect();
     let mut due = Vec::new();
     for session in &sessions {
         if progress(0).is_break() {
             return Err(Stopped.into());
         }
+        outputs.refuse(&[session])?;
         if ledger.knows(session) {
+            outputs.refuse(&ledger.files(session))?;
             let _ = progress(1);
         } else {
+            // A session that cannot be read becomes a row later.
+            Session::read(session).map_or(Ok(()), |read| outputs.refuse(&read.files()))?;
             due.push(*session);
         }
     }
     let known = sessions.len() - due.len();
     Workers { request, store: &store, progress }.run(&due, &mut ledger)?;
-    let summary = write_tables(&request.out, &store, &ledger, &sessions)?;
+    let summary = write_tables(request, &store, &ledger, &sessions)?;
     Ok(SeriesSummary { known, ..summary })
 }

@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use centrical_table::create_folder;
+use centrical_table::{create_folder, refuse_inputs};
 
 use crate::error::{Error, Place};
 
@@ -47,6 +47,21 @@ impl Store {
         Ok(store)
     }
 
+    /// Refuses inputs that are files of the store in `folder`, which need not be there: writers merge its parts and remove them. Copies of
+    /// results may be inputs, as a copy is never replaced.
+    ///
+    /// # Errors
+    /// [`Error`] with the file of the store.
+    pub fn refuse_inputs(folder: &Path, inputs: &[impl AsRef<Path>]) -> Result<(), Error> {
+        Ok(refuse_inputs(&Self { folder: folder.to_owned() }.replaced()?, inputs)?)
+    }
+
+    /// The files that writers replace or remove.
+    pub(crate) fn replaced(&self) -> Result<Vec<PathBuf>, Error> {
+        let rows = if self.rows_folder().is_dir() { self.files_of_rows()? } else { Vec::new() };
+        Ok(rows.into_iter().chain([self.lock_file()]).collect())
+    }
+
     /// The folder.
     pub fn folder(&self) -> &Path {
         &self.folder
@@ -65,8 +80,11 @@ impl Store {
         self.folder.join("results")
     }
 
-    /// The files of the parts, by name.
-    pub(super) fn parts(&self) -> Result<Vec<PathBuf>, Error> {
+    /// The files of the parts, by name. A part never changes, so that the names say whether a row has come.
+    ///
+    /// # Errors
+    /// [`Error`] if the folder cannot be read.
+    pub fn parts(&self) -> Result<Vec<PathBuf>, Error> {
         self.files_ending("parquet")
     }
 
@@ -76,20 +94,29 @@ impl Store {
     }
 
     fn files_ending(&self, end: &str) -> Result<Vec<PathBuf>, Error> {
+        let mut files = self.files_of_rows()?;
+        files.retain(|file| file.extension().is_some_and(|e| e == end));
+        Ok(files)
+    }
+
+    fn files_of_rows(&self) -> Result<Vec<PathBuf>, Error> {
         let folder = self.rows_folder();
         let failed = |error| Error::reading(&folder, error, "the rows of a store");
         let mut files = Vec::new();
         for entry in fs::read_dir(&folder).map_err(failed)? {
             files.push(entry.map_err(failed)?.path());
         }
-        files.retain(|file| file.extension().is_some_and(|e| e == end));
         files.sort();
         Ok(files)
     }
 
+    fn lock_file(&self) -> PathBuf {
+        self.folder.join("lock")
+    }
+
     /// Waits until no other process writes into the store.
     pub(super) fn lock(&self) -> Result<Lock, Error> {
-        let path = self.folder.join("lock");
+        let path = self.lock_file();
         let failed = |error| Error::writing(&path, error);
         let file = File::options().create(true).append(true).open(&path).map_err(failed)?;
         file.lock().map_err(failed)?;

@@ -57,8 +57,7 @@ impl Store {
                 continue;
             }
             if let Some(bytes) = result {
-                create_folder(&self.results_folder())?;
-                write_whole(&self.result_file(&row.key), &bytes)?;
+                self.copy_result(&row.key, &bytes)?;
             }
             new.push(row);
         }
@@ -73,6 +72,16 @@ impl Store {
         }
         self.merge(parts)?;
         Ok(added)
+    }
+
+    /// A copy that is there stays, unless it is damaged: it may be what the caller reads.
+    fn copy_result(&self, key: &str, bytes: &[u8]) -> Result<(), Error> {
+        let file = self.result_file(key);
+        if fs::read(&file).is_ok_and(|there| there == bytes) {
+            return Ok(());
+        }
+        create_folder(&self.results_folder())?;
+        Ok(write_whole(&file, bytes)?)
     }
 
     /// The parts with their keys. One all of whose keys stand in the others is what a killed merge left, and is removed.

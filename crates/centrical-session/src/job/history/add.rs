@@ -18,7 +18,8 @@ const BATCH: usize = 256;
 /// below. A result that is there already changes nothing. `progress` is called with the number of results read.
 ///
 /// # Errors
-/// [`Error`] naming the file that is no result, the place, what was found and what was expected. Results before it may be added.
+/// [`Error`] naming the file that is no result or is one of the store, the place, what was found and what was expected. Results before one
+/// that is no result may be added.
 pub fn add_results(
     folder: &Path,
     results: &[PathBuf],
@@ -33,6 +34,7 @@ pub fn add_results(
             return Err(Error::content(path, Place::Whole, "no result.json in this folder or below", "at least one"));
         }
     }
+    Store::refuse_inputs(folder, &files)?;
     let store = Store::create(folder)?;
     let mut added = Added::default();
     let mut batch: Vec<(Row, Option<Vec<u8>>)> = Vec::new();

@@ -23,7 +23,8 @@ use crate::store::Status;
 /// The lines of earlier runs and of this one.
 pub(super) struct Ledger {
     file: PathBuf,
-    output: File,
+    /// The file, open once there is a line to add.
+    output: Option<File>,
     method: Method,
     entries: BTreeMap<String, Entry>,
 }
@@ -52,24 +53,18 @@ struct Known {
 }
 
 impl Ledger {
-    /// Opens the lines of earlier runs; one that a kill left in part is dropped.
-    pub fn open(file: &Path, method: Method) -> Result<Self, Error> {
-        let text = match fs::read_to_string(file) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
-            text => text.map_err(|error| Error::reading(file, error, "the lines of a series"))?,
-        };
-        let whole: Vec<&str> = text
-            .split_inclusive('\n')
-            .filter(|l| l.ends_with('\n') && serde_json::from_str::<Entry>(l).is_ok())
-            .collect();
-        if whole.concat() != text {
-            write_whole(file, whole.concat().as_bytes())?;
-        }
-        let entries = whole.iter().filter_map(|line| serde_json::from_str::<Entry>(line).ok());
+    /// Reads the lines of earlier runs; one that a kill left in part is dropped.
+    pub fn read(file: &Path, method: Method) -> Result<Self, Error> {
+        let text = text_of(file)?;
+        let entries = whole_lines(&text).filter_map(|line| serde_json::from_str::<Entry>(line).ok());
         let entries = entries.map(|entry| (entry.session.clone(), entry)).collect();
-        let output = OpenOptions::new().create(true).append(true).open(file);
-        let output = output.map_err(|error| Error::writing(file, error))?;
-        Ok(Self { file: file.to_owned(), output, method, entries })
+        Ok(Self { file: file.to_owned(), output: None, method, entries })
+    }
+
+    /// The files of a session that is known.
+    pub fn files(&self, session: &Path) -> Vec<&Path> {
+        let entry = self.entries.get(&name(session));
+        entry.into_iter().flat_map(|entry| &entry.files).map(|known| known.path.as_path()).collect()
     }
 
     /// Whether a session was done by this program and method from the files that it has now.
@@ -103,7 +98,22 @@ impl Ledger {
             lines.push('\n');
             self.entries.insert(entry.session.clone(), entry);
         }
-        self.output.write_all(lines.as_bytes()).map_err(|error| Error::writing(&self.file, error))
+        let output = match self.output.take() {
+            Some(output) => output,
+            None => self.begin()?,
+        };
+        let output = self.output.insert(output);
+        output.write_all(lines.as_bytes()).map_err(|error| Error::writing(&self.file, error))
+    }
+
+    /// Opens the file for further lines, after one that is not whole is taken out.
+    fn begin(&self) -> Result<File, Error> {
+        let text = text_of(&self.file)?;
+        let whole: String = whole_lines(&text).collect();
+        if whole != text {
+            write_whole(&self.file, whole.as_bytes())?;
+        }
+        OpenOptions::new().create(true).append(true).open(&self.file).map_err(|error| Error::writing(&self.file, error))
     }
 
     /// Key of the row of a session.
@@ -119,6 +129,18 @@ impl Known {
         }
         Input::of(Path::new(""), &self.path, &unwatched).is_ok_and(|input| input.sha256 == self.sha256)
     }
+}
+
+fn text_of(file: &Path) -> Result<String, Error> {
+    match fs::read_to_string(file) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
+        text => text.map_err(|error| Error::reading(file, error, "the lines of a series")),
+    }
+}
+
+/// The lines that are entries of an earlier run.
+fn whole_lines(text: &str) -> impl Iterator<Item = &str> {
+    text.split_inclusive('\n').filter(|line| line.ends_with('\n') && serde_json::from_str::<Entry>(line).is_ok())
 }
 
 /// Size and time of change [ns].

@@ -18,3 +18,25 @@ pub struct SeriesRequest {
     /// Whether each session is kept reduced, some kB in `reduced/KEY`: a later model is fitted to it without the records.
     pub reduced: bool,
 }
+
+impl SeriesRequest {
+    /// What became of each session.
+    pub(super) fn ledger(&self) -> PathBuf {
+        self.out.join("series.jsonl")
+    }
+
+    /// The table of the rows.
+    pub(super) fn table(&self) -> PathBuf {
+        self.out.join("series.parquet")
+    }
+
+    /// The same as text, in short.
+    pub(super) fn text(&self) -> PathBuf {
+        self.out.join("series.csv")
+    }
+
+    /// What is written beside the files of the store, and the reduced sessions.
+    pub(super) fn files(&self) -> [PathBuf; 3] {
+        [self.ledger(), self.table(), self.text()]
+    }
+}

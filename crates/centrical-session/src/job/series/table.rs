@@ -7,6 +7,7 @@ use std::path::Path;
 use centrical_table::write_whole;
 
 use super::ledger::Ledger;
+use super::request::SeriesRequest;
 use crate::document::SeriesSummary;
 use crate::error::Error;
 use crate::store::{Depth, Row, Selection, Status, Store};
@@ -16,7 +17,7 @@ const CHUNK: usize = 4096;
 
 /// Writes `series.parquet` and `series.csv`, and counts.
 pub(super) fn write_tables(
-    out: &Path,
+    request: &SeriesRequest,
     store: &Store,
     ledger: &Ledger,
     sessions: &BTreeSet<&Path>,
@@ -25,7 +26,7 @@ pub(super) fn write_tables(
         sessions.iter().filter_map(|s| Some((s.display().to_string(), ledger.key(s)?))).collect();
     let mut summary = SeriesSummary::of(keyed.len());
     let mut text = HEADER.to_owned();
-    let mut table = store.begin_table(&out.join("series.parquet"))?;
+    let mut table = store.begin_table(&request.table())?;
     for chunk in keyed.chunks(CHUNK) {
         let keys = Some(chunk.iter().map(|(_, key)| (*key).to_owned()).collect());
         let selection = Selection { depth: Depth::Values, keys, ..Selection::default() };
@@ -40,7 +41,7 @@ pub(super) fn write_tables(
         table.add(&ordered)?;
     }
     table.finish()?;
-    write_whole(&out.join("series.csv"), text.as_bytes())?;
+    write_whole(&request.text(), text.as_bytes())?;
     Ok(summary)
 }
 
