@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread;
-use std::time::Duration;
 
-use centrical_session::{PlateauName, WatchEvent};
+use centrical_report::{AlarmKind, alarm_text};
+use centrical_session::WatchEvent;
 
 use crate::output::say;
 
@@ -23,17 +23,10 @@ impl Alarm {
 
     /// Raises an alarm if the event is one.
     pub fn hear(&self, event: &WatchEvent) {
-        match event {
-            WatchEvent::Plateau(progress) => {
-                if let Some(last) = progress.plateaus.last().filter(|last| last.alarm) {
-                    let PlateauName { mounting, plateau } = PlateauName::of(progress.session, last.set_point);
-                    let probability = last.innovation().probability();
-                    let message = format!("plateau {mounting}:{plateau} does not fit: a chance of {probability:.2e}");
-                    self.raise("plateau", &message);
-                }
-            }
-            WatchEvent::Frozen { file, age } => self.raise("frozen", &frozen_text(file, *age)),
-            WatchEvent::Waiting(_) => {}
+        match alarm_text(event) {
+            Some((AlarmKind::Plateau, found)) => self.raise("plateau", &found),
+            Some((AlarmKind::Frozen, found)) => self.raise("frozen", &found),
+            None => {}
         }
     }
 
@@ -68,9 +61,4 @@ fn shell(text: &str) -> Command {
     let mut command = Command::new("cmd");
     command.args(["/C", text]);
     command
-}
-
-/// What is said of a frozen record.
-pub fn frozen_text(file: &Path, age: Duration) -> String {
-    format!("{}: found no new sample for {:.0} s, expected a record that grows", file.display(), age.as_secs_f64())
 }

@@ -20,7 +20,7 @@ use hyper::service::service_fn;
 use hyper::{Method, Request, Response};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::runtime::Builder;
-use tokio::sync::Semaphore;
+use tokio::sync::{Semaphore, oneshot};
 use tokio::time::timeout;
 
 use self::address::bound;
@@ -79,22 +79,40 @@ impl Server {
     /// # Errors
     /// [`Error`] when the system has no further thread.
     pub fn start(self, site: impl Site) -> Result<(), Error> {
+        std::mem::forget(self.begin(site)?);
+        Ok(())
+    }
+
+    /// Serves `site` on a thread of its own, until the value that is given is dropped.
+    ///
+    /// # Errors
+    /// As [`Server::start`].
+    pub fn begin(self, site: impl Site) -> Result<Running, Error> {
         let Self { listener, guard } = self;
         let address = guard.address().to_string();
         let failed = |error: std::io::Error| failed(&address, &error);
         listener.set_nonblocking(true).map_err(failed)?;
         let runtime = Builder::new_current_thread().enable_all().build().map_err(failed)?;
+        let (running, ended) = oneshot::channel();
         let serve = move || {
             runtime.block_on(async move {
                 // It was bound, so that the runtime takes it.
                 if let Ok(listener) = tokio::net::TcpListener::from_std(listener) {
-                    accept(listener, Arc::new(Host::new(site, guard))).await;
+                    tokio::spawn(accept(listener, Arc::new(Host::new(site, guard))));
+                    // The sender says nothing: it goes.
+                    let _ = ended.await;
                 }
             });
         };
         thread::Builder::new().name("centrical live".to_owned()).spawn(serve).map_err(failed)?;
-        Ok(())
+        Ok(Running { _running: running })
     }
+}
+
+/// A server that runs until this is dropped.
+#[derive(Debug)]
+pub struct Running {
+    _running: oneshot::Sender<Infallible>,
 }
 
 /// What all connections share.

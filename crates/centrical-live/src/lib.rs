@@ -17,5 +17,5 @@
 mod http;
 mod site;
 
-pub use http::Server;
-pub use site::{Answer, Query, Results, Site, Watched};
+pub use http::{Running, Server};
+pub use site::{Answer, Query, Results, Site, Stored, Watched};

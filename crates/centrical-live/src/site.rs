@@ -2,8 +2,10 @@
 
 mod answer;
 mod results;
+mod stored;
 mod watched;
 
 pub use self::answer::{Answer, Query, Site};
 pub use self::results::Results;
+pub use self::stored::Stored;
 pub use self::watched::Watched;

@@ -13,6 +13,7 @@ mod past;
 mod positions;
 mod prediction;
 mod record;
+mod units;
 
 use centrical::Position;
 use centrical_session::CalibrationResult;
@@ -27,6 +28,7 @@ pub use self::noise::noise_plots;
 pub use self::past::{chart_plots, unit_history_plots};
 use self::positions::position_drawings;
 pub use self::positions::positions_figure;
+pub use self::units::{batches_plot, distribution_plot};
 use crate::language::Language;
 
 /// All figures that can be drawn from a result, in the order of the report.

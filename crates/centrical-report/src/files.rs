@@ -6,4 +6,4 @@ mod pages;
 pub use self::documents::{
     DocumentRequest, Documents, read_issuer, write_all_documents, write_documents, write_history_plot, write_noise,
 };
-pub use self::pages::write_history_pages;
+pub use self::pages::{PagesRequest, StorePages, write_history_pages};

@@ -24,8 +24,8 @@ pub use document::{
 pub use evaluation::{Judged, UnitStatement, UnitVerdict};
 pub use figure::{Figure, chart_plots, comparison_plot, figures, frontier_plot, positions_figure, unit_history_plots};
 pub use files::{
-    DocumentRequest, Documents, read_issuer, write_all_documents, write_documents, write_history_pages,
-    write_history_plot, write_noise,
+    DocumentRequest, Documents, PagesRequest, StorePages, read_issuer, write_all_documents, write_documents,
+    write_history_pages, write_history_plot, write_noise,
 };
 pub use language::Language;
 pub use number::{counted, with_uncertainty};
@@ -33,7 +33,8 @@ pub use render::{
     LIVE_SCRIPT, LIVE_STYLE, ListedResult, compared_page, html, live_page, live_panel, pdf, results_page,
 };
 pub use terminal::{
-    Emphasis, Line, Screen, assessment_text, chart_text, comparison_text, compensation_text, history_list_text,
-    monte_carlo_text, noise_table, noise_warnings, observation_text, plan_text, selection_table, states_text,
-    station_history_text, terminal_table, unit_history_text, unit_text, units_history_text, verdict_text, watch_table,
+    AlarmKind, Emphasis, Line, Screen, alarm_text, assessment_text, chart_text, comparison_text, compensation_text,
+    frozen_text, history_list_text, monte_carlo_text, noise_table, noise_warnings, observation_text, plan_text,
+    selection_table, states_text, station_history_text, terminal_table, unit_history_text, unit_text,
+    units_history_text, verdict_text, watch_table,
 };

@@ -19,12 +19,18 @@ mod draw;
 mod series;
 mod svg;
 
+pub(crate) use self::draw::STYLE;
 pub use self::series::{Axis, Mark, Plot, Point, Scale, Series};
 pub(crate) use self::svg::{Escaped, Px};
 
 impl Plot {
     /// The plot as an SVG element; the same plot gives the same bytes.
     pub fn to_svg(&self) -> String {
-        draw::plot(self)
+        draw::plot(self, STYLE)
+    }
+
+    /// The same for a page that has [`STYLE`] once.
+    pub(crate) fn to_svg_in_page(&self) -> String {
+        draw::plot(self, "")
     }
 }

@@ -7,7 +7,10 @@ mod live;
 mod pdf;
 mod results;
 
-pub use self::history::{HistoryPages, history_index, history_station_page, history_unit_page};
+pub use self::history::{
+    IndexedModel, IndexedStation, PageKind, StoreCharts, history_index, history_model_page, history_station_page,
+    history_unit_page, no_unit_history_page,
+};
 pub use self::html::html;
 pub use self::live::{LIVE_SCRIPT, LIVE_STYLE, live_page, live_panel};
 pub use self::pdf::pdf;

@@ -1,5 +1,6 @@
 //! Text for the terminal: a file a command, and what several share.
 
+mod alarm;
 mod assess;
 mod axes;
 mod calibrate;
@@ -26,6 +27,7 @@ mod unit;
 mod watch;
 mod wrap;
 
+pub use self::alarm::{AlarmKind, alarm_text, frozen_text};
 pub use self::assess::assessment_text;
 pub use self::calibrate::{terminal_table, verdict_text};
 pub use self::compare::comparison_text;

@@ -12,8 +12,7 @@ pub use self::forms::{
     Address, Certificate, Condition, Contact, Customer, Environment, Item, LaboratoryTable, MethodTable, Person,
     Standard,
 };
-pub use self::limit::{Limit, LimitEnd, Limited, StatedLimit};
-use crate::document::CalibrationResult;
+pub use self::limit::{Limit, LimitEnd, Limitable, Limited, StatedLimit};
 use crate::error::{Error, Place, quoted};
 use crate::settings::{from_toml, read_settings};
 
@@ -77,14 +76,14 @@ impl Laboratory {
         Ok(laboratory)
     }
 
-    /// The limits of the decision, each of one parameter of `result` or of one axis of its compensated reading. `file` is the
-    /// laboratory's.
+    /// The limits of the decision, each of one of `parameters` or of one axis of the compensated reading. `file` is the laboratory's.
     ///
     /// # Errors
-    /// [`Error::Table`] with the limit that names no such parameter or group, or is no quantity of it.
-    pub fn limits(&self, file: &Path, result: &CalibrationResult) -> Result<Vec<StatedLimit>, Error> {
+    /// [`Error`] with the limit that names no such parameter or group, or is no quantity of it.
+    pub fn limits(&self, file: &Path, parameters: &[Limitable]) -> Result<Vec<StatedLimit>, Error> {
         let limits = self.decision.iter().flat_map(|decision| &decision.limit);
-        let stated: Result<Vec<_>, _> = limits.enumerate().map(|(n, limit)| limit.stated(file, n, result)).collect();
+        let stated: Result<Vec<_>, _> =
+            limits.enumerate().map(|(n, limit)| limit.stated(file, n, parameters)).collect();
         Ok(stated?.concat())
     }
 

@@ -36,7 +36,7 @@ pub use centrical::stability::Estimator;
 pub use centrical::{OnProgress, STANDARD_GRAVITY, Stopped, unwatched};
 pub use centrical_table::{
     ClaimedFolder, ColumnName, TableFormat, abandon_files, claim_folder, create_folder, harmless, harmless_line,
-    read_bytes, refuse_inputs, write_whole,
+    read_bytes, refuse_inputs, write_stream, write_whole,
 };
 pub use document::{
     ADDED_SCHEMA, ASSESSMENT_SCHEMA, AddedReport, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport,
@@ -62,9 +62,10 @@ pub use document::{
     WatchedPlateau, read_history,
 };
 pub use document::{
-    CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession, ReadingHistory,
-    STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA,
-    UNITS_HISTORY_SCHEMA, UnitFinding, UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter,
+    BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession,
+    ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter,
+    UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitHistoryReport, UnitParameter, UnitsHistoryReport,
+    UnitsParameter,
 };
 pub use document::{
     GroupProgress, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed,
@@ -86,13 +87,13 @@ pub use job::{
     settings_schema, simulate_session, subject, tumble, with_rests_there, write_reduced,
 };
 pub use job::{
-    Calibrated, CalibratedParameter, ChartLimits, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
-    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, station_history, unit_history,
-    units_history,
+    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
+    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, read_limits, station_history,
+    unit_history, unit_means, units_history,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Decision, DecisionRule, Environment, Item, Laboratory,
-    LaboratoryTable, Limit, LimitEnd, Limited, MethodTable, Person, Standard, StatedLimit,
+    LaboratoryTable, Limit, LimitEnd, Limitable, Limited, MethodTable, Person, Standard, StatedLimit,
 };
 pub use quantity::{Date, Dimension, NotADay, NotThatQuantity, Quantity};
 pub use record::{

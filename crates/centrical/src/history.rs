@@ -24,7 +24,7 @@ mod together;
 mod units;
 
 pub use batches::{BatchTest, batch_test};
-pub use between::Between;
+pub use between::{Between, Likely};
 pub use capability::{Capability, Index, capability};
 pub use chart::{Control, Cusum, Ewma, Rule, cusum, ewma, moving_ranges, signals};
 pub use evolution::{Estimated, Evolution};

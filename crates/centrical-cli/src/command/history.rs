@@ -12,6 +12,7 @@ mod units;
 
 use centrical_session::Error;
 
+pub use self::page::PageOptions;
 use crate::outcome::Outcome;
 
 /// Keep calibrations in a store; a unit over the years, units beside each other, a station over its sessions, control charts.

@@ -2,19 +2,20 @@
 
 use std::path::PathBuf;
 
-use centrical_live::{Results, Server};
-use centrical_session::Error;
+use centrical_live::{Results, Server, Stored};
+use centrical_session::{Error, Place, Store};
 
+use crate::command::history::PageOptions;
 use crate::outcome::Outcome;
 use crate::serving::{USUAL, remain, serve};
 
 /// Show results in browsers without writing files: a list with verdicts, a report each, two compared; and the live page of a
-/// watch whose folder it is.
+/// watch whose folder it is. Of a store the pages of `history page`, which follow it while calibrations come.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: centrical view results/")]
 pub struct Arguments {
-    /// Folders, which are searched for result.json, and results
-    #[arg(num_args = 1.., required = true, value_name = "DIR|RESULT")]
+    /// Folders, which are searched for result.json, and results; or one store
+    #[arg(num_args = 1.., required = true, value_name = "DIR|RESULT|STORE")]
     paths: Vec<PathBuf>,
     /// Address; other machines see the pages only where it is one that they reach
     #[arg(long, value_name = "ADDRESS", default_value = USUAL)]
@@ -22,12 +23,28 @@ pub struct Arguments {
     /// A name of this machine by which browsers call it, beside localhost and addresses; may be repeated
     #[arg(long, value_name = "NAME")]
     serve_name: Vec<String>,
+    #[command(flatten)]
+    options: PageOptions,
 }
 
 /// Runs the command, until Ctrl-C.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let site = Results::new(&arguments.paths)?;
-    let url = serve(Server::bind(&arguments.serve, &arguments.serve_name)?, site)?;
+    let bind = || Server::bind(&arguments.serve, &arguments.serve_name);
+    let store = arguments.paths.iter().find(|path| Store::open(path).is_ok());
+    let url = match (store, arguments.paths.as_slice()) {
+        (None, paths) => {
+            let site = Results::new(paths)?;
+            serve(bind()?, site)?
+        }
+        (Some(_), [store]) => {
+            let site = Stored::new(store, arguments.options.request())?;
+            serve(bind()?, site)?
+        }
+        (Some(store), _) => {
+            let expected = "this store alone, or folders of results and results";
+            return Err(Error::content(store, Place::Whole, "a store among other paths", expected));
+        }
+    };
     remain(&url);
     Ok(Outcome::Done)
 }

@@ -4,7 +4,9 @@ use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use centrical_report::{counted, states_text, terminal_table, verdict_text, watch_table, write_history_plot};
+use centrical_report::{
+    counted, frozen_text, states_text, terminal_table, verdict_text, watch_table, write_history_plot,
+};
 use centrical_session::{
     Error, Following, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder, refuse_inputs,
     with_rests_there,
@@ -15,7 +17,7 @@ use centrical_live::Watched;
 #[cfg(feature = "serve")]
 use centrical_session::LiveRequest;
 
-use crate::alarm::{Alarm, frozen_text};
+use crate::alarm::Alarm;
 use crate::interruption::asked_to_end;
 use crate::outcome::Outcome;
 use crate::output::{print, print_as_it_is, remark, say, show as show_screen};

@@ -261,6 +261,52 @@ fn addresses_that_cannot_be_served_are_refused_before_anything_is_done() {
     assert_eq!(copy.left_behind(), ["watch-live.json"]);
 }
 
+/// The pages of a store are those that `history page` writes, and follow the store.
+#[test]
+fn a_store_is_shown_as_its_pages() {
+    let copy = Copy::new();
+    let run = |arguments: &[&str]| assert!(copy.run(arguments).status.success(), "{arguments:?}");
+    assert!(copy.calibrate(&["--out", "first", "-q"]).status.success());
+    let first = fs::read_to_string(copy.out().join("first/result.json")).unwrap();
+    let of_year = |year: usize| {
+        let text = first.replace("\"date\": \"2026-10-05\"", &format!("\"date\": \"{year}-10-05\""));
+        assert_ne!(text, first);
+        fs::write(copy.out().join(format!("{year}.json")), text).unwrap();
+        run(&["history", "add", "store", &format!("{year}.json"), "-q"]);
+    };
+    of_year(2027);
+    of_year(2028);
+    let (status, code) = (copy.run(&["view", "store", "first"]), Some(2));
+    assert!(
+        status.status.code() == code && String::from_utf8_lossy(&status.stderr).contains("expected this store alone")
+    );
+    let mut command = program::centrical();
+    command.args(["view", "store", "--limit", "300 ug", "--serve", "127.0.0.1:0"]).current_dir(copy.out());
+    let served = Served::start(&mut command);
+    let is_shown_as_written = || {
+        run(&["history", "page", "store", "--limit", "300 ug", "--out", "pages", "-q"]);
+        let mut pages = 0;
+        for (name, bytes) in contents(&copy.out().join("pages")) {
+            let written = String::from_utf8(bytes).unwrap();
+            // The page of a unit names its origin in the second line.
+            let lines = written.lines().filter(|line| !line.starts_with("<!-- "));
+            let (status, shown) = served.get(&format!("/{name}"));
+            assert!(status == 200 && shown.lines().eq(lines), "{name}: {shown}");
+            pages += 1;
+        }
+        assert!(served.get("/").1 == served.get("/index.html").1);
+        pages
+    };
+    assert_eq!(is_shown_as_written(), 4);
+    assert_eq!(served.get("/").1.matches("<tr><td>").count(), 2);
+    of_year(2029);
+    assert_eq!(served.get("/").1.matches("<tr><td>").count(), 3);
+    assert_eq!(is_shown_as_written(), 4);
+    for path in ["/unit-0001.html", "/rows/x", "/../store/lock", "/compare", "/live"] {
+        assert_eq!(served.get(path).0, 404, "{path}");
+    }
+}
+
 /// The folder goes away under a watch: it ends with the name of the file.
 #[test]
 fn a_folder_that_vanishes_ends_the_watch() {

@@ -1,7 +1,7 @@
 //! `history unit | units | station | chart | page` on a plant whose faults are known.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use serde_json::{Value, json};
@@ -82,6 +82,35 @@ fn planted_faults_are_found() {
     assert!(findings.iter().all(|f| f["unit_serial"] == "0003" && f["parameter"] == "df_1"), "{findings:?}");
     assert!(findings.iter().any(|f| f["kind"] == "drifts"));
 
+    // Capability against the laboratory's limits, and batches; of a store as of results.
+    let laboratory = example().join("laboratory.toml");
+    let batch = |unit: usize| format!("{unit:04},{}", if unit < 7 { "A" } else { "B" });
+    let batches: Vec<String> = (0..UNITS).map(batch).collect();
+    fs::write(folder.join("batches.csv"), format!("serial,batch\n{}\n", batches.join("\n"))).unwrap();
+    let options = ["--laboratory", laboratory.to_str().unwrap(), "--batches", "batches.csv"];
+    let (units, _) = history(folder, &[&["units", "store"], options.as_slice()].concat());
+    let (of_results, _) = history(folder, &[&["units", "plant"], options.as_slice()].concat());
+    for (p, of_results) in
+        units["parameters"].as_array().unwrap().iter().zip(of_results["parameters"].as_array().unwrap())
+    {
+        let [mean, deviation] = ["mean", "deviation"].map(|key| p[key].as_f64().unwrap());
+        let has_limits = p["name"].as_str().unwrap().starts_with("df_");
+        assert!(has_limits != p["capability"].is_null() && p["batch_probability"].is_number(), "{p}");
+        if has_limits {
+            // The nearer limit of -0.15 and 0.15 m/s^2.
+            let cpk = (0.15 - mean.abs()) / (3.0 * deviation);
+            for capability in [&p["capability"], &of_results["capability"]] {
+                assert!((capability["cpk"].as_f64().unwrap() / cpk - 1.0).abs() < 1e-9, "{capability}");
+            }
+        }
+    }
+    let unknown = fs::read_to_string(&laboratory).unwrap().replace("\"df_2\"", "\"df_9\"");
+    fs::write(folder.join("laboratory.toml"), unknown).unwrap();
+    let refused = run(folder, &["history", "units", "store", "--laboratory", "laboratory.toml"]);
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(2) && said.contains("laboratory.toml, [[decision.limit]] 2"), "{said}");
+    assert!(said.contains("found \"df_9\", expected one of "), "{said}");
+
     let (station, code) = history(folder, &["station", "store"]);
     assert_eq!((names(&station["parameters"], "changes"), code), (vec!["alpha_1"], 1));
 
@@ -121,13 +150,106 @@ fn pages_name_every_calibration_and_no_name_becomes_markup() {
     let index = fs::read_to_string(folder.join("pages/index.html")).unwrap();
     assert_eq!(index.matches("<tr><td>").count(), UNITS * SESSIONS + 1);
     assert!(!index.contains("<script>alert") && index.contains("&lt;script&gt;alert"));
-    assert_eq!(fs::read_dir(folder.join("pages")).unwrap().count(), 2 + UNITS);
-    let unit = fs::read_to_string(folder.join("pages/unit-3.html")).unwrap();
-    assert!(
-        unit.contains("serial 0003") && unit.contains("DRIFTS") && unit.matches("<svg").count() > 20,
-        "{}",
-        &unit[..600]
-    );
+    // The list, a model, a station.
+    assert_eq!(fs::read_dir(folder.join("pages")).unwrap().count(), 3 + UNITS);
+    let unit = page(folder, "unit-0003-");
+    assert!(unit.contains("serial 0003") && unit.contains("DRIFTS") && unit.matches("<svg").count() > 40);
+    assert!(unit.contains("found 4 acceptable sessions with values that differ, expected 20 for the limits"));
+    // Every link of every page leads to a page.
+    for entry in fs::read_dir(folder.join("pages")).unwrap() {
+        for link in fs::read_to_string(entry.unwrap().path()).unwrap().split("href=\"").skip(1) {
+            let link = link.split('"').next().unwrap();
+            assert!(link == "data:," || folder.join("pages").join(link).exists(), "{link}");
+        }
+    }
+}
+
+/// The page whose file begins so.
+fn page(folder: &Path, begins: &str) -> String {
+    let names = fs::read_dir(folder.join("pages")).unwrap().map(|entry| entry.unwrap().path());
+    let is = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().starts_with(begins);
+    let found: Vec<PathBuf> = names.filter(is).collect();
+    assert_eq!(found.len(), 1, "{begins}");
+    fs::read_to_string(&found[0]).unwrap()
+}
+
+/// Capability against the laboratory's limits, batches and control charts stand in the pages as the commands have them.
+#[test]
+fn pages_show_what_the_commands_say() {
+    let folder = plant();
+    let folder = folder.path();
+    let laboratory = example().join("laboratory.toml");
+    let batches: Vec<String> = (0..UNITS).map(|unit| format!("{unit:04},batch {}", unit % 2)).collect();
+    fs::write(folder.join("batches.csv"), batches.join("\n")).unwrap();
+    let options = ["--laboratory", laboratory.to_str().unwrap(), "--batches", "batches.csv"];
+    let made = run(folder, &[&["history", "page", "store", "--out", "pages"], options.as_slice()].concat());
+    assert!(made.status.success(), "{made:?}");
+    let (units, _) = history(folder, &[&["units", "store"], options.as_slice()].concat());
+    let model = page(folder, "model-TA-200-");
+    let parameters = units["parameters"].as_array().unwrap();
+    for p in parameters.iter().filter(|p| !p["capability"].is_null()) {
+        let [cp, cpk] = ["cp", "cpk"].map(|key| format!("{:.2}", p["capability"][key].as_f64().unwrap()));
+        let name = p["name"].as_str().unwrap();
+        let line = model.lines().find(|line| line.trim_start().starts_with(&format!("{name} ")) && line.contains(&cpk));
+        assert!(line.is_some_and(|line| line.contains(&cp)), "{name} {cp} {cpk}");
+    }
+    let least = parameters.iter().filter_map(|p| p["capability"]["cpk"].as_f64()).fold(f64::INFINITY, f64::min);
+    let index = page(folder, "index.html");
+    assert!(index.contains(&format!("<td class=\"number\">{least:.2}</td>")), "the least Cpk, {least}");
+    // A distribution and a drawing of the batches for each parameter, and four charts of each.
+    assert_eq!(model.matches("<figure>").count(), (2 + 4) * parameters.len());
+    assert!(model.contains(">batch 0<") && model.contains(">batch 1<"));
+    let (chart, _) = history(folder, &["chart", "alpha_1", "store"]);
+    let station = page(folder, "station-");
+    let signals = chart["signals"].as_array().unwrap();
+    assert!(!signals.is_empty() && station.contains(&format!("alpha_1: {} signals", signals.len())), "{signals:?}");
+    let place = signals.last().unwrap()["session"].as_u64().unwrap();
+    let last = &chart["sessions"][usize::try_from(place).unwrap()];
+    let [year, month, day] = ["year", "month", "day"].map(|key| last["date"][key].as_u64().unwrap());
+    let words = format!("{year}-{month:02}-{day:02}, serial {}: ", last["unit_serial"].as_str().unwrap());
+    assert!(station.contains(&words), "{words}");
+    let refused = run(folder, &["history", "page", "store", "--out", "other", "--laboratory", "nowhere.toml"]);
+    assert!(refused.status.code() == Some(2) && !folder.join("other").exists(), "{refused:?}");
+}
+
+/// A page is made anew if one of its calibrations is new, or something else is asked.
+#[test]
+fn pages_of_units_without_news_are_left() {
+    let folder = plant();
+    let folder = folder.path();
+    let write = |further: &[&str]| {
+        let made = run(folder, &[&["history", "page", "store", "--out", "pages"], further].concat());
+        assert!(made.status.success(), "{made:?}");
+    };
+    write(&[]);
+    let units = || -> Vec<(PathBuf, Vec<u8>)> {
+        let entries = fs::read_dir(folder.join("pages")).unwrap().map(|entry| entry.unwrap().path());
+        let is_of_unit = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().starts_with("unit-");
+        let mut files: Vec<_> =
+            entries.filter(is_of_unit).map(|path| (path.clone(), fs::read(&path).unwrap())).collect();
+        files.sort();
+        files
+    };
+    let whole = units();
+    // Marks at the end of each page: a page that is made anew has none.
+    for (path, bytes) in &whole {
+        fs::write(path, [bytes.as_slice(), b"<!-- left -->"].concat()).unwrap();
+    }
+    let file = folder.join("plant/0005/3/result.json");
+    let mut result: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    result["session"]["date"] = json!("2026-03-01");
+    fs::write(&file, result.to_string()).unwrap();
+    assert!(run(folder, &["history", "add", "store", file.to_str().unwrap()]).status.success());
+    write(&[]);
+    let is_left = |bytes: &[u8]| bytes.ends_with(b"<!-- left -->");
+    for (path, bytes) in units() {
+        assert_eq!(is_left(&bytes), !path.to_string_lossy().contains("unit-0005-"), "{}", path.display());
+    }
+    write(&["--limit", "300 ug"]);
+    assert!(units().iter().all(|(_, bytes)| !is_left(bytes)));
+    write(&[]);
+    let again = units();
+    assert!(again.iter().zip(&whole).filter(|(a, b)| a == b).count() == UNITS - 1);
 }
 
 #[test]

@@ -1,15 +1,15 @@
 //! Histories as plots: a parameter of a unit over its calibrations, control charts.
 
-use centrical_session::{ChartReport, UnitHistoryReport, UnitParameter, customary};
+use centrical_session::{ChartReport, ParameterLimits, UnitHistoryReport, UnitParameter, customary};
 
 use crate::plot::{Axis, Plot, Point, Series};
 
-/// The value of each parameter over the sessions with its expanded uncertainty (k = 2), and the forecast: name and plot.
-pub fn unit_history_plots(report: &UnitHistoryReport) -> Vec<(String, String)> {
-    report.parameters.iter().map(|p| (p.name.clone(), unit_parameter(report, p))).collect()
+/// The value of each parameter over the sessions with its expanded uncertainty (k = 2), the forecast and the limits: name and plot.
+pub fn unit_history_plots(report: &UnitHistoryReport, limits: &ParameterLimits) -> Vec<(String, Plot)> {
+    report.parameters.iter().map(|p| (p.name.clone(), unit_parameter(report, p, limits))).collect()
 }
 
-fn unit_parameter(report: &UnitHistoryReport, p: &UnitParameter) -> String {
+fn unit_parameter(report: &UnitHistoryReport, p: &UnitParameter, limits: &ParameterLimits) -> Plot {
     let (factor, unit) = customary(&p.unit, p.group);
     let years = |date: centrical_session::Date| date.in_years();
     let point = |((session, value), u): ((&centrical_session::PastSession, &f64), &f64)| {
@@ -24,11 +24,18 @@ fn unit_parameter(report: &UnitHistoryReport, p: &UnitParameter) -> String {
         let at = Point::new(years(report.until), 0.5 * (low + high)).with_interval(low.min(high), low.max(high));
         plot = plot.with(Series::markers(format!("forecast, {} %", (1e8 * report.coverage).round() / 1e6), vec![at]));
     }
-    plot.to_svg()
+    let ends = report.sessions.first().map(|session| [years(session.date), years(report.until)]);
+    let (low, high) = limits.get(&p.name).copied().unwrap_or_default();
+    for (name, limit) in [("lower limit", low), ("upper limit", high)] {
+        if let Some((ends, limit)) = ends.zip(limit) {
+            plot = plot.with(Series::line(name, ends.map(|year| Point::new(year, factor * limit)).to_vec()));
+        }
+    }
+    plot
 }
 
 /// Individuals, moving ranges, weighted means and cumulative sums, each a plot with its limits.
-pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, String)> {
+pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, Plot)> {
     let (factor, unit) = customary(&report.unit, report.group);
     let count = report.values.len() as f64;
     let level = |label: &str, value: f64| Series::line(label, vec![Point::new(1.0, value), Point::new(count, value)]);
@@ -61,16 +68,14 @@ pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, String)> {
                 .with(level("centre", factor * report.centre))
                 .with(level("lower limit", factor * report.limits[0]))
                 .with(level("upper limit", factor * report.limits[1]))
-                .with(signals(single, &report.values, 1, factor))
-                .to_svg(),
+                .with(signals(single, &report.values, 1, factor)),
         ),
         (
             "moving-ranges",
             Plot::new(format!("{}: moving ranges", report.name), x(), y("moving range"))
                 .with(Series::line_and_markers("ranges", numbered(&report.ranges, 2, factor.abs())))
                 .with(level("upper limit", factor.abs() * report.range_limit))
-                .with(signals("moving-range", &report.ranges, 2, factor.abs()))
-                .to_svg(),
+                .with(signals("moving-range", &report.ranges, 2, factor.abs())),
         ),
         (
             "ewma",
@@ -78,8 +83,7 @@ pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, String)> {
                 .with(Series::line_and_markers("means", numbered(&report.ewma, 1, factor)))
                 .with(Series::line("lower limit", half(-1.0)))
                 .with(Series::line("upper limit", half(1.0)))
-                .with(signals("ewma", &report.ewma, 1, factor))
-                .to_svg(),
+                .with(signals("ewma", &report.ewma, 1, factor)),
         ),
         (
             "cusum",
@@ -87,8 +91,7 @@ pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, String)> {
                 .with(Series::line_and_markers("upwards", numbered(&report.cusum_upper, 1, 1.0)))
                 .with(Series::line_and_markers("downwards", numbered(&report.cusum_lower, 1, 1.0)))
                 .with(level("limit", report.cusum_limit))
-                .with(signals("cusum", &largest_sums, 1, 1.0))
-                .to_svg(),
+                .with(signals("cusum", &largest_sums, 1, 1.0)),
         ),
     ]
 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical::MeasurementModel;
 use centrical_session::{
-    Axes, CalibrationResult, Error, Laboratory, NoiseAnalysis, Place, UnknownUnit, claim_folder, create_folder,
-    history_up_to, read_history, refuse_inputs, write_whole,
+    Axes, CalibrationResult, Error, Laboratory, Limitable, NoiseAnalysis, Place, UnknownUnit, claim_folder,
+    create_folder, history_up_to, read_history, refuse_inputs, write_whole,
 };
 
 use crate::codegen::{NamedTerm, compensation_source, heading};
@@ -174,7 +174,10 @@ pub fn write_history_plot(model: &MeasurementModel, folder: &Path) -> Result<(),
 /// [`Error`] when the file is wrong, its limits are not those of a quantity of the result, or its picture cannot be shown.
 pub fn read_issuer(file: &Path, result: &CalibrationResult) -> Result<Issuer, Error> {
     let laboratory = Laboratory::read(file)?;
-    let limits = laboratory.limits(file, result)?;
+    let parameters = result.parameters.iter();
+    let parameters: Vec<Limitable> =
+        parameters.map(|p| Limitable { name: &p.name, unit: &p.unit, group: p.group }).collect();
+    let limits = laboratory.limits(file, &parameters)?;
     let unit = laboratory.decision.as_ref().map(|decision| UnitStatement::new(result, decision, limits));
     let logo = laboratory.logo(file).map(|file| read_picture(&file)).transpose()?;
     Ok(Issuer { laboratory, unit, past: None, logo })

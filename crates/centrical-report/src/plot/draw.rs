@@ -31,7 +31,7 @@ const ROW: f64 = 20.0;
 
 /// Okabe and Ito's palette without yellow and black, darkened where it would be pale on white and lightened for dark
 /// grounds. Plain rules rather than variables, which few renderers other than browsers know.
-const STYLE: &str = "\
+pub(crate) const STYLE: &str = "\
 .plot{font:13px system-ui,sans-serif}.plot .title{font-size:16px;font-weight:600}\
 .plot text{fill:#1a1a1a}.plot .ground{fill:#fff}.plot .frame{stroke:#1a1a1a;fill:none}\
 .plot .grid{stroke:#d0d0d0;fill:none}.plot .minor{opacity:.45}\
@@ -58,24 +58,25 @@ struct Frame {
     height: f64,
 }
 
-pub(super) fn plot(plot: &Plot) -> String {
+pub(super) fn plot(plot: &Plot, style: &str) -> String {
     let sheet = if plot.is_panel { PANEL } else { WHOLE };
     let legend = legend_places(&plot.series, &sheet);
     let rows = legend.last().map_or(0.0, |&(_, row)| row + 1.0);
     let frame = Frame::new(plot, sheet, LEGEND - 12.0 + ROW * rows);
     let mut svg = String::new();
     // Writing to a String cannot fail.
-    let _ = draw(&mut svg, plot, &frame, &legend);
+    let _ = draw(&mut svg, plot, &frame, &legend, style);
     svg
 }
 
-fn draw(svg: &mut String, plot: &Plot, frame: &Frame, legend: &[(f64, f64)]) -> std::fmt::Result {
+fn draw(svg: &mut String, plot: &Plot, frame: &Frame, legend: &[(f64, f64)], style: &str) -> std::fmt::Result {
     let title = Escaped(&plot.title);
+    let (open, close) = if style.is_empty() { ("", "") } else { ("<style>", "</style>") };
     let Sheet { class, width, height, left, .. } = frame.sheet;
     write!(
         svg,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"{class}\" role=\"img\" viewBox=\"0 0 {width} {height}\" \
-         aria-label=\"{title}\"><style>{STYLE}</style>\
+         aria-label=\"{title}\">{open}{style}{close}\
          <rect class=\"ground\" width=\"{width}\" height=\"{height}\"/>\
          <text class=\"title\" x=\"{left}\" y=\"{TITLE}\">{title}</text>"
     )?;

@@ -6,7 +6,6 @@ use centrical::Group;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::document::{CalibrationResult, ParameterEstimate};
 use crate::error::{Error, Place, quoted};
 use crate::quantity::Quantity;
 use crate::units::in_parameter_unit;
@@ -27,6 +26,17 @@ pub struct Limit {
     pub high: Option<Quantity>,
     /// Largest magnitude, in place of both.
     pub within: Option<Quantity>,
+}
+
+/// A parameter that limits may be of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limitable<'a> {
+    /// Name.
+    pub name: &'a str,
+    /// Unit of SI.
+    pub unit: &'a str,
+    /// bias, scale, misalignment, ...
+    pub group: Group,
 }
 
 /// Limits of one quantity of a result.
@@ -98,31 +108,29 @@ impl Limit {
         }
     }
 
-    /// The limits of each quantity of `result` that is meant.
-    pub(super) fn stated(&self, file: &Path, n: usize, result: &CalibrationResult) -> Result<Vec<StatedLimit>, Error> {
+    /// The limits of each quantity that is meant, of the compensated reading or one of `parameters`.
+    pub(super) fn stated(&self, file: &Path, n: usize, parameters: &[Limitable]) -> Result<Vec<StatedLimit>, Error> {
         if self.reading.is_some() {
             let ends = |axis| self.ends(file, n, Limited::CompensatedReading(axis), "m/s^2", Group::Bias);
             return [1, 2, 3].into_iter().map(ends).collect();
         }
-        let is_meant = |p: &&ParameterEstimate| match (&self.parameter, &self.group) {
+        let is_meant = |p: &&Limitable| match (&self.parameter, &self.group) {
             (Some(name), _) => p.name == *name,
             (None, group) => group.as_deref().and_then(named) == Some(p.group),
         };
-        let meant: Vec<_> = result.parameters.iter().filter(is_meant).collect();
+        let meant: Vec<_> = parameters.iter().filter(is_meant).collect();
         if meant.is_empty() {
-            return Err(self.unknown(file, n, result));
+            return Err(self.unknown(file, n, parameters));
         }
-        let ends = |p: &&ParameterEstimate| self.ends(file, n, Limited::Parameter(p.name.clone()), &p.unit, p.group);
+        let ends = |p: &&Limitable| self.ends(file, n, Limited::Parameter(p.name.to_owned()), p.unit, p.group);
         meant.iter().map(ends).collect()
     }
 
-    fn unknown(&self, file: &Path, n: usize, result: &CalibrationResult) -> Error {
-        let parameters = result.parameters.iter();
+    fn unknown(&self, file: &Path, n: usize, parameters: &[Limitable]) -> Error {
+        let parameters = parameters.iter();
         let (key, found, mut known): (_, _, Vec<&str>) = match (&self.parameter, &self.group) {
             (None, Some(group)) => ("group", group.as_str(), parameters.map(|p| p.group.name()).collect()),
-            (name, _) => {
-                ("parameter", name.as_deref().unwrap_or_default(), parameters.map(|p| p.name.as_str()).collect())
-            }
+            (name, _) => ("parameter", name.as_deref().unwrap_or_default(), parameters.map(|p| p.name).collect()),
         };
         known.dedup();
         unexpected(file, n, key, quoted(found.as_bytes()), &format!("one of {}", known.join(", ")))

@@ -10,6 +10,8 @@
 //! and J. Mandel (J. Res. NBS 87, 1982) for `c = nu`; the interval of W. Viechtbauer (Statistics in Medicine 26, 2007) for quantiles of
 //! chi^2; the law of a forecast for all of them.
 
+use std::mem;
+
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::line::{Curve, Line};
@@ -32,37 +34,26 @@ pub struct Between {
     pub probability: f64,
     /// `Q` at the estimate over `nu`: 1 where there is a component.
     pub(super) scale: f64,
-    /// The confidence distribution: weights, and the `tau^2` with `Q(tau^2) = c` for values `c` of chi^2.
-    pub(super) likely: Vec<(f64, f64)>,
 }
+
+/// The confidence distribution of the component, which forecasts need: weights, and the `tau^2` with `Q(tau^2) = c` for values `c` of chi^2.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Likely(pub(super) Vec<(f64, f64)>);
 
 impl Between {
     /// The component that `series` have in common, `sum_s Q_s(tau^2) = c`: one unit by itself, or units of one type with few
     /// sessions each. Series without a degree of freedom are left out; `None` where none has one.
-    pub fn of(series: &[Series], curve: Curve, quantiles: &Quantiles, coverage: f64) -> Option<Self> {
-        let is_used =
-            |s: &&Series| degrees_of_freedom(s, curve).is_some() && Line::new(s.points(), curve, 0.0).is_some();
-        let used: Vec<&Series> = series.iter().filter(is_used).collect();
-        let nu = used.iter().filter_map(|s| degrees_of_freedom(s, curve)).sum();
-        let misfit_and_fall = |tau: f64| {
-            let lines = used.iter().filter_map(|s| Line::new(s.points(), curve, tau));
-            lines.fold((0.0, 0.0), |(misfit, fall), line| (misfit + line.misfit, fall + line.fall))
-        };
-        let mut likely = Vec::new();
-        let mut tau = 0.0;
-        // From large values of chi^2 to small ones: tau^2 grows.
-        for &(weight, chi_squared) in quantiles.of(nu)?.iter() {
-            tau = solution(misfit_and_fall, chi_squared, tau)?;
-            likely.push((weight, tau));
-        }
-        let variance = solution(misfit_and_fall, nu as f64, 0.0)?;
+    pub fn of(series: &[Series], curve: Curve, coverage: f64) -> Option<Self> {
+        let mut scatter = Scatter::of(series, curve);
+        let nu = scatter.degrees_of_freedom;
         let law = ChiSquared::new(nu as f64).ok()?;
-        let end = |probability: f64| solution(misfit_and_fall, law.inverse_cdf(probability), 0.0);
+        let variance = scatter.solution(nu as f64, 0.0)?;
+        let mut end = |probability: f64| scatter.solution(law.inverse_cdf(probability), 0.0);
         let interval = [end(0.5 + 0.5 * coverage)?, end(0.5 - 0.5 * coverage)?];
-        let misfit = misfit_and_fall(0.0).0;
-        let scale = misfit_and_fall(variance).0 / nu as f64;
+        let misfit = scatter.misfit_and_fall(0.0).0;
+        let scale = scatter.misfit_and_fall(variance).0 / nu as f64;
         let probability = chi_squared_tail(misfit, nu);
-        Some(Self { variance, interval, misfit, degrees_of_freedom: nu, probability, scale, likely })
+        Some(Self { variance, interval, misfit, degrees_of_freedom: nu, probability, scale })
     }
 
     /// `F = Q / nu`: the scatter about the curve over the one that the stated uncertainties explain, in squares.
@@ -71,27 +62,74 @@ impl Between {
     }
 }
 
+impl Likely {
+    /// The distribution of the component that `series` have in common; `None` as of [`Between::of`].
+    pub fn of(series: &[Series], curve: Curve, quantiles: &Quantiles) -> Option<Self> {
+        let mut scatter = Scatter::of(series, curve);
+        let mut tau = 0.0;
+        let mut likely = Vec::new();
+        // From large values of chi^2 to small ones: tau^2 grows.
+        for &(weight, chi_squared) in quantiles.of(scatter.degrees_of_freedom)?.iter() {
+            tau = scatter.solution(chi_squared, tau)?;
+            likely.push((weight, tau));
+        }
+        Some(Self(likely))
+    }
+}
+
+/// `Q` of several series as a function of `tau^2`.
+struct Scatter<'a> {
+    used: Vec<&'a Series>,
+    curve: Curve,
+    degrees_of_freedom: usize,
+    /// Room for weights: `Q` is asked for hundreds of times.
+    weights: Vec<f64>,
+}
+
+impl<'a> Scatter<'a> {
+    fn of(series: &'a [Series], curve: Curve) -> Self {
+        let is_used =
+            |s: &&Series| degrees_of_freedom(s, curve).is_some() && Line::new(s.points(), curve, 0.0).is_some();
+        let used: Vec<&Series> = series.iter().filter(is_used).collect();
+        let nu = used.iter().filter_map(|s| degrees_of_freedom(s, curve)).sum();
+        Self { used, curve, degrees_of_freedom: nu, weights: Vec::new() }
+    }
+
+    fn misfit_and_fall(&mut self, tau: f64) -> (f64, f64) {
+        let (mut misfit, mut fall) = (0.0, 0.0);
+        for series in &self.used {
+            let weights = mem::take(&mut self.weights);
+            if let Some(line) = Line::with_room(weights, series.points(), self.curve, tau) {
+                misfit += line.misfit;
+                fall += line.fall;
+                self.weights = line.into_room();
+            }
+        }
+        (misfit, fall)
+    }
+
+    /// Newton's method on `1 / Q`, a straight line where all `v_i` are equal, and concave otherwise: it never steps too far.
+    fn solution(&mut self, target: f64, start: f64) -> Option<f64> {
+        let mut tau = start;
+        for _ in 0..STEPS {
+            let (misfit, fall) = self.misfit_and_fall(tau);
+            if misfit <= target {
+                break;
+            }
+            let step = (misfit / target - 1.0) * misfit / fall;
+            tau += step;
+            // The digits double in each step.
+            if step <= TOLERANCE * tau {
+                break;
+            }
+        }
+        tau.is_finite().then_some(tau)
+    }
+}
+
 /// `k - q`, if positive.
 fn degrees_of_freedom(series: &Series, curve: Curve) -> Option<usize> {
     series.points().len().checked_sub(curve.unknowns()).filter(|nu| *nu > 0)
-}
-
-/// Newton's method on `1 / Q`, a straight line where all `v_i` are equal, and concave otherwise: it never steps too far.
-fn solution(misfit_and_fall: impl Fn(f64) -> (f64, f64), target: f64, start: f64) -> Option<f64> {
-    let mut tau = start;
-    for _ in 0..STEPS {
-        let (misfit, fall) = misfit_and_fall(tau);
-        if misfit <= target {
-            break;
-        }
-        let step = (misfit / target - 1.0) * misfit / fall;
-        tau += step;
-        // The digits double in each step.
-        if step <= TOLERANCE * tau {
-            break;
-        }
-    }
-    tau.is_finite().then_some(tau)
 }
 
 /// Far more than it takes.

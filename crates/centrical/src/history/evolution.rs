@@ -7,7 +7,7 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::between::Between;
+use super::between::{Between, Likely};
 use super::law::{Law, Part};
 use super::line::{Curve, Line};
 use super::quantiles::Quantiles;
@@ -48,6 +48,8 @@ impl Estimated {
     pub fn probability(&self) -> f64 {
         let below = |law: &Law| law.probability_below(0.0);
         match &self.spread {
+            // Sessions that agree to the last digit have no scatter to measure it by.
+            Spread::StudentsT(_) if self.value == 0.0 => 1.0,
             Spread::StudentsT(nu) => student_tail(self.value / self.standard_uncertainty, *nu),
             Spread::Law(law) => 2.0 * below(law).min(1.0 - below(law)),
         }
@@ -75,13 +77,19 @@ pub struct Evolution<'a> {
 }
 
 impl Series {
-    /// How the quantity goes on along a `curve`, with the component `between` its sessions; `None` at times that do not determine
-    /// the curve.
-    pub fn evolution(&self, curve: Curve, between: &Between, quantiles: &Quantiles) -> Option<Evolution<'_>> {
+    /// How the quantity goes on along a `curve`, with the component `between` its sessions and all that is `likely` of it; `None` at
+    /// times that do not determine the curve.
+    pub fn evolution(
+        &self,
+        curve: Curve,
+        between: &Between,
+        likely: &Likely,
+        quantiles: &Quantiles,
+    ) -> Option<Evolution<'_>> {
         let line = |tau: f64| Line::new(self.points(), curve, tau);
         let nu = between.degrees_of_freedom;
         let scales = quantiles.of(nu)?.iter().map(|(weight, chi_squared)| (*weight, chi_squared / nu as f64)).collect();
-        let likely = between.likely.iter().map(|(weight, tau)| Some((*weight, *tau, line(*tau)?)));
+        let likely = likely.0.iter().map(|(weight, tau)| Some((*weight, *tau, line(*tau)?)));
         Some(Evolution {
             series: self,
             line: line(between.variance)?,

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
+use statrs::distribution::{ContinuousCDF, Normal};
 use statrs::function::erf::erfc;
 
 /// The law of a value that is estimated, or to come.
@@ -51,7 +52,10 @@ impl Law {
 
     /// Probability that the value is farther than `limit` from `centre`.
     pub fn probability_beyond(&self, centre: f64, limit: f64) -> f64 {
-        let outside = |part: &Part| part.below(centre - limit) + part.above(centre + limit);
+        let outside = |part: &Part| {
+            let is_far = (part.mean - centre).abs() + FAR * part.deviation < limit;
+            if is_far { 0.0 } else { part.below(centre - limit) + part.above(centre + limit) }
+        };
         self.parts.iter().map(|part| part.weight * outside(part)).sum()
     }
 
@@ -66,7 +70,7 @@ impl Law {
         let (mut low, mut high) =
             (ends(-1.0).fold(f64::INFINITY, f64::min), ends(1.0).fold(f64::NEG_INFINITY, f64::max));
         let negligible = f64::EPSILON * (high - low);
-        let mut value = 0.5 * (low + high);
+        let mut value = self.beginning(probability).max(low).min(high);
         for _ in 0..STEPS {
             let excess = self.probability_below(value) - probability;
             if excess < 0.0 {
@@ -83,6 +87,12 @@ impl Law {
             }
         }
         value
+    }
+
+    /// The quantile of the part in the middle: in a tail it lies on the side from which Newton's steps never go too far.
+    fn beginning(&self, probability: f64) -> f64 {
+        let at = |part: &Part| part.mean + part.deviation * Normal::standard().inverse_cdf(probability);
+        self.parts.get(self.parts.len() / 2).map_or(f64::NAN, at)
     }
 
     /// The interval that covers the value with probability `coverage`, as much outside on either side.

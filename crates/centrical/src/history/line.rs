@@ -44,7 +44,14 @@ pub struct Line {
 impl Line {
     /// `None` if the times do not determine the curve.
     pub fn new(points: &[Point], curve: Curve, variance_between: f64) -> Option<Self> {
-        let weights: Vec<f64> = points.iter().map(|p| 1.0 / (p.variance + variance_between)).collect();
+        Self::with_room(Vec::new(), points, curve, variance_between)
+    }
+
+    /// The same with the weights in `room`, whatever it holds.
+    pub fn with_room(room: Vec<f64>, points: &[Point], curve: Curve, variance_between: f64) -> Option<Self> {
+        let mut weights = room;
+        weights.clear();
+        weights.extend(points.iter().map(|p| 1.0 / (p.variance + variance_between)));
         let weighted = |f: &dyn Fn(&Point) -> f64| -> f64 { points.iter().zip(&weights).map(|(p, w)| w * f(p)).sum() };
         let sum = weighted(&|_| 1.0);
         let (middle, level) = (weighted(&|p| p.time) / sum, weighted(&|p| p.value) / sum);
@@ -64,6 +71,11 @@ impl Line {
             fall += weight * part;
         }
         is_determined.then_some(Self { weights, sum, middle, level, slope, spread, misfit, fall })
+    }
+
+    /// The room of the weights.
+    pub fn into_room(self) -> Vec<f64> {
+        self.weights
     }
 
     /// Value at `time`.

@@ -1,7 +1,8 @@
 //! Histories against drawn ones: intervals cover as they say, and what was planted is found, nothing else.
 
 use centrical::history::{
-    Between, Curve, Point, Quantiles, Reading, Series, SessionEstimates, distances, sameness, station_test, unit_trends,
+    Between, Curve, Likely, Point, Quantiles, Reading, Series, SessionEstimates, distances, sameness, station_test,
+    unit_trends,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -36,8 +37,25 @@ fn is_in(value: f64, [low, high]: [f64; 2]) -> bool {
     low <= value && value <= high
 }
 
-fn alone(series: &Series, curve: Curve, quantiles: &Quantiles) -> Between {
-    Between::of(std::slice::from_ref(series), curve, quantiles, COVERAGE).unwrap()
+fn alone(series: &Series, curve: Curve) -> Between {
+    Between::of(std::slice::from_ref(series), curve, COVERAGE).unwrap()
+}
+
+/// The same result with other days is no drift; one that lies on a line to the last digit is one.
+#[test]
+fn sessions_without_scatter_have_a_slope_and_its_probability() {
+    let quantiles = Quantiles::default();
+    for (slope, probability) in [(0.0, 1.0), (2.0, 0.0)] {
+        let points = [0.0, 1.0, 2.0].map(|time| Point { time, value: 5.0 + slope * time, variance: 0.25 });
+        let series = Series::independent(&points).unwrap();
+        let between = alone(&series, Curve::Line);
+        let likely = Likely::of(std::slice::from_ref(&series), Curve::Line, &quantiles).unwrap();
+        let evolution = series.evolution(Curve::Line, &between, &likely, &quantiles).unwrap();
+        let found = evolution.slope().unwrap();
+        assert_eq!((found.value, found.probability(), between.variance), (slope, probability, 0.0));
+        let [low, high] = evolution.forecast(3.0).interval(COVERAGE);
+        assert!(low < 5.0 + 3.0 * slope && 5.0 + 3.0 * slope < high, "{low} {high}");
+    }
 }
 
 /// What the intervals of 3000 drawn units cover: the component, the slope, the level half a year ahead, and the true value there.
@@ -47,8 +65,9 @@ fn covered(drawn: &Drawn, sessions: usize, quantiles: &Quantiles) -> [f64; 4] {
     let mut counts = [0; 4];
     for _ in 0..SERIES {
         let series = drawn.series(sessions, &mut random);
-        let between = alone(&series, Curve::Line, quantiles);
-        let evolution = series.evolution(Curve::Line, &between, quantiles).unwrap();
+        let between = alone(&series, Curve::Line);
+        let likely = Likely::of(std::slice::from_ref(&series), Curve::Line, quantiles).unwrap();
+        let evolution = series.evolution(Curve::Line, &between, &likely, quantiles).unwrap();
         let (level, ahead) = (3.5 * drawn.slope, drawn.between * random.normal());
         let holds = [
             is_in(drawn.between.powi(2), between.interval),
@@ -90,9 +109,10 @@ fn intervals_of_units_of_one_type_cover() {
         let [mut slopes, mut ahead] = [0; 2];
         for _ in 0..PLANTS {
             let units: Vec<Series> = (0..50).map(|_| drawn.series(sessions, &mut random)).collect();
-            let common = Between::of(&units, Curve::Line, &quantiles, COVERAGE).unwrap();
+            let common = Between::of(&units, Curve::Line, COVERAGE).unwrap();
+            let likely = Likely::of(&units, Curve::Line, &quantiles).unwrap();
             for unit in &units {
-                let evolution = unit.evolution(Curve::Line, &common, &quantiles).unwrap();
+                let evolution = unit.evolution(Curve::Line, &common, &likely, &quantiles).unwrap();
                 slopes += u32::from(is_in(0.5, evolution.slope().unwrap().interval(COVERAGE)));
                 let value = 1.75 + between * random.normal();
                 ahead += u32::from(is_in(value, evolution.forecast(3.5).interval(COVERAGE)));
@@ -107,11 +127,11 @@ fn intervals_of_units_of_one_type_cover() {
 /// The component that many units have in common is covered in 950 of 1000 plants, more than 30 less or more in three of a thousand.
 #[test]
 fn a_common_component_is_covered() {
-    let (quantiles, mut random) = (Quantiles::default(), Random::new(77));
+    let mut random = Random::new(77);
     let drawn = Drawn { slope: -2.0, between: 1.5, shared: 0.3 };
     let plants = (0..1000).filter(|_| {
         let units: Vec<Series> = (0..20).map(|_| drawn.series(4, &mut random)).collect();
-        is_in(1.5 * 1.5, Between::of(&units, Curve::Line, &quantiles, COVERAGE).unwrap().interval)
+        is_in(1.5 * 1.5, Between::of(&units, Curve::Line, COVERAGE).unwrap().interval)
     });
     let covered = plants.count();
     assert!((920..=980).contains(&covered), "{covered}");
@@ -125,10 +145,11 @@ fn due_dates_hold() {
     let drawn = Drawn { slope: 3.0, between: 1.0, shared: 0.0 };
     for _ in 0..40 {
         let units: Vec<Series> = (0..30).map(|_| drawn.series(6, &mut random)).collect();
-        let common = Between::of(&units, Curve::Line, &quantiles, COVERAGE).unwrap();
+        let common = Between::of(&units, Curve::Line, COVERAGE).unwrap();
+        let likely = Likely::of(&units, Curve::Line, &quantiles).unwrap();
         for unit in &units {
             let last = unit.points()[5];
-            let evolution = unit.evolution(Curve::Line, &common, &quantiles).unwrap();
+            let evolution = unit.evolution(Curve::Line, &common, &likely, &quantiles).unwrap();
             let Some(date) = evolution.due(last.value, 12.0, COVERAGE, last.time, 20.0) else { continue };
             assert!(date > last.time);
             let error = drawn.slope * date + random.normal() - last.value;
@@ -228,8 +249,7 @@ fn units_that_drift_are_found_among_others() {
     let drawn = |slope: f64, between: f64| Drawn { slope, between, shared: 0.0 };
     let sound = drawn(0.0, 2.0);
     let find = |units: &[Series]| -> (Vec<usize>, Vec<usize>) {
-        let quantiles = Quantiles::default();
-        let common = Between::of(units, Curve::Line, &quantiles, COVERAGE).unwrap();
+        let common = Between::of(units, Curve::Line, COVERAGE).unwrap();
         let trends = unit_trends(units, common.variance, 0.05);
         let level = 0.025 / units.len() as f64;
         let which = |is: &dyn Fn(&centrical::history::UnitTrend) -> bool| {

@@ -1,6 +1,6 @@
 //! The component between sessions, level and slope beside metafor 3.8-1 (R), which `metafor/generate.R` calls; Welch's test beside R.
 
-use centrical::history::{Between, Curve, Point, Quantiles, Series, batch_test};
+use centrical::history::{Between, Curve, Likely, Point, Quantiles, Series, batch_test};
 
 const POINTS: &str = include_str!("metafor/points.csv");
 const RESULTS: &str = include_str!("metafor/metafor.csv");
@@ -30,7 +30,7 @@ fn every_row_of_metafor() {
         let series = Series::independent(&points(cells[0].parse().unwrap())).unwrap();
         let curve = if cells[1] == "line" { Curve::Line } else { Curve::Constant };
         let quantiles = Quantiles::default();
-        let between = Between::of(std::slice::from_ref(&series), curve, &quantiles, 0.95).unwrap();
+        let between = Between::of(std::slice::from_ref(&series), curve, 0.95).unwrap();
         assert_close("Q", between.misfit, number(2), 11);
         assert_close("P(Q)", between.probability, number(3), 8);
         assert_close("tau^2", between.variance, number(4), 9);
@@ -38,7 +38,8 @@ fn every_row_of_metafor() {
         assert_close("low", between.interval[0], number(5), 7);
         assert_close("high", between.interval[1], number(6), 7);
 
-        let evolution = series.evolution(curve, &between, &quantiles).unwrap();
+        let likely = Likely::of(std::slice::from_ref(&series), curve, &quantiles).unwrap();
+        let evolution = series.evolution(curve, &between, &likely, &quantiles).unwrap();
         let level = evolution.level(number(7));
         assert_close("level", level.value, number(8), 11);
         assert_close("its uncertainty", level.standard_uncertainty, number(9), 9);

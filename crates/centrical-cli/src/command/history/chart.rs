@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{chart_plots, chart_text};
-use centrical_session::{ChartLimits, Depth, Error, RuleSet, chart};
+use centrical_session::{ChartLimits, ChartRequest, Depth, Error, RuleSet, chart};
 
 use super::choice::Choice;
 use super::files::write_files;
@@ -63,10 +63,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         Rules::Nelson => RuleSet::Nelson,
         Rules::WesternElectric => RuleSet::WesternElectric,
     };
-    let report = chart(&choice.read(Depth::Values)?, &arguments.parameter, limits, rules)
+    let request = ChartRequest { limits, rules, last: None };
+    let report = chart(&choice.read(Depth::Values)?, &arguments.parameter, request)
         .map_err(|source| choice.refuse(source.found(), &source.expected()))?;
     if let Some(folder) = &arguments.out {
-        let plots = chart_plots(&report).into_iter().map(|(name, svg)| (format!("{name}.svg"), svg));
+        let plots = chart_plots(&report).into_iter().map(|(name, plot)| (format!("{name}.svg"), plot.to_svg()));
         write_files(folder, &plots.collect::<Vec<_>>(), &choice.results)?;
     }
     arguments.printing.show(|| chart_text(&report), || report.to_json())?;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{unit_history_plots, unit_history_text};
-use centrical_session::{Calibrated, Date, Depth, Error, UnitHistoryRequest, by_unit, unit_history};
+use centrical_session::{Calibrated, Date, Depth, Error, ParameterLimits, UnitHistoryRequest, by_unit, unit_history};
 
 use super::choice::Choice;
 use super::files::write_files;
@@ -74,8 +74,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         choice.refuse(format!("{} calibration", calibrations.len()), "two or more with a parameter in common")
     })?;
     if let Some(folder) = &arguments.out {
-        let plots = unit_history_plots(&report).into_iter().map(|(name, svg)| (format!("{name}.svg"), svg));
-        write_files(folder, &plots.collect::<Vec<_>>(), &choice.results)?;
+        let plots = unit_history_plots(&report, &ParameterLimits::default()).into_iter();
+        let files = plots.map(|(name, plot)| (format!("{name}.svg"), plot.to_svg()));
+        write_files(folder, &files.collect::<Vec<_>>(), &choice.results)?;
     }
     arguments.printing.show(|| unit_history_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_acceptable()))

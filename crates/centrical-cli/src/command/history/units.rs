@@ -1,13 +1,9 @@
 //! `centrical history units RESULT|FOLDER...`: units of one type beside each other.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use centrical_report::units_history_text;
-use centrical_session::{
-    CalibrationResult, Depth, Error, Laboratory, Limited, ParameterLimits, UnitsHistoryRequest, by_unit, read_batches,
-    units_history,
-};
+use centrical_session::{Depth, Error, UnitsHistoryRequest, by_unit, read_batches, read_limits, units_history};
 
 use super::choice::Choice;
 use crate::outcome::Outcome;
@@ -37,7 +33,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let choice = &arguments.choice;
     let calibrations = choice.read(Depth::Values)?;
     choice.only(&calibrations, |c| c.unit_model.as_str(), "--model")?;
-    let limits = arguments.laboratory.as_deref().map(|file| limits(file, &calibrations[0].source)).transpose()?;
+    let limits = arguments.laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
     let batches = arguments.batches.as_deref().map(read_batches).transpose()?;
     let request = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
     let report = units_history(&by_unit(calibrations), &request).ok_or_else(|| {
@@ -45,14 +41,4 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     })?;
     arguments.printing.show(|| units_history_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_sound))
-}
-
-/// Limits of parameters in the decision of a laboratory's file, for the units of one result.
-fn limits(file: &Path, result: &str) -> Result<ParameterLimits, Error> {
-    let (laboratory, result) = (Laboratory::read(file)?, CalibrationResult::read(Path::new(result))?);
-    let of_parameter = laboratory.limits(file, &result)?.into_iter().filter_map(|limit| match limit.of {
-        Limited::Parameter(name) => Some((name, (limit.low.map(|end| end.si), limit.high.map(|end| end.si)))),
-        Limited::CompensatedReading(_) => None,
-    });
-    Ok(of_parameter.collect::<BTreeMap<_, _>>())
 }

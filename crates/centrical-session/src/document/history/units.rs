@@ -89,10 +89,26 @@ pub struct UnitsParameter {
     pub largest: f64,
     /// Capability, where limits were given.
     pub capability: Option<CapabilitySummary>,
+    /// Batches of units, where they were given.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub batches: Vec<BatchSummary>,
     /// Probability of so large a difference of the batches (Welch), where two or more were given.
     pub batch_probability: Option<f64>,
     /// Whether that is beyond 5 %, all parameters together (Holm).
     pub batches_differ: bool,
+}
+
+/// A batch of units in one parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BatchSummary {
+    /// Name of the batch.
+    pub batch: String,
+    /// Number of its units.
+    pub units: usize,
+    /// Mean over them.
+    pub mean: f64,
+    /// Standard deviation over them; null of one unit.
+    pub deviation: Option<f64>,
 }
 
 /// Capability against limits, with intervals of 95 %.

@@ -56,6 +56,32 @@ pub struct CalibratedParameter {
     pub is_of_unit: bool,
 }
 
+/// The place of one parameter in calibrations, most of which share their list of parameters.
+pub struct Finder<'a> {
+    name: &'a str,
+    last: Option<(Arc<Vec<CalibratedParameter>>, Option<usize>)>,
+}
+
+impl<'a> Finder<'a> {
+    /// Looks for the parameter `name`.
+    pub fn new(name: &'a str) -> Self {
+        Self { name, last: None }
+    }
+
+    /// Its place, if it is determined.
+    pub fn place(&mut self, calibrated: &Calibrated) -> Option<usize> {
+        let place = match &self.last {
+            Some((parameters, place)) if Arc::ptr_eq(parameters, &calibrated.parameters) => *place,
+            _ => {
+                let place = calibrated.parameters.iter().position(|p| p.name == self.name);
+                self.last = Some((Arc::clone(&calibrated.parameters), place));
+                place
+            }
+        };
+        place.filter(|&j| calibrated.values[j].is_finite())
+    }
+}
+
 /// The lists of parameters that were met: there are a few among thousands of calibrations.
 #[derive(Debug, Default)]
 pub struct Kinds(HashSet<Arc<Vec<CalibratedParameter>>>);

@@ -1,8 +1,10 @@
 //! Control charts of one parameter over sessions.
 
+use std::borrow::Borrow;
+
 use centrical::history::{Control, Rule, cusum, ewma, moving_ranges, signals};
 
-use super::calibrated::Calibrated;
+use super::calibrated::{Calibrated, Finder};
 use super::unit::past;
 use crate::document::{CHART_SCHEMA, ChartReport, ChartSignal, Program};
 
@@ -23,6 +25,17 @@ pub enum ChartLimits {
     Accepted(usize),
     /// Stated: mean and standard deviation, SI.
     Stated(f64, f64),
+}
+
+/// What is asked of charts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChartRequest {
+    /// Where their limits come from.
+    pub limits: ChartLimits,
+    /// The rules of single values.
+    pub rules: RuleSet,
+    /// The last sessions that the report has; all if absent. Limits, means and sums are of all.
+    pub last: Option<usize>,
 }
 
 /// Why there is no chart.
@@ -70,15 +83,16 @@ const CUSUM: (f64, f64) = (0.5, 4.77);
 /// # Errors
 /// [`NoChart`] when no session determines the parameter, or limits cannot be had.
 pub fn chart(
-    calibrations: &[Calibrated],
+    calibrations: &[impl Borrow<Calibrated>],
     name: &str,
-    limits: ChartLimits,
-    rules: RuleSet,
+    request: ChartRequest,
 ) -> Result<ChartReport, NoChart> {
-    let of: Vec<(&Calibrated, usize)> = calibrations.iter().filter_map(|c| Some((c, c.place(name)?))).collect();
-    let values: Vec<f64> = of.iter().map(|(c, place)| c.values[*place]).collect();
-    let Some((first, place)) = of.first() else { return Err(NoChart::Unknown(name.to_owned())) };
-    let (control, accepted) = match limits {
+    let mut finder = Finder::new(name);
+    let all = calibrations.iter().map(Borrow::borrow);
+    let of: Vec<(&Calibrated, usize)> = all.filter_map(|c| Some((c, finder.place(c)?))).collect();
+    let mut values: Vec<f64> = of.iter().map(|(c, place)| c.values[*place]).collect();
+    let Some((one, place)) = of.first() else { return Err(NoChart::Unknown(name.to_owned())) };
+    let (control, accepted) = match request.limits {
         ChartLimits::Stated(centre, deviation) => (Control { centre, deviation }, 0),
         ChartLimits::Accepted(expected) => {
             let acceptable = of.iter().zip(&values).filter(|((c, _), _)| c.acceptable).map(|(_, value)| *value);
@@ -88,32 +102,35 @@ pub fn chart(
         }
     };
     let ranges = moving_ranges(&values);
-    let (means, sums) = (ewma(&values, control, EWMA.0, EWMA.1), cusum(&values, control, CUSUM.0, CUSUM.1));
+    let (mut means, mut sums) = (ewma(&values, control, EWMA.0, EWMA.1), cusum(&values, control, CUSUM.0, CUSUM.1));
     let beyond = ranges.iter().enumerate().filter(|(_, range)| **range > control.range_limit()).map(|(n, _)| n + 1);
     let named = |rule: &'static str, words| move |session| ChartSignal { session, rule: rule.to_owned(), words };
-    let mut all: Vec<ChartSignal> = single_values(&values, control, rules);
+    let mut all: Vec<ChartSignal> = single_values(&values, control, request.rules);
     all.extend(beyond.map(named("moving-range", "a step beyond the limit of the moving range")));
     all.extend(means.signals.iter().copied().map(named("ewma", "the weighted mean is beyond its limits")));
     all.extend(sums.signals.iter().copied().map(named("cusum", "the cumulative sum is beyond its limit")));
     all.sort_by_key(|signal| signal.session);
+    let first = values.len() - request.last.unwrap_or(values.len()).min(values.len());
+    let all = all.into_iter().filter(|signal| signal.session >= first);
+    let all = all.map(|signal| ChartSignal { session: signal.session - first, ..signal }).collect();
     Ok(ChartReport {
         schema: CHART_SCHEMA,
         program: Program::this(),
         name: name.to_owned(),
-        unit: first.parameters[*place].unit.clone(),
-        group: first.parameters[*place].group,
+        unit: one.parameters[*place].unit.clone(),
+        group: one.parameters[*place].group,
         accepted,
         centre: control.centre,
         deviation: control.deviation,
         limits: control.limits(),
         range_limit: control.range_limit(),
-        sessions: of.iter().map(|(calibrated, _)| past(calibrated)).collect(),
-        values,
-        ranges,
-        ewma: means.means,
-        ewma_half_widths: means.half_widths,
-        cusum_upper: sums.upper,
-        cusum_lower: sums.lower,
+        sessions: of[first..].iter().map(|(calibrated, _)| past(calibrated)).collect(),
+        ranges: ranges.get(first..).unwrap_or_default().to_vec(),
+        values: values.split_off(first),
+        ewma: means.means.split_off(first),
+        ewma_half_widths: means.half_widths.split_off(first),
+        cusum_upper: sums.upper.split_off(first),
+        cusum_lower: sums.lower.split_off(first),
         cusum_limit: CUSUM.1,
         signals: all,
     })

@@ -1,5 +1,6 @@
 //! One centrifuge over all its sessions: what is of the machine, and not of the units that come and go.
 
+use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use centrical::history::{Reading, station_test};
@@ -12,14 +13,15 @@ use crate::document::{Program, STATION_HISTORY_SCHEMA, StationHistoryReport, Sta
 const FAMILY: f64 = 0.05;
 
 /// The history of the machine of `calibrations`, which are of one station.
-pub fn station_history(calibrations: &[Calibrated]) -> Option<StationHistoryReport> {
+pub fn station_history(calibrations: &[impl Borrow<Calibrated>]) -> Option<StationHistoryReport> {
+    let calibrations: Vec<&Calibrated> = calibrations.iter().map(Borrow::borrow).collect();
     let first = calibrations.iter().map(|c| c.date).min()?;
     let last = calibrations.iter().map(|c| c.date).max()?;
-    let units: BTreeSet<(&str, &str)> = calibrations.iter().map(Calibrated::unit).collect();
+    let units: BTreeSet<(&str, &str)> = calibrations.iter().map(|c| c.unit()).collect();
     let number: BTreeMap<(&str, &str), usize> = units.iter().enumerate().map(|(n, unit)| (*unit, n)).collect();
     let mut by_name: BTreeMap<(&str, &str), Vec<(&Calibrated, Reading)>> = BTreeMap::new();
     let mut names: Vec<(&str, &str)> = Vec::new();
-    for calibrated in calibrations {
+    for &calibrated in &calibrations {
         let all = calibrated.parameters.iter().zip(&calibrated.values);
         for (parameter, &value) in all.filter(|(p, value)| !p.is_of_unit && value.is_finite()) {
             let unit = number.get(&calibrated.unit()).copied().unwrap_or_default();

@@ -1,6 +1,6 @@
 //! One unit over its calibrations.
 
-use centrical::history::{Between, Curve, Estimated, Evolution, Quantiles, Series, SessionEstimates, sameness};
+use centrical::history::{Between, Curve, Estimated, Evolution, Likely, Quantiles, Series, SessionEstimates, sameness};
 use centrical::uncertainty::{Compensated, family_wise};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, Vector3};
@@ -133,24 +133,29 @@ impl Job<'_> {
         })
     }
 
-    /// The series of a combination and its component, by this unit or by all units of the type.
-    fn combination(&self, combination: &[(String, f64)]) -> Option<(Series, Option<Between>)> {
+    /// The series of a combination, this unit's first; with those of the other units, if the component is that of all.
+    fn combination(&self, combination: &[(String, f64)]) -> Option<Vec<Series>> {
         let own = series(self.own, combination, self.zero)?;
-        let between = if self.others.is_empty() {
-            Between::of(std::slice::from_ref(&own), self.curve, &self.quantiles, self.request.coverage)
-        } else {
-            let others = self.others.iter().filter_map(|unit| series(unit, combination, self.zero));
-            let all: Vec<Series> = std::iter::once(own.clone()).chain(others).collect();
-            Between::of(&all, self.curve, &self.quantiles, self.request.coverage)
-        };
-        Some((own, between))
+        let others = self.others.iter().filter_map(|unit| series(unit, combination, self.zero));
+        Some(std::iter::once(own).chain(others).collect())
+    }
+
+    fn between(&self, all: &[Series]) -> Option<Between> {
+        Between::of(all, self.curve, self.request.coverage)
+    }
+
+    /// How the first series goes on.
+    fn evolution<'s>(&self, all: &'s [Series], between: &Between) -> Option<Evolution<'s>> {
+        let likely = Likely::of(all, self.curve, &self.quantiles)?;
+        all.first()?.evolution(self.curve, between, &likely, &self.quantiles)
     }
 
     fn parameter(&self, name: &str) -> Option<UnitParameter> {
-        let (own, between) = self.combination(&single(name))?;
+        let all = self.combination(&single(name))?;
+        let (own, between) = (&all[0], self.between(&all));
         let last = self.own.last()?;
         let place = last.place(name)?;
-        let evolution = between.as_ref().and_then(|between| own.evolution(self.curve, between, &self.quantiles));
+        let evolution = between.as_ref().and_then(|between| self.evolution(&all, between));
         let slope = evolution.as_ref().and_then(Evolution::slope);
         let count = own.points().len();
         let e_n = |earlier: usize| {
@@ -213,15 +218,15 @@ impl Job<'_> {
     }
 
     fn reading(&self, force: Vector3<f64>, axis: usize, combination: &[(String, f64)]) -> Option<ReadingHistory> {
-        let (own, between) = self.combination(combination)?;
-        let between = between?;
+        let all = self.combination(combination)?;
+        let between = self.between(&all)?;
         let last = *self.own.last()?;
         let places: Vec<(usize, f64)> =
             combination.iter().map(|(name, c)| Some((last.place(name)?, *c))).collect::<Option<_>>()?;
         let stated = last.variance(&places).max(0.0);
-        let point = own.points().last()?;
-        let evolution = own.evolution(self.curve, &between, &self.quantiles);
-        let due = self.request.limit.zip(evolution).and_then(|(limit, evolution)| {
+        let point = all[0].points().last()?;
+        let due = self.request.limit.and_then(|limit| {
+            let evolution = self.evolution(&all, &between)?;
             let from = point.time;
             let time = evolution.due(point.value, limit, self.request.coverage, from, from + HORIZON)?;
             // The day before: until then the reading is within its limit.

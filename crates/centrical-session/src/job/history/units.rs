@@ -2,20 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use centrical::history::{
-    Between, Curve, FEWEST_UNITS, Quantiles, Series, batch_test, capability, distances, unit_trends,
-};
+use centrical::history::{Between, Curve, FEWEST_UNITS, Series, batch_test, capability, distances, unit_trends};
 use centrical::uncertainty::family_wise;
 use nalgebra::DMatrix;
 
-use super::calibrated::{Calibrated, series, single};
+use super::calibrated::{Calibrated, Finder, series, single};
+use super::limits::ParameterLimits;
 use super::unit::common_names;
 use crate::document::{
-    CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA, UnitFinding, UnitsHistoryReport, UnitsParameter,
+    BatchSummary, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA, UnitFinding, UnitsHistoryReport,
+    UnitsParameter,
 };
-
-/// Limits of a parameter, SI.
-pub type ParameterLimits = BTreeMap<String, (Option<f64>, Option<f64>)>;
 
 /// What is asked of units.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -68,10 +65,18 @@ pub fn units_history(units: &[Vec<Calibrated>], request: &UnitsHistoryRequest) -
 
 /// Mean of each parameter over the calibrations of each unit.
 fn means(units: &[Vec<Calibrated>], names: &[String]) -> DMatrix<f64> {
-    DMatrix::from_fn(units.len(), names.len(), |n, j| {
-        let values = units[n].iter().filter_map(|c| c.place(&names[j]).map(|place| c.values[place]));
-        values.sum::<f64>() / units[n].len() as f64
-    })
+    let columns = names.iter().flat_map(|name| unit_means(units, name));
+    DMatrix::from_iterator(units.len(), names.len(), columns)
+}
+
+/// Mean of one parameter over the calibrations of each unit, all of which determine it.
+pub fn unit_means(units: &[Vec<Calibrated>], name: &str) -> Vec<f64> {
+    let mut finder = Finder::new(name);
+    let mean = |unit: &Vec<Calibrated>| {
+        let values = unit.iter().filter_map(|c| finder.place(c).map(|place| c.values[place]));
+        values.sum::<f64>() / unit.len() as f64
+    };
+    units.iter().map(mean).collect()
 }
 
 fn parameter(
@@ -96,6 +101,7 @@ fn parameter(
         cpk: found.cpk.value,
         cpk_interval: found.cpk.interval,
     });
+    let batches = batches(lasts, values, request);
     Some(UnitsParameter {
         name: name.to_owned(),
         unit: of.parameters[place].unit.clone(),
@@ -106,7 +112,8 @@ fn parameter(
         median: sorted[sorted.len() / 2],
         largest: sorted[sorted.len() - 1],
         capability,
-        batch_probability: batch_test(&batches(lasts, values, request)).map(|test| test.probability),
+        batch_probability: batch_test(&batches.values().cloned().collect::<Vec<_>>()).map(|test| test.probability),
+        batches: batches.into_iter().map(|(batch, values)| summary(batch, &values)).collect(),
         batches_differ: false,
     })
 }
@@ -140,14 +147,13 @@ fn over_time(
     all: &[&Calibrated],
 ) -> Vec<UnitFinding> {
     let Some(zero) = all.iter().map(|c| c.date).min() else { return Vec::new() };
-    let quantiles = Quantiles::default();
     let (mut chances, mut findings) = (Vec::new(), Vec::new());
     for name in names {
         let of: Vec<(usize, Series)> = (units.iter().enumerate())
             .filter_map(|(n, unit)| Some((n, series(&unit.iter().collect::<Vec<_>>(), &single(name), zero)?)))
             .collect();
         let series: Vec<Series> = of.iter().map(|(_, series)| series.clone()).collect();
-        let Some(between) = Between::of(&series, Curve::Line, &quantiles, COVERAGE) else { continue };
+        let Some(between) = Between::of(&series, Curve::Line, COVERAGE) else { continue };
         for ((n, _), trend) in of.iter().zip(unit_trends(&series, between.variance, FAMILY)) {
             let Some(trend) = trend else { continue };
             let serial = lasts[*n].unit_serial.clone();
@@ -172,13 +178,21 @@ fn over_time(
     with_family.filter(|finding| finding.probability < FAMILY).collect()
 }
 
-/// The values of each batch of units.
-fn batches(lasts: &[&Calibrated], values: &[f64], request: &UnitsHistoryRequest) -> Vec<Vec<f64>> {
+fn summary(batch: &str, values: &[f64]) -> BatchSummary {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let deviation = (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt());
+    BatchSummary { batch: batch.to_owned(), units: values.len(), mean, deviation }
+}
+
+/// The values of each batch of units, by its name.
+fn batches<'a>(lasts: &[&Calibrated], values: &[f64], request: &'a UnitsHistoryRequest) -> BTreeMap<&'a str, Vec<f64>> {
     let mut batches: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for (unit, value) in lasts.iter().zip(values) {
         if let Some(batch) = request.batches.get(&unit.unit_serial) {
             batches.entry(batch).or_default().push(*value);
         }
     }
-    batches.into_values().collect()
+    batches
 }

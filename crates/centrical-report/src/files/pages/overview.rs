@@ -1,0 +1,129 @@
+//! What is found of a whole store: its list, its models of units, its stations.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use centrical_session::{
+    Calibrated, ChartLimits, ChartRequest, Depth, Error, HistoryList, ParameterLimits, RuleSet, Selection,
+    UnitsHistoryReport, UnitsHistoryRequest, by_unit, chart, list_store, read_batches, read_calibrations, read_limits,
+    station_history, unit_means, units_history,
+};
+use rayon::prelude::*;
+
+use super::request::PagesRequest;
+use crate::render::{
+    IndexedModel, IndexedStation, PageKind, StoreCharts, history_index, history_model_page, history_station_page,
+};
+
+/// Sessions that a control chart shows: the last ones.
+const SHOWN: usize = 100;
+
+/// Batches that are drawn each by itself; of more all units are drawn together.
+const MOST_BATCHES: usize = 6;
+
+/// The pages that show the whole store.
+#[derive(Debug)]
+pub struct Overview {
+    /// All calibrations.
+    pub list: HistoryList,
+    /// Limits of parameters.
+    pub limits: ParameterLimits,
+    /// The first page.
+    pub index: String,
+    /// Pages of models and stations by their files.
+    pub pages: BTreeMap<String, String>,
+}
+
+impl Overview {
+    /// Reads the values of all calibrations.
+    ///
+    /// # Errors
+    /// [`Error`] when the store cannot be read, or a file of the request is wrong.
+    pub fn read(folder: &Path, request: &PagesRequest) -> Result<Self, Error> {
+        let list = list_store(folder, Selection::default())?;
+        let selection = Selection { depth: Depth::Values, ..Selection::default() };
+        let calibrations = read_calibrations(&[folder.to_owned()], &selection)?;
+        let limits = request.laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
+        let batches = request.batches.as_deref().map(read_batches).transpose()?;
+        let asked = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
+        let mut pages = BTreeMap::new();
+        let stations = stations(&calibrations, request, &mut pages);
+        let models = models(calibrations, &asked, request, &mut pages);
+        let index = history_index(&list, &models, &stations);
+        Ok(Self { list, limits: asked.limits, index, pages })
+    }
+}
+
+fn stations(
+    calibrations: &[Calibrated],
+    request: &PagesRequest,
+    pages: &mut BTreeMap<String, String>,
+) -> Vec<IndexedStation> {
+    let mut stations: BTreeMap<&str, Vec<&Calibrated>> = BTreeMap::new();
+    for calibrated in calibrations {
+        stations.entry(&calibrated.station).or_default().push(calibrated);
+    }
+    let mut indexed = Vec::new();
+    for calibrations in stations.values() {
+        let Some(report) = station_history(calibrations) else { continue };
+        let names: Vec<&str> = report.parameters.iter().map(|p| p.name.as_str()).collect();
+        let charts = charts(calibrations, &names, request.accepted);
+        pages.insert(PageKind::Station.file(&[&report.station]), history_station_page(&report, &charts));
+        indexed.push(IndexedStation { has_signals: charts.has_signals(), report });
+    }
+    indexed
+}
+
+fn models(
+    calibrations: Vec<Calibrated>,
+    asked: &UnitsHistoryRequest,
+    request: &PagesRequest,
+    pages: &mut BTreeMap<String, String>,
+) -> Vec<IndexedModel> {
+    let mut models: BTreeMap<String, Vec<Vec<Calibrated>>> = BTreeMap::new();
+    for unit in by_unit(calibrations) {
+        models.entry(unit[0].unit_model.clone()).or_default().push(unit);
+    }
+    let mut indexed = Vec::new();
+    for units in models.values() {
+        let Some(report) = units_history(units, asked) else { continue };
+        let mut all: Vec<&Calibrated> = units.iter().flatten().collect();
+        all.sort_by(|a, b| a.date.cmp(&b.date).then_with(|| a.source.cmp(&b.source)));
+        let names: Vec<&str> = report.parameters.iter().map(|p| p.name.as_str()).collect();
+        let charts = charts(&all, &names, request.accepted);
+        let page = history_model_page(&report, &distributions(units, &report, asked), &asked.limits, &charts);
+        pages.insert(PageKind::Model.file(&[&report.unit_model]), page);
+        indexed.push(IndexedModel { has_signals: charts.has_signals(), report });
+    }
+    indexed
+}
+
+/// For each parameter the means of the units, by batches if they are few.
+fn distributions(
+    units: &[Vec<Calibrated>],
+    report: &UnitsHistoryReport,
+    asked: &UnitsHistoryRequest,
+) -> Vec<Vec<(String, Vec<f64>)>> {
+    let batch = |unit: &Vec<Calibrated>| asked.batches.get(&unit[0].unit_serial);
+    let batches: BTreeSet<&String> = units.iter().filter_map(batch).collect();
+    let by_batch = (2..=MOST_BATCHES).contains(&batches.len());
+    let groups = |name: &str| {
+        let mut groups: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+        for (unit, mean) in units.iter().zip(unit_means(units, name)) {
+            let group = if by_batch { batch(unit).map(String::as_str) } else { Some("units") };
+            if let Some(group) = group {
+                groups.entry(group).or_default().push(mean);
+            }
+        }
+        groups.into_iter().map(|(name, values)| (name.to_owned(), values)).collect()
+    };
+    report.parameters.par_iter().map(|p| groups(&p.name)).collect()
+}
+
+/// The charts of parameters over `calibrations` in the order of time.
+pub fn charts(calibrations: &[&Calibrated], names: &[&str], accepted: usize) -> StoreCharts {
+    let request = ChartRequest { limits: ChartLimits::Accepted(accepted), rules: RuleSet::Nelson, last: Some(SHOWN) };
+    let made: Vec<_> = names.par_iter().map(|name| chart(calibrations, name, request)).collect();
+    let missing = made.iter().find_map(|chart| chart.as_ref().err().cloned());
+    StoreCharts { charts: made.into_iter().flatten().collect(), missing }
+}

@@ -1,0 +1,107 @@
+//! Pages of units.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use centrical_session::{
+    Calibrated, Depth, Error, ParameterLimits, Selection, UnitHistoryRequest, read_calibrations, unit_history,
+};
+use sha2::{Digest, Sha256};
+
+use super::overview::{Overview, charts};
+use super::request::PagesRequest;
+use crate::render::{PageKind, history_unit_page, no_unit_history_page};
+
+/// The units that have a page.
+#[derive(Debug)]
+pub struct UnitPages {
+    folder: PathBuf,
+    limits: ParameterLimits,
+    limit: Option<f64>,
+    accepted: usize,
+    units: BTreeMap<String, BTreeSet<String>>,
+}
+
+impl UnitPages {
+    /// The units with two calibrations or more.
+    pub fn of(folder: &Path, overview: &Overview, request: &PagesRequest) -> Self {
+        let mut units: BTreeMap<(&str, &str), BTreeSet<String>> = BTreeMap::new();
+        for line in overview.list.calibrations.iter().filter(|line| line.acceptable.is_some()) {
+            units.entry((&line.unit_model, &line.unit_serial)).or_default().insert(line.key.clone());
+        }
+        let units = units.into_iter().filter(|(_, keys)| keys.len() > 1);
+        Self {
+            folder: folder.to_owned(),
+            limits: overview.limits.clone(),
+            limit: request.limit,
+            accepted: request.accepted,
+            units: units.map(|((model, serial), keys)| (PageKind::Unit.file(&[model, serial]), keys)).collect(),
+        }
+    }
+
+    /// Number of units.
+    pub fn count(&self) -> usize {
+        self.units.len()
+    }
+
+    /// The files of the units and the keys of their calibrations.
+    pub fn units(&self) -> impl Iterator<Item = (&str, &BTreeSet<String>)> {
+        self.units.iter().map(|(file, keys)| (file.as_str(), keys))
+    }
+
+    /// The page of this name.
+    ///
+    /// # Errors
+    /// [`Error`] when the store cannot be read.
+    pub fn page(&self, file: &str) -> Result<Option<String>, Error> {
+        let Some(keys) = self.units.get(file) else { return Ok(None) };
+        let calibrations = self.read(keys.clone())?;
+        Ok((!calibrations.is_empty()).then(|| self.made(&calibrations)))
+    }
+
+    /// Whole calibrations, in the order of time.
+    ///
+    /// # Errors
+    /// [`Error`] when the store cannot be read.
+    pub fn read(&self, keys: BTreeSet<String>) -> Result<Vec<Calibrated>, Error> {
+        let selection = Selection { depth: Depth::Whole, keys: Some(keys), ..Selection::default() };
+        read_calibrations(std::slice::from_ref(&self.folder), &selection)
+    }
+
+    /// The page of a unit by its calibrations, in the order of time.
+    pub fn made(&self, calibrations: &[Calibrated]) -> String {
+        let request = UnitHistoryRequest { trend: true, until: None, limit: self.limit, coverage: COVERAGE };
+        let Some(report) = unit_history(calibrations, &[], request) else {
+            return no_unit_history_page(&calibrations[0].unit_model, &calibrations[0].unit_serial);
+        };
+        let names: Vec<&str> = report.parameters.iter().map(|p| p.name.as_str()).collect();
+        let charts = charts(&calibrations.iter().collect::<Vec<_>>(), &names, self.accepted);
+        history_unit_page(&report, &self.limits, &charts)
+    }
+
+    /// What a page is made of: the calibrations, what is asked, and the program.
+    pub fn origin(&self, keys: &BTreeSet<String>) -> String {
+        let mut hash = Sha256::new();
+        hash.update(format!(
+            "{} {FORM} {:?} {:?} {}",
+            env!("CARGO_PKG_VERSION"),
+            self.limit,
+            self.limits,
+            self.accepted
+        ));
+        for key in keys {
+            hash.update(key);
+        }
+        hash.finalize().iter().fold(String::new(), |mut text, byte| {
+            let _ = write!(text, "{byte:02x}");
+            text
+        })
+    }
+}
+
+/// Counts up when a page of the same calibrations looks otherwise.
+const FORM: u32 = 1;
+
+/// Probability of the intervals, as of an expanded uncertainty.
+const COVERAGE: f64 = 0.95;

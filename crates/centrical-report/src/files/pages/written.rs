@@ -1,0 +1,64 @@
+//! Pages as files.
+
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use centrical_session::{Calibrated, Error, by_unit, write_stream};
+use rayon::prelude::*;
+
+use super::unit::UnitPages;
+use crate::render::PageKind;
+
+/// Calibrations that are held together with their covariances, 10 kB each.
+const MOST_WHOLE: usize = 4096;
+
+/// Writes a page. It can be made anew: nobody waits for the disk.
+///
+/// # Errors
+/// [`Error`] if the folder does not take it.
+pub fn write_page(file: &Path, page: &str) -> Result<(), Error> {
+    Ok(write_stream(file, |output| output.write_all(page.as_bytes()))?)
+}
+
+/// Writes the pages of units into `out`, but for those that are there and of the same origin.
+///
+/// # Errors
+/// [`Error`] when the store cannot be read or `out` does not take a page.
+pub fn write_units(units: &UnitPages, out: &Path) -> Result<(), Error> {
+    let all: Vec<(&str, &BTreeSet<String>)> = units.units().collect();
+    let is_due = |(file, keys): &(&str, &BTreeSet<String>)| !begins_with(&out.join(file), &opening(units, keys));
+    let due: Vec<_> = all.into_par_iter().filter(is_due).collect();
+    let mut begun = 0;
+    while begun < due.len() {
+        let mut keys = BTreeSet::new();
+        let first = begun;
+        while begun < due.len() && (begun == first || keys.len() + due[begun].1.len() <= MOST_WHOLE) {
+            keys.extend(due[begun].1.iter().cloned());
+            begun += 1;
+        }
+        let read = by_unit(units.read(keys)?);
+        read.par_iter().try_for_each(|unit| write_unit(units, unit, out))?;
+    }
+    Ok(())
+}
+
+fn write_unit(units: &UnitPages, unit: &[Calibrated], out: &Path) -> Result<(), Error> {
+    let keys: BTreeSet<String> = unit.iter().map(|calibrated| calibrated.source.clone()).collect();
+    let page = units.made(unit).replacen(DOCTYPE, &opening(units, &keys), 1);
+    write_page(&out.join(PageKind::Unit.file(&[&unit[0].unit_model, &unit[0].unit_serial])), &page)
+}
+
+/// How a page begins: its origin stands in a comment.
+fn opening(units: &UnitPages, keys: &BTreeSet<String>) -> String {
+    format!("{DOCTYPE}<!-- {} -->\n", units.origin(keys))
+}
+
+const DOCTYPE: &str = "<!DOCTYPE html>\n";
+
+fn begins_with(file: &Path, opening: &str) -> bool {
+    let mut begin = vec![0; opening.len()];
+    let read = File::open(file).and_then(|mut file| file.read_exact(&mut begin));
+    read.is_ok() && begin == opening.as_bytes()
+}

@@ -1,0 +1,84 @@
+//! Control charts of several parameters on one page.
+
+use std::fmt::Write;
+
+use centrical_session::{ChartReport, NoChart, customary};
+
+use super::frame::panels;
+use crate::figure::chart_plots;
+use crate::number::{counted, with_uncertainty};
+use crate::plot::Escaped;
+
+/// The charts of a page: of each parameter, or why there are none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StoreCharts {
+    /// The charts, each of its last sessions.
+    pub charts: Vec<ChartReport>,
+    /// Why a parameter has none, the first of them.
+    pub missing: Option<NoChart>,
+}
+
+/// The kinds of charts, by the beginning of their rules.
+const KINDS: [(&str, &[&str]); 4] = [
+    ("individuals", &["nelson", "western-electric"]),
+    ("moving range", &["moving-range"]),
+    ("EWMA", &["ewma"]),
+    ("CUSUM", &["cusum"]),
+];
+
+impl StoreCharts {
+    /// Whether any of the sessions that are shown gives a signal.
+    pub fn has_signals(&self) -> bool {
+        self.charts.iter().any(|chart| !chart.signals.is_empty())
+    }
+
+    /// A table of the signals, then the charts of each parameter.
+    pub(super) fn write(&self, body: &mut String) {
+        body.push_str("<h2>Control charts</h2>\n");
+        if let Some(missing) = &self.missing {
+            let _ = writeln!(
+                body,
+                "<p class=\"note\">found {}, expected {}</p>",
+                Escaped(&missing.found()),
+                Escaped(&missing.expected())
+            );
+        }
+        let Some(longest) = self.charts.iter().max_by_key(|chart| chart.values.len()) else { return };
+        let (sessions, accepted) = (counted(longest.values.len(), "session"), longest.accepted);
+        let _ = writeln!(
+            body,
+            "<p class=\"note\">The last {sessions}. Limits come from the first {accepted} acceptable ones. Each rule gives a false signal in about one of \
+             370 values: a chart says where to look.</p>"
+        );
+        self.table(body);
+        for chart in &self.charts {
+            let signals = counted(chart.signals.len(), "signal");
+            let _ = writeln!(body, "<details><summary>{}: {signals}</summary><div>", Escaped(&chart.name));
+            panels(body, chart_plots(chart).into_iter().map(|(_, plot)| plot.as_panel()));
+            body.push_str("</div></details>\n");
+        }
+    }
+
+    fn table(&self, body: &mut String) {
+        body.push_str("<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">parameter</th><th scope=\"col\">unit</th>");
+        body.push_str("<th scope=\"col\">centre</th>");
+        for (kind, _) in KINDS {
+            let _ = write!(body, "<th scope=\"col\" class=\"number\">{kind}</th>");
+        }
+        body.push_str("<th scope=\"col\">last signal</th></tr></thead><tbody>\n");
+        for chart in &self.charts {
+            let (factor, unit) = customary(&chart.unit, chart.group);
+            let (centre, _) = with_uncertainty(factor * chart.centre, factor.abs() * chart.deviation);
+            let _ = write!(body, "<tr><th scope=\"row\">{}</th><td>{unit}</td><td>{centre}</td>", Escaped(&chart.name));
+            for (_, rules) in KINDS {
+                let is_of = |rule: &str| rules.iter().any(|start| rule.starts_with(start));
+                let count = chart.signals.iter().filter(|signal| is_of(&signal.rule)).count();
+                let _ = write!(body, "<td class=\"number\">{count}</td>");
+            }
+            let last = chart.signals.last().and_then(|signal| Some((signal, chart.sessions.get(signal.session)?)));
+            let words = last.map(|(signal, of)| format!("{}, serial {}: {}", of.date, of.unit_serial, signal.words));
+            let _ = writeln!(body, "<td>{}</td></tr>", Escaped(&words.unwrap_or_default()));
+        }
+        body.push_str("</tbody></table></div>\n");
+    }
+}

@@ -1,0 +1,89 @@
+//! What all pages of a store have: names of files, frame, texts of the terminal, drawings.
+
+use std::fmt::Write;
+
+use sha2::{Digest, Sha256};
+
+use crate::plot::{Escaped, Plot, STYLE as PLOT_STYLE};
+use crate::terminal::Screen;
+
+const STYLE: &str = include_str!("../html/style.css");
+const LIST_STYLE: &str = include_str!("../html/list.css");
+const SCRIPT: &str = include_str!("../html/list.js");
+
+/// What a page of a store is about, beside `index.html`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PageKind {
+    /// A unit: model and serial number.
+    Unit,
+    /// A model of units.
+    Model,
+    /// A station.
+    Station,
+}
+
+impl PageKind {
+    /// The file of a page. It stays the same whatever comes into the store, so that a link to it stays good; names that no file can have
+    /// do not make two pages one.
+    pub fn file(self, names: &[&str]) -> String {
+        let kind = match self {
+            Self::Unit => "unit",
+            Self::Model => "model",
+            Self::Station => "station",
+        };
+        let last = names.last().copied().unwrap_or_default();
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        let readable: String = last.chars().take(READABLE).map(plain).collect();
+        let hash = Sha256::digest(names.join("\0").as_bytes());
+        let hash = hash.iter().take(6).fold(String::new(), |mut text, byte| {
+            let _ = write!(text, "{byte:02x}");
+            text
+        });
+        let parts = [kind, &readable, &hash];
+        format!("{}.html", parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-"))
+    }
+}
+
+/// Letters of a name that the name of its file repeats.
+const READABLE: usize = 40;
+
+/// The beginning of a page that is not the list.
+pub(super) fn opening(kind: &str, title: &str) -> String {
+    format!(
+        "<header><p class=\"kind\">{kind}</p><h1>{}</h1><p><a href=\"index.html\">all calibrations</a></p></header>\n",
+        Escaped(title)
+    )
+}
+
+/// What a command prints.
+pub(super) fn text(body: &mut String, screen: &Screen) {
+    body.push_str("<pre class=\"text\">");
+    for line in screen.text(WIDTH, usize::MAX).lines() {
+        let _ = writeln!(body, "{}", Escaped(line));
+    }
+    body.push_str("</pre>\n");
+}
+
+/// Characters in a line: what a laboratory's screen shows beside its margins.
+const WIDTH: usize = 150;
+
+/// Drawings side by side.
+pub(super) fn panels(body: &mut String, plots: impl IntoIterator<Item = Plot>) {
+    body.push_str("<div class=\"panels\">\n");
+    for plot in plots {
+        let _ = writeln!(body, "<figure>{}</figure>", plot.to_svg_in_page());
+    }
+    body.push_str("</div>\n");
+}
+
+/// A whole page.
+pub(super) fn page(title: &str, body: &str) -> String {
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
+         <meta name=\"color-scheme\" content=\"light dark\"><link rel=\"icon\" href=\"data:,\">\
+         <title>{}</title><style>{STYLE}{LIST_STYLE}{PLOT_STYLE}</style></head>\n<body><main class=\"wide\">\n{body}\
+         <script>{SCRIPT}</script></main></body></html>\n",
+        Escaped(title)
+    )
+}

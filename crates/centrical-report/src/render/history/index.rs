@@ -1,0 +1,157 @@
+//! The first page of a store: models and stations with what was found of them, and the list of all calibrations.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use centrical_session::{HistoryLine, HistoryList, StationHistoryReport, UnitsHistoryReport};
+
+use super::frame::{PageKind, page};
+use crate::plot::Escaped;
+
+/// A model of units in the list of models.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IndexedModel {
+    /// What was found of its units.
+    pub report: UnitsHistoryReport,
+    /// Whether a control chart gives a signal.
+    pub has_signals: bool,
+}
+
+/// A station in the list of stations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IndexedStation {
+    /// What was found of it.
+    pub report: StationHistoryReport,
+    /// Whether a control chart gives a signal.
+    pub has_signals: bool,
+}
+
+/// The first page. Units with two calibrations or more have a page.
+pub fn history_index(list: &HistoryList, models: &[IndexedModel], stations: &[IndexedStation]) -> String {
+    let count = list.calibrations.len();
+    let mut body = format!(
+        "<header><p class=\"kind\">Calibrations</p><h1>{}</h1><p>{count} calibrations</p></header>\n",
+        Escaped(&list.store)
+    );
+    models_table(&mut body, models);
+    stations_table(&mut body, stations);
+    body.push_str(
+        "<h2>Calibrations</h2>\n\
+         <form class=\"filters\" role=\"search\"><label>Serial, model or station <input id=\"words\" type=\"search\"></label>\
+         <label>from <input id=\"from\" type=\"date\"></label><label>to <input id=\"to\" type=\"date\"></label>\
+         <label>Verdict <select id=\"verdict\"><option value=\"\">all</option><option>acceptable</option><option>not acceptable</option>\
+         <option>failed</option></select></label><output id=\"count\"></output></form>\n\
+         <div class=\"scroll\"><table id=\"list\" class=\"sortable\"><thead><tr><th scope=\"col\">date</th><th scope=\"col\">model</th>\
+         <th scope=\"col\">serial</th><th scope=\"col\">station</th><th scope=\"col\" class=\"number\">chi^2/nu</th>\
+         <th scope=\"col\">verdict</th></tr></thead><tbody>\n",
+    );
+    let mut counts: BTreeMap<(&str, &str), usize> = BTreeMap::new();
+    for line in list.calibrations.iter().filter(|line| line.acceptable.is_some()) {
+        *counts.entry((&line.unit_model, &line.unit_serial)).or_default() += 1;
+    }
+    for line in &list.calibrations {
+        let has_page =
+            counts.get(&(line.unit_model.as_str(), line.unit_serial.as_str())).is_some_and(|count| *count > 1);
+        row(&mut body, line, has_page);
+    }
+    body.push_str("</tbody></table></div>\n");
+    page("Calibrations", &body)
+}
+
+fn models_table(body: &mut String, models: &[IndexedModel]) {
+    if models.is_empty() {
+        return;
+    }
+    body.push_str(
+        "<h2>Models</h2>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">model</th>\
+         <th scope=\"col\" class=\"number\">units</th><th scope=\"col\" class=\"number\">calibrations</th><th scope=\"col\">units alike</th>\
+         <th scope=\"col\" class=\"number\">least Cpk</th><th scope=\"col\">of</th><th scope=\"col\">batches that differ</th>\
+         <th scope=\"col\">control charts</th></tr></thead><tbody>\n",
+    );
+    for IndexedModel { report, has_signals } in models {
+        let capability = report.parameters.iter().filter_map(|p| Some((p.name.as_str(), p.capability.as_ref()?.cpk)));
+        let least = capability.min_by(|a, b| a.1.total_cmp(&b.1));
+        let differ: Vec<&str> =
+            report.parameters.iter().filter(|p| p.batches_differ).map(|p| p.name.as_str()).collect();
+        let _ = writeln!(
+            body,
+            "<tr><th scope=\"row\"><a href=\"{}\">{}</a></th><td class=\"number\">{}</td><td class=\"number\">{}</td>{}\
+             <td class=\"number\">{}</td><td>{}</td><td>{}</td>{}</tr>",
+            PageKind::Model.file(&[&report.unit_model]),
+            Escaped(&report.unit_model),
+            report.units,
+            report.sessions,
+            verdict(report.is_sound, "alike", "not alike"),
+            least.map_or_else(String::new, |(_, cpk)| format!("{cpk:.2}")),
+            Escaped(least.map_or("", |(name, _)| name)),
+            Escaped(&differ.join(", ")),
+            signals(*has_signals),
+        );
+    }
+    body.push_str("</tbody></table></div>\n");
+}
+
+fn stations_table(body: &mut String, stations: &[IndexedStation]) {
+    if stations.is_empty() {
+        return;
+    }
+    body.push_str(
+        "<h2>Stations</h2>\n<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th scope=\"col\">station</th>\
+         <th scope=\"col\" class=\"number\">calibrations</th><th scope=\"col\" class=\"number\">units</th><th scope=\"col\">first</th>\
+         <th scope=\"col\">last</th><th scope=\"col\">machine</th><th scope=\"col\">changed</th><th scope=\"col\">control charts</th></tr></thead>\
+         <tbody>\n",
+    );
+    for IndexedStation { report, has_signals } in stations {
+        let name = if report.station.is_empty() { "without a name" } else { &report.station };
+        let changed: Vec<&str> = report.parameters.iter().filter(|p| p.changes).map(|p| p.name.as_str()).collect();
+        let _ = writeln!(
+            body,
+            "<tr><th scope=\"row\"><a href=\"{}\">{}</a></th><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td>{}\
+             <td>{}</td>{}</tr>",
+            PageKind::Station.file(&[&report.station]),
+            Escaped(name),
+            report.sessions,
+            report.units,
+            report.first,
+            report.last,
+            verdict(report.is_steady, "steady", "not steady"),
+            Escaped(&changed.join(", ")),
+            signals(*has_signals),
+        );
+    }
+    body.push_str("</tbody></table></div>\n");
+}
+
+fn verdict(is_good: bool, good: &str, bad: &str) -> String {
+    if is_good { format!("<td class=\"good\">{good}</td>") } else { format!("<td class=\"bad\">{bad}</td>") }
+}
+
+/// A signal may be false: it has no colour.
+fn signals(has_signals: bool) -> &'static str {
+    if has_signals { "<td>signals</td>" } else { "<td></td>" }
+}
+
+fn row(body: &mut String, line: &HistoryLine, has_page: bool) {
+    let ratio = line.chi_squared.filter(|_| line.degrees_of_freedom > 0).map(|c| c / line.degrees_of_freedom as f64);
+    let (verdict, class) = match line.acceptable {
+        Some(true) => ("acceptable", "good"),
+        Some(false) => ("not acceptable", "bad"),
+        None => ("failed", "bad"),
+    };
+    let why = line.message.clone().unwrap_or_else(|| line.objections.join(", "));
+    let serial = Escaped(&line.unit_serial);
+    let serial = if has_page {
+        format!("<a href=\"{}\">{serial}</a>", PageKind::Unit.file(&[&line.unit_model, &line.unit_serial]))
+    } else {
+        serial.to_string()
+    };
+    let _ = writeln!(
+        body,
+        "<tr><td>{}</td><td>{}</td><td>{serial}</td><td>{}</td><td class=\"number\">{}</td><td class=\"{class}\">{verdict}<span>{}</span></td></tr>",
+        Escaped(&line.date),
+        Escaped(&line.unit_model),
+        Escaped(&line.station),
+        ratio.map_or_else(String::new, |ratio| format!("{ratio:.3}")),
+        Escaped(&why)
+    );
+}

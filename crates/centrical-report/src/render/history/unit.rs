@@ -1,0 +1,29 @@
+//! The page of a unit.
+
+use centrical_session::{ParameterLimits, UnitHistoryReport};
+
+use super::charts::StoreCharts;
+use super::frame::{opening, page, panels, text};
+use crate::figure::unit_history_plots;
+use crate::terminal::unit_history_text;
+
+/// The page of a unit with a history; with `limits` of its parameters in the drawings.
+pub fn history_unit_page(report: &UnitHistoryReport, limits: &ParameterLimits, charts: &StoreCharts) -> String {
+    let title = title(&report.unit_model, &report.unit_serial);
+    let mut body = opening("Unit", &title);
+    text(&mut body, &unit_history_text(report));
+    body.push_str("<h2>Parameters over time</h2>\n");
+    panels(&mut body, unit_history_plots(report, limits).into_iter().map(|(_, plot)| plot));
+    charts.write(&mut body);
+    page(&title, &body)
+}
+
+/// The page of a unit whose calibrations have no parameter in common.
+pub fn no_unit_history_page(unit_model: &str, unit_serial: &str) -> String {
+    let title = title(unit_model, unit_serial);
+    page(&title, &(opening("Unit", &title) + "<p>Its calibrations have no parameter in common.</p>\n"))
+}
+
+fn title(unit_model: &str, unit_serial: &str) -> String {
+    format!("{unit_model}, serial {unit_serial}")
+}
