@@ -117,12 +117,12 @@ fn planned_rests() {
             (
                 "attitudes =",
                 "atitudes =",
-                "line 76, column 1: found an unknown key `atitudes`, expected one of `rests`, `attitudes`, `duration`, `durations`, `attitude_uncertainty`",
+                "line 76, column 1: found an unknown key `atitudes`, expected one of `rests`, `record`, `attitudes`, `duration`, `durations`, `attitude_uncertainty`, `bias_change`, `switch_on`",
             ),
             (
                 "attitudes = [[0, 0, 1], [1, 0, 0]]\n",
                 "",
-                "[[tumble]] 1, rests: found no such key, expected a table of rests; or attitudes, of rests that are planned",
+                "[[tumble]] 1, rests: found no such key, expected a table of rests; or record, their record; or attitudes, of rests that are planned",
             ),
             (
                 "[1, 0, 0]",
@@ -173,6 +173,16 @@ fn planned_rests() {
                 "attitudes = [[0, 0, 1], [1, 0, 0]]",
                 "rests = \"rests.csv\"",
                 "[[tumble]] 1, duration: found a duration, expected no such key beside rests, which have been measured",
+            ),
+            (
+                list,
+                "[[0, 0, 1]]\nbias_change = \"20 m/s^2\"",
+                "[[tumble]] 1, bias_change: found \"20 m/s^2\", expected a standard uncertainty from 0 to 10 m/s^2",
+            ),
+            (
+                "attitudes = [[0, 0, 1], [1, 0, 0]]\nduration = \"60 s\"",
+                "record = \"tumble.csv\"",
+                "[[tumble]] 1, record: found a record in a plan, expected rests, a table of them as `centrical tumble` writes it, or attitudes to be planned",
             ),
         ],
     );
