@@ -1,7 +1,8 @@
 //! From time stamps to a regular grid: repeated samples dropped, missing ones marked, both counted.
 
 use super::error::NoiseError;
-use crate::statistics::{median, whole};
+use crate::progress::{OnProgress, Stopped, advance};
+use crate::statistics::{PIECE, watched_median, whole};
 
 /// Readings on a regular grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,16 +19,17 @@ pub struct Grid {
 ///
 /// The interval is first the median step; every step counts for the nearest whole number of intervals (a step of
 /// less than half an interval is a repeated sample, which is dropped); then the interval is refined to the mean over
-/// the span, so a step printed with few digits does not drift off the grid. Non-finite readings are missing ones.
+/// the span, so a step printed with few digits does not drift off the grid. Non-finite readings are missing ones. `progress` is asked
+/// again and again.
 ///
 /// # Errors
 /// [`NoiseError`] if `t` and `y` differ in length, hold fewer than 3 samples, `t` is not finite or runs backwards,
-/// or fewer than half of the spanned grid points have a sample.
-pub fn regular_grid(t: &[f64], y: &[f64]) -> Result<Grid, NoiseError> {
+/// or fewer than half of the spanned grid points have a sample; [`NoiseError::Stopped`].
+pub fn regular_grid(t: &[f64], y: &[f64], progress: OnProgress<()>) -> Result<Grid, NoiseError> {
     check(t, y)?;
     let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();
-    let step = median(&mut steps);
-    let (places, repeated) = places(t, step);
+    let step = watched_median(&mut steps, progress)?;
+    let (places, repeated) = places(t, step, progress)?;
     let span = places.last().map_or(0, |&(place, _)| place + 1);
     if span > 2 * places.len() {
         return Err(NoiseError::MostlyMissing { found: places.len(), span });
@@ -58,10 +60,13 @@ fn check(t: &[f64], y: &[f64]) -> Result<(), NoiseError> {
 }
 
 /// `(grid point, sample)` of every sample kept, and the number of repeated samples.
-fn places(t: &[f64], interval: f64) -> (Vec<(usize, usize)>, usize) {
+fn places(t: &[f64], interval: f64, progress: OnProgress<()>) -> Result<(Vec<(usize, usize)>, usize), Stopped> {
     let mut places = vec![(0, 0)];
     let (mut place, mut last, mut repeated) = (0, t[0], 0);
     for (sample, &time) in t.iter().enumerate().skip(1) {
+        if sample % PIECE == 0 {
+            advance(progress, ())?;
+        }
         let steps = ((time - last) / interval).round();
         if steps < 1.0 {
             repeated += 1;
@@ -72,17 +77,18 @@ fn places(t: &[f64], interval: f64) -> (Vec<(usize, usize)>, usize) {
         last = time;
         places.push((place, sample));
     }
-    (places, repeated)
+    Ok((places, repeated))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::progress::unwatched;
 
     #[test]
     fn missing_samples_are_marked_and_repeated_ones_dropped() {
         let t = [0.0, 0.1, 0.2, 0.2, 0.5, 0.6, 0.70001];
-        let grid = regular_grid(&t, &[1.0, 2.0, 3.0, 9.0, 6.0, 7.0, 8.0]).unwrap();
+        let grid = regular_grid(&t, &[1.0, 2.0, 3.0, 9.0, 6.0, 7.0, 8.0], &unwatched).unwrap();
         assert_eq!(grid.repeated, 1);
         assert_eq!(grid.readings.len(), 8);
         assert!(grid.readings[3].is_nan() && grid.readings[4].is_nan());
@@ -94,16 +100,16 @@ mod tests {
     fn a_step_printed_with_few_digits_does_not_drift() {
         // 3 kHz printed to 0.1 ms: a median step of 0.3 ms would lose a tenth of the grid points.
         let t: Vec<f64> = (0..30_000).map(|i| (f64::from(i) / 3000.0 * 1e4).round() / 1e4).collect();
-        let grid = regular_grid(&t, &vec![0.5; t.len()]).unwrap();
+        let grid = regular_grid(&t, &vec![0.5; t.len()], &unwatched).unwrap();
         assert_eq!(grid.readings.len(), 30_000);
         assert!((grid.interval * 3000.0 - 1.0).abs() < 1e-5);
     }
 
     #[test]
     fn errors_name_the_sample() {
-        let error = regular_grid(&[0.0, 0.2, 0.1], &[0.0; 3]).unwrap_err();
+        let error = regular_grid(&[0.0, 0.2, 0.1], &[0.0; 3], &unwatched).unwrap_err();
         assert_eq!(error.to_string(), "sample 2: found time 0.1 s after 0.2 s, expected an increasing time");
-        assert!(regular_grid(&[0.0, 0.1], &[0.0; 2]).is_err());
-        assert!(regular_grid(&[0.0, 0.1, 0.2, 99.0], &[0.0; 4]).is_err());
+        assert!(regular_grid(&[0.0, 0.1], &[0.0; 2], &unwatched).is_err());
+        assert!(regular_grid(&[0.0, 0.1, 0.2, 99.0], &[0.0; 4], &unwatched).is_err());
     }
 }

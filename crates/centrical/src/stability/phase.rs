@@ -3,6 +3,8 @@
 use std::ops::Range;
 
 use super::error::NoiseError;
+use crate::progress::{OnProgress, advance, unwatched};
+use crate::statistics::PIECE;
 
 /// Phase x_0 .. x_N: the running integral of the readings, less their mean.
 ///
@@ -56,6 +58,14 @@ impl Phase {
     /// # Errors
     /// [`NoiseError`] if `tau0` is not positive or fewer than 2 readings are finite.
     pub fn integrate(readings: &[f64], tau0: f64) -> Result<Self, NoiseError> {
+        Self::integrate_watched(readings, tau0, &unwatched)
+    }
+
+    /// The same, asking `progress` between the passes over the readings.
+    ///
+    /// # Errors
+    /// As [`Phase::integrate`]; [`NoiseError::Stopped`].
+    pub fn integrate_watched(readings: &[f64], tau0: f64, progress: OnProgress<()>) -> Result<Self, NoiseError> {
         check_interval(tau0)?;
         let is_seen = |y: &f64| y.is_finite();
         let (Some(first), Some(last)) = (readings.iter().position(is_seen), readings.iter().rposition(is_seen)) else {
@@ -71,7 +81,9 @@ impl Phase {
             missing: runs.iter().map(ExactSizeIterator::len).sum(),
             longest: runs.iter().map(ExactSizeIterator::len).max().unwrap_or(0),
         };
+        advance(progress, ())?;
         let mean = mean_of_seen(readings);
+        advance(progress, ())?;
         let mut x = Vec::with_capacity(readings.len() + 1);
         x.push(0.0);
         x.extend(readings.iter().map(|y| (y - mean) * tau0));
@@ -79,8 +91,12 @@ impl Phase {
             bridge(readings, run, |k, y| x[k + 1] = (y - mean) * tau0);
         }
         for k in 1..x.len() {
+            if k % PIECE == 0 {
+                advance(progress, ())?;
+            }
             x[k] += x[k - 1];
         }
+        advance(progress, ())?;
         let filled_before = (!runs.is_empty()).then(|| count_filled(readings));
         Ok(Self { x, tau0, filled_before, gaps })
     }

@@ -1,17 +1,26 @@
 //! Spikes: readings that differ from their neighbours by more than noise.
 
-use crate::statistics::{MAD, cut, median};
+use crate::progress::{OnProgress, Stopped, advance};
+use crate::statistics::{MAD, PIECE, cut, watched_median};
 
 /// Marks the spikes among evenly spaced readings as missing (NaN) and returns their number.
 ///
 /// A reading is compared with the median of the two on either side of it, which one more spike among them does not
 /// move. The limit is what fewer than one in twenty records of good readings exceed anywhere, `sqrt(2 ln 20 n)` robust
 /// standard deviations, and a digit for rounding. Noise slower than a few samples does not enter the comparison, and
-/// so is not cut.
-pub fn leave_out_spikes(readings: &mut [f64]) -> usize {
-    let residuals: Vec<f64> = (0..readings.len()).map(|i| readings[i] - median_of_neighbours(readings, i)).collect();
+/// so is not cut. `progress` is asked again and again.
+///
+/// # Errors
+/// [`Stopped`] when the caller stops it; no reading is marked then.
+pub fn leave_out_spikes(readings: &mut [f64], progress: OnProgress<()>) -> Result<usize, Stopped> {
+    let mut residuals: Vec<f64> = Vec::with_capacity(readings.len());
+    while residuals.len() < readings.len() {
+        advance(progress, ())?;
+        let next = residuals.len()..readings.len().min(residuals.len() + PIECE);
+        residuals.extend(next.map(|i| readings[i] - median_of_neighbours(readings, i)));
+    }
     let mut sizes: Vec<f64> = residuals.iter().filter(|r| r.is_finite()).map(|r| r.abs()).collect();
-    let limit = cut(sizes.len()) * MAD * median(&mut sizes) + last_digit(readings);
+    let limit = cut(sizes.len()) * MAD * watched_median(&mut sizes, progress)? + last_digit(readings);
     let mut spikes = 0;
     for (reading, residual) in readings.iter_mut().zip(&residuals) {
         if residual.abs() > limit {
@@ -19,7 +28,7 @@ pub fn leave_out_spikes(readings: &mut [f64]) -> usize {
             spikes += 1;
         }
     }
-    spikes
+    Ok(spikes)
 }
 
 /// Last digit of the readings: the smallest step between neighbours, beyond the rounding of `f64` itself.
@@ -46,6 +55,7 @@ fn median_of_neighbours(readings: &[f64], i: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::leave_out_spikes;
+    use crate::progress::unwatched;
 
     #[test]
     fn spikes_go_and_the_rest_stays() {
@@ -55,16 +65,16 @@ mod tests {
         for (i, size) in [(0, 5.0), (500, -2.0), (501, 3.0), (1999, 9.0)] {
             readings[i] += size;
         }
-        assert_eq!(leave_out_spikes(&mut readings), 4);
+        assert_eq!(leave_out_spikes(&mut readings, &unwatched), Ok(4));
         let missing: Vec<usize> = (0..2000).filter(|i| readings[*i].is_nan()).collect();
         assert_eq!(missing, [0, 500, 501, 700, 1999]);
     }
 
     #[test]
     fn constant_or_coarse_readings_have_no_spikes() {
-        assert_eq!(leave_out_spikes(&mut [3.0; 100]), 0);
+        assert_eq!(leave_out_spikes(&mut [3.0; 100], &unwatched), Ok(0));
         let mut coarse: Vec<f64> = (0..1000).map(|i| if i * i % 97 > 80 { 1.0 } else { 0.0 }).collect();
-        assert_eq!(leave_out_spikes(&mut coarse), 0);
-        assert_eq!(leave_out_spikes(&mut []), 0);
+        assert_eq!(leave_out_spikes(&mut coarse, &unwatched), Ok(0));
+        assert_eq!(leave_out_spikes(&mut [], &unwatched), Ok(0));
     }
 }

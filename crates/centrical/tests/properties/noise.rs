@@ -237,7 +237,7 @@ fn a_line_stands_at_its_frequency_with_its_power() {
 fn readings_phase_and_time_stamps_agree() {
     let readings = Recipe { white: 1.0, ramp: 1.0, ..Recipe::default() }.readings(500, TAU0, 2);
     let times: Vec<f64> = (0..500).map(|k| 7.0 + TAU0 * f64::from(k)).collect();
-    let grid = regular_grid(&times, &readings).unwrap();
+    let grid = regular_grid(&times, &readings, &unwatched).unwrap();
     let direct = Phase::integrate(&readings, TAU0).unwrap();
     let stamped = Phase::integrate(&grid.readings, grid.interval).unwrap();
     let given = Phase::new(direct.points().to_vec(), TAU0).unwrap();
