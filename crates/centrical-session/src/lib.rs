@@ -102,8 +102,8 @@ pub use record::{
 };
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use store::{
-    Added, Depth, Failure, ROWS_SCHEMA, Row, RowTable, RowTerm, Rows, Selection, SharedInfluence, Status, Store,
-    days_since_1970,
+    Added, Depth, Failure, ROWS_SCHEMA, Row, RowPrior, RowTable, RowTerm, Rows, Selection, SharedInfluence, Status,
+    Store, days_since_1970,
 };
 pub use truth::Truth;
 pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary};

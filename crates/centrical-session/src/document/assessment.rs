@@ -182,7 +182,7 @@ impl AssessmentReport {
             without_outliers: cleaned.map(|(fit, left_out)| WithoutOutliers::of(experiment, fit, left_out)),
             parameters: (0..count).map(|j| AssessedParameter::of(model, used, budget, coverage, j)).collect(),
             covariance: (0..count).map(row).collect(),
-            budget: BudgetSummary::new(budget, count),
+            budget: BudgetSummary::new(budget, count, &[]),
             improvements: budget.improvements(&own).iter().map(improvement).collect(),
             validity: ValiditySummary::new(experiment, validity, patterns),
             plateaus: validity.plateaus.iter().map(|check| AssessedPlateau::of(experiment, check)).collect(),

@@ -1,11 +1,11 @@
 //! A result as the row of a store.
 
-use centrical::Source;
+use centrical::{Group, Source};
 
 use super::documents::ObjectionName;
-use super::result::{CalibrationResult, ParameterEstimate, TermSummary};
+use super::result::{CalibrationResult, ParameterEstimate, PriorSummary, TermSummary};
 use super::words::Word;
-use crate::store::{Row, RowTerm, SharedInfluence, Status, days_since_1970, sha256};
+use crate::store::{Row, RowPrior, RowTerm, SharedInfluence, Status, days_since_1970, sha256};
 
 impl CalibrationResult {
     /// The row of the result, whose file has these `bytes`.
@@ -16,7 +16,7 @@ impl CalibrationResult {
         let of_parameters =
             |text: fn(&ParameterEstimate) -> String| self.parameters.iter().map(text).collect::<Vec<_>>();
         let (combined, covariance) = (self.combined(), self.packed_covariance());
-        let shared = self.shared_influences();
+        let (shared, priors) = (self.shared_influences(), self.row_priors());
         Row {
             key: sha256(bytes),
             status: Status::Done,
@@ -46,6 +46,8 @@ impl CalibrationResult {
             terms: self.row_terms(),
             shared_known: shared.is_some(),
             shared: shared.unwrap_or_default(),
+            priors_known: priors.is_some(),
+            priors: priors.unwrap_or_default(),
             ..Row::default()
         }
     }
@@ -74,6 +76,27 @@ impl CalibrationResult {
         let forces =
             |axis: usize| self.plateaus.iter().map(move |p| p.specific_force.as_ref().unwrap_or(&p.mean)[axis].abs());
         [0, 1, 2].map(|axis| forces(axis).fold(0.0, f64::max))
+    }
+
+    /// The priors on parameters of the unit; none if the result does not say what they leave.
+    fn row_priors(&self) -> Option<Vec<RowPrior>> {
+        let with_prior = self.parameters.iter().filter_map(|p| Some((p, p.prior?))).collect::<Vec<_>>();
+        if with_prior.is_empty() {
+            return Some(Vec::new());
+        }
+        let sources = &self.budget.as_ref()?.sources;
+        let changes = sources.iter().find(|source| source.name == Source::Priors)?.changes.as_ref()?;
+        let is_of_unit = |p: &ParameterEstimate| {
+            p.group == Group::ProofMass || self.model.error_model.iter().any(|term| term.name == p.name)
+        };
+        let of_unit = with_prior.into_iter().zip(changes).filter(|((p, _), _)| is_of_unit(p));
+        let row = |((p, prior), changes): ((&ParameterEstimate, PriorSummary), &Vec<Option<f64>>)| RowPrior {
+            parameter: p.name.clone(),
+            mean: prior.mean,
+            standard_uncertainty: prior.standard_uncertainty,
+            changes: changes.iter().map(|change| change.unwrap_or(f64::NAN)).collect(),
+        };
+        Some(of_unit.map(row).collect())
     }
 
     /// None if the result does not say.

@@ -7,6 +7,7 @@ mod chart;
 mod earlier;
 mod limits;
 mod list;
+mod of_data;
 mod read;
 mod results;
 mod station;

@@ -53,6 +53,19 @@ pub struct SharedInfluence {
     pub changes: Vec<f64>,
 }
 
+/// A prior on a parameter of the unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RowPrior {
+    /// The parameter.
+    pub parameter: String,
+    /// Mean, SI.
+    pub mean: f64,
+    /// Standard uncertainty, SI.
+    pub standard_uncertainty: f64,
+    /// Signed change of every parameter when the mean is off by one standard uncertainty, SI; NaN where one is not estimable.
+    pub changes: Vec<f64>,
+}
+
 /// A calibration as a row: what the history of a unit is made from. Fields beyond the depth that was read are empty.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Row {
@@ -114,6 +127,10 @@ pub struct Row {
     pub shared_known: bool,
     /// What they leave.
     pub shared: Vec<SharedInfluence>,
+    /// Whether the result says what priors leave: not one of an older program.
+    pub priors_known: bool,
+    /// Priors on parameters of the unit.
+    pub priors: Vec<RowPrior>,
 }
 
 impl Row {

@@ -1,17 +1,17 @@
-//! The columns of a row in a part, and how a row becomes cells and comes from them: schema `centrical-rows/1`.
+//! The columns of a row in a part, and how a row becomes cells and comes from them: schema `centrical-rows/2`.
 
 use centrical_table::{Cell, Kind, TypedColumn};
 
-use super::row::{Row, RowTerm, SharedInfluence, Status};
+use super::row::{Row, RowPrior, RowTerm, SharedInfluence, Status};
 
 /// Name of the schema's present version.
-pub const ROWS_SCHEMA: &str = "centrical-rows/1";
+pub const ROWS_SCHEMA: &str = "centrical-rows/2";
 
 /// Key in the footer of a part under which the schema stands.
 pub(super) const SCHEMA_NOTE: &str = "centrical_schema";
 
 /// The schema's present version.
-pub(super) const VERSION: i64 = 1;
+pub(super) const VERSION: i64 = 2;
 
 /// How much of a row is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -66,6 +66,7 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry { column: TypedColumn { name: "acceptable", kind: Kind::Truth }, depth: Depth::Summary, get: |r| Cell::Truth(r.acceptable), set: |r, c| r.acceptable = c.0 == Cell::Truth(true) },
     Entry { column: TypedColumn { name: "objections", kind: Kind::Texts }, depth: Depth::Summary, get: |r| Cell::Texts(r.objections.clone()), set: |r, c| r.objections = c.texts() },
     Entry { column: TypedColumn { name: "shared_known", kind: Kind::Truth }, depth: Depth::Summary, get: |r| Cell::Truth(r.shared_known), set: |r, c| r.shared_known = c.0 == Cell::Truth(true) },
+    Entry { column: TypedColumn { name: "priors_known", kind: Kind::Truth }, depth: Depth::Summary, get: |r| Cell::Truth(r.priors_known), set: |r, c| r.priors_known = c.0 == Cell::Truth(true) },
     Entry { column: TypedColumn { name: "parameters", kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.parameters.clone()), set: |r, c| r.parameters = c.texts() },
     Entry { column: TypedColumn { name: "units", kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.units.clone()), set: |r, c| r.units = c.texts() },
     Entry { column: TypedColumn { name: "groups", kind: Kind::Texts }, depth: Depth::Values, get: |r| Cell::Texts(r.groups.clone()), set: |r, c| r.groups = c.texts() },
@@ -78,6 +79,10 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry { column: TypedColumn { name: "covariance", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.covariance.clone()), set: |r, c| r.covariance = c.numbers() },
     Entry { column: TypedColumn { name: "shared_sources", kind: Kind::Texts }, depth: Depth::Whole, get: |r| Cell::Texts(r.shared.iter().map(|s| s.source.clone()).collect()), set: |r, c| r.shared = c.texts().into_iter().map(influence).collect() },
     Entry { column: TypedColumn { name: "shared_changes", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.shared.iter().flat_map(|s| s.changes.clone()).collect()), set: |r, c| set_changes(r, &c.numbers()) },
+    Entry { column: TypedColumn { name: "prior_parameters", kind: Kind::Texts }, depth: Depth::Whole, get: |r| Cell::Texts(r.priors.iter().map(|p| p.parameter.clone()).collect()), set: |r, c| r.priors = c.texts().into_iter().map(prior).collect() },
+    Entry { column: TypedColumn { name: "prior_means", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.priors.iter().map(|p| p.mean).collect()), set: |r, c| r.priors.iter_mut().zip(c.numbers()).for_each(|(p, mean)| p.mean = mean) },
+    Entry { column: TypedColumn { name: "prior_uncertainties", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.priors.iter().map(|p| p.standard_uncertainty).collect()), set: |r, c| r.priors.iter_mut().zip(c.numbers()).for_each(|(p, u)| p.standard_uncertainty = u) },
+    Entry { column: TypedColumn { name: "prior_changes", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.priors.iter().flat_map(|p| p.changes.clone()).collect()), set: |r, c| set_prior_changes(r, &c.numbers()) },
 ];
 
 /// The columns of a part.
@@ -170,5 +175,17 @@ fn set_changes(row: &mut Row, changes: &[f64]) {
     let count = changes.len() / row.shared.len().max(1);
     for (influence, changes) in row.shared.iter_mut().zip(changes.chunks(count.max(1))) {
         influence.changes = changes.to_vec();
+    }
+}
+
+/// A prior of which the parameter alone is read as yet.
+fn prior(parameter: String) -> RowPrior {
+    RowPrior { parameter, mean: 0.0, standard_uncertainty: f64::NAN, changes: Vec::new() }
+}
+
+fn set_prior_changes(row: &mut Row, changes: &[f64]) {
+    let count = changes.len() / row.priors.len().max(1);
+    for (prior, changes) in row.priors.iter_mut().zip(changes.chunks(count.max(1))) {
+        prior.changes = changes.to_vec();
     }
 }

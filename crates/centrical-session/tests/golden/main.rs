@@ -3,6 +3,7 @@
 mod file_messages;
 mod foreign_files;
 mod plan_messages;
+mod rows;
 mod sample;
 mod schemas;
 mod session_messages;

@@ -6,7 +6,7 @@ use std::sync::Barrier;
 use std::thread;
 use std::time::Instant;
 
-use centrical_session::{Depth, Row, RowTerm, Selection, SharedInfluence, Store};
+use centrical_session::{Depth, Row, RowPrior, RowTerm, Selection, SharedInfluence, Store};
 use tempfile::TempDir;
 
 /// A row of `p` parameters with numbers of their own.
@@ -31,9 +31,15 @@ fn row(n: usize, p: usize) -> Row {
         covariance: (0..p * (p + 1) / 2).map(number).collect(),
         terms: vec![RowTerm { name: "p_0".to_owned(), axis: 2, powers: [1, 0, 2], sign_of: Some(3) }],
         shared_known: true,
+        priors_known: n.is_multiple_of(2),
+        priors: (0..n % 3).map(|k| prior(k, (0..p).map(number).collect())).collect(),
         shared: vec![SharedInfluence { source: "radius".to_owned(), changes: (0..p).map(number).collect() }; 2],
         ..Row::default()
     }
+}
+
+fn prior(k: usize, changes: Vec<f64>) -> RowPrior {
+    RowPrior { parameter: format!("p_{k}"), mean: k as f64, standard_uncertainty: 2.0, changes }
 }
 
 fn all(store: &Store, depth: Depth) -> Vec<Row> {
@@ -121,10 +127,10 @@ fn a_damaged_part_and_a_newer_one_are_errors_that_name_the_file() {
     let mut zeros = whole.clone();
     zeros[1000..9000].fill(0);
     assert!(message(&zeros).contains("row group"), "{}", message(&zeros));
-    let at = whole.windows(16).position(|bytes| bytes == b"centrical-rows/1").unwrap();
+    let at = whole.windows(16).position(|bytes| bytes == b"centrical-rows/2").unwrap();
     let mut newer = whole.clone();
-    newer[at + 15] = b'2';
-    assert!(message(&newer).contains("found schema \"centrical-rows/2\", expected schema \"centrical-rows/1\""));
+    newer[at + 15] = b'3';
+    assert!(message(&newer).contains("found schema \"centrical-rows/3\", expected schema \"centrical-rows/2\""));
 }
 
 #[test]

@@ -25,9 +25,10 @@ class Outcome:
 
 
 def rows_of(stores: Path) -> pa.Table:
-    """The rows of the stores in a folder, every key once, sorted by key: the schema ``centrical-rows/1`` with its footer."""
+    """The rows of the stores in a folder, every key once, sorted by key: the schema ``centrical-rows/2`` with its footer."""
     parts = [pq.read_table(file) for file in sorted(stores.glob("*/rows/*.parquet"))]
-    table = pa.concat_tables(parts)
+    # Those of an older program have fewer columns.
+    table = pa.concat_tables(parts, promote_options="default")
     first: dict[str, int] = {}
     for index, key in enumerate(table["key"].to_pylist()):
         first.setdefault(key, index)

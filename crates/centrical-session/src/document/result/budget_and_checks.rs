@@ -1,8 +1,8 @@
 //! How far a result can be trusted: the uncertainties by their sources, and the checks of the fit.
 
-use centrical::Source;
 use centrical::uncertainty::{Budget, Degrees, Level, Pattern, Prediction, Rivals, Trend, Validity};
 use centrical::{Calibration, Experiment, FitError};
+use centrical::{Prior, Source};
 use serde::{Deserialize, Serialize};
 
 use super::rivals::RivalSummary;
@@ -31,7 +31,8 @@ pub struct BudgetSource {
     /// Standard uncertainty it leaves, SI, in the order of the parameters; null where one is not estimable.
     pub standard_uncertainty: Vec<Option<f64>>,
     /// Signed changes of the parameters, SI, by each influence of the source at one standard uncertainty: a row for each influence,
-    /// in the order of the parameters. None for sources that are drawn anew in every session, and in results of older programs.
+    /// in the order of the parameters. Of priors a row for each, in the order of the parameters that have one. None for sources that are drawn
+    /// anew in every session, and in results of older programs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub changes: Option<Vec<Vec<Option<f64>>>>,
 }
@@ -132,15 +133,24 @@ pub enum Follows {
 }
 
 impl BudgetSummary {
-    pub(crate) fn new(budget: &Budget, count: usize) -> Self {
+    pub(crate) fn new(budget: &Budget, count: usize, priors: &[Prior]) -> Self {
         let known = |j: usize| budget.standard_uncertainty(j);
+        let influences = |c: &centrical::uncertainty::Contribution| -> Option<Vec<usize>> {
+            if c.source == Source::Priors && !priors.is_empty() {
+                // What curvature adds stands behind them.
+                let mut rows: Vec<usize> = (0..priors.len()).collect();
+                rows.sort_by_key(|&n| priors[n].parameter);
+                return Some(rows);
+            }
+            c.source.is_shared().then(|| (0..c.changes().ncols()).collect())
+        };
         let source = |c: &centrical::uncertainty::Contribution| BudgetSource {
             name: c.source,
             weighed_in_fit: c.source.is_weighed(),
             standard_uncertainty: (0..count).map(|j| known(j).map(|_| c.standard_uncertainty(j))).collect(),
-            changes: c.source.is_shared().then(|| {
+            changes: influences(c).map(|rows| {
                 let influence = |n| (0..count).map(|j| known(j).map(|_| c.changes()[(j, n)])).collect();
-                (0..c.changes().ncols()).map(influence).collect()
+                rows.into_iter().map(influence).collect()
             }),
         };
         let finite = |degrees| match degrees {

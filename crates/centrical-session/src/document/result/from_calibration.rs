@@ -65,7 +65,7 @@ impl CalibrationResult {
             mountings: mountings(model, reduced),
             plateaus: plateaus(calibration, session, reduced),
             convergence: Some(ConvergenceSummary::new(calibration)),
-            budget: Some(BudgetSummary::new(&budget, count)),
+            budget: Some(BudgetSummary::new(&budget, count, model.priors())),
             validity,
             rests_on,
             stability: None,
@@ -79,7 +79,11 @@ impl CalibrationResult {
 
 impl From<&PriorUse> for PriorSummary {
     fn from(used: &PriorUse) -> Self {
-        Self { standard_uncertainty: used.prior.standard_uncertainty, posterior_over_prior: used.posterior_over_prior }
+        Self {
+            mean: used.prior.mean,
+            standard_uncertainty: used.prior.standard_uncertainty,
+            posterior_over_prior: used.posterior_over_prior,
+        }
     }
 }
 

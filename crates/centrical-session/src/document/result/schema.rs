@@ -226,6 +226,9 @@ pub struct ParameterEstimate {
 /// A prior and what the data added to it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PriorSummary {
+    /// Its mean, SI; not written where it is zero.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub mean: f64,
     /// Standard uncertainty before the data, SI.
     pub standard_uncertainty: f64,
     /// Standard uncertainty after the data over that before: 1 when the value rests on the prior alone.
@@ -478,4 +481,9 @@ impl CalibrationResult {
         let sources = self.budget.iter().flat_map(|budget| &budget.sources);
         sources.filter(|source| !source.weighed_in_fit).map(|source| source.name).collect()
     }
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }

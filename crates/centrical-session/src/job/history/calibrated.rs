@@ -8,6 +8,7 @@ use centrical::history::{Point, Series};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, DVector};
 
+use super::of_data::{OfData, PRIORS};
 use crate::document::TermSummary;
 use crate::quantity::Date;
 use crate::store::{Row, SharedInfluence};
@@ -37,7 +38,9 @@ pub struct Calibrated {
     covariance: Vec<f64>,
     /// What errors leave that sessions of one station share.
     shared: Vec<SharedInfluence>,
-    /// The error model with the names of its coefficients, if all of them are determined.
+    /// What the data alone say, if parameters of the unit had priors.
+    of_data: Option<OfData>,
+    /// The error model with the names of its coefficients, if all of them are determined and covariances were read.
     pub terms: Option<Vec<(String, Term)>>,
     /// Largest magnitude of a specific force on any axis [m/s^2].
     pub range: f64,
@@ -96,12 +99,15 @@ impl Calibrated {
                 TermSummary { name: term.name.clone(), axis: term.axis, powers: term.powers, sign_of: term.sign_of };
             summary.with_coefficient(*row.values.get(place).filter(|value| value.is_finite())?).ok()
         });
+        let of_data = OfData::of(&row);
         Some(Self {
+            of_data,
             source,
             date,
             acceptable: row.acceptable,
             parameters: kinds.of(&row),
-            terms: terms.collect(),
+            // A text for each coefficient: for the values of 100,000 calibrations it would be most of the memory.
+            terms: if row.covariance.is_empty() { None } else { terms.collect() },
             range: row.range.iter().copied().fold(0.0, f64::max),
             unit_model: row.unit_model,
             unit_serial: row.unit_serial,
@@ -123,29 +129,38 @@ impl Calibrated {
         (&self.unit_model, &self.unit_serial)
     }
 
-    /// Combined variance of `sum_n c_n x_n`.
+    /// `sum_n c_n x_n` as the result states it.
+    pub fn value(&self, combination: &[(usize, f64)]) -> f64 {
+        combination.iter().map(|(j, c)| c * self.values[*j]).sum()
+    }
+
+    /// Combined variance of `sum_n c_n x_n` as the result states it.
     pub fn variance(&self, combination: &[(usize, f64)]) -> f64 {
-        let pairs = combination.iter().flat_map(|(i, a)| combination.iter().map(move |(j, b)| (*i, *j, a * b)));
-        pairs.map(|(i, j, product)| product * self.covariance(i, j)).sum()
+        variance(combination, |i, j| self.covariance(i, j))
     }
 
-    /// `sum_n c_n x_n`, its variance by errors of this session alone, and its change by each shared error.
-    fn combined(&self, combination: &[(usize, f64)]) -> (f64, f64, Vec<f64>) {
-        let value = combination.iter().map(|(j, c)| c * self.values[*j]).sum();
-        let change = |influence: &SharedInfluence| combination.iter().map(|(j, c)| c * influence.changes[*j]).sum();
-        let shared: Vec<f64> = self.shared.iter().map(change).collect();
-        let all = self.variance(combination);
-        // What rounding leaves of a session whose every error is shared is still no certainty.
-        let own = (all - shared.iter().map(|s| s * s).sum::<f64>()).max(1e-12 * all);
-        (value, own, shared)
+    /// Whether the parameter at `place` is determined by priors alone.
+    pub fn rests_on_priors(&self, place: usize) -> bool {
+        self.of_data.as_ref().is_some_and(|data| data.rests_on_priors[place])
     }
 
-    /// Values of `names` and the covariance of the errors that belong to this session alone; `None` if one is not determined.
+    /// What a history takes of this session: the data alone; as it is stated, where that is asked for or there are no priors.
+    fn seen(&self, basis: Basis) -> Seen<'_> {
+        match (&self.of_data, basis) {
+            (Some(data), Basis::Data) => {
+                Seen { values: &data.values, covariance: Some(&data.covariance), shared: &data.shared, of: self }
+            }
+            _ => Seen { values: &self.values, covariance: None, shared: &self.shared, of: self },
+        }
+    }
+
+    /// Values of `names` by the data and the covariance of the errors that belong to this session alone; `None` if one is not determined.
     pub fn own_estimates(&self, names: &[String]) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let places: Vec<usize> = names.iter().map(|name| self.place(name)).collect::<Option<_>>()?;
-        let shared = |i: usize, j: usize| -> f64 { self.shared.iter().map(|of| of.changes[i] * of.changes[j]).sum() };
-        let own = |a: usize, b: usize| self.covariance(places[a], places[b]) - shared(places[a], places[b]);
-        let values = DVector::from_iterator(places.len(), places.iter().map(|&j| self.values[j]));
+        let seen = self.seen(Basis::Data);
+        let shared = |i: usize, j: usize| -> f64 { seen.shared.iter().map(|of| of.changes[i] * of.changes[j]).sum() };
+        let own = |a: usize, b: usize| seen.covariance(places[a], places[b]) - shared(places[a], places[b]);
+        let values = DVector::from_iterator(places.len(), places.iter().map(|&j| seen.values[j]));
         Some((values, DMatrix::from_fn(places.len(), places.len(), own)))
     }
 
@@ -155,6 +170,47 @@ impl Calibrated {
         let variance = || if i == j { self.standard_uncertainties[i].powi(2) } else { f64::NAN };
         self.covariance.get(high * (high + 1) / 2 + low).copied().unwrap_or_else(variance)
     }
+}
+
+/// What a history takes of a session with priors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// What its data alone say.
+    Data,
+    /// What its result states.
+    Stated,
+}
+
+/// Estimates of a session, on one basis.
+struct Seen<'a> {
+    values: &'a [f64],
+    covariance: Option<&'a [f64]>,
+    shared: &'a [SharedInfluence],
+    of: &'a Calibrated,
+}
+
+impl Seen<'_> {
+    fn covariance(&self, i: usize, j: usize) -> f64 {
+        let (low, high) = (i.min(j), i.max(j));
+        self.covariance.map_or_else(|| self.of.covariance(i, j), |packed| packed[high * (high + 1) / 2 + low])
+    }
+
+    /// `sum_n c_n x_n`, its variance by errors of this session alone, and its change by each shared error.
+    fn combined(&self, combination: &[(usize, f64)]) -> (f64, f64, Vec<f64>) {
+        let value = combination.iter().map(|(j, c)| c * self.values[*j]).sum();
+        let change = |influence: &SharedInfluence| combination.iter().map(|(j, c)| c * influence.changes[*j]).sum();
+        let shared: Vec<f64> = self.shared.iter().map(change).collect();
+        let all = variance(combination, |i, j| self.covariance(i, j));
+        // What rounding leaves of a session whose every error is shared is still no certainty.
+        let own = (all - shared.iter().map(|s| s * s).sum::<f64>()).max(1e-12 * all);
+        (value, own, shared)
+    }
+}
+
+/// Variance of `sum_n c_n x_n`.
+fn variance(combination: &[(usize, f64)], covariance: impl Fn(usize, usize) -> f64) -> f64 {
+    let pairs = combination.iter().flat_map(|(i, a)| combination.iter().map(move |(j, b)| (*i, *j, a * b)));
+    pairs.map(|(i, j, product)| product * covariance(i, j)).sum()
 }
 
 impl Kinds {
@@ -181,20 +237,21 @@ impl Kinds {
 }
 
 /// The combination `sum_n c_n x_n` of named parameters in each of `calibrations`, in the order of time; `None` if one of them does not
-/// determine it. Errors of one source are common to the sessions of one station.
-pub fn series(calibrations: &[&Calibrated], combination: &[(String, f64)], zero: Date) -> Option<Series> {
+/// determine it. Errors of one source are common to the sessions of one station, those of priors to all.
+pub fn series(calibrations: &[&Calibrated], combination: &[(String, f64)], zero: Date, basis: Basis) -> Option<Series> {
     let mut columns: BTreeMap<(&str, &str, usize), usize> = BTreeMap::new();
     let (mut points, mut changes) = (Vec::new(), Vec::new());
     for calibrated in calibrations {
         let at = |(name, c): &(String, f64)| Some((calibrated.place(name)?, *c));
         let places: Vec<(usize, f64)> = combination.iter().map(at).collect::<Option<_>>()?;
-        let (value, variance, shared) = calibrated.combined(&places);
-        let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
-        let row = calibrated.shared.iter().zip(shared).map(|(SharedInfluence { source, .. }, change)| {
-            let number = seen.entry(source).or_default();
+        let seen = calibrated.seen(basis);
+        let (value, variance, shared) = seen.combined(&places);
+        let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
+        let row = seen.shared.iter().zip(shared).map(|(SharedInfluence { source, .. }, change)| {
+            let number = numbers.entry(source).or_default();
             *number += 1;
-            let next = columns.len();
-            (*columns.entry((&calibrated.station, source, *number)).or_insert(next), change)
+            let (next, station) = (columns.len(), if source == PRIORS { "" } else { &calibrated.station });
+            (*columns.entry((station, source, *number)).or_insert(next), change)
         });
         changes.push(row.collect::<Vec<(usize, f64)>>());
         points.push(Point { time: years(zero, calibrated.date), value, variance });

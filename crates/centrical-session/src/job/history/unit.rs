@@ -5,7 +5,7 @@ use centrical::uncertainty::{Compensated, family_wise};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, Vector3};
 
-use super::calibrated::{Calibrated, DAYS, series, single, years};
+use super::calibrated::{Basis, Calibrated, DAYS, Finder, series, single, years};
 use crate::document::{
     DueDate, PastSession, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
     UnitParameter,
@@ -94,7 +94,10 @@ const FAMILY: f64 = 0.05;
 pub fn common_names(calibrations: &[&Calibrated]) -> Vec<String> {
     let Some(last) = calibrations.last() else { return Vec::new() };
     let of_unit = last.parameters.iter().filter(|p| p.is_of_unit);
-    let in_all = |name: &str| calibrations.iter().all(|calibrated| calibrated.place(name).is_some());
+    let in_all = |name: &str| {
+        let mut finder = Finder::new(name);
+        calibrations.iter().all(|calibrated| finder.place(calibrated).is_some())
+    };
     of_unit.filter(|p| in_all(&p.name)).map(|p| p.name.clone()).collect()
 }
 
@@ -121,8 +124,10 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn sameness(&self, names: &[String]) -> Option<SamenessSummary> {
+        let of_data = names.iter().filter(|name| !self.rests_on_priors(name)).cloned();
+        let names: Vec<String> = of_data.collect();
         let estimates = |calibrated: &&Calibrated| {
-            let (values, covariance) = calibrated.own_estimates(names)?;
+            let (values, covariance) = calibrated.own_estimates(&names)?;
             Some(SessionEstimates { values, covariance })
         };
         let sessions: Vec<SessionEstimates> = self.own.iter().map(estimates).collect::<Option<_>>()?;
@@ -134,10 +139,14 @@ impl Job<'_> {
     }
 
     /// The series of a combination, this unit's first; with those of the other units, if the component is that of all.
-    fn combination(&self, combination: &[(String, f64)]) -> Option<Vec<Series>> {
-        let own = series(self.own, combination, self.zero)?;
-        let others = self.others.iter().filter_map(|unit| series(unit, combination, self.zero));
+    fn combination(&self, combination: &[(String, f64)], basis: Basis) -> Option<Vec<Series>> {
+        let own = series(self.own, combination, self.zero, basis)?;
+        let others = self.others.iter().filter_map(|unit| series(unit, combination, self.zero, basis));
         Some(std::iter::once(own).chain(others).collect())
+    }
+
+    fn rests_on_priors(&self, name: &str) -> bool {
+        self.own.iter().any(|c| c.place(name).is_some_and(|place| c.rests_on_priors(place)))
     }
 
     fn between(&self, all: &[Series]) -> Option<Between> {
@@ -151,8 +160,10 @@ impl Job<'_> {
     }
 
     fn parameter(&self, name: &str) -> Option<UnitParameter> {
-        let all = self.combination(&single(name))?;
-        let (own, between) = (&all[0], self.between(&all));
+        // Sessions say nothing of a parameter that rests on priors: it has their stated values and no more.
+        let rests_on_priors = self.rests_on_priors(name);
+        let all = self.combination(&single(name), if rests_on_priors { Basis::Stated } else { Basis::Data })?;
+        let (own, between) = (&all[0], self.between(&all).filter(|_| !rests_on_priors));
         let last = self.own.last()?;
         let place = last.place(name)?;
         let evolution = between.as_ref().and_then(|between| self.evolution(&all, between));
@@ -166,7 +177,7 @@ impl Job<'_> {
             name: name.to_owned(),
             unit: last.parameters[place].unit.clone(),
             group: last.parameters[place].group,
-            values: own.points().iter().map(|p| p.value).collect(),
+            values: self.own.iter().filter_map(|c| Some(c.values[c.place(name)?])).collect(),
             standard_uncertainties: self
                 .own
                 .iter()
@@ -218,7 +229,7 @@ impl Job<'_> {
     }
 
     fn reading(&self, force: Vector3<f64>, axis: usize, combination: &[(String, f64)]) -> Option<ReadingHistory> {
-        let all = self.combination(combination)?;
+        let all = self.combination(combination, Basis::Data)?;
         let between = self.between(&all)?;
         let last = *self.own.last()?;
         let places: Vec<(usize, f64)> =
@@ -228,7 +239,7 @@ impl Job<'_> {
         let due = self.request.limit.and_then(|limit| {
             let evolution = self.evolution(&all, &between)?;
             let from = point.time;
-            let time = evolution.due(point.value, limit, self.request.coverage, from, from + HORIZON)?;
+            let time = evolution.due(last.value(&places), limit, self.request.coverage, from, from + HORIZON)?;
             // The day before: until then the reading is within its limit.
             let days = ((time - from) * DAYS).floor();
             Some(DueDate { date: last.date.after(days), axis: axis + 1, force: force.into() })

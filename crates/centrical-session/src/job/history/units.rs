@@ -5,14 +5,16 @@ use std::collections::BTreeMap;
 use centrical::history::{Between, Curve, FEWEST_UNITS, Series, batch_test, capability, distances, unit_trends};
 use centrical::uncertainty::family_wise;
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
-use super::calibrated::{Calibrated, Finder, series, single};
+use super::calibrated::{Basis, Calibrated, Finder, series, single};
 use super::limits::ParameterLimits;
 use super::unit::common_names;
 use crate::document::{
     BatchSummary, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA, UnitFinding, UnitsHistoryReport,
     UnitsParameter,
 };
+use crate::quantity::Date;
 
 /// What is asked of units.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -139,6 +141,31 @@ fn outlying(lasts: &[&Calibrated], names: &[String], means: &DMatrix<f64>) -> Ve
     found
 }
 
+/// The drift and the scatter of each unit in one parameter, each with its own probability. Values are as stated: priors, if there are any, draw
+/// all units in the same way.
+fn trends(units: &[Vec<Calibrated>], lasts: &[&Calibrated], name: &str, zero: Date) -> Vec<UnitFinding> {
+    let of_unit = |(n, unit): (usize, &Vec<Calibrated>)| {
+        Some((n, series(&unit.iter().collect::<Vec<_>>(), &single(name), zero, Basis::Stated)?))
+    };
+    let (numbers, series): (Vec<usize>, Vec<Series>) = units.iter().enumerate().filter_map(of_unit).unzip();
+    let Some(between) = Between::of(&series, Curve::Line, COVERAGE) else { return Vec::new() };
+    let trends = numbers.into_iter().zip(unit_trends(&series, between.variance, FAMILY));
+    let findings = trends.filter_map(|(n, trend)| {
+        let trend = trend?;
+        let finding = |kind, probability| UnitFinding {
+            kind,
+            unit_serial: lasts[n].unit_serial.clone(),
+            parameter: name.to_owned(),
+            slope_per_year: trend.slope,
+            slope_uncertainty: trend.standard_uncertainty,
+            variance_ratio: trend.variance_ratio,
+            probability,
+        };
+        Some([finding("drifts", trend.drift_probability), finding("scatters", trend.scatter_probability)])
+    });
+    findings.flatten().collect()
+}
+
 /// Units that drift, or scatter more than the others, in any parameter.
 fn over_time(
     units: &[Vec<Calibrated>],
@@ -147,31 +174,9 @@ fn over_time(
     all: &[&Calibrated],
 ) -> Vec<UnitFinding> {
     let Some(zero) = all.iter().map(|c| c.date).min() else { return Vec::new() };
-    let (mut chances, mut findings) = (Vec::new(), Vec::new());
-    for name in names {
-        let of: Vec<(usize, Series)> = (units.iter().enumerate())
-            .filter_map(|(n, unit)| Some((n, series(&unit.iter().collect::<Vec<_>>(), &single(name), zero)?)))
-            .collect();
-        let series: Vec<Series> = of.iter().map(|(_, series)| series.clone()).collect();
-        let Some(between) = Between::of(&series, Curve::Line, COVERAGE) else { continue };
-        for ((n, _), trend) in of.iter().zip(unit_trends(&series, between.variance, FAMILY)) {
-            let Some(trend) = trend else { continue };
-            let serial = lasts[*n].unit_serial.clone();
-            let finding = |kind, probability| UnitFinding {
-                kind,
-                unit_serial: serial.clone(),
-                parameter: name.clone(),
-                slope_per_year: trend.slope,
-                slope_uncertainty: trend.standard_uncertainty,
-                variance_ratio: trend.variance_ratio,
-                probability,
-            };
-            for (kind, probability) in [("drifts", trend.drift_probability), ("scatters", trend.scatter_probability)] {
-                chances.push(probability);
-                findings.push(finding(kind, probability));
-            }
-        }
-    }
+    let of_each = names.par_iter().map(|name| trends(units, lasts, name, zero));
+    let findings: Vec<UnitFinding> = of_each.collect::<Vec<_>>().concat();
+    let chances: Vec<f64> = findings.iter().map(|finding| finding.probability).collect();
     let family_wise = family_wise(&chances);
     let with_family =
         findings.into_iter().zip(family_wise).map(|(finding, probability)| UnitFinding { probability, ..finding });
