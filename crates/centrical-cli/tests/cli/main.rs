@@ -34,4 +34,5 @@ mod tumble;
 mod watch;
 mod watched_rests;
 mod way_in;
+mod whole_sessions;
 mod width;

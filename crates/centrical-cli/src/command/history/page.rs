@@ -32,16 +32,16 @@ pub struct Arguments {
 #[derive(Debug, Clone, clap::Args)]
 pub struct PageOptions {
     /// Of a store: largest error of a compensated reading, for the due dates: '300 ug'
-    #[arg(short, long, value_parser = acceleration)]
+    #[arg(long, value_parser = acceleration)]
     limit: Option<f64>,
     /// Of a store: file with limits of parameters ([decision]), for Cp, Cpk and the drawings
     #[arg(long, value_name = "FILE")]
     laboratory: Option<PathBuf>,
     /// Of a store: table with the columns serial and batch, as text; batches are compared
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE")]
     batches: Option<PathBuf>,
     /// Of a store: acceptable sessions whose values give the limits of control charts
-    #[arg(short, long, default_value_t = 20)]
+    #[arg(long, default_value_t = 20)]
     accepted: usize,
 }
 
