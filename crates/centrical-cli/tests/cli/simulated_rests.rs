@@ -90,6 +90,13 @@ fn rests_alone_give_the_truth_back() {
     let cases = [
         ("record = \"not-there.csv\"\n", 24, 9, "record = \"records/tumble-1.csv\""),
         ("attitudes = \"cube\"\nduration = \"6 s\"\n", 26, 9, "record ="),
+        (
+            "attitudes = [[0, 0, 1], [0, 0, -1], [0, 1, 0], [0, -1, 0], [1, 0, 0], [-1, 0, 0], [0, 1, 1], [1, 0, 1], [1, 1, 0], [1, -1, 0]]\n\
+          durations = [\"6 s\", \"7 s\", \"6 s\", \"7 s\", \"6 s\", \"7 s\", \"6 s\", \"7 s\", \"6 s\", \"7 s\"]\n",
+            10,
+            9,
+            "record =",
+        ),
         ("attitudes = \"cube\"\nattitude_uncertainty = \"1 mrad\"\n", 26, 12, "attitudes = \"cube\""),
         ("attitudes = \"where.csv\"\nattitude_uncertainty = \"1 mrad\"\n", 10, 12, "attitudes = \"attitudes-1.csv\""),
     ];

@@ -233,16 +233,19 @@ fn plateaus(screen: &mut Screen, result: &CalibrationResult) {
     let samples: u64 = result.plateaus.iter().map(|p| p.samples).sum();
     let rejected: u64 = result.plateaus.iter().map(|p| p.rejected).sum();
     let mountings = result.plateaus.iter().map(|p| p.mounting).max().unwrap_or(0);
-    screen.gap();
-    screen.fact(
-        "DATA",
-        &format!(
-            "{} in {}, {} used, {rejected} rejected",
-            counted(result.plateaus.len(), "plateau"),
-            counted(mountings, "mounting"),
-            counted(samples, "sample")
-        ),
+    let rests = result.rests().count();
+    let on_arm = format!(
+        "{} in {}",
+        counted(result.plateaus.len() - rests, "plateau"),
+        counted(mountings.saturating_sub(rests), "mounting")
     );
+    let all = match (rests, result.plateaus.len() - rests) {
+        (0, _) => on_arm,
+        (_, 0) => counted(rests, "rest"),
+        _ => format!("{on_arm} and {} beside the arm", counted(rests, "rest")),
+    };
+    screen.gap();
+    screen.fact("DATA", &format!("{all}, {} used, {rejected} rejected", counted(samples, "sample")));
 }
 
 /// How the speeds are known, where they are measured or contradicted.

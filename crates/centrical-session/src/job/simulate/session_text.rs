@@ -59,7 +59,7 @@ fn tables_of<'a>(document: &'a mut DocumentMut, name: &str) -> Vec<&'a mut dyn T
 
 /// The rests that were planned are now in a record, in the attitudes that are known of them.
 fn name_tumble(table: &mut dyn TableLike, tumble: usize, format: TableFormat, rests: &RestTable) {
-    for key in ["rests", "duration"] {
+    for key in ["rests", "duration", "durations"] {
         table.remove(key);
     }
     table.insert("record", value(tumble_path(tumble, format)));
