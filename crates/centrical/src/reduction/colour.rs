@@ -2,6 +2,7 @@
 
 mod mean;
 mod noise_model;
+mod posterior;
 mod rounding;
 mod settling;
 

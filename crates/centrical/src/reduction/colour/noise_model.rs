@@ -12,6 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
+use super::posterior::{Power, posterior_mean};
 use crate::reduction::average::{CELLS, Cells, PlateauFit, ReducedMounting, Weights};
 use crate::reduction::simd::lanes::{dot, widest};
 use crate::statistics::whole;
@@ -63,7 +64,7 @@ impl NoiseModel {
         Self {
             // A density has six entries, or one.
             components: components(&groups, &times, 6.0),
-            along: are_rests.then(|| components(&along(), &times, 1.0)),
+            along: are_rests.then(|| components_along(&along(), &times)),
             quietest,
         }
     }
@@ -126,6 +127,18 @@ fn components(groups: &[Group], times: &[f64], entries: f64) -> Vec<Component> {
         density: *density,
     };
     fit.parts.iter().map(part).collect()
+}
+
+/// The components along the specific force: their posterior mean, if one Markov process at most is found beside white noise, and the
+/// likeliest ones otherwise.
+fn components_along(groups: &[Group], times: &[f64]) -> Vec<Component> {
+    let likeliest = components(groups, times, 1.0);
+    let powers: Vec<Power> = groups.iter().map(Group::as_power).collect();
+    let mean = if likeliest.len() > 2 { None } else { posterior_mean(&powers) };
+    let Some((white, densities)) = mean else { return likeliest };
+    let part = |correlation_time, density: f64| Component { correlation_time, density: Matrix3::identity() * density };
+    let markov = times.iter().zip(densities).map(|(time, density)| part(Some(*time), density));
+    std::iter::once(part(None, white)).chain(markov).collect()
 }
 
 /// Quarter-octaves from an eighth of a cell of the shortest window to a quarter of the longest: noise slower than
@@ -279,6 +292,11 @@ impl Group {
     fn along(&self) -> Self {
         let power = Matrix3::identity() * self.power[(2, 2)];
         Self { count: self.count / 3.0, power, gains: self.gains.clone() }
+    }
+
+    /// Of the third axis by itself.
+    fn as_power(&self) -> Power<'_> {
+        Power { count: 3.0 * self.count, square: self.power[(2, 2)], gains: &self.gains[1..] }
     }
 
     fn averaged(mut self) -> Self {
