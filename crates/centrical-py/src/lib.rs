@@ -12,6 +12,7 @@
 
 mod arrays;
 mod compensation;
+mod drawing;
 mod failure;
 mod jobs;
 mod pool;
@@ -25,6 +26,8 @@ use pyo3::pymodule;
 /// The native core of `centrical`.
 #[pymodule(gil_used = true)]
 pub mod _native {
+    #[pymodule_export]
+    pub use crate::drawing::draw_curves;
     #[pymodule_export]
     pub use crate::jobs::assess::assess;
     #[pymodule_export]

@@ -1,16 +1,18 @@
 //! A session folder that is watched: plateaus as they come, on a thread of its own.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use centrical_report::write_history_plot;
+#[cfg(feature = "serve")]
+use centrical_live::{Running, Server, Watched};
+use centrical_report::{AlarmKind, alarm_text, write_history_plot};
 use centrical_session::{
-    self as session, Error, Following, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder, refuse_inputs,
-    with_rests_there,
+    self as session, Error, Following, LiveRequest, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder,
+    refuse_inputs, with_rests_there,
 };
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -27,23 +29,30 @@ const SLICE: Duration = Duration::from_millis(50);
 enum Event {
     Plateau(String),
     Waiting(String),
+    /// Of a plateau or of a record, and what was found.
+    Alarm(AlarmKind, String),
     End(Result<Option<Box<session::CalibrationResult>>, Error>),
 }
 
 /// A session that is watched. Its iteration gives pairs: `("plateau", line of JSON)`, `("waiting", note)`, and at last
-/// `("complete", result)` or `("stopped", None)`.
+/// `("complete", result)` or `("stopped", None)`; and alarms, `("plateau-alarm", text)` and `("frozen-alarm", text)`.
 #[pyclass(frozen, module = "centrical._native")]
 pub struct Watcher {
     events: Mutex<Option<Receiver<Event>>>,
     stop: Arc<AtomicBool>,
     thread: Mutex<Option<JoinHandle<()>>>,
+    /// The live page, until the watcher goes.
+    page: Option<Page>,
 }
 
 #[pymethods]
 impl Watcher {
     #[new]
-    #[pyo3(signature = (session, out, targets, false_alarm, hold_out, hold_out_alarms, interval, quiet, once))]
+    #[pyo3(signature = (
+        session, out, targets, false_alarm, hold_out, hold_out_alarms, interval, quiet, frozen, once, serve, serve_names, live_targets
+    ))]
     fn new(
+        py: Python,
         session: PathBuf,
         out: PathBuf,
         targets: Vec<String>,
@@ -52,9 +61,15 @@ impl Watcher {
         hold_out_alarms: bool,
         interval: f64,
         quiet: f64,
+        frozen: f64,
         once: bool,
+        serve: Option<String>,
+        serve_names: Vec<String>,
+        live_targets: Option<Vec<(String, f64)>>,
     ) -> PyResult<Self> {
         pool::claim()?;
+        let page = serve.map(|address| Page::bind(&address, &serve_names)).transpose();
+        let page = page.map_err(|error| exception(py, &error))?;
         let request = WatchRequest {
             out,
             false_alarm: words::probability("false_alarm", false_alarm)?,
@@ -63,11 +78,11 @@ impl Watcher {
             groups: targets,
             interval: seconds("interval", interval)?,
             quiet: seconds("quiet", quiet)?,
-            // As the command's.
-            frozen: Duration::from_secs(10),
+            frozen: seconds("frozen", frozen)?,
             once,
-            live: None,
+            live: live_targets.map(|targets| LiveRequest { targets }),
         };
+        let page = page.map(|page| page.begin(&request.out)).transpose().map_err(|error| exception(py, &error))?;
         let (sender, events) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let raised = Arc::clone(&stop);
@@ -78,7 +93,13 @@ impl Watcher {
         };
         let thread = thread::Builder::new().name("centrical watch".to_owned()).spawn(follow);
         let thread = thread.map_err(|error| PyRuntimeError::new_err(format!("found no further thread: {error}")))?;
-        Ok(Self { events: Mutex::new(Some(events)), stop, thread: Mutex::new(Some(thread)) })
+        Ok(Self { events: Mutex::new(Some(events)), stop, thread: Mutex::new(Some(thread)), page })
+    }
+
+    /// The address of the live page.
+    #[getter]
+    fn url(&self) -> Option<&str> {
+        self.page.as_ref().map(|page| page.url.as_str())
     }
 
     fn __iter__(slf: Py<Self>) -> Py<Self> {
@@ -98,6 +119,7 @@ impl Watcher {
                 Ok(Event::End(end)) => return self.ended(py, end).map(Some),
                 Ok(Event::Plateau(line)) => ("plateau", text(py, &line)),
                 Ok(Event::Waiting(note)) => ("waiting", text(py, &note)),
+                Ok(Event::Alarm(kind, found)) => (alarm_event(kind), text(py, &found)),
                 Err(RecvTimeoutError::Timeout) => {
                     if let Err(interruption) = py.check_signals() {
                         self.close(py);
@@ -151,17 +173,21 @@ impl Drop for Watcher {
 }
 
 fn follow(
-    session: &std::path::Path,
+    session: &Path,
     request: &WatchRequest,
     stop: &AtomicBool,
     events: &Sender<Event>,
 ) -> Result<Option<Box<session::CalibrationResult>>, Error> {
     let session = Session::read_before_rests(session)?;
     let _claim = claim_folder(&request.out)?;
-    let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "result.json"];
+    let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "watch-live.json", "result.json"];
     refuse_inputs(&outputs.map(|name| request.out.join(name)), &session.files())?;
     let mut reported = Ok(());
     let mut hear = |event: WatchEvent| {
+        if let Some((kind, found)) = alarm_text(&event) {
+            // Whether somebody receives it shows with the event itself.
+            let _ = events.send(Event::Alarm(kind, found));
+        }
         let has_gone = match message(&event) {
             Ok(event) => event.is_some_and(|event| events.send(event).is_err()),
             Err(error) => {
@@ -187,6 +213,50 @@ fn follow(
         WatchEnd::Stopped { .. } => None,
         WatchEnd::Complete(result) => Some(result),
     })
+}
+
+/// The live page.
+struct Page {
+    url: String,
+    #[cfg(feature = "serve")]
+    server: Option<Server>,
+    #[cfg(feature = "serve")]
+    _running: Option<Running>,
+}
+
+#[cfg(feature = "serve")]
+impl Page {
+    fn bind(address: &str, names: &[String]) -> Result<Self, Error> {
+        let server = Server::bind(address, names)?;
+        Ok(Self { url: server.url(), server: Some(server), _running: None })
+    }
+
+    fn begin(mut self, out: &Path) -> Result<Self, Error> {
+        let running = self.server.take().map(|server| server.begin(Watched::new(out))).transpose()?;
+        Ok(Self { _running: running, ..self })
+    }
+}
+
+#[cfg(not(feature = "serve"))]
+impl Page {
+    #[allow(clippy::needless_pass_by_value, reason = "the arguments of a build that has a server")]
+    fn bind(address: &str, _: &[String]) -> Result<Self, Error> {
+        let expected = "none in a package that was built without the feature `serve`: with live=True `centrical view OUT` shows the page";
+        Err(Error::content(Path::new("serve"), session::Place::Whole, format!("the address {address}"), expected))
+    }
+
+    #[allow(clippy::unnecessary_wraps, reason = "as with a server")]
+    fn begin(self, _: &Path) -> Result<Self, Error> {
+        Ok(self)
+    }
+}
+
+/// The name of the event of an alarm.
+fn alarm_event(kind: AlarmKind) -> &'static str {
+    match kind {
+        AlarmKind::Plateau => "plateau-alarm",
+        AlarmKind::Frozen => "frozen-alarm",
+    }
 }
 
 /// The event for the other thread; a plateau as its line of the history.

@@ -1,8 +1,11 @@
 """Every command has its function, and its document the same bytes."""
 
+import gc
 import inspect
+import json
 import re
 import shutil
+import time
 
 import centrical as ct
 import pytest
@@ -164,6 +167,70 @@ def test_watch(program, tmp_path):
     for name in ("watch.json", "watch-history.jsonl", "watch-history.svg", "result.json"):
         assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "command" / name).read_bytes(), name
     assert list(watched) == []
+
+
+def test_watch_writes_what_the_live_page_shows(tmp_path):
+    reduced = tmp_path / "reduced"
+    ct.reduce(SESSION, reduced)
+    watched = ct.watch(reduced, tmp_path / "out", once=True, targets={"bias": 0.01}, live=True)
+    assert len(list(watched)) == 108
+    state = json.loads((tmp_path / "out/watch-live.json").read_text())
+    assert (state["arrived"], state["acceptable"]) == (108, True)
+    (bias,) = [group for group in state["groups"] if group["group"] == "bias"]
+    assert bias["target"] == 0.01
+    list(ct.watch(reduced, tmp_path / "without", once=True, targets=["bias"]))
+    assert not (tmp_path / "without/watch-live.json").exists()
+
+
+def test_watch_is_served_while_it_is_held(tmp_path):
+    from urllib.request import urlopen
+
+    reduced = tmp_path / "reduced"
+    ct.reduce(SESSION, reduced)
+    try:
+        watched = ct.watch(reduced, tmp_path / "out", once=True, serve="127.0.0.1:0")
+    except ValueError as error:
+        # As wheels are built.
+        assert "found the address 127.0.0.1:0, expected none in a package that was built without the feature" in str(error)
+        return
+    lines = list(watched)
+    assert watched.url.startswith("http://127.0.0.1:") and len(lines) == 108
+    with urlopen(watched.url + "state.json", timeout=10) as answer:
+        assert json.load(answer)["arrived"] == 108
+    url, watched = watched.url, None
+    gc.collect()
+    with pytest.raises(OSError):
+        urlopen(url, timeout=1)
+    with pytest.raises(ValueError, match="--serve nowhere"):
+        ct.watch(reduced, tmp_path / "out", once=True, serve="nowhere")
+
+
+def test_watch_calls_at_an_alarm(tmp_path):
+    session = tmp_path / "session"
+    ct.reduce(SESSION, session)
+    table = (session / "plateaus.csv").read_text().splitlines()
+    # The first reading of a late plateau is off by 0.1 m/s^2.
+    header = table[0].split(",")
+    row = table[100].split(",")
+    column = header.index("mean_1")
+    row[column] = repr(float(row[column]) + 0.1)
+    table[100] = ",".join(row)
+    (session / "plateaus.csv").write_text("\n".join(table) + "\n")
+    heard = []
+    lines = list(ct.watch(session, tmp_path / "out", once=True, on_alarm=lambda *alarm: heard.append(alarm)))
+    assert len(heard) == sum(line.alarm for line in lines)
+    assert heard and all(kind == "plateau" and "does not fit: a chance of " in found for kind, found in heard), heard
+    command = 'echo "$CENTRICAL_ALARM $CENTRICAL_MESSAGE" >> ' + str(tmp_path / "alarms.txt")
+    list(ct.watch(session, tmp_path / "again", once=True, on_alarm=command))
+    wanted = [" ".join(alarm) for alarm in heard]
+    deadline = time.monotonic() + 10.0
+    while time.monotonic() < deadline:
+        alarms = tmp_path / "alarms.txt"
+        said = alarms.read_text().splitlines() if alarms.exists() else []
+        if sorted(said) == sorted(wanted):
+            return
+        time.sleep(0.05)
+    pytest.fail(f"{said} {wanted}")
 
 
 def test_watch_says_what_it_waits_for(tmp_path):

@@ -1,7 +1,9 @@
 """The examples in docstrings, the types, and the page."""
 
+import ast
 import doctest
 import importlib
+import pathlib
 import pkgutil
 import re
 import shutil
@@ -23,6 +25,26 @@ def test_examples_in_docstrings(name, example, tmp_path):
     names = {"ct": ct, "np": np, "example": example, "folder": tmp_path}
     outcome = doctest.testmod(module, extraglobs=names, optionflags=doctest.ELLIPSIS)
     assert outcome.failed == 0
+
+
+def test_no_module_imports_one_that_imports_it():
+    # Those for type checkers count: a reader follows them too.
+    folder = pathlib.Path(ct.__file__).parent
+    names = {file: ".".join(file.relative_to(folder).with_suffix("").parts) for file in folder.rglob("*.py")}
+    imported = {name.removesuffix(".__init__"): set() for name in names.values()}
+    for file, name in names.items():
+        package = name.split(".")[:-1]
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.level:
+                place = package[: len(package) - node.level + 1] + (node.module.split(".") if node.module else [])
+                known = [".".join([*place, alias.name]) for alias in node.names] + [".".join(place)]
+                imported[name.removesuffix(".__init__")] |= {known_name for known_name in known if known_name in imported}
+    assert {"_plot", "_document"} <= imported["_result"] and imported["fleet.run"]
+    below: dict[str, set[str]] = {}
+    while below != (further := {name: of | {two for one in of for two in below.get(one, ())} for name, of in imported.items()}):
+        below = imported = further
+    circles = sorted(name for name, of in below.items() if name in of)
+    assert not circles, circles
 
 
 def test_everything_public_has_a_docstring():

@@ -127,5 +127,8 @@ def test_figures_without_matplotlib(result, monkeypatch):
     assert result.plot("before")._repr_html_().count('class="plot panel"') == 3
     with pytest.raises(ValueError, match="name: found 'x', expected one of"):
         result.plot("x")
-    with pytest.raises(ImportError, match="matplotlib"):
-        ct.noise(np.random.default_rng(1).normal(size=4096), rate=100.0).plot()
+    analysis = ct.noise(np.random.default_rng(1).normal(size=4096), rate=100.0, estimators=["allan", "time"])
+    svg = analysis.plot()._repr_svg_()
+    # A marker with its values for each deviation, as the report has them.
+    assert svg.startswith("<svg") and svg.count("<title>") == sum(len(curve.deviations) for curve in analysis.readings[0].deviations)
+    assert "averaging time, s" in svg and ", allan" in svg and ", time" in svg

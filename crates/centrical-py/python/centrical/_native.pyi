@@ -23,6 +23,7 @@ __all__ = [
     "calibrate_arrays",
     "compare",
     "compensate",
+    "draw_curves",
     "history",
     "init",
     "models",
@@ -82,12 +83,24 @@ class Watcher(Iterator[tuple[str, str | CalibrationResult | None]]):
         hold_out_alarms: bool,
         interval: float,
         quiet: float,
+        frozen: float,
         once: bool,
+        serve: str | None,
+        serve_names: Sequence[str],
+        live_targets: Sequence[tuple[str, float]] | None,
     ) -> Watcher: ...
+    @property
+    def url(self) -> str | None: ...
     def __iter__(self) -> Watcher: ...
     def __next__(self) -> tuple[str, str | CalibrationResult | None]: ...
     def close(self) -> None: ...
 
+def draw_curves(
+    title: str,
+    x_label: str,
+    y_label: str,
+    curves: Sequence[tuple[str, _Column, _Column, _Column, _Column]],
+) -> str: ...
 def assess(
     session: _Path,
     coverage: float,

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _native
 from ._document import Document
-from ._plot import plot_noise
+from ._plot import Curve, plot_curves
 from ._progress import Shown
 
 if TYPE_CHECKING:
@@ -46,8 +46,20 @@ class Noise(Document):
         raise ValueError(f"estimator: found {estimator!r}, expected one of {', '.join(c.estimator for c in curves)}")
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws the deviations with their intervals on ``ax``, or on new axes of Matplotlib, which are given."""
-        return plot_noise(self, ax)
+        """Draws the deviations with their intervals on ``ax``, or on new axes of Matplotlib, which are given.
+
+        Without Matplotlib an object that a notebook shows as SVG.
+        """
+        curves = []
+        for reading in self.readings:
+            for curve in reading.deviations:
+                tau, value, lower, upper = (
+                    np.array([np.nan if row[key] is None else row[key] for row in curve.deviations], dtype=np.float64)
+                    for key in ("tau", "value", "lower", "upper")
+                )
+                curves.append(Curve(f"{reading.name}, {curve.estimator}", tau, value, lower, upper))
+        units = ", ".join(sorted({reading.unit for reading in self.readings}))
+        return plot_curves("Stability", "averaging time, s", f"deviation, {units}", curves, ax)
 
 
 def noise_of_array(

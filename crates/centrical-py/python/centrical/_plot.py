@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from . import _native
+
 if TYPE_CHECKING:
-    from ._noise import Noise
-    from ._result import Result
+    from ._types import Array
 
 MICRO_G = 9.80665e-6
 
@@ -30,45 +31,50 @@ class Drawing:
         return f"<Drawing {self.title!r}>"
 
 
-def plot_result(result: Result, name: str, ax: Any) -> Any:
-    """See :meth:`Result.plot`."""
-    drawn = {title[0]: title[1:] for title in result.native.figures()}
+class Curve(NamedTuple):
+    """A curve of a double logarithmic plot, with the interval of each value."""
+
+    label: str
+    x: Array
+    y: Array
+    lower: Array
+    upper: Array
+
+
+def plot_figure(
+    figures: Iterable[tuple[str, str, str, list[str]]], name: str, ax: Any, on_axes: Mapping[str, Callable[[Any], None]]
+) -> Any:
+    """Draws one of the report's ``figures``: name, title, caption, panels; those of ``on_axes`` with Matplotlib."""
+    drawn = {figure[0]: figure[1:] for figure in figures}
     if name not in drawn:
         raise ValueError(f"name: found {name!r}, expected one of {', '.join(drawn)}")
-    draw = ON_AXES.get(name)
+    draw = on_axes.get(name)
     axes = ax if ax is not None else (_new_axes() if draw else None)
     if draw is None and ax is not None:
-        raise ValueError(f"ax: found axes for {name!r}, expected none: Matplotlib draws {', '.join(ON_AXES)}")
+        raise ValueError(f"ax: found axes for {name!r}, expected none: Matplotlib draws {', '.join(on_axes)}")
     if draw is None or axes is None:
         return Drawing(*drawn[name])
     axes.set_title(drawn[name][0])
-    draw(result, axes)
+    draw(axes)
     return axes
 
 
-def plot_noise(noise: Noise, ax: Any) -> Any:
-    """See :meth:`Noise.plot`."""
+def plot_curves(title: str, x_label: str, y_label: str, curves: Sequence[Curve], ax: Any) -> Any:
+    """Draws curves on logarithmic axes: those of Matplotlib, else as the report draws them."""
     axes = ax if ax is not None else _new_axes()
     if axes is None:
-        raise ImportError("found no package 'matplotlib', expected it, or noise(..., out=folder) for the plots as SVG")
-    units = {reading.unit for reading in noise.readings}
-    for reading in noise.readings:
-        for curve in reading.deviations:
-            rows = curve.deviations
-            tau, value, lower, upper = (
-                np.array([np.nan if row[key] is None else row[key] for row in rows], dtype=np.float64)
-                for key in ("tau", "value", "lower", "upper")
-            )
-            (line,) = axes.loglog(tau, value, label=f"{reading.name}, {curve.estimator}")
-            axes.fill_between(tau, lower, upper, alpha=0.2, color=line.get_color(), linewidth=0)
-    axes.set_xlabel("averaging time, s")
-    axes.set_ylabel(f"deviation, {', '.join(sorted(units))}")
+        return Drawing(title, "", [_native.draw_curves(title, x_label, y_label, list(curves))])
+    for curve in curves:
+        (line,) = axes.loglog(curve.x, curve.y, label=curve.label)
+        axes.fill_between(curve.x, curve.lower, curve.upper, alpha=0.2, color=line.get_color(), linewidth=0)
+    axes.set_xlabel(x_label)
+    axes.set_ylabel(y_label)
     axes.legend()
     return axes
 
 
-def _residuals(result: Result, axes: Any) -> None:
-    rows = [plateau.residual for plateau in result.document.plateaus]
+def draw_residuals(rows: Sequence[Any], axes: Any) -> None:
+    """Draws the residuals [m/s^2] of each plateau; None where there are none."""
     residuals = np.array([[np.nan] * 3 if row is None else row for row in rows], dtype=np.float64) / MICRO_G
     for axis, column in enumerate(residuals.T, start=1):
         axes.plot(np.arange(1, len(column) + 1), column, "o", markersize=3, label=f"newtonometer {axis}")
@@ -78,18 +84,14 @@ def _residuals(result: Result, axes: Any) -> None:
     axes.legend()
 
 
-def _correlation(result: Result, axes: Any) -> None:
-    u = result.uncertainties
+def draw_correlation(names: Sequence[str], covariance: Array, uncertainties: Array, axes: Any) -> None:
+    """Draws the correlations of named parameters."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        correlation = result.covariance / np.outer(u, u)
+        correlation = covariance / np.outer(uncertainties, uncertainties)
     image = axes.imshow(correlation, vmin=-1.0, vmax=1.0, cmap="RdBu_r", interpolation="nearest")
     axes.figure.colorbar(image, ax=axes)
-    axes.set_xticks(range(len(u)), result.names, rotation=90, fontsize=5)
-    axes.set_yticks(range(len(u)), result.names, fontsize=5)
-
-
-#: The figures that are drawn on axes.
-ON_AXES: dict[str, Callable[[Any, Any], None]] = {"residuals": _residuals, "correlation": _correlation}
+    axes.set_xticks(range(len(names)), names, rotation=90, fontsize=5)
+    axes.set_yticks(range(len(names)), names, fontsize=5)
 
 
 def _new_axes() -> Any:

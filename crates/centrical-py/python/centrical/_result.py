@@ -15,7 +15,7 @@ from ._columns import columns_of_rows
 from ._document import Document, Record, escape
 from ._documents import check_documents
 from ._paths import paths
-from ._plot import plot_result
+from ._plot import draw_correlation, draw_residuals, plot_figure
 from ._table import columns_of, is_table
 
 if TYPE_CHECKING:
@@ -282,7 +282,11 @@ class Result:
         >>> ct.calibrate(example).plot("convergence")
         <Drawing 'Uncertainty as the session goes on'>
         """
-        return plot_result(self, name, ax)
+        on_axes = {
+            "residuals": lambda axes: draw_residuals([row.residual for row in self.document.plateaus], axes),
+            "correlation": lambda axes: draw_correlation(self.names, self.covariance, self.uncertainties, axes),
+        }
+        return plot_figure(self.native.figures(), name, ax, on_axes)
 
     def to_json(self, path: Path | None = None) -> str:
         """The text of ``result.json``, byte for byte; written to ``path`` if one is given, whole or not at all."""
