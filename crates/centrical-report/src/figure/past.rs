@@ -79,7 +79,7 @@ pub fn chart_plots(report: &ChartReport) -> Vec<(&'static str, Plot)> {
         ),
         (
             "ewma",
-            Plot::new(format!("{}: exponentially weighted means", report.name), x(), y(&report.name))
+            Plot::new(format!("{}: weighted means (EWMA)", report.name), x(), y(&report.name))
                 .with(Series::line_and_markers("means", numbered(&report.ewma, 1, factor)))
                 .with(Series::line("lower limit", half(-1.0)))
                 .with(Series::line("upper limit", half(1.0)))

@@ -13,7 +13,7 @@ pub fn history_unit_page(report: &UnitHistoryReport, limits: &ParameterLimits, c
     let mut body = opening("Unit", &title);
     text(&mut body, &unit_history_text(report));
     body.push_str("<h2>Parameters over time</h2>\n");
-    panels(&mut body, unit_history_plots(report, limits).into_iter().map(|(_, plot)| plot));
+    panels(&mut body, unit_history_plots(report, limits).into_iter().map(|(_, plot)| plot.as_panel()));
     charts.write(&mut body);
     page(&title, &body)
 }
