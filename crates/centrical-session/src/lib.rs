@@ -103,7 +103,7 @@ pub use record::{
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use store::{
     Added, Depth, Failure, ROWS_SCHEMA, Row, RowPrior, RowTable, RowTerm, Rows, Selection, SharedInfluence, Status,
-    Store, days_since_1970,
+    Store, days_since_1970, sha256,
 };
 pub use truth::Truth;
 pub use units::{MICRO_G, Symbol, Unit, UnknownUnit, customary};

@@ -57,8 +57,8 @@ pub struct Simulation<'a> {
     truth: &'a [f64],
     equipment: &'a Equipment,
     seed: u64,
-    /// Duration of each plateau in place of the machine's and the hand's [s]; empty for theirs.
-    durations: &'a [f64],
+    /// Duration of each plateau, where it is not the machine's or the hand's [s].
+    durations: &'a [Option<f64>],
 }
 
 /// Rests of a simulated session in attitudes of their own, in one record.
@@ -103,16 +103,16 @@ impl<'a> Simulation<'a> {
         Ok(simulation)
     }
 
-    /// The session with a duration for every set point [s] in place of [`Machine::plateau`] and [`Hand::rest`].
+    /// The session with a duration for every set point [s]; `None` for [`Machine::plateau`] or [`Hand::rest`].
     ///
     /// # Errors
     /// [`SimulationError`] when their number differs from that of the set points, or one of them is not positive.
-    pub fn with_durations(self, durations: &'a [f64]) -> Result<Self, SimulationError> {
+    pub fn with_durations(self, durations: &'a [Option<f64>]) -> Result<Self, SimulationError> {
         let expected = self.model.experiment().set_points.len();
         if durations.len() != expected {
             return Err(SimulationError::Durations { found: durations.len(), expected });
         }
-        for &plateau in durations {
+        for plateau in durations.iter().flatten().copied() {
             Equipment { machine: Machine { plateau, ..self.equipment.machine }, ..*self.equipment }.check()?;
         }
         let simulation = Self { durations, ..self };
@@ -161,7 +161,7 @@ impl<'a> Simulation<'a> {
         let experiment = self.model.experiment();
         let is_on_arm = experiment.is_on_arm(experiment.set_points[n].mounting);
         let usual = if is_on_arm { self.equipment.machine.plateau } else { self.equipment.hand.rest };
-        self.durations.get(n).copied().unwrap_or(usual)
+        self.durations.get(n).copied().flatten().unwrap_or(usual)
     }
 
     /// The plateaus of a mounting with their least durations [s].

@@ -32,7 +32,7 @@ impl StorePages {
         Ok(Self { overview, units })
     }
 
-    /// The page of this name, `index.html` the first; `None` if there is no such page.
+    /// The page of this name, `index.html` the first; `None` for any other name.
     ///
     /// # Errors
     /// [`Error`] when the calibrations of a unit cannot be read.

@@ -1,4 +1,4 @@
-//! The attitudes of rests beside the arm, of which there are many: one line for all.
+//! The attitudes of all rests beside the arm in one line.
 
 use crate::number::two_digits;
 

@@ -41,6 +41,13 @@ pub enum RestSource {
     Plan(PlannedRests),
 }
 
+impl RestSource {
+    /// A plan of rests in these attitudes, of no stated duration.
+    fn in_attitudes(up_b: Vec<Vector3<f64>>, file: Option<PathBuf>) -> Self {
+        Self::Plan(PlannedRests { durations: vec![None; up_b.len()], up_b, file })
+    }
+}
+
 /// Rests that are to be found in a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedRests {
@@ -55,7 +62,7 @@ pub struct RecordedRests {
 pub struct PlannedRests {
     /// Where up is in each, axes of the case, of length 1.
     pub up_b: Vec<Vector3<f64>>,
-    /// Duration of each, if it is stated [s].
+    /// Duration of each, where it is stated [s].
     pub durations: Vec<Option<f64>>,
     /// The table that the attitudes stand in, if they do.
     pub file: Option<PathBuf>,
@@ -70,6 +77,13 @@ pub struct KnownAttitudes {
     pub uncertainty: f64,
     /// Where up is in each rest, axes of the case, of length 1; `None` where it is unknown.
     pub up_b: Vec<Option<Vector3<f64>>>,
+}
+
+impl From<StatedAttitudes> for KnownAttitudes {
+    /// The attitude of each rest, in the order in which they are stated.
+    fn from(StatedAttitudes { up_b, uncertainty, file }: StatedAttitudes) -> Self {
+        Self { file, uncertainty, up_b: up_b.into_iter().map(Some).collect() }
+    }
 }
 
 impl RestTable {
@@ -116,21 +130,14 @@ impl RestTable {
             Some((AttitudeList::Named(name), uncertainty)) if name != CUBE => {
                 Some(KnownAttitudes { file: Some(folder.join(name)), uncertainty, up_b: Vec::new() })
             }
-            Some((entry, uncertainty)) => {
-                let (up_b, file) = directions(at, folder, entry)?;
-                Some(KnownAttitudes { file, uncertainty, up_b: up_b.into_iter().map(Some).collect() })
-            }
+            Some((entry, uncertainty)) => Some(stated(at, folder, entry, uncertainty)?.into()),
         };
         Ok(Self::of(RestSource::Table(folder.join(rests)), attitudes))
     }
 
     fn recorded(at: &TomlPath, folder: &Path, table: &TumbleTable, record: &RecordEntry) -> Result<Self, Error> {
         refuse_duration(at, table)?;
-        let stated = |(entry, uncertainty)| {
-            let (up_b, file) = directions(at, folder, entry)?;
-            Ok::<_, Error>(StatedAttitudes { up_b, uncertainty, file })
-        };
-        let attitudes = known(at, table)?.map(stated).transpose()?;
+        let attitudes = known(at, table)?.map(|(entry, u)| stated(at, folder, entry, u)).transpose()?;
         let files = record.paths().map(|name| folder.join(name)).collect();
         Ok(Self::of(RestSource::Record(RecordedRests { files, attitudes }), None))
     }
@@ -138,7 +145,7 @@ impl RestTable {
     /// Rests that are planned in these attitudes, known to `uncertain` if it is stated; paths start from `folder`.
     ///
     /// # Errors
-    /// If an attitude is none, or the uncertainty makes no sense.
+    /// If an attitude has no direction, or the uncertainty makes no sense.
     pub(crate) fn planned(
         at: &TomlPath,
         folder: &Path,
@@ -146,14 +153,9 @@ impl RestTable {
         uncertain: Option<&Quantity>,
     ) -> Result<Self, Error> {
         let (up_b, file) = directions(at, folder, entry)?;
-        let known = |uncertainty| KnownAttitudes {
-            file: file.clone(),
-            uncertainty,
-            up_b: up_b.iter().copied().map(Some).collect(),
-        };
-        let attitudes = uncertainty(at, uncertain)?.map(known);
-        let durations = vec![None; up_b.len()];
-        Ok(Self::of(RestSource::Plan(PlannedRests { up_b, durations, file }), attitudes))
+        let stated = |uncertainty| StatedAttitudes { up_b: up_b.clone(), uncertainty, file: file.clone() };
+        let attitudes = uncertainty(at, uncertain)?.map(|u| stated(u).into());
+        Ok(Self::of(RestSource::in_attitudes(up_b, file), attitudes))
     }
 
     /// Planned rests with the durations that their table states.
@@ -267,19 +269,9 @@ impl RestTable {
     pub(crate) fn as_planned(&self, draw: impl FnOnce() -> Vec<Vector3<f64>>) -> Self {
         let Some(RecordedRests { attitudes, .. }) = self.record() else { return self.clone() };
         let up_b = attitudes.as_ref().map_or_else(draw, |stated| stated.up_b.clone());
-        let known = |stated: &StatedAttitudes| KnownAttitudes {
-            file: stated.file.clone(),
-            uncertainty: stated.uncertainty,
-            up_b: stated.up_b.iter().copied().map(Some).collect(),
-        };
         let file = attitudes.as_ref().and_then(|stated| stated.file.clone());
-        let durations = vec![None; up_b.len()];
-        Self {
-            attitudes: attitudes.as_ref().map(known),
-            source: RestSource::Plan(PlannedRests { up_b, durations, file }),
-            means: Vec::new(),
-            switch_on: self.switch_on,
-        }
+        let known = attitudes.clone().map(KnownAttitudes::from);
+        Self { switch_on: self.switch_on, ..Self::of(RestSource::in_attitudes(up_b, file), known) }
     }
 
     /// The files of the table.
@@ -365,6 +357,12 @@ fn known<'a>(at: &TomlPath, table: &'a TumbleTable) -> Result<Option<(&'a Attitu
             Err(at.unexpected("attitudes", "no such key beside attitude_uncertainty", expected))
         }
     }
+}
+
+/// Attitudes of this standard uncertainty [rad] as the key `attitudes` has them; paths start from `folder`.
+fn stated(at: &TomlPath, folder: &Path, entry: &AttitudeList, uncertainty: f64) -> Result<StatedAttitudes, Error> {
+    let (up_b, file) = directions(at, folder, entry)?;
+    Ok(StatedAttitudes { up_b, uncertainty, file })
 }
 
 /// The standard uncertainty of the attitudes [rad], if they are known.

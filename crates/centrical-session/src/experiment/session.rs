@@ -94,7 +94,7 @@ impl Session {
     /// If the experiment file can not be read or does not follow the form, or makes no sense: every key is
     /// known, every quantity finite and of its dimension, every position a rotation and mounted.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let file = if path.is_dir() { path.join(EXPERIMENT_FILE) } else { path.to_owned() };
+        let file = experiment_file(path);
         Self::parse(&read_text(&file)?, &file)
     }
 
@@ -103,7 +103,7 @@ impl Session {
     /// # Errors
     /// As [`Session::read`].
     pub fn read_before_rests(path: &Path) -> Result<Self, Error> {
-        let file = if path.is_dir() { path.join(EXPERIMENT_FILE) } else { path.to_owned() };
+        let file = experiment_file(path);
         Self::parse_with(&read_text(&file)?, &file, |_| Ok(()))
     }
 
@@ -383,6 +383,11 @@ fn refuse_missing_keys(file: &Path, form: &Form) -> Result<(), Error> {
         }
         None => Ok(()),
     }
+}
+
+/// The experiment file of a session's folder, or the file itself.
+fn experiment_file(path: &Path) -> PathBuf {
+    if path.is_dir() { path.join(EXPERIMENT_FILE) } else { path.to_owned() }
 }
 
 /// The text of the experiment file.

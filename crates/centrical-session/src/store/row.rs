@@ -166,7 +166,7 @@ pub fn days_since_1970(date: &str) -> Option<i64> {
 }
 
 /// SHA-256, hexadecimal.
-pub(crate) fn sha256(bytes: &[u8]) -> String {
+pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text

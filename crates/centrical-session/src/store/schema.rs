@@ -78,11 +78,11 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry { column: TypedColumn { name: "term_signs", kind: Kind::Integers }, depth: Depth::Values, get: |r| Cell::Integers(r.terms.iter().map(|t| t.sign_of.map_or(0, whole)).collect()), set: |r, c| set_signs(r, &c.integers()) },
     Entry { column: TypedColumn { name: "covariance", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.covariance.clone()), set: |r, c| r.covariance = c.numbers() },
     Entry { column: TypedColumn { name: "shared_sources", kind: Kind::Texts }, depth: Depth::Whole, get: |r| Cell::Texts(r.shared.iter().map(|s| s.source.clone()).collect()), set: |r, c| r.shared = c.texts().into_iter().map(influence).collect() },
-    Entry { column: TypedColumn { name: "shared_changes", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.shared.iter().flat_map(|s| s.changes.clone()).collect()), set: |r, c| set_changes(r, &c.numbers()) },
+    Entry { column: TypedColumn { name: "shared_changes", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.shared.iter().flat_map(|s| s.changes.clone()).collect()), set: |r, c| share_out(r.shared.iter_mut().map(|s| &mut s.changes), &c.numbers()) },
     Entry { column: TypedColumn { name: "prior_parameters", kind: Kind::Texts }, depth: Depth::Whole, get: |r| Cell::Texts(r.priors.iter().map(|p| p.parameter.clone()).collect()), set: |r, c| r.priors = c.texts().into_iter().map(prior).collect() },
     Entry { column: TypedColumn { name: "prior_means", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.priors.iter().map(|p| p.mean).collect()), set: |r, c| r.priors.iter_mut().zip(c.numbers()).for_each(|(p, mean)| p.mean = mean) },
     Entry { column: TypedColumn { name: "prior_uncertainties", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.priors.iter().map(|p| p.standard_uncertainty).collect()), set: |r, c| r.priors.iter_mut().zip(c.numbers()).for_each(|(p, u)| p.standard_uncertainty = u) },
-    Entry { column: TypedColumn { name: "prior_changes", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.priors.iter().flat_map(|p| p.changes.clone()).collect()), set: |r, c| set_prior_changes(r, &c.numbers()) },
+    Entry { column: TypedColumn { name: "prior_changes", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.priors.iter().flat_map(|p| p.changes.clone()).collect()), set: |r, c| share_out(r.priors.iter_mut().map(|p| &mut p.changes), &c.numbers()) },
 ];
 
 /// The columns of a part.
@@ -166,26 +166,18 @@ fn set_signs(row: &mut Row, signs: &[i64]) {
     }
 }
 
-/// An influence of which the source alone is read as yet.
+/// An influence with its source alone, before its changes are read.
 fn influence(source: String) -> SharedInfluence {
     SharedInfluence { source, changes: Vec::new() }
 }
 
-fn set_changes(row: &mut Row, changes: &[f64]) {
-    let count = changes.len() / row.shared.len().max(1);
-    for (influence, changes) in row.shared.iter_mut().zip(changes.chunks(count.max(1))) {
-        influence.changes = changes.to_vec();
-    }
+/// Shares out the changes of all influences, or of all priors, each of which has as many.
+fn share_out<'r>(to: impl ExactSizeIterator<Item = &'r mut Vec<f64>>, changes: &[f64]) {
+    let count = changes.len() / to.len().max(1);
+    to.zip(changes.chunks(count.max(1))).for_each(|(to, changes)| *to = changes.to_vec());
 }
 
-/// A prior of which the parameter alone is read as yet.
+/// A prior with its parameter alone, before the other columns are read.
 fn prior(parameter: String) -> RowPrior {
     RowPrior { parameter, mean: 0.0, standard_uncertainty: f64::NAN, changes: Vec::new() }
-}
-
-fn set_prior_changes(row: &mut Row, changes: &[f64]) {
-    let count = changes.len() / row.priors.len().max(1);
-    for (prior, changes) in row.priors.iter_mut().zip(changes.chunks(count.max(1))) {
-        prior.changes = changes.to_vec();
-    }
 }

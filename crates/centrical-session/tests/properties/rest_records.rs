@@ -8,31 +8,15 @@ use centrical_session::{
     tumble, unwatched, write_reduced,
 };
 
+use crate::rests::alone;
+
 fn example(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name)
 }
 
 /// A session of the example's record alone, with these lines under `[[tumble]]`.
-fn alone(more: &str) -> String {
-    format!(
-        r#"
-[session]
-title = "made"
-date = ""
-[site]
-gravity = "9.81523 m/s^2"
-[uncertainty]
-gravity = "0 m/s^2"
-[unit]
-serial = ""
-output_unit = "m/s^2"
-[model]
-error_model = ["df_1", "df_2", "df_3", "G0_11", "G0_21", "G0_22", "G0_31", "G0_32", "G0_33"]
-[[tumble]]
-record = "{}"
-{more}"#,
-        example("tumble/record.csv").display()
-    )
+fn of_example(more: &str) -> String {
+    alone(&format!("record = \"{}\"\n{more}", example("tumble/record.csv").display()))
 }
 
 fn tumbled(folder: &Path, attitudes: Option<StatedAttitudes>) -> CalibrationResult {
@@ -60,8 +44,8 @@ fn a_session_finds_the_rests_that_a_tumble_finds() {
     let table = example("tumble/attitudes.csv");
     let known = format!("attitudes = \"{}\"\nattitude_uncertainty = \"1 mrad\"", table.display());
     for (n, more) in ["", &known].into_iter().enumerate() {
-        let session = Session::parse(&alone(more), &folder.path().join("experiment.toml")).unwrap();
-        fs::write(&session.file, alone(more)).unwrap();
+        let session = Session::parse(&of_example(more), &folder.path().join("experiment.toml")).unwrap();
+        fs::write(&session.file, of_example(more)).unwrap();
         let stated = (!more.is_empty()).then(|| StatedAttitudes::named(&table, 1e-3).unwrap());
         let expected = tumbled(folder.path(), stated);
         let result = calibrate(&session, Method::Exact, &unwatched).unwrap();
@@ -90,12 +74,12 @@ fn wrong_records_of_rests_are_refused() {
         ("duration = \"4 s\"", "duration: found a duration, expected no such key beside rests"),
         ("attitudes = \"cube\"", "attitude_uncertainty: found no such key beside attitudes"),
     ] {
-        let message = refused(&alone(more));
+        let message = refused(&of_example(more));
         assert!(message.contains(expected), "{message}");
     }
-    let in_g = alone("").replace("output_unit = \"m/s^2\"", "output_unit = \"g\"");
+    let in_g = of_example("").replace("output_unit = \"m/s^2\"", "output_unit = \"g\"");
     let message = refused(&in_g);
     assert!(message.contains("record.csv: found rests of 96.4") && message.contains("of gravity"), "{message}");
-    let message = refused(&alone("").replace("record.csv", "nowhere.csv"));
+    let message = refused(&of_example("").replace("record.csv", "nowhere.csv"));
     assert!(message.contains("nowhere.csv"), "{message}");
 }

@@ -150,7 +150,6 @@ fn rests_after_a_switch_off_have_a_bias_of_their_own() {
 #[test]
 fn errors_in_axes_of_the_case_are_as_large_as_stated() {
     const RUNS: usize = 100;
-    const GRAVITY: f64 = 9.81523;
     const UNCERTAINTY: f64 = 1e-3;
     const NAMES: [&str; 12] = [
         "df_1", "df_2", "df_3", "scale_11", "scale_12", "scale_13", "scale_21", "scale_22", "scale_23", "scale_31",
@@ -159,26 +158,9 @@ fn errors_in_axes_of_the_case_are_as_large_as_stated() {
     let mut random = Random::new(12);
     let mut sum = 0.0;
     let folder = tempfile::tempdir().unwrap();
-    let session = format!(
-        r#"
-[session]
-title = "made"
-date = ""
-[site]
-gravity = "{GRAVITY} m/s^2"
-[uncertainty]
-gravity = "0 m/s^2"
-[unit]
-serial = ""
-output_unit = "m/s^2"
-[model]
-error_model = ["df_1", "df_2", "df_3", "G0_11", "G0_21", "G0_22", "G0_31", "G0_32", "G0_33"]
-[[tumble]]
-rests = "rests.csv"
-attitudes = "attitudes.csv"
-attitude_uncertainty = "{UNCERTAINTY} rad"
-"#
-    );
+    let session = alone(&format!(
+        "rests = \"rests.csv\"\nattitudes = \"attitudes.csv\"\nattitude_uncertainty = \"{UNCERTAINTY} rad\"\n"
+    ));
     fs::write(folder.path().join("experiment.toml"), session).unwrap();
     for run in 0..RUNS {
         let mut normal = |size: f64| Vector3::from_fn(|_, _| size * random.normal());
@@ -297,4 +279,28 @@ fn what_is_no_table_of_rests_is_refused() {
     let file: PathBuf = folder.path().join("rests.csv");
     fs::copy(folder.path().join("plateaus.csv"), &file).unwrap();
     assert!(message().ends_with("expected 0 in a table of rests"), "{}", message());
+}
+
+/// Gravity at the place of rests [m/s^2].
+const GRAVITY: f64 = 9.81523;
+
+/// A session of rests alone, linear in the force, with these lines under `[[tumble]]`.
+pub fn alone(tumble: &str) -> String {
+    format!(
+        r#"
+[session]
+title = "made"
+date = ""
+[site]
+gravity = "{GRAVITY} m/s^2"
+[uncertainty]
+gravity = "0 m/s^2"
+[unit]
+serial = ""
+output_unit = "m/s^2"
+[model]
+error_model = ["df_1", "df_2", "df_3", "G0_11", "G0_21", "G0_22", "G0_31", "G0_32", "G0_33"]
+[[tumble]]
+{tumble}"#
+    )
 }

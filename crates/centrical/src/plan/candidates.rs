@@ -160,14 +160,15 @@ impl Candidates {
 
     /// Number of set-ups: one for each mounting on the arm, and a last one for all rests beside it together.
     pub(super) fn set_ups(&self) -> usize {
-        let on_arm = self.mountings_on_arm();
+        let on_arm = self.experiment().mountings_on_arm().count();
         on_arm + usize::from(on_arm < self.experiment().mountings.len())
     }
 
     /// The set-up that a candidate needs: its mounting on the arm, or that of the table.
     pub(super) fn set_up_of(&self, candidate: usize) -> usize {
-        let SetPoint { mounting, .. } = self.experiment().set_points[candidate];
-        if self.experiment().is_on_arm(mounting) { mounting } else { self.mountings_on_arm() }
+        let experiment = self.experiment();
+        let SetPoint { mounting, .. } = experiment.set_points[candidate];
+        if experiment.is_on_arm(mounting) { mounting } else { experiment.mountings_on_arm().count() }
     }
 
     /// The set-up of an atom.
@@ -203,14 +204,8 @@ impl Candidates {
         time
     }
 
-    /// Number of mountings on the arm, which precede those beside it.
-    fn mountings_on_arm(&self) -> usize {
-        let experiment = self.experiment();
-        (0..experiment.mountings.len()).position(|m| !experiment.is_on_arm(m)).unwrap_or(experiment.mountings.len())
-    }
-
     /// Whether a candidate is on the arm, and not a rest beside it.
-    pub(super) fn is_on_arm(&self, candidate: usize) -> bool {
+    fn is_on_arm(&self, candidate: usize) -> bool {
         self.experiment().is_on_arm(self.experiment().set_points[candidate].mounting)
     }
 
@@ -241,7 +236,7 @@ impl Candidates {
         if costs.seat > costs.position {
             return Err(PlanError::SeatAbovePosition);
         }
-        if self.experiment().mountings_on_arm().last().is_some_and(|last| last >= self.mountings_on_arm()) {
+        if self.experiment().mountings_on_arm().enumerate().any(|(n, mounting)| n != mounting) {
             return Err(PlanError::RestsFirst);
         }
         if self.scenarios.iter().any(|s| s.nominal.len() != s.model.parameters().len()) {

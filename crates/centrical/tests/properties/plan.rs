@@ -276,7 +276,7 @@ fn visits_of_all(candidates: &Candidates) -> Vec<Visit> {
     (0..candidates.len()).flat_map(visits).collect()
 }
 
-/// A rest beside the arm that precedes a mounting on it is refused: set-ups are told apart by their place.
+/// A rest beside the arm that precedes a mounting on it is refused: the place of a mounting says which set-up it needs.
 #[test]
 fn rests_precede_no_mounting() {
     let candidates = small(&mut Random::new(11));
@@ -292,7 +292,7 @@ fn rests_precede_no_mounting() {
     assert_eq!(refused.unwrap_err(), PlanError::RestsFirst);
 }
 
-/// Plans of small cases, of which nine of ten are the best of all.
+/// Plans of small cases; nine of ten are the best of all.
 fn compared_with_all(
     seed: u64,
     cases: usize,

@@ -24,14 +24,14 @@ const MOST_BATCHES: usize = 6;
 /// The pages that show the whole store.
 #[derive(Debug)]
 pub struct Overview {
-    /// All calibrations.
-    pub list: HistoryList,
     /// Limits of parameters.
     pub limits: ParameterLimits,
     /// The first page.
     pub index: String,
     /// Pages of models and stations by their files.
     pub pages: BTreeMap<String, String>,
+    /// Keys of the calibrations of each unit that has a page, by its file.
+    pub units: BTreeMap<String, BTreeSet<String>>,
 }
 
 impl Overview {
@@ -49,9 +49,20 @@ impl Overview {
         let mut pages = BTreeMap::new();
         let stations = stations(&calibrations, request, &mut pages);
         let models = models(calibrations, &asked, request, &mut pages);
-        let index = history_index(&list, &models, &stations);
-        Ok(Self { list, limits: asked.limits, index, pages })
+        let units = units(&list);
+        let index = history_index(&list, &models, &stations, |file| units.contains_key(file));
+        Ok(Self { limits: asked.limits, index, pages, units })
     }
+}
+
+/// The units with two calibrations or more: each has a page.
+fn units(list: &HistoryList) -> BTreeMap<String, BTreeSet<String>> {
+    let mut units: BTreeMap<(&str, &str), BTreeSet<String>> = BTreeMap::new();
+    for line in list.calibrations.iter().filter(|line| line.acceptable.is_some()) {
+        units.entry((&line.unit_model, &line.unit_serial)).or_default().insert(line.key.clone());
+    }
+    let units = units.into_iter().filter(|(_, keys)| keys.len() > 1);
+    units.map(|((model, serial), keys)| (PageKind::Unit.file(&[model, serial]), keys)).collect()
 }
 
 fn stations(

@@ -1,17 +1,15 @@
 //! Pages of units.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    Calibrated, Depth, Error, ParameterLimits, Selection, UnitHistoryRequest, read_calibrations, unit_history,
+    Calibrated, Depth, Error, ParameterLimits, Selection, UnitHistoryRequest, read_calibrations, sha256, unit_history,
 };
-use sha2::{Digest, Sha256};
 
 use super::overview::{Overview, charts};
 use super::request::PagesRequest;
-use crate::render::{PageKind, history_unit_page, no_unit_history_page};
+use crate::render::{history_unit_page, no_unit_history_page};
 
 /// The units that have a page.
 #[derive(Debug)]
@@ -26,17 +24,12 @@ pub struct UnitPages {
 impl UnitPages {
     /// The units with two calibrations or more.
     pub fn of(folder: &Path, overview: &Overview, request: &PagesRequest) -> Self {
-        let mut units: BTreeMap<(&str, &str), BTreeSet<String>> = BTreeMap::new();
-        for line in overview.list.calibrations.iter().filter(|line| line.acceptable.is_some()) {
-            units.entry((&line.unit_model, &line.unit_serial)).or_default().insert(line.key.clone());
-        }
-        let units = units.into_iter().filter(|(_, keys)| keys.len() > 1);
         Self {
             folder: folder.to_owned(),
             limits: overview.limits.clone(),
             limit: request.limit,
             accepted: request.accepted,
-            units: units.map(|((model, serial), keys)| (PageKind::Unit.file(&[model, serial]), keys)).collect(),
+            units: overview.units.clone(),
         }
     }
 
@@ -82,21 +75,10 @@ impl UnitPages {
 
     /// What a page is made of: the calibrations, what is asked, and the program.
     pub fn origin(&self, keys: &BTreeSet<String>) -> String {
-        let mut hash = Sha256::new();
-        hash.update(format!(
-            "{} {FORM} {:?} {:?} {}",
-            env!("CARGO_PKG_VERSION"),
-            self.limit,
-            self.limits,
-            self.accepted
-        ));
-        for key in keys {
-            hash.update(key);
-        }
-        hash.finalize().iter().fold(String::new(), |mut text, byte| {
-            let _ = write!(text, "{byte:02x}");
-            text
-        })
+        let program = env!("CARGO_PKG_VERSION");
+        let mut origin = format!("{program} {FORM} {:?} {:?} {}", self.limit, self.limits, self.accepted);
+        origin.extend(keys.iter().map(String::as_str));
+        sha256(origin.as_bytes())
     }
 }
 

@@ -9,7 +9,7 @@ use crate::figure::chart_plots;
 use crate::number::{counted, with_uncertainty};
 use crate::plot::Escaped;
 
-/// The charts of a page: of each parameter, or why there are none.
+/// The charts of a page by parameter, and the reason why a parameter has none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StoreCharts {
     /// The charts, each of its last sessions.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use sha2::{Digest, Sha256};
+use centrical_session::sha256;
 
 use crate::plot::{Escaped, Plot, STYLE as PLOT_STYLE};
 use crate::terminal::Screen;
@@ -34,12 +34,8 @@ impl PageKind {
         let last = names.last().copied().unwrap_or_default();
         let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
         let readable: String = last.chars().take(READABLE).map(plain).collect();
-        let hash = Sha256::digest(names.join("\0").as_bytes());
-        let hash = hash.iter().take(6).fold(String::new(), |mut text, byte| {
-            let _ = write!(text, "{byte:02x}");
-            text
-        });
-        let parts = [kind, &readable, &hash];
+        let hash = sha256(names.join("\0").as_bytes());
+        let parts = [kind, &readable, &hash[..12]];
         format!("{}.html", parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-"))
     }
 }

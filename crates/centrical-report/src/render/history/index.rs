@@ -1,6 +1,5 @@
 //! The first page of a store: models and stations with what was found of them, and the list of all calibrations.
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use centrical_session::{HistoryLine, HistoryList, StationHistoryReport, UnitsHistoryReport};
@@ -26,8 +25,13 @@ pub struct IndexedStation {
     pub has_signals: bool,
 }
 
-/// The first page. Units with two calibrations or more have a page.
-pub fn history_index(list: &HistoryList, models: &[IndexedModel], stations: &[IndexedStation]) -> String {
+/// The first page, with a link to each unit's file for which `has_page` holds.
+pub fn history_index(
+    list: &HistoryList,
+    models: &[IndexedModel],
+    stations: &[IndexedStation],
+    has_page: impl Fn(&str) -> bool,
+) -> String {
     let count = list.calibrations.len();
     let mut body = format!(
         "<header><p class=\"kind\">Calibrations</p><h1>{}</h1><p>{count} calibrations</p></header>\n",
@@ -45,14 +49,9 @@ pub fn history_index(list: &HistoryList, models: &[IndexedModel], stations: &[In
          <th scope=\"col\">serial</th><th scope=\"col\">station</th><th scope=\"col\" class=\"number\">chi^2/nu</th>\
          <th scope=\"col\">verdict</th></tr></thead><tbody>\n",
     );
-    let mut counts: BTreeMap<(&str, &str), usize> = BTreeMap::new();
-    for line in list.calibrations.iter().filter(|line| line.acceptable.is_some()) {
-        *counts.entry((&line.unit_model, &line.unit_serial)).or_default() += 1;
-    }
     for line in &list.calibrations {
-        let has_page =
-            counts.get(&(line.unit_model.as_str(), line.unit_serial.as_str())).is_some_and(|count| *count > 1);
-        row(&mut body, line, has_page);
+        let file = PageKind::Unit.file(&[&line.unit_model, &line.unit_serial]);
+        row(&mut body, line, Some(file).filter(|file| has_page(file)));
     }
     body.push_str("</tbody></table></div>\n");
     page("Calibrations", &body)
@@ -131,7 +130,7 @@ fn signals(has_signals: bool) -> &'static str {
     if has_signals { "<td>signals</td>" } else { "<td></td>" }
 }
 
-fn row(body: &mut String, line: &HistoryLine, has_page: bool) {
+fn row(body: &mut String, line: &HistoryLine, page: Option<String>) {
     let ratio = line.chi_squared.filter(|_| line.degrees_of_freedom > 0).map(|c| c / line.degrees_of_freedom as f64);
     let (verdict, class) = match line.acceptable {
         Some(true) => ("acceptable", "good"),
@@ -140,11 +139,7 @@ fn row(body: &mut String, line: &HistoryLine, has_page: bool) {
     };
     let why = line.message.clone().unwrap_or_else(|| line.objections.join(", "));
     let serial = Escaped(&line.unit_serial);
-    let serial = if has_page {
-        format!("<a href=\"{}\">{serial}</a>", PageKind::Unit.file(&[&line.unit_model, &line.unit_serial]))
-    } else {
-        serial.to_string()
-    };
+    let serial = page.map_or_else(|| serial.to_string(), |file| format!("<a href=\"{file}\">{serial}</a>"));
     let _ = writeln!(
         body,
         "<tr><td>{}</td><td>{}</td><td>{serial}</td><td>{}</td><td class=\"number\">{}</td><td class=\"{class}\">{verdict}<span>{}</span></td></tr>",

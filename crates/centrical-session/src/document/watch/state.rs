@@ -74,8 +74,7 @@ impl WatchState {
         Ok(Self { schema: SCHEMA.to_owned(), experiment, point: Vec::new(), reference: None, plateaus: Vec::new() })
     }
 
-    /// The state in `file`, or the one before the first plateau if there is no such file. `unknowns` are those of a fit: parameters and
-    /// influences.
+    /// The state in `file`; without that file the one before the first plateau. `unknowns` are those of a fit: parameters and influences.
     ///
     /// # Errors
     /// [`Error`] when the file is of another form or belongs to another experiment file.

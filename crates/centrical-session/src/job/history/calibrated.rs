@@ -59,7 +59,7 @@ pub struct CalibratedParameter {
     pub is_of_unit: bool,
 }
 
-/// The place of one parameter in calibrations, most of which share their list of parameters.
+/// Finds one parameter in many calibrations. Most share their list of parameters, which is searched once.
 pub struct Finder<'a> {
     name: &'a str,
     last: Option<(Arc<Vec<CalibratedParameter>>, Option<usize>)>,

@@ -1,8 +1,9 @@
 //! What the data of a session say by themselves, where parameters of the unit had priors.
 //!
 //! A prior draws every session towards the same mean `m`: of a change of the unit between sessions an estimate `x` shows a part alone, and
-//! the error of the prior is the same in all of them. With the changes `A` of the estimates by each of `q` priors at one standard
-//! uncertainty `u`, and `kappa = U^-1 A_q` (the part of the information that comes from priors, `A_q` the rows of the parameters with priors),
+//! the error of the prior is the same in all of them. Let `A` be the changes of the estimates by each of `q` priors at one standard
+//! uncertainty `u`, and `A_q` its rows of the parameters with priors. Then `kappa = U^-1 A_q` is the part of the information that comes
+//! from priors, and
 //!
 //! `x_d = x + A (1 - kappa)^-1 U^-1 (x_q - m)`
 //!

@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 use centrical::simulate::{Records, SimulatedMounting, Simulation};
-use centrical::{OnProgress, SetPoint, advance};
+use centrical::{OnProgress, advance};
 use centrical_table::{ColumnName, TableFormat, claim_folder, create_folder, refuse_inputs, write_table, write_whole};
 use rayon::prelude::*;
 
@@ -39,9 +39,8 @@ pub fn simulate_session(
     refuse_history(truth)?;
     let columns = Headers::of(plan)?;
     let text = with_files(plan, format)?;
-    let durations = durations(truth);
     let simulation = Simulation::new(&truth.model, &truth.values, &truth.equipment, seed)
-        .and_then(|simulation| simulation.with_durations(&durations))
+        .and_then(|simulation| simulation.with_durations(&plan.durations))
         .map_err(|source| Error::Simulation { file: truth.file.clone(), source })?;
     let (mountings, tumbles) = (0..plan.mountings.len(), 0..plan.rest_tables.len());
     let mut outputs = vec![experiment_file.clone(), folder.join("truth.json")];
@@ -73,16 +72,6 @@ fn refuse_history(truth: &Truth) -> Result<(), Error> {
     let found = format!("{}, which acts through what came before a plateau", parameter.name);
     let expected = "effects that act at an instant: it cannot be simulated";
     Err(Error::content(&truth.file, Place::Whole, found, expected))
-}
-
-/// Plateaus last as long as the plan says, or as the machine makes them; rests as the hand does.
-fn durations(truth: &Truth) -> Vec<f64> {
-    let (experiment, equipment) = (truth.model.experiment(), &truth.equipment);
-    let usual = |set_point: &SetPoint| {
-        if experiment.is_on_arm(set_point.mounting) { equipment.machine.plateau } else { equipment.hand.rest }
-    };
-    let pairs = experiment.set_points.iter().zip(&truth.plan.durations);
-    pairs.map(|(set_point, stated)| stated.unwrap_or_else(|| usual(set_point))).collect()
 }
 
 /// Where the tables of a session go.

@@ -94,7 +94,7 @@ impl<'a> Heuristics<'a> {
         }
     }
 
-    /// The incumbent with visits exchanged, on its set-ups; if there is none, the schedule of the cheapest start.
+    /// The incumbent with visits exchanged, on its set-ups; without an incumbent the schedule of the cheapest start.
     pub fn polished(&self) -> IntegerSchedule {
         let (set, best) = match &self.incumbent.best {
             Some(best) => (best.set_ups(self.problem.candidates), Some(best.clone())),

@@ -1,8 +1,7 @@
 //! Branch and bound. A node has decided on some set-ups, each that of a mounting, or of the table for all rests beside the arm: they
-//! are paid in full, or closed. Its continuous
-//! design bounds all schedules below it. The most used set-up is decided first, the node of the lowest bound divided first, as
-//! far as the effort goes. The lowest bound of the ends says how far the schedule can be from the best. Visits are not branched
-//! on, so where the time hardly suffices for the set-ups, whole visits leave some percent open.
+//! are paid in full, or closed. Its continuous design bounds all schedules below it. The most used set-up is decided first, the node of
+//! the lowest bound divided first, as far as the effort goes. The lowest bound of the ends says how far the schedule can be from the
+//! best. Visits are not branched on, so where the time hardly suffices for the set-ups, whole visits leave some percent open.
 //!
 //! **The bound is valid.** Let a schedule belong to a node: it uses the set-ups that are paid and perhaps some that are not
 //! decided, none that is closed. (1) Its visits are a point of the node's polytope: the repeats are the schedule's own; and

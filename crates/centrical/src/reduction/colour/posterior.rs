@@ -3,8 +3,8 @@
 //! A mean of variance `v`, known with some doubt, errs by `E[v]` in the mean of squares: by more than the likeliest `v`, by the factor
 //! `nu / (nu - 2)` if `v` is known with `nu` degrees of freedom (JCGM 101, 6.4.9). And noise that is too weak to be found is
 //! not absent. So the covariance takes the posterior mean, over white noise alone and over all strengths and correlation times of
-//! one Markov process beside it. With the white density `d`, the density `r d` at zero frequency and the correlation time `tau` a
-//! contrast of unit variance under white noise has the variance `d s`, `s = 1 + r b(tau)`. White noise
+//! one Markov process beside it. The white noise has the density `d`; the process has the density `r d` at zero frequency and the
+//! correlation time `tau`. A contrast of unit variance under white noise then has the variance `d s`, `s = 1 + r b(tau)`. White noise
 //! alone, `r = 0`, is as likely beforehand as all processes together, whose prior is `1 / (d r)`: no strength and no time is
 //! preferred. The integral over `d` is a closed form,
 //!
