@@ -62,11 +62,11 @@ pub use self::prediction::{PredictedParameter, PredictionReport};
 pub use self::reduction::{REDUCTION_SCHEMA, ReducedPlateauSummary, ReductionReport};
 pub(crate) use self::result::Attitude;
 pub use self::result::{
-    AxesName, AxesParameter, AxesSummary, BudgetSource, BudgetSummary, CalibrationResult, ConvergenceSummary,
-    FitSummary, Follows, Method, ModelSummary, MountingPrediction, MountingSummary, NextAttitudeSummary,
-    ObservabilitySummary, OutlyingPlateau, OutputSummary, ParameterEstimate, PatternSummary, PlateauSummary,
-    PositionSummary, PriorSummary, Program, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionSummary,
-    SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary, ValiditySummary,
+    AxesName, AxesParameter, AxesSummary, BetweenRestsSummary, BudgetSource, BudgetSummary, CalibrationResult,
+    ConvergenceSummary, FitSummary, Follows, Method, ModelSummary, MountingPrediction, MountingSummary,
+    NextAttitudeSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary, ParameterEstimate, PatternSummary,
+    PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA,
+    SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary, ValiditySummary,
 };
 pub use self::series::{SERIES_SCHEMA, SeriesSummary};
 pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};

@@ -1,6 +1,7 @@
 //! The plateau means of a session, wherever they come from.
 
 use centrical::reduction::{ClockAgreement, ClockOffset, LeftOut, MeasuredSpeed, PlateauMean};
+use centrical::uncertainty::BetweenRests;
 use centrical::{MeasurementModel, Observation, SetPoint};
 use nalgebra::{Matrix3, Vector3};
 
@@ -105,6 +106,14 @@ impl Reduced {
         let set_points = self.set_points(session);
         let plateaus = self.plateaus.iter().zip(&set_points);
         plateaus.filter(|(_, set_point)| session.experiment.is_on_arm(set_point.mounting)).map(row).collect()
+    }
+
+    /// With what differs between rests in the covariance of each plateau, a rest.
+    pub(crate) fn scattered(mut self, between: &BetweenRests) -> Self {
+        for rest in &mut self.plateaus {
+            rest.covariance = between.scattered(&rest.covariance);
+        }
+        self
     }
 
     /// With rests in attitudes of their own behind the plateaus on the arm.

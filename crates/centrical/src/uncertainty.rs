@@ -5,6 +5,7 @@
 //! - [`Validity`], [`Cleaned`], [`Pattern`]: whether the residuals are those of a true model;
 //! - [`speed_contradictions`]: the speeds of the telemetry against those that were set;
 //! - [`TiltComparison`]: the tilt of the axis by the once-per-revolution terms, which the fit does not use;
+//! - [`BetweenRests`]: scatter and drift of rests that their own noise does not show;
 //! - [`select`]: which of several models the data speak for;
 //! - [`Compensated`]: the uncertainty of a compensated reading;
 //! - [`ModelInAxes`], [`ScaleForm`]: a calibrated error model in other axes;
@@ -15,6 +16,7 @@
 //! fit, zero with the stated uncertainty.
 
 mod axes;
+mod between_rests;
 mod budget;
 mod comparison;
 mod compensated;
@@ -32,6 +34,7 @@ mod validity;
 mod verdict;
 
 pub use axes::{ModelInAxes, ScaleForm};
+pub use between_rests::BetweenRests;
 pub use budget::{Budget, Contribution, Improvement};
 pub use comparison::{Comparison, Difference, Estimates, compare};
 pub use compensated::{Compensated, CurvePoint};

@@ -3,7 +3,7 @@
 use centrical_session::{CalibrationResult, MICRO_G, PlateauSummary};
 
 use super::screen::Screen;
-use crate::number::counted;
+use crate::number::{counted, two_digits};
 
 /// How many rests there are, how long they are, and how well the size of gravity is met in them.
 pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
@@ -41,6 +41,13 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
     let worst = misfits.iter().fold(0.0_f64, |most, misfit| most.max(misfit.abs())) / MICRO_G;
     let of_size = format!("size of the compensated force less gravity: {rms:.0} ug RMS, {worst:.0} ug at most");
     screen.say(2, &of_size);
+    if let Some(between) = &result.between_rests {
+        let [scatter, drift] = [between.scatter, between.drift].map(|size| two_digits(size / MICRO_G));
+        let text = format!(
+            "not excluded, and in the uncertainties: scatter of {scatter} ug from rest to rest, biases that drift by {drift} ug"
+        );
+        screen.sentence(2, 4, &text);
+    }
     // The size of gravity is the same for a triad and its mirror image.
     if known.is_empty() && !result.model.has_arm() {
         screen.sentence(2, 4, "gravity shows neither the sign of an axis nor which column is which: check them");

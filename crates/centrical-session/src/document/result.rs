@@ -2,6 +2,7 @@
 
 mod axes;
 mod axes_summary;
+mod between_rests;
 mod budget_and_checks;
 mod error_terms;
 mod from_calibration;
@@ -13,6 +14,7 @@ mod verdict;
 
 pub(crate) use self::axes::Attitude;
 pub use self::axes_summary::{AxesName, AxesParameter, AxesSummary};
+pub use self::between_rests::BetweenRestsSummary;
 pub use self::budget_and_checks::{
     BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
 };

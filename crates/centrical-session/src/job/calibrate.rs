@@ -1,9 +1,10 @@
 //! The whole job for one session: what the command, a fleet's worker and a notebook all call.
 
+use centrical::uncertainty::BetweenRests;
 use centrical::{Calibration, Data, MeasurementModel, OnProgress, advance};
 
 use super::reduce::reduce;
-use crate::document::{CalibrationResult, Method};
+use crate::document::{BetweenRestsSummary, CalibrationResult, Method};
 use crate::error::Error;
 use crate::experiment::{PlateauName, Session};
 use crate::reduced::Reduced;
@@ -54,7 +55,8 @@ pub fn calibrate_without(
     calibrate_reduced(&session, &reduced, method, progress)
 }
 
-/// Fits a session that is reduced already, from files or from memory. `progress` is called with 0 after every step.
+/// Fits a session that is reduced already, from files or from memory. Of rests alone, where they are acceptable by their own noise,
+/// the uncertainties include what the residuals cannot exclude beside it. `progress` is called with 0 after every step.
 ///
 /// # Errors
 /// [`Error::Fit`] naming the session, what was found and what was expected; [`Error::Stopped`].
@@ -64,6 +66,22 @@ pub fn calibrate_reduced(
     method: Method,
     progress: OnProgress,
 ) -> Result<CalibrationResult, Error> {
+    let (result, between) = by_noise(session, reduced, method, progress)?;
+    let Some(between) = between else { return Ok(result) };
+    // The verdict is on the rests by their own noise: what is added to it would excuse much.
+    let mut session = session.clone();
+    session.type_b = between.stated_beside(session.type_b);
+    let (result, _) = by_noise(&session, &reduced.clone().scattered(&between), method, progress)?;
+    Ok(CalibrationResult { between_rests: Some(BetweenRestsSummary::from(between)), ..result })
+}
+
+/// The calibration by the noise of the plateaus; and where it is acceptable, what differs between rests beside.
+fn by_noise(
+    session: &Session,
+    reduced: &Reduced,
+    method: Method,
+    progress: OnProgress,
+) -> Result<(CalibrationResult, Option<BetweenRests>), Error> {
     let model = reduced.model(session)?;
     let failed = |source| Error::fit(&session.file, source);
     let data = Data::new(&model, reduced.observations()).map_err(failed)?;
@@ -73,7 +91,9 @@ pub fn calibrate_reduced(
         Method::Linear => Calibration::linear(&data),
     };
     advance(progress, 0)?;
-    calibration
-        .and_then(|calibration| CalibrationResult::from(&calibration, session, reduced, progress))
-        .map_err(failed)
+    let calibration = calibration.map_err(failed)?;
+    let result = CalibrationResult::from(&calibration, session, reduced, progress).map_err(failed)?;
+    let is_judged = result.validity.is_some() && result.objections().is_empty();
+    let between = if is_judged { calibration.between_rests().map_err(failed)? } else { None };
+    Ok((result, between))
 }

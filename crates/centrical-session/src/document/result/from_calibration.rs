@@ -61,6 +61,7 @@ impl CalibrationResult {
             covariance: (0..count).map(|i| (0..count).map(|j| covariance(i, j)).collect()).collect(),
             observability: ObservabilitySummary::new(model, fit),
             next_attitude: NextAttitudeSummary::of(calibration)?,
+            between_rests: None,
             fit: FitSummary::new(calibration),
             mountings: mountings(model, reduced),
             plateaus: plateaus(calibration, session, reduced),

@@ -13,6 +13,7 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::axes_summary::AxesSummary;
+use super::between_rests::BetweenRestsSummary;
 use super::budget_and_checks::{BudgetSummary, ValiditySummary};
 use super::next_attitude::NextAttitudeSummary;
 use super::rivals::RestsOn;
@@ -55,6 +56,9 @@ pub struct CalibrationResult {
     /// The best attitude to add; of rests in free attitudes alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_attitude: Option<NextAttitudeSummary>,
+    /// What differs from rest to rest beside the noise within rests; of acceptable rests alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between_rests: Option<BetweenRestsSummary>,
     /// How the fit went.
     pub fit: FitSummary,
     /// The mountings, in the order of the session.

@@ -1,0 +1,157 @@
+//! What differs from rest to rest beyond the noise within rests: scatter of the readings, and drift of the biases.
+//!
+//! Noise that is slower than a rest does not show in it, nor does a bias that warms up. Both show in the residuals of many rests. There
+//! these have the covariance
+//!
+//! `E + v B B^T + w D D^T`,
+//!
+//! with a column of `B` for each rest, a unit reading along its specific force, and a column of `D` for each newtonometer, a bias
+//! that changes by one unit from the first rest to the last. All are whitened by the noise within rests, and freed of what the unknowns
+//! of the fit follow. The variances `v` and `w` are posterior means: absence of either is as likely beforehand as all its strengths
+//! together, and no strength is preferred (as for the noise within rests, `reduction/colour/posterior.rs`). So what the residuals
+//! cannot exclude is a part of the uncertainty, and of effects that are absent little.
+
+use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
+
+use super::rivals::Rivals;
+use super::rivals::columns::Columns;
+use crate::fit::Calibration;
+use crate::model::{Course, Extension, FitError, Rival, TypeB};
+
+/// Strengths per decade, over the mean variance of a rest, and from where on. Below the first no standard uncertainty changes by more
+/// than half a percent; above the last no fit passes its chi^2.
+const PER_DECADE: usize = 3;
+const SMALLEST: f64 = 1e-2;
+const DECADES: usize = 6;
+
+/// Below so many redundant rests a variance has no mean: it is known with too few degrees of freedom, `nu / (nu - 2)`.
+const FEWEST: f64 = 2.0;
+
+/// The drift of the biases.
+const DRIFT: Rival = Rival::Effect(Extension::Disturbance(Course::Time));
+
+/// Standard deviations of what differs from rest to rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BetweenRests {
+    /// Scatter of the reading of a rest beside its noise [m/s^2].
+    pub scatter: f64,
+    /// Change of each bias from the first rest to the last [m/s^2]; zero where the model has or states one.
+    pub drift: f64,
+}
+
+impl BetweenRests {
+    /// The covariance of a rest, with its scatter [m^2/s^4].
+    #[must_use]
+    pub fn scattered(&self, covariance: &Matrix3<f64>) -> Matrix3<f64> {
+        covariance + Matrix3::from_diagonal_element(self.scatter * self.scatter)
+    }
+
+    /// What is stated, and the drift.
+    #[must_use]
+    pub fn stated_beside(&self, mut stated: TypeB) -> TypeB {
+        let drift = Rival::COMMON.iter().zip(&mut stated.effects).filter(|(rival, _)| **rival == DRIFT);
+        drift.filter(|_| self.drift > 0.0).for_each(|(_, bound)| *bound = self.drift);
+        stated
+    }
+}
+
+impl Calibration<'_> {
+    /// What the residuals of a calibration by rests alone cannot exclude beside the noise within rests; `None` with an arm, and where
+    /// two rests or fewer are redundant.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn between_rests(&self) -> Result<Option<BetweenRests>, FitError> {
+        let (data, gain) = (self.data(), self.gain()?);
+        if data.model().experiment().has_arm() {
+            return Ok(None);
+        }
+        let rests = data.observations();
+        let along = |n: usize, c: usize| if n == c { rests[n].mean.normalize() } else { Vector3::zeros() };
+        let scatter = Columns::new(gain, (0..rests.len()).collect(), rests.len(), along);
+        if scatter.redundancy().trace() <= FEWEST {
+            return Ok(None);
+        }
+        // Of a whitened column along the force the length is the inverse of the standard deviation.
+        let variances = scatter.lengths.iter().map(|length| 1.0 / (length * length));
+        let unit = (variances.sum::<f64>() / rests.len() as f64).sqrt();
+        let rivals = Rivals::of(self)?;
+        let drift = rivals.get(DRIFT).map(|drift| &drift.columns);
+        let residuals = Residuals::of(&scatter, drift, unit);
+        let (scatter, drift) = residuals.posterior_mean();
+        Ok(Some(BetweenRests { scatter: unit * scatter.sqrt(), drift: unit * drift.sqrt() }))
+    }
+}
+
+/// The residuals as they answer to both effects, in the principal directions of the scatter.
+struct Residuals {
+    /// `B^T B` by its eigenvalues, and `B^T e`.
+    scatter: (DVector<f64>, DVector<f64>),
+    /// `B^T D`.
+    across: DMatrix<f64>,
+    /// `D^T D` and `D^T e`; zero where drift is no question.
+    drift: (DMatrix<f64>, DVector<f64>),
+    is_drift_asked: bool,
+}
+
+impl Residuals {
+    /// Of effects of the size `unit`.
+    fn of(scatter: &Columns, drift: Option<&Columns>, unit: f64) -> Self {
+        let sizes = |columns: &Columns| DMatrix::from_diagonal(&DVector::from_column_slice(&columns.lengths)) * unit;
+        let of_scatter = sizes(scatter);
+        let eigen = SymmetricEigen::new(&of_scatter * scatter.redundancy() * &of_scatter);
+        let turned = eigen.eigenvectors.transpose() * of_scatter;
+        let count = scatter.lengths.len();
+        let (across, of_drift) = match drift {
+            Some(drift) => {
+                let size = sizes(drift);
+                let across = &turned * scatter.redundancy_with(drift) * &size;
+                (across, (&size * drift.redundancy() * &size, &size * &drift.along))
+            }
+            None => (DMatrix::zeros(count, 3), (DMatrix::zeros(3, 3), DVector::zeros(3))),
+        };
+        // Rounding leaves eigenvalues of zero a sign.
+        let values = eigen.eigenvalues.map(|value| value.max(0.0));
+        Self { scatter: (values, turned * &scatter.along), across, drift: of_drift, is_drift_asked: drift.is_some() }
+    }
+
+    /// Posterior means of both variances, in units of that of a rest.
+    fn posterior_mean(&self) -> (f64, f64) {
+        let strengths = (0..=PER_DECADE * DECADES).map(|k| SMALLEST * 10_f64.powf(k as f64 / PER_DECADE as f64));
+        let slab: Vec<f64> = strengths.collect();
+        // Each strength has its share of what absence has.
+        let prior = |strength: f64| if strength > 0.0 { 1.0 / slab.len() as f64 } else { 1.0 };
+        let all = || std::iter::once(0.0).chain(slab.iter().copied());
+        let is_asked = |w: &f64| *w == 0.0 || self.is_drift_asked;
+        let points: Vec<(f64, f64)> = all().flat_map(|v| all().filter(is_asked).map(move |w| (v, w))).collect();
+        let logarithms: Vec<f64> = points.iter().map(|&(v, w)| self.log_likelihood(v, w)).collect();
+        let highest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (mut sum, mut scatter, mut drift) = (0.0, 0.0, 0.0);
+        for ((v, w), logarithm) in points.into_iter().zip(logarithms) {
+            let weight = prior(v) * prior(w) * (logarithm - highest).exp();
+            sum += weight;
+            scatter += weight * v;
+            drift += weight * w;
+        }
+        (scatter / sum, drift / sum)
+    }
+
+    /// Logarithm of the likelihood of the residuals, less that without either: by `(E + v B B^T)^-1 = E - v B (E + v B^T B)^-1 B^T`
+    /// and the same for the drift.
+    fn log_likelihood(&self, v: f64, w: f64) -> f64 {
+        let (values, along) = &self.scatter;
+        let shares = values.map(|value| v / (1.0 + v * value));
+        let explained = shares.component_mul(along);
+        let weighed = DMatrix::from_fn(self.across.nrows(), 3, |i, j| shares[i] * self.across[(i, j)]);
+        let (square, product) = &self.drift;
+        let square = DMatrix::identity(3, 3) + (square - self.across.tr_mul(&weighed)) * w;
+        let product = product - self.across.tr_mul(&explained);
+        let eigen = SymmetricEigen::new(square);
+        // The identity and what is not negative: below one is rounding.
+        let of_drift = eigen.eigenvalues.map(|value| value.max(1.0));
+        let components = eigen.eigenvectors.tr_mul(&product);
+        let of_scatter: f64 = values.iter().map(|value| (v * value).ln_1p()).sum();
+        let squares = along.dot(&explained) + w * components.component_div(&of_drift).dot(&components);
+        0.5 * (squares - of_scatter - of_drift.iter().map(|value| value.ln()).sum::<f64>())
+    }
+}
