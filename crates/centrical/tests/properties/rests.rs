@@ -331,6 +331,67 @@ fn ten_thousand_runs_of_tumbles() {
     }
 }
 
+/// Scatter and drift between rests are the posterior means under the restricted likelihood of the readings (Patterson and Thompson 1971),
+/// `-2 ln L = ln det V + ln det A^T V^-1 A + r^T (V^-1 - V^-1 A (A^T V^-1 A)^-1 A^T V^-1) r`, by whole matrices: of a unit that is steady,
+/// and of one that warms up.
+#[test]
+fn what_differs_between_rests_is_what_the_restricted_likelihood_says() {
+    let few = Making { rests: 14, lasting: [2.0, 3.0], ..ON_A_TABLE };
+    for making in [few, Making { warming: 2e-3, ..few }] {
+        let (model, observations) = problem_of(&made(&making, &mut Random::new(3)));
+        let data = Data::new(&model, observations.clone()).unwrap();
+        let calibration = Calibration::exact(&data).unwrap();
+        let found = calibration.between_rests().unwrap().unwrap();
+        let x = calibration.fit().state();
+        let n = observations.len();
+        let (mut noise, mut design) = (DMatrix::zeros(3 * n, 3 * n), DMatrix::zeros(3 * n, x.len()));
+        let (mut along, mut drift) = (DMatrix::zeros(3 * n, n), DMatrix::zeros(3 * n, 3));
+        let mut residuals = DVector::zeros(3 * n);
+        let mut variance = 0.0;
+        for (k, rest) in observations.iter().enumerate() {
+            let at = model.linearise(&model.experiment().set_points[rest.set_point], x);
+            noise.fixed_view_mut::<3, 3>(3 * k, 3 * k).copy_from(&rest.covariance);
+            residuals.fixed_rows_mut::<3>(3 * k).copy_from(&(rest.mean - at.reading));
+            for (j, column) in at.columns {
+                let mut rows = design.fixed_view_mut::<3, 1>(3 * k, j);
+                rows += column * model.parameters()[j].typical;
+            }
+            let up = rest.mean.normalize();
+            along.fixed_view_mut::<3, 1>(3 * k, k).copy_from(&up);
+            let order = k as f64 / (n - 1) as f64 - 0.5;
+            drift.fixed_view_mut::<3, 3>(3 * k, 0).copy_from(&(Matrix3::identity() * order));
+            variance += 1.0 / up.dot(&(rest.covariance.try_inverse().unwrap() * up)) / n as f64;
+        }
+        let logarithm = |v: f64, w: f64| {
+            let covariance = &noise + &along * along.transpose() * v + &drift * drift.transpose() * w;
+            let factor = covariance.cholesky().unwrap();
+            let information = design.tr_mul(&factor.solve(&design)).cholesky().unwrap();
+            let weighed = factor.solve(&residuals);
+            let followed = design.tr_mul(&weighed);
+            let square = residuals.dot(&weighed) - followed.dot(&information.solve(&followed));
+            -0.5 * (factor.ln_determinant() + information.ln_determinant() + square)
+        };
+        // None, and three a decade from a hundredth to ten thousand.
+        let strengths: Vec<f64> =
+            std::iter::once(0.0).chain((0..19).map(|k| 10_f64.powf(f64::from(k) / 3.0 - 2.0))).collect();
+        let prior = |strength: f64| if strength > 0.0 { 1.0 / 19.0 } else { 1.0 };
+        let none = logarithm(0.0, 0.0);
+        let (mut sum, mut means) = (0.0, [0.0; 2]);
+        for (v, w) in strengths.iter().flat_map(|v| strengths.iter().map(move |w| (*v, *w))) {
+            let weight = prior(v) * prior(w) * (logarithm(v * variance, w * variance) - none).exp();
+            sum += weight;
+            means[0] += weight * v * variance;
+            means[1] += weight * w * variance;
+        }
+        for (found, mean) in [found.scatter, found.drift].into_iter().zip(means) {
+            let expected = (mean / sum).sqrt();
+            // The condition of the design costs some digits, alike in both ways.
+            assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+        }
+        assert!(making.warming == 0.0 || found.drift > 0.3 * making.warming, "{found:?}");
+    }
+}
+
 /// On six faces the odd powers of a reading are its scale, but for tilts of the noise. They are not taken for a rival.
 #[test]
 fn faces_in_known_attitudes_raise_no_alarm() {
