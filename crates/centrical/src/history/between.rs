@@ -67,11 +67,14 @@ impl Likely {
     pub fn of(series: &[Series], curve: Curve, quantiles: &Quantiles) -> Option<Self> {
         let mut scatter = Scatter::of(series, curve);
         let mut tau = 0.0;
-        let mut likely = Vec::new();
-        // From large values of chi^2 to small ones: tau^2 grows.
+        let mut likely: Vec<(f64, f64)> = Vec::new();
+        // From large values of chi^2 to small ones: tau^2 grows, from zero where the stated uncertainties explain the scatter.
         for &(weight, chi_squared) in quantiles.of(scatter.degrees_of_freedom)?.iter() {
             tau = scatter.solution(chi_squared, tau)?;
-            likely.push((weight, tau));
+            match likely.last_mut() {
+                Some((of_last, last)) if *last == tau => *of_last += weight,
+                _ => likely.push((weight, tau)),
+            }
         }
         Some(Self(likely))
     }
