@@ -59,9 +59,15 @@ impl Part {
         Ok(keys)
     }
 
-    /// The rows of a row group that `wanted` picks by their summaries, as deep as asked for. What is deeper is read only where a
-    /// row is wanted.
-    pub fn read(&self, group: usize, depth: Depth, mut wanted: impl FnMut(&Row) -> bool) -> Result<Vec<Row>, Error> {
+    /// The rows of a row group whose keys `has_key` picks, and `wanted` by their summaries, as deep as asked for. What is deeper is read only
+    /// where a row is wanted.
+    pub fn read(
+        &self,
+        group: usize,
+        depth: Depth,
+        has_key: impl Fn(&str) -> bool,
+        mut wanted: impl FnMut(&Row) -> bool,
+    ) -> Result<Vec<Row>, Error> {
         let mut rows: Vec<Option<Row>> = Vec::new();
         for (at, entry) in ENTRIES.iter().enumerate() {
             if at > 0 && entry.depth != ENTRIES[at - 1].depth && entry.depth == Depth::Values {
@@ -80,6 +86,9 @@ impl Part {
                 if let Some(row) = row {
                     (entry.set)(row, Read(cell));
                 }
+            }
+            if at == 0 && !rows.iter().flatten().any(|row| has_key(&row.key)) {
+                return Ok(Vec::new());
             }
         }
         Ok(rows.into_iter().flatten().collect())

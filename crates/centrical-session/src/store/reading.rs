@@ -43,7 +43,11 @@ impl Selection {
         is(&self.unit_model, &row.unit_model)
             && is(&self.unit_serial, &row.unit_serial)
             && is(&self.station, &row.station)
-            && self.keys.as_ref().is_none_or(|keys| keys.contains(&row.key))
+            && self.has_key(&row.key)
+    }
+
+    fn has_key(&self, key: &str) -> bool {
+        self.keys.as_ref().is_none_or(|keys| keys.contains(key))
     }
 }
 
@@ -94,8 +98,8 @@ impl Iterator for Rows {
                 continue;
             }
             let (selection, seen) = (&self.selection, &mut self.seen);
-            let read =
-                part.read(self.group, selection.depth, |row| selection.takes(row) && seen.insert(bytes(&row.key)));
+            let wanted = |row: &Row| selection.takes(row) && seen.insert(bytes(&row.key));
+            let read = part.read(self.group, selection.depth, |key| selection.has_key(key), wanted);
             self.group += 1;
             match read {
                 Ok(rows) => self.ready = rows.into_iter(),

@@ -193,7 +193,7 @@ fn pull(
 
 /// The whole rows of a part.
 fn stream(part: &Part) -> impl Iterator<Item = Result<Row, Error>> + '_ {
-    (0..part.groups()).flat_map(|group| match part.read(group, Depth::Whole, |_| true) {
+    (0..part.groups()).flat_map(|group| match part.read(group, Depth::Whole, |_| true, |_| true) {
         Ok(rows) => rows.into_iter().map(Ok).collect::<Vec<_>>(),
         Err(error) => vec![Err(error)],
     })

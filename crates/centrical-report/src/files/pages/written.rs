@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use super::unit::UnitPages;
 use crate::render::PageKind;
 
-/// Calibrations that are held together with their covariances, 10 kB each.
-const MOST_WHOLE: usize = 4096;
+/// Calibrations that are read together with their covariances, 10 kB each; twice as many are held.
+const MOST_WHOLE: usize = 8192;
 
 /// Writes a page. It can be made anew: nobody waits for the disk.
 ///
@@ -30,18 +30,31 @@ pub fn write_units(units: &UnitPages, out: &Path) -> Result<(), Error> {
     let all: Vec<(&str, &BTreeSet<String>)> = units.units().collect();
     let is_due = |(file, keys): &(&str, &BTreeSet<String>)| !begins_with(&out.join(file), &opening(units, keys));
     let due: Vec<_> = all.into_par_iter().filter(is_due).collect();
-    let mut begun = 0;
-    while begun < due.len() {
-        let mut keys = BTreeSet::new();
-        let first = begun;
-        while begun < due.len() && (begun == first || keys.len() + due[begun].1.len() <= MOST_WHOLE) {
-            keys.extend(due[begun].1.iter().cloned());
-            begun += 1;
-        }
-        let read = by_unit(units.read(keys)?);
-        read.par_iter().try_for_each(|unit| write_unit(units, unit, out))?;
+    let mut batches = batches(&due).into_iter();
+    let mut next = batches.next().map(|keys| units.read(keys));
+    while let Some(read) = next {
+        let unit_by_unit = by_unit(read?);
+        // The next ones are read meanwhile.
+        let (written, ahead) = rayon::join(
+            || unit_by_unit.par_iter().try_for_each(|unit| write_unit(units, unit, out)),
+            || batches.next().map(|keys| units.read(keys)),
+        );
+        written?;
+        next = ahead;
     }
     Ok(())
+}
+
+/// The keys of whole units that are read together.
+fn batches(due: &[(&str, &BTreeSet<String>)]) -> Vec<BTreeSet<String>> {
+    let mut batches: Vec<BTreeSet<String>> = Vec::new();
+    for (_, keys) in due {
+        match batches.last_mut() {
+            Some(batch) if batch.len() + keys.len() <= MOST_WHOLE => batch.extend(keys.iter().cloned()),
+            _ => batches.push((*keys).clone()),
+        }
+    }
+    batches
 }
 
 fn write_unit(units: &UnitPages, unit: &[Calibrated], out: &Path) -> Result<(), Error> {
