@@ -178,24 +178,25 @@ impl<'a> Following<'a> {
         let (mut note, mut is_frozen) = (None, false);
         loop {
             let arrivals = watch.look()?;
-            let has_come = !arrivals.is_empty();
-            for observation in arrivals {
+            let count = arrivals.len();
+            for (k, observation) in arrivals.into_iter().enumerate() {
                 if stop.load(Ordering::Relaxed) {
                     self.keep()?;
                     return Ok(Some(self.stopped()));
                 }
                 let speed = watch.speed(observation.set_point);
                 let observation = self.at_set_speed(observation, speed);
-                if let Some(progress) = self.arrived(&observation)? {
+                // What is best next is asked once a look: each answer values all plateaus that remain.
+                if let Some(progress) = self.arrived(&observation, k + 1 == count)? {
                     report(WatchEvent::Plateau(progress));
                 }
             }
-            if has_come {
+            if count > 0 {
                 self.keep()?;
             }
             if let Some(board) = &mut board {
                 board.pace(self.state.plateaus.len());
-                if let Some(standing) = has_come.then(|| self.standing()).transpose()?.flatten() {
+                if let Some(standing) = (count > 0).then(|| self.standing()).transpose()?.flatten() {
                     board.show(&standing)?;
                 }
                 board.write(&watch, LiveStatus::Following, watch.note())?;
@@ -249,8 +250,8 @@ impl<'a> Following<'a> {
         }
     }
 
-    /// Tests a plateau, takes it up or holds it out, and keeps what is known then.
-    fn arrived(&mut self, observation: &Observation) -> Result<Option<WatchProgress<'_>>, Error> {
+    /// Tests a plateau, takes it up or holds it out, and keeps what is known then; after the last one of a look also the best next.
+    fn arrived(&mut self, observation: &Observation, is_last: bool) -> Result<Option<WatchProgress<'_>>, Error> {
         let set_point = observation.set_point;
         if self.has(set_point) {
             return Ok(None);
@@ -278,7 +279,7 @@ impl<'a> Following<'a> {
         if self.kept.elapsed() >= KEPT_EACH {
             self.keep()?;
         }
-        self.progress(now, observation).map(Some)
+        self.progress(now, observation, is_last).map(Some)
     }
 
     /// Writes the state. It holds all plateaus: many that come at once are not written one by one. After a kill the history
@@ -291,10 +292,10 @@ impl<'a> Following<'a> {
     /// What is known after the last plateau that has arrived; `None` while none is taken up.
     fn standing(&self) -> Result<Option<WatchProgress<'_>>, Error> {
         let last = self.state.plateaus.last().filter(|_| !self.follower.taken().is_empty());
-        last.map(|last| self.progress(self.fitted(self.follower.progress())?, &last.observation())).transpose()
+        last.map(|last| self.progress(self.fitted(self.follower.progress())?, &last.observation(), true)).transpose()
     }
 
-    fn progress(&self, now: Progress, last: &Observation) -> Result<WatchProgress<'_>, Error> {
+    fn progress(&self, now: Progress, last: &Observation, is_last: bool) -> Result<WatchProgress<'_>, Error> {
         let next = (0..self.session.experiment.set_points.len()).find(|&set_point| !self.has(set_point));
         let expected = |next| self.follower.expected(next, last.covariance).map(|progress| (next, progress));
         Ok(WatchProgress {
@@ -303,7 +304,7 @@ impl<'a> Following<'a> {
             plateaus: &self.state.plateaus,
             now,
             next: self.fitted(next.map(expected).transpose())?,
-            best: self.best_next(last)?,
+            best: if is_last { self.best_next(last)? } else { Vec::new() },
         })
     }
 

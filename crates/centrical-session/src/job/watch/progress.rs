@@ -22,7 +22,7 @@ pub struct WatchProgress<'a> {
     /// The next set point of the schedule, and what will be known after it.
     pub next: Option<(usize, Progress)>,
     /// The most useful plateau that remains in the mounting on the arm, and that of the other mountings: by the mean
-    /// uncertainty of the compensated reading with it over that without.
+    /// uncertainty of the compensated reading with it over that without. Of plateaus that one look finds, the last one has it.
     pub best: Vec<Benefit>,
 }
 
