@@ -33,6 +33,7 @@ mod certificate;
 mod compensation;
 mod error;
 mod fused;
+mod inverse;
 mod lanes;
 mod linear;
 mod machine;

@@ -7,7 +7,6 @@ mod overview;
 mod passes;
 mod reader;
 mod sample_cache;
-mod times;
 mod units_found;
 mod writer;
 

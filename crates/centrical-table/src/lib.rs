@@ -59,7 +59,7 @@ pub use document::{open_regular, read_bytes, read_document};
 pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, harmless, harmless_line};
 pub use reader::{Extent, TableReader, estimate_rows, text_form};
-pub use rows::Rows;
+pub use rows::{Rows, to_scale};
 pub use stamp::{StampKind, Stamps};
 pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm};
 pub use write::{

@@ -58,15 +58,19 @@ impl TableFormat {
 
 /// Writes a long table beside the file, piece by piece, and renames at the end: whoever looks sees the whole table or none.
 /// It is on the disk then. Numbers read back as they were unless they are rounded; NaN is written as such.
-pub struct TableWriter<const N: usize> {
+///
+/// Each call passes on to what is compiled here for any number of columns: a caller compiled for size loses nothing.
+pub struct TableWriter<const N: usize>(OpenTable);
+
+struct OpenTable {
     file: PathBuf,
     /// The table in the making. It ends before the file that it is written to.
-    table: Table<N>,
+    table: Table,
     beside: Beside,
 }
 
-enum Table<const N: usize> {
-    Text(TextTable<N>),
+enum Table {
+    Text(TextTable),
     Parquet(RowGroups),
 }
 
@@ -76,14 +80,7 @@ impl<const N: usize> TableWriter<N> {
     /// # Errors
     /// [`Error::Io`] if the folder does not take the file.
     pub fn create(file: &Path, names: &[&str; N], decimals: [Decimals; N]) -> Result<Self, Error> {
-        let failed = |error| Error::writing(file, error);
-        let (beside, output) = Beside::create(file).map_err(failed)?;
-        let output = SteadyFile::new(output).map_err(failed)?;
-        let table = match TableFormat::of(file) {
-            TableFormat::Csv => TextTable::new(output, names, decimals).map(Table::Text),
-            TableFormat::Parquet => Ok(Table::Parquet(RowGroups::new(output, names))),
-        };
-        Ok(Self { file: file.to_owned(), table: table.map_err(failed)?, beside })
+        OpenTable::create(file, names, &decimals).map(Self)
     }
 
     /// Adds rows, given as pieces of all columns, on all threads.
@@ -91,11 +88,8 @@ impl<const N: usize> TableWriter<N> {
     /// # Errors
     /// [`Error::Io`] if they cannot be written.
     pub fn write(&mut self, pieces: &[[&[f64]; N]]) -> Result<(), Error> {
-        let written = match &mut self.table {
-            Table::Text(table) => table.write(pieces),
-            Table::Parquet(table) => table.write(pieces),
-        };
-        written.map_err(|error| Error::writing(&self.file, error))
+        let pieces: Vec<&[&[f64]]> = pieces.iter().map(<[_; N]>::as_slice).collect();
+        self.0.write(&pieces)
     }
 
     /// Adds rows that begin with stamps in place of the numbers of the first column, where they have one, given as a piece of all
@@ -108,11 +102,7 @@ impl<const N: usize> TableWriter<N> {
     /// # Errors
     /// [`Error::Io`] if they cannot be written, or if a later row does not fit a column of timestamps that was begun.
     pub fn write_stamped(&mut self, stamps: &Stamps, piece: [&[f64]; N]) -> Result<(), Error> {
-        let written = match &mut self.table {
-            Table::Text(table) => table.write_stamped(stamps, piece),
-            Table::Parquet(table) => table.write_stamped(stamps, piece),
-        };
-        written.map_err(|error| Error::writing(&self.file, error))
+        self.0.write_stamped(stamps, &piece)
     }
 
     /// Ends the table; only now the file is there.
@@ -120,6 +110,39 @@ impl<const N: usize> TableWriter<N> {
     /// # Errors
     /// [`Error::Io`] if it cannot be written.
     pub fn finish(self) -> Result<(), Error> {
+        self.0.finish()
+    }
+}
+
+impl OpenTable {
+    fn create(file: &Path, names: &[&str], decimals: &[Decimals]) -> Result<Self, Error> {
+        let failed = |error| Error::writing(file, error);
+        let (beside, output) = Beside::create(file).map_err(failed)?;
+        let output = SteadyFile::new(output).map_err(failed)?;
+        let table = match TableFormat::of(file) {
+            TableFormat::Csv => TextTable::new(output, names, decimals).map(Table::Text),
+            TableFormat::Parquet => Ok(Table::Parquet(RowGroups::new(output, names))),
+        };
+        Ok(Self { file: file.to_owned(), table: table.map_err(failed)?, beside })
+    }
+
+    fn write(&mut self, pieces: &[&[&[f64]]]) -> Result<(), Error> {
+        let written = match &mut self.table {
+            Table::Text(table) => table.write(pieces),
+            Table::Parquet(table) => table.write(pieces),
+        };
+        written.map_err(|error| Error::writing(&self.file, error))
+    }
+
+    fn write_stamped(&mut self, stamps: &Stamps, piece: &[&[f64]]) -> Result<(), Error> {
+        let written = match &mut self.table {
+            Table::Text(table) => table.write_stamped(stamps, piece),
+            Table::Parquet(table) => table.write_stamped(stamps, piece),
+        };
+        written.map_err(|error| Error::writing(&self.file, error))
+    }
+
+    fn finish(self) -> Result<(), Error> {
         let finished = match self.table {
             Table::Text(table) => table.finish(),
             Table::Parquet(table) => table.finish(),
@@ -137,16 +160,31 @@ pub fn write_table<const N: usize>(
     file: &Path,
     format: TableFormat,
     names: &[&str; N],
-    mut stretches: impl Iterator<Item = io::Result<[Vec<f64>; N]>>,
+    stretches: impl Iterator<Item = io::Result<[Vec<f64>; N]>>,
+) -> Result<(), Error> {
+    let mut stretches = stretches.map(|rows| rows.map(Vec::from));
+    write_stretches(file, format, names, &mut stretches)
+}
+
+fn write_stretches(
+    file: &Path,
+    format: TableFormat,
+    names: &[&str],
+    stretches: &mut dyn Iterator<Item = io::Result<Vec<Vec<f64>>>>,
 ) -> Result<(), Error> {
     write_stream(file, |output| match format {
         TableFormat::Csv => {
             let mut table = CsvTable::new(output, names)?;
-            stretches.try_for_each(|rows| table.write(&rows?))
+            for rows in stretches {
+                table.write(&rows?)?;
+            }
+            Ok(())
         }
         TableFormat::Parquet => {
             let mut table = ParquetTable::new(output, Layout::PACKED, names, None)?;
-            stretches.try_for_each(|rows| table.write(&rows?))?;
+            for rows in stretches {
+                table.write(&rows?)?;
+            }
             table.finish().map(|_| ())
         }
     })

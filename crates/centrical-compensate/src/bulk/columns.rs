@@ -1,8 +1,9 @@
 //! Many readings at once as an array for each axis.
 
-use super::outside::{LANES, Outside};
+use super::outside::{LANES, Outside, check};
 use crate::compensation::Compensation;
 use crate::error::UnequalLengths;
+use crate::inverse::Inverse;
 use crate::lanes::Lanes;
 use crate::machine::on_this_machine;
 use crate::term::Term;
@@ -14,8 +15,8 @@ impl<T: AsRef<[Term]>> Compensation<T> {
     /// # Errors
     /// [`UnequalLengths`] when the arrays are not of one length; nothing is touched then.
     pub fn apply_all(&self, f: [&mut [f64]; 3]) -> Result<Outside, UnequalLengths> {
-        check(&f)?;
-        Ok(self.sweep(f))
+        check(f.each_ref().map(|f| &**f))?;
+        Ok(self.inverse.sweep(self.terms(), f))
     }
 
     /// [`Compensation::apply_all`] on all threads of the current rayon pool. The same bytes for any number of them.
@@ -23,28 +24,32 @@ impl<T: AsRef<[Term]>> Compensation<T> {
     /// # Errors
     /// As [`Compensation::apply_all`].
     #[cfg(feature = "std")]
-    pub fn apply_all_parallel(&self, f: [&mut [f64]; 3]) -> Result<Outside, UnequalLengths>
-    where
-        T: Sync,
-    {
-        use super::outside::TASK;
-        use rayon::prelude::*;
-        check(&f)?;
-        let [f1, f2, f3] = f.map(|f| f.par_chunks_mut(TASK));
-        let outside =
-            f1.zip(f2).zip(f3).enumerate().map(|(n, ((f1, f2), f3))| self.sweep([f1, f2, f3]).after(n * TASK));
-        Ok(outside.reduce(Outside::default, Outside::and))
+    pub fn apply_all_parallel(&self, f: [&mut [f64]; 3]) -> Result<Outside, UnequalLengths> {
+        check(f.each_ref().map(|f| &**f))?;
+        Ok(self.inverse.sweep_parallel(self.terms(), f))
     }
+}
 
-    fn sweep(&self, f: [&mut [f64]; 3]) -> Outside {
+impl Inverse {
+    fn sweep(&self, terms: &[Term], f: [&mut [f64]; 3]) -> Outside {
         on_this_machine(
             #[inline(always)]
-            || self.sweep_blocks(f),
+            || self.sweep_blocks(terms, f),
         )
     }
 
+    #[cfg(feature = "std")]
+    fn sweep_parallel(&self, terms: &[Term], f: [&mut [f64]; 3]) -> Outside {
+        use super::outside::TASK;
+        use rayon::prelude::*;
+        let [f1, f2, f3] = f.map(|f| f.par_chunks_mut(TASK));
+        let outside =
+            f1.zip(f2).zip(f3).enumerate().map(|(n, ((f1, f2), f3))| self.sweep(terms, [f1, f2, f3]).after(n * TASK));
+        outside.reduce(Outside::default, Outside::and)
+    }
+
     #[inline(always)]
-    fn sweep_blocks(&self, f: [&mut [f64]; 3]) -> Outside {
+    fn sweep_blocks(&self, terms: &[Term], f: [&mut [f64]; 3]) -> Outside {
         let mut outside = Outside::default();
         let [f1, f2, f3] = f.map(|f| f.as_chunks_mut::<LANES>());
         let rest_from = LANES * f1.0.len();
@@ -54,7 +59,7 @@ impl<T: AsRef<[Term]>> Compensation<T> {
             lanes.0[0] = *f1;
             lanes.0[1] = *f2;
             lanes.0[2] = *f3;
-            self.invert(&mut lanes);
+            self.invert(terms, &mut lanes);
             (*f1, *f2, *f3) = (lanes.0[0], lanes.0[1], lanes.0[2]);
             outside = outside.and(Outside::of(&lanes.0[0]).after(n * LANES));
         }
@@ -63,16 +68,11 @@ impl<T: AsRef<[Term]>> Compensation<T> {
         for (lane, f) in lanes.0.iter_mut().zip(&rest) {
             lane[..f.len()].copy_from_slice(f);
         }
-        self.invert(&mut lanes);
+        self.invert(terms, &mut lanes);
         outside = outside.and(Outside::of(&lanes.0[0][..rest[0].len()]).after(rest_from));
         for (lane, f) in lanes.0.iter().zip(rest) {
             f.copy_from_slice(&lane[..f.len()]);
         }
         outside
     }
-}
-
-fn check(f: &[&mut [f64]; 3]) -> Result<(), UnequalLengths> {
-    let lengths = [f[0].len(), f[1].len(), f[2].len()];
-    if lengths[0] == lengths[1] && lengths[1] == lengths[2] { Ok(()) } else { Err(UnequalLengths { lengths }) }
 }

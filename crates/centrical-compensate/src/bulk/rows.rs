@@ -3,6 +3,7 @@
 use super::outside::{LANES, Outside};
 use crate::compensation::Compensation;
 use crate::error::UnequalRows;
+use crate::inverse::Inverse;
 use crate::lanes::Lanes;
 use crate::machine::on_this_machine;
 use crate::term::Term;
@@ -11,10 +12,7 @@ impl<T: AsRef<[Term]>> Compensation<T> {
     /// Takes readings `f'` [m/s^2], a row of three each, to specific forces [m/s^2] in place. Each becomes what
     /// [`Compensation::apply`] makes of it; where that is an error, NaN on all axes, and it is counted.
     pub fn apply_rows(&self, f: &mut [[f64; 3]]) -> Outside {
-        on_this_machine(
-            #[inline(always)]
-            || self.sweep_rows(None, f),
-        )
+        self.inverse.sweep_in_place(self.terms(), f)
     }
 
     /// The same from `readings` to `forces`.
@@ -23,7 +21,7 @@ impl<T: AsRef<[Term]>> Compensation<T> {
     /// [`UnequalRows`] when they are not of one length; nothing is touched then.
     pub fn apply_rows_to(&self, readings: &[[f64; 3]], forces: &mut [[f64; 3]]) -> Result<Outside, UnequalRows> {
         check(readings, forces)?;
-        Ok(self.sweep_to(readings, forces))
+        Ok(self.inverse.sweep_to(self.terms(), readings, forces))
     }
 
     /// [`Compensation::apply_rows_to`] on all threads of the current rayon pool. The same bytes for any number of them.
@@ -31,28 +29,43 @@ impl<T: AsRef<[Term]>> Compensation<T> {
     /// # Errors
     /// As [`Compensation::apply_rows_to`].
     #[cfg(feature = "std")]
-    pub fn apply_rows_to_parallel(&self, readings: &[[f64; 3]], forces: &mut [[f64; 3]]) -> Result<Outside, UnequalRows>
-    where
-        T: Sync,
-    {
-        use super::outside::TASK;
-        use rayon::prelude::*;
+    pub fn apply_rows_to_parallel(
+        &self,
+        readings: &[[f64; 3]],
+        forces: &mut [[f64; 3]],
+    ) -> Result<Outside, UnequalRows> {
         check(readings, forces)?;
-        let tasks = readings.par_chunks(TASK).zip(forces.par_chunks_mut(TASK)).enumerate();
-        let outside = tasks.map(|(n, (readings, forces))| self.sweep_to(readings, forces).after(n * TASK));
-        Ok(outside.reduce(Outside::default, Outside::and))
+        Ok(self.inverse.sweep_to_parallel(self.terms(), readings, forces))
     }
+}
 
-    fn sweep_to(&self, readings: &[[f64; 3]], forces: &mut [[f64; 3]]) -> Outside {
+impl Inverse {
+    fn sweep_in_place(&self, terms: &[Term], f: &mut [[f64; 3]]) -> Outside {
         on_this_machine(
             #[inline(always)]
-            || self.sweep_rows(Some(readings), forces),
+            || self.sweep_rows(terms, None, f),
         )
+    }
+
+    fn sweep_to(&self, terms: &[Term], readings: &[[f64; 3]], forces: &mut [[f64; 3]]) -> Outside {
+        on_this_machine(
+            #[inline(always)]
+            || self.sweep_rows(terms, Some(readings), forces),
+        )
+    }
+
+    #[cfg(feature = "std")]
+    fn sweep_to_parallel(&self, terms: &[Term], readings: &[[f64; 3]], forces: &mut [[f64; 3]]) -> Outside {
+        use super::outside::TASK;
+        use rayon::prelude::*;
+        let tasks = readings.par_chunks(TASK).zip(forces.par_chunks_mut(TASK)).enumerate();
+        let outside = tasks.map(|(n, (readings, forces))| self.sweep_to(terms, readings, forces).after(n * TASK));
+        outside.reduce(Outside::default, Outside::and)
     }
 
     /// From the `readings`, or from what stands in `f`, to `f`.
     #[inline(always)]
-    fn sweep_rows(&self, readings: Option<&[[f64; 3]]>, f: &mut [[f64; 3]]) -> Outside {
+    fn sweep_rows(&self, terms: &[Term], readings: Option<&[[f64; 3]]>, f: &mut [[f64; 3]]) -> Outside {
         let mut outside = Outside::default();
         for (n, f) in f.chunks_mut(LANES).enumerate() {
             let first = n * LANES;
@@ -61,7 +74,7 @@ impl<T: AsRef<[Term]>> Compensation<T> {
             for (w, reading) in readings.iter().enumerate() {
                 lanes.put(w, *reading);
             }
-            self.invert(&mut lanes);
+            self.invert(terms, &mut lanes);
             for (w, f) in f.iter_mut().enumerate() {
                 *f = lanes.at(w);
             }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::reduction::RecordSlice;
 use centrical::{OnProgress, advance};
-use centrical_compensate::{Certificate, Compensation, Term};
+use centrical_compensate::{Certificate, Compensation, Outside, Term, UnequalLengths};
 use centrical_table::{Rows, Stamps, refuse_inputs};
 use rayon::prelude::*;
 
@@ -177,20 +177,17 @@ fn compensate_rows(
     let readings = f.to_vec();
     let mut columns = f.iter_mut();
     let f = [(); 3].map(|()| columns.next().map_or_else(Default::default, Vec::as_mut_slice));
-    let outside = compensation
-        .apply_all(f)
-        .map_err(|unequal| Error::content(input, Place::Whole, unequal.to_string(), "columns of equal length"))?;
-    let reading = |k: usize| [0, 1, 2].map(|axis: usize| readings[axis][k]);
-    let is_any_beyond = (0..3).any(|axis| readings[axis].iter().any(|f| f.abs() > calibrated.limit[axis]));
-    let is_beyond = |k: &usize| (0..3).any(|axis| readings[axis][*k].abs() > calibrated.limit[axis]);
-    let mut beyond = (0..if is_any_beyond { t.len() } else { 0 }).filter(is_beyond).peekable();
-    let first_beyond = beyond.peek().map(|&k| FirstOutside { t: t[k], reading: reading(k) });
+    let unequal =
+        |unequal: UnequalLengths| Error::content(input, Place::Whole, unequal.to_string(), "columns of equal length");
+    let beyond = Outside::beyond(calibrated.limit, f.each_ref().map(|f| &**f)).map_err(unequal)?;
+    let outside = compensation.apply_all(f).map_err(unequal)?;
+    let first = |k: usize| FirstOutside { t: t[k], reading: [0, 1, 2].map(|axis: usize| readings[axis][k]) };
     Ok(Compensated {
         readings: t.len() as u64,
         outside: outside.count as u64,
-        first_outside: outside.first.map(|k| FirstOutside { t: t[k], reading: reading(k) }),
-        beyond: beyond.count() as u64,
-        first_beyond,
+        first_outside: outside.first.map(first),
+        beyond: beyond.count as u64,
+        first_beyond: beyond.first.map(first),
         decimals: None,
     })
 }

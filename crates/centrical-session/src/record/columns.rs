@@ -1,6 +1,6 @@
 //! The columns of records and telemetry, and what takes their numbers to SI.
 
-use centrical_table::{ColumnName, Field, Rule, TableLines};
+use centrical_table::{ColumnName, Field, Rule, TableLines, to_scale};
 
 use crate::quantity::Dimension;
 
@@ -56,9 +56,7 @@ impl Scale {
 
     pub(crate) fn apply(self, values: &mut [f64]) {
         if self != Self::factor(1.0) {
-            for value in values {
-                *value = (*value - self.offset) * self.factor;
-            }
+            to_scale(values, self.offset, self.factor);
         }
     }
 }

@@ -2,10 +2,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use centrical::reduction::RecordSlice;
+use centrical::reduction::{PackedTimes, RecordSlice};
 
 use super::reader::RecordIndex;
-use super::times::Times;
 
 /// Bytes that samples take at most: an hour at 1 kHz and more.
 const BYTES_LIMIT: usize = 125_000_000;
@@ -24,7 +23,7 @@ pub(crate) struct SampleCache<'a> {
     budget: &'a MemoryBudget,
     /// Taken of the budget.
     bytes: usize,
-    times: Vec<Times>,
+    times: Vec<PackedTimes>,
     f_z: [Vec<f64>; 3],
     /// Stamp of the last sample, and those of samples that had the stamp of the one before: these are not kept.
     last: f64,
@@ -121,7 +120,7 @@ impl<'a> SampleCache<'a> {
             return;
         }
         let from = self.f_z[0].len();
-        let times = Times::of(from, stretch.t);
+        let times = PackedTimes::of(from, stretch.t);
         if self.take(times.bytes() + 3 * size_of_val(stretch.t)) {
             self.times.push(times);
             for (whole, part) in self.f_z.iter_mut().zip(stretch.f_z) {
@@ -149,14 +148,14 @@ impl<'a> SampleCache<'a> {
         self.touched(window).map(|times| times.range.len()).sum()
     }
 
-    fn touched(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = &Times> {
+    fn touched(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = &PackedTimes> {
         self.times.iter().filter(move |times| from <= times.span[1] && times.span[0] <= to)
     }
 
     /// The samples of a window, from and to [s], and how many with the stamp of the one before are not among them. Their times
     /// are written to `t`.
     pub(super) fn between<'b>(&'b self, window: [f64; 2], t: &'b mut Vec<f64>) -> (RecordSlice<'b>, usize) {
-        let touched: Vec<&Times> = self.touched(window).collect();
+        let touched: Vec<&PackedTimes> = self.touched(window).collect();
         t.clear();
         t.reserve(touched.iter().map(|times| times.range.len()).sum());
         for times in &touched {

@@ -19,11 +19,12 @@ impl<'a> CsvTable<'a> {
     }
 
     /// Adds rows, given as columns of equal length.
-    pub fn write<const N: usize>(&mut self, columns: &[Vec<f64>; N]) -> io::Result<()> {
-        let rows = columns[0].len();
+    pub fn write(&mut self, columns: &[Vec<f64>]) -> io::Result<()> {
+        let rows = columns.first().map_or(0, Vec::len);
         for from in (0..rows).step_by(ROWS) {
-            let columns = columns.each_ref().map(|column| &column[from..rows.min(from + ROWS)]);
-            let start = write_lines(&mut self.text, columns.map(|column| Decimals::at_most(9, column)), columns);
+            let columns: Vec<&[f64]> = columns.iter().map(|column| &column[from..rows.min(from + ROWS)]).collect();
+            let decimals: Vec<Decimals> = columns.iter().map(|column| Decimals::at_most(9, column)).collect();
+            let start = write_lines(&mut self.text, &decimals, &columns);
             self.output.write_all(&self.text[start..])?;
         }
         Ok(())

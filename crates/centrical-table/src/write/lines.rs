@@ -14,10 +14,10 @@ use crate::stamp::Stamps;
 const AHEAD: usize = 32;
 
 /// A CSV file in the making.
-pub(super) struct TextTable<const N: usize> {
+pub(super) struct TextTable {
     output: Output<Lines>,
     /// Of each column.
-    decimals: [Decimals; N],
+    decimals: Vec<Decimals>,
 }
 
 /// Lines on their way to the file: the text from `start` on.
@@ -40,23 +40,20 @@ impl Sink<Lines> for TextFile {
     }
 }
 
-impl<const N: usize> TextTable<N> {
+impl TextTable {
     /// Begins the file.
-    pub fn new(mut file: SteadyFile, names: &[&str; N], decimals: [Decimals; N]) -> io::Result<Self> {
+    pub fn new(mut file: SteadyFile, names: &[&str], decimals: &[Decimals]) -> io::Result<Self> {
         file.write_all(header(names).as_bytes())?;
-        Ok(Self { output: Output::new(TextFile(file), AHEAD), decimals })
+        Ok(Self { output: Output::new(TextFile(file), AHEAD), decimals: decimals.to_vec() })
     }
 
     /// Adds rows, piece after piece, on all threads; in order, whatever their number.
-    pub fn write(&mut self, pieces: &[[&[f64]; N]]) -> io::Result<()> {
-        let rows = pieces.iter().flat_map(|columns| {
-            let count = columns[0].len();
-            (0..count).step_by(ROWS).map(move |from| columns.map(|column| &column[from..count.min(from + ROWS)]))
-        });
-        let (decimals, output) = (self.decimals, &self.output);
-        let rooms: Vec<(Lines, [&[f64]; N])> = rows.map(|rows| (output.room(), rows)).collect();
+    pub fn write(&mut self, pieces: &[&[&[f64]]]) -> io::Result<()> {
+        let rows = pieces.iter().flat_map(|columns| (0..count(columns)).step_by(ROWS).map(|from| part(columns, from)));
+        let (decimals, output) = (&self.decimals, &self.output);
+        let rooms: Vec<(Lines, Vec<&[f64]>)> = rows.map(|rows| (output.room(), rows)).collect();
         let written = rooms.into_par_iter().map(|(mut lines, rows)| {
-            lines.start = write_lines(&mut lines.text, decimals, rows);
+            lines.start = write_lines(&mut lines.text, decimals, &rows);
             lines
         });
         let written: Vec<Lines> = written.collect();
@@ -64,12 +61,11 @@ impl<const N: usize> TextTable<N> {
     }
 
     /// Adds the rows of a piece with these stamps in place of the numbers of the first column, on all threads.
-    pub fn write_stamped(&mut self, stamps: &Stamps, columns: [&[f64]; N]) -> io::Result<()> {
-        let (count, decimals, output) = (columns[0].len(), self.decimals, &self.output);
-        let rooms: Vec<(usize, Lines)> = (0..count).step_by(ROWS).map(|from| (from, output.room())).collect();
+    pub fn write_stamped(&mut self, stamps: &Stamps, columns: &[&[f64]]) -> io::Result<()> {
+        let (decimals, output) = (&self.decimals, &self.output);
+        let rooms: Vec<(usize, Lines)> = (0..count(columns)).step_by(ROWS).map(|from| (from, output.room())).collect();
         let written = rooms.into_par_iter().map(|(from, mut numbers)| {
-            let rows = columns.map(|column| &column[from..count.min(from + ROWS)]);
-            numbers.start = write_lines(&mut numbers.text, decimals, rows);
+            numbers.start = write_lines(&mut numbers.text, decimals, &part(columns, from));
             let mut text = Vec::with_capacity(2 * (numbers.text.len() - numbers.start));
             for (row, line) in numbers.text[numbers.start..].split_inclusive(|byte| *byte == b'\n').enumerate() {
                 let after = memchr(b',', line).unwrap_or(line.len() - 1);
@@ -89,4 +85,14 @@ impl<const N: usize> TextTable<N> {
     pub fn finish(self) -> io::Result<()> {
         self.output.finish()
     }
+}
+
+/// Rows of a piece, given by columns of equal length.
+fn count(columns: &[&[f64]]) -> usize {
+    columns.first().map_or(0, |column| column.len())
+}
+
+/// At most [`ROWS`] rows of a piece.
+fn part<'a>(columns: &[&'a [f64]], from: usize) -> Vec<&'a [f64]> {
+    columns.iter().map(|column| &column[from..column.len().min(from + ROWS)]).collect()
 }

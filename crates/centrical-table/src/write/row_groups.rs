@@ -45,7 +45,7 @@ impl RowGroups {
     }
 
     /// Adds rows, piece after piece.
-    pub fn write<const N: usize>(&mut self, pieces: &[[&[f64]; N]]) -> io::Result<()> {
+    pub fn write(&mut self, pieces: &[&[&[f64]]]) -> io::Result<()> {
         for columns in pieces.iter().filter(|columns| !columns[0].is_empty()) {
             if self.stamps(None)?.is_some() {
                 return Err(self.without_stamp(0));
@@ -59,8 +59,8 @@ impl RowGroups {
     }
 
     /// Adds rows with these stamps in place of the numbers of the first column, if the first row of all has one that can be counted.
-    pub fn write_stamped<const N: usize>(&mut self, stamps: &Stamps, columns: [&[f64]; N]) -> io::Result<()> {
-        let [first, others @ ..] = columns.as_slice() else { return Ok(()) };
+    pub fn write_stamped(&mut self, stamps: &Stamps, columns: &[&[f64]]) -> io::Result<()> {
+        let [first, others @ ..] = columns else { return Ok(()) };
         let rows = first.len();
         if rows == 0 {
             return Ok(());

@@ -17,35 +17,35 @@ use self::decimal::{Digits, ROOM};
 pub(super) const ROWS: usize = 4096;
 
 /// Writes the lines of rows, given by columns, to the end of `text`, which grows where it is too short, and returns where they start.
-pub(super) fn write_lines<const N: usize>(text: &mut Vec<u8>, decimals: [Decimals; N], columns: [&[f64]; N]) -> usize {
-    let most = (columns[0].len() * N + 1) * ROOM;
+pub(super) fn write_lines(text: &mut Vec<u8>, decimals: &[Decimals], columns: &[&[f64]]) -> usize {
+    let most = (columns[0].len() * columns.len() + 1) * ROOM;
     text.resize(text.len().max(most), 0);
     Arch::new().dispatch(Fill { text, decimals, columns })
 }
 
 /// Fills a text from its end with the lines of rows, and returns where they start.
-struct Fill<'a, const N: usize> {
+struct Fill<'a> {
     text: &'a mut [u8],
-    decimals: [Decimals; N],
-    columns: [&'a [f64]; N],
+    decimals: &'a [Decimals],
+    columns: &'a [&'a [f64]],
 }
 
-impl<const N: usize> WithSimd for Fill<'_, N> {
+impl WithSimd for Fill<'_> {
     type Output = usize;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> usize {
         let Self { text, decimals, columns } = self;
-        let mut digits = decimals.map(Digits::new);
+        let mut digits: Vec<Digits> = decimals.iter().copied().map(Digits::new).collect();
         let mut start = text.len();
         for end in (1..=columns[0].len()).rev().step_by(digits::ROWS) {
             let rows = end.saturating_sub(digits::ROWS)..end;
-            for (digits, column) in digits.iter_mut().zip(&columns) {
+            for (digits, column) in digits.iter_mut().zip(columns) {
                 digits.take(&column[rows.clone()]);
             }
             for row in rows.clone().rev() {
                 let mut ended_by = b'\n';
-                for (digits, column) in digits.iter().zip(&columns).rev() {
+                for (digits, column) in digits.iter().zip(columns).rev() {
                     let Some(room) = text[..start].last_chunk_mut() else { break };
                     let put = digits.put(row - rows.start, ended_by, room);
                     start -= put.unwrap_or_else(|| put_shortest(column[row], ended_by, room));

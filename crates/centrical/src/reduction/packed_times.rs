@@ -1,18 +1,14 @@
 //! The times of neighbouring samples, kept in a byte each where they are equally spaced.
 
-#![allow(
-    clippy::inline_always,
-    reason = "what is not inlined into the function with the wide vectors is compiled for the narrow ones"
-)]
-
 use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
 /// The times of neighbouring samples.
-pub(super) struct Times {
+pub struct PackedTimes {
     /// The samples, counted in the record.
     pub range: Range<usize>,
+    /// The first and the last [s].
     pub span: [f64; 2],
     law: Law,
 }
@@ -28,10 +24,10 @@ enum Law {
 /// The byte of a time that is where equal steps have it.
 const MIDDLE: u64 = 128;
 
-impl Times {
-    /// The times of the samples from `start` on, at least one.
+impl PackedTimes {
+    /// The times [s] of the samples from `start` on.
     pub fn of(start: usize, t: &[f64]) -> Self {
-        let span = [t[0], t[t.len() - 1]];
+        let span = [t.first(), t.last()].map(|t| t.copied().unwrap_or_default());
         let off = Arch::new().dispatch(Off { span, t });
         let law = off.map_or_else(|| Law::Any(t.to_vec()), Law::Even);
         Self { range: start..start + t.len(), span, law }
@@ -104,7 +100,7 @@ fn even([first, last]: [f64; 2], count: usize) -> impl Iterator<Item = f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::Times;
+    use super::PackedTimes;
 
     #[test]
     fn times_are_kept_to_the_last_bit() {
@@ -112,9 +108,9 @@ mod tests {
         let even: [Law; 4] = [|i| i / 1000.0, |i| i * 1e-3, |i| 1_699_999_000.25 + i / 1000.0, |_| 0.0];
         let others: [Law; 2] = [|i| i / 300.0 - 50.0, |i| (i + i % 2.0) / 1000.0];
         for (law, is_even) in even.map(|law| (law, true)).into_iter().chain(others.map(|law| (law, false))) {
-            for n in [1, 2, 3, 20_000] {
+            for n in [0, 1, 2, 3, 20_000] {
                 let t: Vec<f64> = (0..n).map(f64::from).map(law).collect();
-                let times = Times::of(7, &t);
+                let times = PackedTimes::of(7, &t);
                 let mut again = Vec::new();
                 times.write(&mut again);
                 assert!(t.iter().zip(&again).all(|(a, b)| a.to_bits() == b.to_bits()) && again.len() == t.len());
