@@ -402,6 +402,35 @@ fn a_missing_plateau_is_named_with_what_was_seen() {
     assert!(error.to_string().starts_with("plateau 4 of 7 not found: looked for 36.000 rad/s"), "{error}");
 }
 
+/// Forty loads of 5 g each: a unit 2 % off reads each of the upper ones as the next should.
+fn staircase() -> Stream {
+    let steps = (1..=40).map(|n| 62.6 * (f64::from(n) / 40.0).sqrt());
+    let omegas: Vec<f64> = std::iter::once(0.0).chain(steps).chain([0.0]).collect();
+    Stream { lengths: vec![10.0; omegas.len()], omegas, unit_error: 0.02, ..Stream::default() }
+}
+
+#[test]
+fn loads_closer_than_the_unit_is_to_nominal_are_found() {
+    let run = staircase();
+    let reduced = reduce(&run.record(), None, &run.schedule()).expect("all are there");
+    let means = plateau_means(&reduced, &NoiseModel::pool([&reduced]));
+    for (mean, [start, end]) in means.iter().zip(run.windows()) {
+        assert!(mean.window[0] >= start && mean.window[1] <= end, "{:?} in {start} to {end}", mean.window);
+    }
+}
+
+#[test]
+fn a_load_that_is_missing_among_close_ones_is_refused() {
+    let run = staircase();
+    for missing in [1, 2, 20, 39, 40] {
+        let mut short = run.clone();
+        short.omegas.remove(missing);
+        short.lengths.pop();
+        let error = reduce(&short.record(), None, &run.schedule()).expect_err("one is not there");
+        assert!(matches!(error, ReductionError::PlateauNotFound { .. }), "without {missing}: {error}");
+    }
+}
+
 #[test]
 fn a_record_that_ends_early_lacks_its_last_plateau() {
     let run = Stream::default();

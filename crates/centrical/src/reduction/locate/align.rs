@@ -12,13 +12,17 @@ use crate::reduction::error::{ReductionError, Stretch};
 use crate::reduction::plateau::ScheduledPlateau;
 use crate::reduction::survey::Blocks;
 
+/// How far the strongest plateau of a unit may be from its nominal level, relative. Units are sold uncalibrated to some per cent.
+const FAR: f64 = 0.1;
+
 /// More rounds than are needed.
 const ROUNDS: usize = 8;
 
 /// The core of each scheduled plateau, in blocks; an error for a record with a recording mistake.
 pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
     let other = |schedule: &[ScheduledPlateau]| by_schedule(blocks, schedule).ok();
-    match by_schedule(blocks, schedule) {
+    let as_seen = |error| as_seen(blocks, schedule).and_then(|seen| by_schedule(blocks, &seen).ok()).ok_or(error);
+    match by_schedule(blocks, schedule).or_else(as_seen) {
         Ok(cores) => {
             hypothesis::recognise(blocks, schedule, Some(&cores), other)?;
             rotation::check(blocks, schedule, &cores)?;
@@ -69,6 +73,23 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
         cores = next;
     }
     Ok(cores)
+}
+
+/// The schedule on the line that the record shows, through its strongest steady stretch: nominal levels go from rest along
+/// `Omega^2 c`. Where the loads of a schedule are closer to each other than the unit is to nominal, every plateau is nearer to the level of another
+/// one, and the path by nominal levels passes the first or the last over. `None` where the stretch is another than the strongest plateau.
+fn as_seen(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Option<Vec<ScheduledPlateau>> {
+    let strongest = schedule.iter().max_by(|a, b| a.omega.abs().total_cmp(&b.omega.abs()))?;
+    let stretches = Evidence::new(blocks).steady_stretches();
+    let levels = stretches.iter().map(|stretch| blocks.level(stretch));
+    let seen_z = levels.max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+    let off_z = seen_z - strongest.nominal_z;
+    let along = |p: &ScheduledPlateau| {
+        let share = (p.omega / strongest.omega).powi(2);
+        ScheduledPlateau { nominal_z: p.nominal_z + off_z * share, ..*p }
+    };
+    let is_near = strongest.omega != 0.0 && off_z.norm() < FAR * strongest.nominal_z.norm();
+    is_near.then(|| schedule.iter().map(along).collect())
 }
 
 /// A plateau that was passed over, or matched only the turn of a ramp.
