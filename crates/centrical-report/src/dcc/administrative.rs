@@ -146,10 +146,10 @@ fn statements(xml: &mut Xml, result: &CalibrationResult, issuer: &Issuer, langua
             });
         }
         for (name, text) in [
-            (messages.counts_as_exact, counts_as_exact(result, language)),
+            (messages.counts_as_exact.to_owned(), counts_as_exact(result, language)),
             (presupposed(result, language), String::new()),
         ] {
-            let text = if text.is_empty() { name.to_owned() } else { format!("{name}: {text}") };
+            let text = if text.is_empty() { name } else { format!("{name}: {text}") };
             statement(xml, "7.8.4.1 a", &text);
         }
         if let Some(text) = issuer.past.as_ref().and_then(|past| switch_on_sentence(past, language)) {

@@ -19,7 +19,7 @@ pub(super) fn rests_on(result: &CalibrationResult, language: Language) -> Vec<Bl
     let mut blocks = vec![
         Block::heading(messages.rests_on, 4),
         Block::facts([(messages.counts_as_exact, counts_as_exact(result, language))]),
-        Block::paragraph(presupposed(result, language)),
+        Block::paragraph(&presupposed(result, language)),
     ];
     if !result.rests_on.is_empty() {
         blocks.push(Block::Subheading(messages.effects_absent.to_owned()));
@@ -45,10 +45,14 @@ pub(crate) fn counts_as_exact(result: &CalibrationResult, language: Language) ->
     if names.is_empty() { messages.nothing_exact.to_owned() } else { names.join(", ") }
 }
 
-/// What the stated uncertainties presuppose of the machine, or of the rests.
-pub(crate) fn presupposed(result: &CalibrationResult, language: Language) -> &'static str {
+/// What the stated uncertainties presuppose of the machine, or of the rests; and what they include because residuals do not exclude it.
+pub(crate) fn presupposed(result: &CalibrationResult, language: Language) -> String {
     let messages = language.messages();
-    if result.model.has_arm() { messages.presupposed } else { messages.presupposed_of_rests }
+    let presupposed = if result.model.has_arm() { messages.presupposed } else { messages.presupposed_of_rests };
+    let Some(between) = &result.between_rests else { return presupposed.to_owned() };
+    let size = |size: f64| format!("{} {}", language.significant(size / MICRO_G, 2), language.unit("ug"));
+    let included = (messages.words.between_rests)(&size(between.scatter), &size(between.drift));
+    format!("{presupposed} {included}")
 }
 
 fn table(result: &CalibrationResult, rows: usize, language: Language) -> Table {

@@ -170,6 +170,13 @@ pub(super) fn rival(rival: Rival) -> &'static str {
     }
 }
 
+/// The scatter from rest to rest and the drift of the biases that the uncertainties include.
+pub(super) fn between_rests(scatter: &str, drift: &str) -> String {
+    format!(
+        "They include what the residuals of the rests do not exclude: a scatter of {scatter} from rest to rest, and a drift of the biases by {drift}."
+    )
+}
+
 /// How many attitudes of all rests are known, and to what standard uncertainty at most.
 pub(super) fn known_attitudes(known: usize, all: usize, uncertainty: &str) -> String {
     match known {

@@ -290,6 +290,8 @@ pub(crate) struct Words {
     pub axes: fn(&AxesName) -> String,
     /// How many attitudes of all rests are known, and to what standard uncertainty at most.
     pub known_attitudes: fn(usize, usize, &str) -> String,
+    /// The scatter from rest to rest and the drift of the biases that the uncertainties include.
+    pub between_rests: fn(&str, &str) -> String,
     /// Which attitude to add, and what it brings.
     pub next_rest: fn(&NextAttitudeSummary) -> String,
     pub group: fn(Group) -> &'static str,

@@ -274,6 +274,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     words: Words {
         axes: words::axes,
         known_attitudes: words::known_attitudes,
+        between_rests: words::between_rests,
         next_rest: words::next_rest,
         group: words::group,
         meaning: words::meaning,

@@ -166,6 +166,13 @@ pub(super) fn rival(rival: Rival) -> &'static str {
     }
 }
 
+/// The scatter from rest to rest and the drift of the biases that the uncertainties include.
+pub(super) fn between_rests(scatter: &str, drift: &str) -> String {
+    format!(
+        "В них учтено то, чего не исключают невязки: разброс {scatter} от одного положения покоя к другому и уход смещений нуля на {drift}."
+    )
+}
+
 /// How many attitudes of all rests are known, and to what standard uncertainty at most.
 pub(super) fn known_attitudes(known: usize, all: usize, uncertainty: &str) -> String {
     match known {
