@@ -10,13 +10,13 @@
 
 use crate::certificate::{Certificate, START_REGION, Steps};
 use crate::error::{NotInvertible, OutOfRange};
-use crate::fused::{dot, dot_and};
-use crate::lanes::Lanes;
 use crate::linear::{Linear, corrected};
-use crate::machine::on_this_machine;
 use crate::model::{Model, others, others_error};
 use crate::separable::Shift;
 use crate::term::Term;
+use crate::vectors::fused::{dot, dot_and};
+use crate::vectors::lanes::Lanes;
+use crate::vectors::machine::on_this_machine;
 
 /// A range ends a few last places beyond its edge, so that what lies on it is not refused for its rounding.
 const EDGE: f64 = 1.0 + 8.0 * f64::EPSILON;

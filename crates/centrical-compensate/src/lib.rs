@@ -32,15 +32,13 @@ mod bulk;
 mod certificate;
 mod compensation;
 mod error;
-mod fused;
 mod inverse;
-mod lanes;
 mod linear;
-mod machine;
 mod model;
 mod monomial;
 mod separable;
 mod term;
+mod vectors;
 
 pub use bulk::Outside;
 pub use certificate::{Certificate, GAIN_CHANGE_LIMIT, START_REGION};

@@ -1,7 +1,7 @@
 //! The affine part of the error model and its inverse, and the algebra of three dimensions.
 
-use crate::fused::{cross, dot, fused};
 use crate::term::Term;
+use crate::vectors::fused::{cross, dot, fused};
 
 /// `f' = A f + b`: the reading without its non-linear terms, and `C = A^-1`.
 #[derive(Debug, Clone, Copy, PartialEq)]

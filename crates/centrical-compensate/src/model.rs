@@ -1,8 +1,8 @@
 //! The error model as the iteration needs it: the fast form, and the terms that do not fit it, for many readings.
 
-use crate::lanes::Lanes;
 use crate::separable::{Separable, is_separable};
 use crate::term::Term;
+use crate::vectors::lanes::Lanes;
 
 /// An error model by form: its fast form, and whether that is all. The terms come with each call.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::lanes::Lanes;
+use crate::vectors::lanes::Lanes;
 
 /// `f1^p1 f2^p2 f3^p3`, with the sign of a component if it is odd: `|f_j| f_j` is the square of `f_j` with the sign of
 /// `f_j`.

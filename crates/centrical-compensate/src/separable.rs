@@ -1,7 +1,7 @@
 //! The fast form: errors that are sums of cubics in one component each, as the source's model is [K4.2].
 
-use crate::fused::{dot, fused};
 use crate::term::Term;
+use crate::vectors::fused::{dot, fused};
 
 /// `E_i(f) = b_i + sum_j (g1_ij f_j + g0_ij) f_j + g2_i f_i^3`.
 #[derive(Debug, Clone, Copy, PartialEq)]

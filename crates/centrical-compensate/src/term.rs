@@ -1,7 +1,7 @@
 //! The error model with its coefficients: monomial terms, each on one axis.
 
-use crate::lanes::Lanes;
 use crate::monomial::Monomial;
+use crate::vectors::lanes::Lanes;
 
 /// `c m(f)` on one axis, `m` a monomial.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,9 +4,9 @@ use super::outside::{LANES, Outside, check};
 use crate::compensation::Compensation;
 use crate::error::UnequalLengths;
 use crate::inverse::Inverse;
-use crate::lanes::Lanes;
-use crate::machine::on_this_machine;
 use crate::term::Term;
+use crate::vectors::lanes::Lanes;
+use crate::vectors::machine::on_this_machine;
 
 impl<T: AsRef<[Term]>> Compensation<T> {
     /// Takes readings `f'` [m/s^2], an array per axis, to specific forces [m/s^2] in place. Each becomes what
