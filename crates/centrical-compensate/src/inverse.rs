@@ -6,7 +6,7 @@
 //! to its last place. With the gain `J = I + E'` it is `e <- e + J^-1 (E(f' - e) - e)`. The certificate fixes the
 //! numbers of steps beforehand, whatever the reading.
 //!
-//! Terms come as a slice, so that all of it is compiled here, once, whoever owns them: a crate compiled for size that calls it loses nothing.
+//! Terms come as a slice: the iteration is then compiled in this crate, once, and a caller that is compiled for size loses nothing.
 
 use crate::certificate::{Certificate, START_REGION, Steps};
 use crate::error::{NotInvertible, OutOfRange};

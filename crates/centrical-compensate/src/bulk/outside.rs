@@ -26,7 +26,7 @@ pub(crate) const LANES: usize = 64;
 pub(crate) const TASK: usize = 16 * 1024;
 
 impl Outside {
-    /// Readings, an array per axis, of which a component is beyond the limit of its axis [m/s^2]. NaN is not.
+    /// Readings with a component beyond the limit of its axis [m/s^2], given as an array for each axis. NaN is beyond no limit.
     ///
     /// # Errors
     /// [`UnequalLengths`] when the arrays are not of one length.

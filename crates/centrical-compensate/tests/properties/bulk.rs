@@ -107,6 +107,27 @@ proptest! {
     }
 }
 
+/// The count is that of single readings; NaN is beyond no limit.
+#[test]
+fn readings_beyond_limits_are_counted() {
+    let rows: Vec<[f64; 3]> = (0..200_u8)
+        .map(|k| match k {
+            70 => [1.0, f64::NAN, -2.0],
+            71 => [f64::NAN, 0.0, -3.5],
+            k => [f64::from(k % 3), f64::from(k % 5) - 5.0, f64::from(k % 7) - 3.0],
+        })
+        .collect();
+    let columns = [0, 1, 2].map(|axis| rows.iter().map(|row: &[f64; 3]| row[axis]).collect::<Vec<f64>>());
+    for limit in [[2.0, 5.0, 3.0], [1.0, 5.0, 3.0], [2.0, 4.0, 3.0], [2.0, 5.0, 2.0], [f64::INFINITY; 3]] {
+        let is_beyond = |row: &[f64; 3]| (0..3).any(|axis| row[axis] < -limit[axis] || row[axis] > limit[axis]);
+        let expected =
+            Outside { count: rows.iter().filter(|row| is_beyond(row)).count(), first: rows.iter().position(is_beyond) };
+        assert_eq!(Outside::beyond(limit, columns.each_ref().map(Vec::as_slice)), Ok(expected));
+    }
+    let unequal = Outside::beyond([1.0; 3], [&[1.0], &[], &[1.0]]);
+    assert_eq!(unequal, Err(UnequalLengths { lengths: [1, 0, 1] }));
+}
+
 #[test]
 fn unequal_lengths_are_refused() {
     let compensation = Compensation::new(Vec::new(), 1.0).unwrap();

@@ -68,7 +68,7 @@ pub fn calibrate_reduced(
 ) -> Result<CalibrationResult, Error> {
     let (result, between) = by_noise(session, reduced, method, progress)?;
     let Some(between) = between else { return Ok(result) };
-    // The verdict is on the rests by their own noise: what is added to it would excuse much.
+    // The rests were judged by their own noise: with the scatter added to it, a poor fit would pass.
     let mut session = session.clone();
     session.type_b = between.stated_beside(session.type_b);
     let (result, _) = by_noise(&session, &reduced.clone().scattered(&between), method, progress)?;

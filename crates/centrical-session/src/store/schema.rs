@@ -171,7 +171,7 @@ fn influence(source: String) -> SharedInfluence {
     SharedInfluence { source, changes: Vec::new() }
 }
 
-/// Shares out the changes of all influences, or of all priors, each of which has as many.
+/// Splits the changes of all influences, or of all priors, into equal parts, one for each.
 fn share_out<'r>(to: impl ExactSizeIterator<Item = &'r mut Vec<f64>>, changes: &[f64]) {
     let count = changes.len() / to.len().max(1);
     to.zip(changes.chunks(count.max(1))).for_each(|(to, changes)| *to = changes.to_vec());

@@ -1,15 +1,15 @@
 //! What differs from rest to rest beyond the noise within rests: scatter of the readings, and drift of the biases.
 //!
-//! Noise that is slower than a rest does not show in it, nor does a bias that warms up. Both show in the residuals of many rests. There
-//! these have the covariance
+//! Noise that is slower than a rest does not show in it, nor does a bias that warms up. Both show in the residuals of many rests, which
+//! then have the covariance
 //!
-//! `E + v B B^T + w D D^T`,
+//! `E + v B B^T + w D D^T`.
 //!
-//! with a column of `B` for each rest, a unit reading along its specific force, and a column of `D` for each newtonometer, a bias
-//! that changes by one unit from the first rest to the last. All are whitened by the noise within rests, and freed of what the unknowns
+//! A column of `B` is a unit reading along the specific force of one rest. A column of `D` is the bias of one newtonometer that changes by
+//! one unit from the first rest to the last. All are whitened by the noise within rests, and freed of what the unknowns
 //! of the fit follow. The variances `v` and `w` are posterior means: absence of either is as likely beforehand as all its strengths
-//! together, and no strength is preferred (as for the noise within rests, `reduction/colour/posterior.rs`). So what the residuals
-//! cannot exclude is a part of the uncertainty, and of effects that are absent little.
+//! together, and no strength is preferred (as for the noise within rests, `reduction/colour/posterior.rs`). So the uncertainties
+//! include what the residuals cannot exclude, and grow little where an effect is absent.
 
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 
@@ -24,7 +24,7 @@ const PER_DECADE: usize = 3;
 const SMALLEST: f64 = 1e-2;
 const DECADES: usize = 6;
 
-/// Below so many redundant rests a variance has no mean: it is known with too few degrees of freedom, `nu / (nu - 2)`.
+/// A variance with this number of degrees of freedom or fewer has no posterior mean: its factor is `nu / (nu - 2)`.
 const FEWEST: f64 = 2.0;
 
 /// The drift of the biases.
@@ -62,11 +62,10 @@ impl Calibration<'_> {
     /// # Errors
     /// [`FitError`] when numbers overflow.
     pub fn between_rests(&self) -> Result<Option<BetweenRests>, FitError> {
-        let (data, gain) = (self.data(), self.gain()?);
-        if data.model().experiment().has_arm() {
+        if self.data().model().experiment().has_arm() {
             return Ok(None);
         }
-        let rests = data.observations();
+        let (rests, gain) = (self.data().observations(), self.gain()?);
         let along = |n: usize, c: usize| if n == c { rests[n].mean.normalize() } else { Vector3::zeros() };
         let scatter = Columns::new(gain, (0..rests.len()).collect(), rests.len(), along);
         if scatter.redundancy().trace() <= FEWEST {

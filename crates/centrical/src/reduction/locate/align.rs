@@ -12,7 +12,7 @@ use crate::reduction::error::{ReductionError, Stretch};
 use crate::reduction::plateau::ScheduledPlateau;
 use crate::reduction::survey::Blocks;
 
-/// How far the strongest plateau of a unit may be from its nominal level, relative. Units are sold uncalibrated to some per cent.
+/// Farthest relative distance of the strongest plateau from its nominal level. The scale of an uncalibrated unit is off by some percent.
 const FAR: f64 = 0.1;
 
 /// More rounds than are needed.
@@ -21,8 +21,8 @@ const ROUNDS: usize = 8;
 /// The core of each scheduled plateau, in blocks; an error for a record with a recording mistake.
 pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
     let other = |schedule: &[ScheduledPlateau]| by_schedule(blocks, schedule).ok();
-    let as_seen = |error| as_seen(blocks, schedule).and_then(|seen| by_schedule(blocks, &seen).ok()).ok_or(error);
-    match by_schedule(blocks, schedule).or_else(as_seen) {
+    let retried = |error| as_seen(blocks, schedule).and_then(|seen| by_schedule(blocks, &seen).ok()).ok_or(error);
+    match by_schedule(blocks, schedule).or_else(retried) {
         Ok(cores) => {
             hypothesis::recognise(blocks, schedule, Some(&cores), other)?;
             rotation::check(blocks, schedule, &cores)?;
@@ -76,8 +76,9 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
 }
 
 /// The schedule on the line that the record shows, through its strongest steady stretch: nominal levels go from rest along
-/// `Omega^2 c`. Where the loads of a schedule are closer to each other than the unit is to nominal, every plateau is nearer to the level of another
-/// one, and the path by nominal levels passes the first or the last over. `None` where the stretch is another than the strongest plateau.
+/// `Omega^2 c`. Loads may be closer to each other than the unit is to nominal. Then a plateau is nearer to the nominal level of its
+/// neighbour than to its own, and the path by nominal levels omits the first plateau or the last. `None` where the stretch cannot be the
+/// strongest plateau.
 fn as_seen(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Option<Vec<ScheduledPlateau>> {
     let strongest = schedule.iter().max_by(|a, b| a.omega.abs().total_cmp(&b.omega.abs()))?;
     let stretches = Evidence::new(blocks).steady_stretches();
