@@ -56,8 +56,9 @@ impl<'m> Follower<'m> {
         Self { past: Past::new(model, point.clone()), data, point }
     }
 
-    /// Where a follower stood that had taken up some plateaus, from its [`Follower::point`] and [`Follower::reference`]; it
-    /// goes on as if it had never stopped. Points of another length are taken for zeros.
+    /// Where a follower stood that had taken up some plateaus, from its [`Follower::point`] and [`Follower::reference`] with the
+    /// number of plateaus [`Follower::referenced`] there; it goes on as if it had never stopped. Points of another length are
+    /// taken for zeros.
     ///
     /// # Errors
     /// [`FitError`] when an observation is invalid.
@@ -65,7 +66,7 @@ impl<'m> Follower<'m> {
         model: &'m MeasurementModel,
         taken: Vec<Observation>,
         point: &[f64],
-        reference: &[f64],
+        (reference, referenced): (&[f64], usize),
     ) -> Result<Self, FitError> {
         let mut follower = Self::new(model);
         let unknowns = follower.point.len();
@@ -73,8 +74,14 @@ impl<'m> Follower<'m> {
             let zeros = DVector::zeros(unknowns);
             if from.len() == unknowns { DVector::from_column_slice(from) } else { zeros }
         };
-        (follower.point, follower.past) = (filled(point), Past::new(model, filled(reference)));
-        taken.into_iter().try_for_each(|observation| follower.append(observation))?;
+        let reference = filled(reference);
+        (follower.point, follower.past) = (filled(point), Past::new(model, reference.clone()));
+        for (behind, observation) in taken.into_iter().enumerate() {
+            follower.append(observation)?;
+            if behind > 0 && behind == referenced {
+                follower.past.linearise_at(&reference)?;
+            }
+        }
         Ok(follower)
     }
 
@@ -91,6 +98,11 @@ impl<'m> Follower<'m> {
     /// Point of linearisation of the plateaus before the last.
     pub fn reference(&self) -> &[f64] {
         self.past.reference().as_slice()
+    }
+
+    /// Plateaus that were behind when they were linearised there.
+    pub fn referenced(&self) -> usize {
+        self.past.referenced()
     }
 
     /// The follower with one plateau more, its point moved.
@@ -178,7 +190,7 @@ impl<'m> Follower<'m> {
     /// The point one step on, halved until the sum of squares falls; none if it does not: the point stays where it is.
     fn descend(&self, last: &Linearised, dx: &DVector<f64>, typical: &DVector<f64>) -> Option<DVector<f64>> {
         let objective = |x: &DVector<f64>| {
-            let plateaus = self.past.squared(x) + last.residual(self.data.model(), x).norm_squared();
+            let plateaus = self.past.squared(x) + last.squared(self.data.model(), x);
             plateaus + self.data.squared_beforehand(x) + (x.component_div(typical) / HOLD).norm_squared()
         };
         let here = objective(&self.point);
@@ -204,7 +216,7 @@ impl<'m> Follower<'m> {
 
     /// The equations of the plateaus behind and perhaps the last, at the point.
     fn design(&self, last: Option<&Linearised>) -> Design {
-        self.whole(self.past.design(&self.point), last.map(|last| &last.readings), &self.point)
+        self.whole(self.past.design(&self.point), last.map(Linearised::readings).as_ref(), &self.point)
     }
 
     /// A plateau at the point.

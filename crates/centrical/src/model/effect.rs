@@ -148,7 +148,7 @@ pub enum Course {
 
 impl Course {
     /// Whether it depends on what came before a plateau.
-    pub(super) fn is_of_history(self) -> bool {
+    fn is_of_history(self) -> bool {
         match self {
             Self::Time | Self::TimeScale | Self::Rise | Self::Memory => true,
             Self::Spinning | Self::SquaredSpeed | Self::Yield => false,
@@ -157,6 +157,11 @@ impl Course {
 }
 
 impl Effect {
+    /// Whether it depends on what came before a plateau.
+    pub(super) fn is_of_history(self) -> bool {
+        matches!(self, Self::Disturbance { follows, .. } if follows.is_of_history())
+    }
+
     /// Whether it is a deformation that grows with the square of the speed.
     pub(crate) fn is_elastic(self) -> bool {
         matches!(self, Self::ElasticTurn { .. } | Self::ArmTurn { .. } | Self::ArmStretch { .. })

@@ -74,9 +74,8 @@ impl MeasurementModel {
 
     /// A parameter that acts at `x` through what came before a plateau: at an instant of a motion it has no meaning.
     pub fn of_history(&self, x: &[f64]) -> Option<&Parameter> {
-        let of_history =
-            |effect: Effect| matches!(effect, Effect::Disturbance { follows, .. } if follows.is_of_history());
-        let mut acting = self.parameters.effects().filter(|(column, effect)| x[*column] != 0.0 && of_history(*effect));
+        let effects = self.parameters.effects();
+        let mut acting = effects.filter(|(column, effect)| x[*column] != 0.0 && effect.is_of_history());
         acting.next().map(|(column, _)| &self.parameters[column])
     }
 }

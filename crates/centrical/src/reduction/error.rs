@@ -1,6 +1,7 @@
 //! The reasons why a record cannot be reduced, in the user's words.
 
 use std::fmt;
+use std::ops::Range;
 
 use nalgebra::Vector3;
 use thiserror::Error;
@@ -39,7 +40,7 @@ pub enum ReductionError {
     /// A scheduled plateau is not in the record.
     #[error(
         "plateau {} of {count} not found: looked for {} in the order of the schedule, {least:.2} s of it or more; seen: {}",
-        index + 1, Sought { omega: *omega, level: level_z }, Seen(seen)
+        index + 1, Sought { omega: *omega, level: level_z }, Seen { stretches: seen, missing: *index }
     )]
     PlateauNotFound {
         /// Index of the plateau in the schedule.
@@ -191,7 +192,11 @@ impl fmt::Display for Level<'_> {
     }
 }
 
-struct Seen<'a>(&'a [Stretch]);
+/// The steady stretches about a plateau that is missing.
+struct Seen<'a> {
+    stretches: &'a [Stretch],
+    missing: usize,
+}
 
 impl fmt::Display for Sought<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -200,17 +205,37 @@ impl fmt::Display for Sought<'_> {
     }
 }
 
+impl Seen<'_> {
+    /// Most stretches that a message lists to either side of a missing plateau.
+    const BESIDE: usize = 6;
+
+    /// The stretches next to where the plateau should be: from the last one that was taken for an earlier plateau on.
+    fn nearest(&self) -> Range<usize> {
+        let is_earlier = |stretch: &Stretch| stretch.plateau.is_some_and(|plateau| plateau < self.missing);
+        let place = self.stretches.iter().rposition(is_earlier).map_or(0, |last| last + 1);
+        place.saturating_sub(Self::BESIDE)..(place + Self::BESIDE).min(self.stretches.len())
+    }
+}
+
 impl fmt::Display for Seen<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.0.is_empty() {
+        let shown = self.nearest();
+        if self.stretches.is_empty() {
             return write!(out, "no steady stretch at all");
         }
-        for (i, stretch) in self.0.iter().enumerate() {
+        if shown.len() < self.stretches.len() {
+            let range = format_args!("{} to {} of {}", shown.start + 1, shown.end, self.stretches.len());
+            write!(out, "steady stretches {range}: ")?;
+        }
+        for (i, stretch) in self.stretches[shown].iter().enumerate() {
             let [from, to] = stretch.window;
             let l = stretch.level_z;
             let separator = if i == 0 { "" } else { "; " };
             write!(out, "{separator}{from:.1} to {to:.1} s at ({:.2}, {:.2}, {:.2})", l.x, l.y, l.z)?;
             match (stretch.plateau, stretch.resembles.as_slice()) {
+                (Some(plateau), alike) if plateau + 1 == self.missing && alike.contains(&self.missing) => {
+                    write!(out, ", plateau {}, and plateau {} would look alike", plateau + 1, self.missing + 1)?;
+                }
                 (Some(plateau), _) => write!(out, ", plateau {}", plateau + 1)?,
                 (None, []) => write!(out, ", no level of the schedule")?,
                 (None, [like, ..]) => write!(out, ", as plateau {} should read, repeated or out of order", like + 1)?,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical::fit::{Innovation, Progress};
+use centrical::fit::{Follower, Innovation, Progress};
 use centrical::{MeasurementModel, Observation, unwatched};
 use centrical_table::write_stream;
 use nalgebra::{Matrix3, Vector3};
@@ -30,6 +30,9 @@ pub struct WatchState {
     /// Point of linearisation of the plateaus before the last, where it is another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     reference: Option<Vec<f64>>,
+    /// Plateaus that were behind when they were linearised there.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    referenced: usize,
     /// Plateaus that have come, in their order.
     pub plateaus: Vec<WatchedPlateau>,
 }
@@ -60,6 +63,11 @@ struct WatchedInnovation {
     degrees_of_freedom: usize,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
 /// Numbers beyond this are no means of readings [m/s^2] or covariances of them.
 const LARGEST: f64 = 1e12;
 
@@ -71,7 +79,8 @@ impl WatchState {
     pub fn new(session: &Session) -> Result<Self, Error> {
         let folder = session.file.parent().unwrap_or(Path::new(""));
         let experiment = Input::of(folder, &session.file, &unwatched)?;
-        Ok(Self { schema: SCHEMA.to_owned(), experiment, point: Vec::new(), reference: None, plateaus: Vec::new() })
+        let (schema, point, plateaus) = (SCHEMA.to_owned(), Vec::new(), Vec::new());
+        Ok(Self { schema, experiment, point, reference: None, referenced: 0, plateaus })
     }
 
     /// The state in `file`; without that file the one before the first plateau. `unknowns` are those of a fit: parameters and influences.
@@ -127,14 +136,16 @@ impl WatchState {
     }
 
     /// Notes the points of linearisation: that of the last plateau, and that of the plateaus before it.
-    pub fn move_to(&mut self, point: &[f64], reference: &[f64]) {
+    pub fn move_to(&mut self, follower: &Follower) {
+        let (point, reference) = (follower.point(), follower.reference());
         self.point = point.to_vec();
         self.reference = (reference != point).then(|| reference.to_vec());
+        self.referenced = follower.referenced();
     }
 
-    /// Point of linearisation of the plateaus before the last.
-    pub fn reference(&self) -> &[f64] {
-        self.reference.as_ref().unwrap_or(&self.point)
+    /// Point of linearisation of the plateaus before the last, and how many there were when it was set.
+    pub fn reference(&self) -> (&[f64], usize) {
+        (self.reference.as_ref().unwrap_or(&self.point), self.referenced)
     }
 
     /// The plateaus that are not held out, as data of a fit.

@@ -267,7 +267,7 @@ impl<'a> Following<'a> {
         }
         self.come[set_point] = true;
         self.state.plateaus.push(WatchedPlateau::new(observation, innovation, alarm, held_out));
-        self.state.move_to(self.follower.point(), self.follower.reference());
+        self.state.move_to(&self.follower);
         if self.follower.taken().is_empty() {
             self.keep()?;
             return Ok(None);

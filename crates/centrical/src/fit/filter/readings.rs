@@ -13,7 +13,7 @@ pub struct Readings {
     /// Whitened reading less whitened model.
     pub misfit: Vector3<f64>,
     /// Norm of the whitened reading of the model.
-    pub(super) magnitude: f64,
+    pub(in crate::fit) magnitude: f64,
 }
 
 impl Readings {

@@ -40,9 +40,9 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
     let evidence = Evidence::new(blocks);
     let mut candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
     let between = evidence.in_transition();
-    let mut trellis = Trellis::new(schedule.len(), blocks.len());
+    let anywhere = vec![0..blocks.len(); schedule.len()];
     let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(evidence.noise(), from, density);
-    let mut cores = trellis.best_path(&between, on);
+    let mut cores = Trellis::new(&anywhere, blocks.len()).best_path(&between, on);
     if let Some(index) = missing(&cores) {
         let ScheduledPlateau { omega, nominal_z } = schedule[index];
         let stretches = evidence.steady_stretches().into_iter();
@@ -61,7 +61,8 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
         neighbours.for_each(|neighbour| candidate.leave_to(neighbour, &schedule[k], &level_z));
     }
     // With the plateaus located, the changes on each give their own noise, far below that of a sample. This is repeated
-    // until the noise holds no part of the ramps.
+    // until the noise holds no part of the ramps. A plateau stays between its neighbours.
+    let mut trellis = Trellis::new(&between_neighbours(&cores, blocks.len()), blocks.len());
     for _ in 0..ROUNDS {
         let own = candidates.par_iter().zip(&cores).map(|(candidate, core)| candidate.noise_of_change(core));
         let own: Vec<Vector3<f64>> = own.collect();
@@ -73,6 +74,13 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
         cores = next;
     }
     Ok(cores)
+}
+
+/// From the begin of the plateau before to the end of the plateau after, of each.
+fn between_neighbours(cores: &[Range<usize>], blocks: usize) -> Vec<Range<usize>> {
+    let start = |k: usize| k.checked_sub(1).map_or(0, |before| cores[before].start);
+    let end = |k: usize| cores.get(k + 1).map_or(blocks, |after| after.end);
+    (0..cores.len()).map(|k| start(k)..end(k)).collect()
 }
 
 /// The schedule on the line that the record shows, through its strongest steady stretch: nominal levels go from rest along

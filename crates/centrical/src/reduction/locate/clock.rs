@@ -95,7 +95,7 @@ fn scale_of(schedule: &[ScheduledPlateau], telemetry: &SpeedTrace) -> Option<f64
 
 /// The rate by which most ramps agree, and their number: from the first ramp and every later one.
 fn rate_of(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Option<(f64, usize)> {
-    let passages: Vec<Vec<f64>> = ramps.iter().map(|ramp| ramp.passages(telemetry, scale)).collect();
+    let passages = passages_of(ramps, telemetry, scale);
     let agree = |rate: f64, shift: f64| {
         let is_there =
             |(ramp, times): (&Ramp, &Vec<f64>)| times.iter().any(|t| (rate * t + shift - ramp.t).abs() < width);
@@ -116,16 +116,17 @@ fn rate_of(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Op
 /// Estimates the offset: on every ramp the square of the speed, and with it the force, passes the middle between
 /// two plateaus at one instant. `None` if no ramp of the record is in the telemetry.
 fn offset(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Option<ClockOffset> {
-    let offsets: Vec<Vec<f64>> = ramps.iter().map(|ramp| ramp.offsets(telemetry, scale)).collect();
+    let mut offsets = passages_of(ramps, telemetry, scale);
+    for (ramp, offsets) in ramps.iter().zip(&mut offsets) {
+        for passage in offsets.iter_mut() {
+            *passage = ramp.t - *passage;
+        }
+    }
     // One passage may have several partners (the same speeds run twice): the right offset is the one most ramps have.
-    let near = |guess: f64| -> Vec<f64> {
-        let closest =
-            |of_ramp: &Vec<f64>| of_ramp.iter().copied().min_by(|a, b| (a - guess).abs().total_cmp(&(b - guess).abs()));
-        offsets.iter().filter_map(closest).filter(|offset| (offset - guess).abs() < width).collect()
-    };
-    let guesses = offsets.iter().flatten().copied();
-    let best = guesses.max_by(|a, b| near(*a).len().cmp(&near(*b).len()).then(b.abs().total_cmp(&a.abs())))?;
-    let mut agreeing = near(best);
+    let (best, _) = partners(&offsets, width).max_by(|(a, m), (b, n)| m.cmp(n).then(b.abs().total_cmp(&a.abs())))?;
+    let closest =
+        |of_ramp: &Vec<f64>| of_ramp.iter().copied().min_by(|a, b| (a - best).abs().total_cmp(&(b - best).abs()));
+    let mut agreeing: Vec<f64> = offsets.iter().filter_map(closest).filter(|o| (o - best).abs() < width).collect();
     let seconds = median(&mut agreeing);
     let mut scatter: Vec<f64> = agreeing.iter().map(|offset| (offset - seconds).abs()).collect();
     let ramps = agreeing.len();
@@ -133,6 +134,54 @@ fn offset(ramps: &[Ramp], width: f64, telemetry: &SpeedTrace, scale: f64) -> Opt
     let one = (std::f64::consts::FRAC_PI_2).sqrt() * MAD * median(&mut scatter);
     let standard_uncertainty = if ramps > 1 { one / (ramps as f64).sqrt() } else { f64::INFINITY };
     Some(ClockOffset { seconds, standard_uncertainty, ramps })
+}
+
+/// Every offset, in order, with the number of ramps that have one within `width` of it.
+fn partners(offsets: &[Vec<f64>], width: f64) -> impl Iterator<Item = (f64, usize)> {
+    let of_ramps = offsets.iter().enumerate();
+    let all = of_ramps.flat_map(|(ramp, offsets)| offsets.iter().map(move |offset| (*offset, ramp)));
+    let mut all: Vec<(f64, usize)> = all.collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut inside, mut count) = (vec![0_usize; offsets.len()], 0);
+    let (mut from, mut to) = (0, 0);
+    (0..all.len()).map(move |n| {
+        let guess = all[n].0;
+        while let Some((_, ramp)) = all.get(to).filter(|(offset, _)| offset - guess < width) {
+            inside[*ramp] += 1;
+            count += usize::from(inside[*ramp] == 1);
+            to += 1;
+        }
+        while guess - all[from].0 >= width {
+            inside[all[from].1] -= 1;
+            count -= usize::from(inside[all[from].1] == 0);
+            from += 1;
+        }
+        (guess, count)
+    })
+}
+
+/// Times at which the telemetry passes the middle of each ramp, by its own clock [s].
+fn passages_of(ramps: &[Ramp], telemetry: &SpeedTrace, scale: f64) -> Vec<Vec<f64>> {
+    let level = |n: usize| scale * scale * ramps[n].square;
+    let mut found = vec![Vec::new(); ramps.len()];
+    for is_rising in [false, true] {
+        let mut order: Vec<usize> = (0..ramps.len()).filter(|n| ramps[*n].rising == is_rising).collect();
+        order.sort_by(|a, b| level(*a).total_cmp(&level(*b)));
+        let reports = telemetry.t.iter().zip(&telemetry.omega).map(|(t, omega)| (*t, omega * omega));
+        let mut before: Option<(f64, f64)> = None;
+        for (t, square) in reports.filter(|(t, square)| t.is_finite() && square.is_finite()) {
+            let Some((t_0, square_0)) = before.replace((t, square)) else { continue };
+            // Upwards the middle may be where the telemetry arrives, downwards too.
+            let below = |square: f64| order.partition_point(|n| level(*n) < square);
+            let through = |square: f64| order.partition_point(|n| level(*n) <= square);
+            let passed = if is_rising { through(square_0)..through(square) } else { below(square)..below(square_0) };
+            for &n in order.get(passed).unwrap_or_default() {
+                let (value_0, value) = (square_0 - level(n), square - level(n));
+                found[n].push(t_0 + (t - t_0) * value_0 / (value_0 - value));
+            }
+        }
+    }
+    found
 }
 
 /// Median speed by the telemetry in a window of the unit's time [rad/s].
@@ -167,30 +216,17 @@ impl Ramp {
         let way = to - from;
         let part = |i: usize| (blocks.f_z[i] - from).dot(&way) / way.norm_squared() - 0.5;
         let ramp = cores[k - 1].end - 1..cores[k].start + 1;
-        let t = passages(ramp.map(|i| (blocks.t[i], part(i))), true).next();
+        let t = passages(ramp.map(|i| (blocks.t[i], part(i)))).next();
         // Plateaus of one speed have no middle.
         t.filter(|_| before != after).map(|t| Self { square: 0.5 * (before + after), rising: after > before, t })
     }
-
-    fn offsets(&self, telemetry: &SpeedTrace, scale: f64) -> Vec<f64> {
-        self.passages(telemetry, scale).into_iter().map(|t| self.t - t).collect()
-    }
-
-    /// Times at which the telemetry passes the middle, by its own clock [s].
-    fn passages(&self, telemetry: &SpeedTrace, scale: f64) -> Vec<f64> {
-        let over = |omega: &f64| omega * omega - scale * scale * self.square;
-        let trace = telemetry.t.iter().zip(&telemetry.omega).map(|(t, omega)| (*t, over(omega)));
-        passages(trace, self.rising).collect()
-    }
 }
 
-/// Times at which a function passes zero, upwards or downwards, by linear interpolation.
-fn passages(values: impl Iterator<Item = (f64, f64)>, upwards: bool) -> impl Iterator<Item = f64> {
-    let sign = if upwards { 1.0 } else { -1.0 };
+/// Times at which a function passes zero upwards, by linear interpolation.
+fn passages(values: impl Iterator<Item = (f64, f64)>) -> impl Iterator<Item = f64> {
     let mut before: Option<(f64, f64)> = None;
     values.filter(|(t, value)| t.is_finite() && value.is_finite()).filter_map(move |(t, value)| {
         let (t_0, value_0) = before.replace((t, value))?;
-        let passes = sign * value_0 < 0.0 && sign * value >= 0.0;
-        passes.then(|| t_0 + (t - t_0) * value_0 / (value_0 - value))
+        (value_0 < 0.0 && value >= 0.0).then(|| t_0 + (t - t_0) * value_0 / (value_0 - value))
     })
 }

@@ -51,8 +51,11 @@ pub(super) struct Candidate<'a> {
     reach: f64,
     /// Noise of a block's level if it were white [m/s^2].
     white: Vector3<f64>,
-    /// Logarithm of the density of each block's level.
-    levels: Vec<f64>,
+    nominal_z: Vector3<f64>,
+    /// Half-width of the level's density [m/s^2].
+    width: f64,
+    /// Boundaries towards neighbouring plateaus: the way there, and the projection on it beyond which a level is the neighbour's.
+    boundaries: Vec<(Vector3<f64>, f64)>,
 }
 
 impl<'a> Evidence<'a> {
@@ -74,12 +77,13 @@ impl<'a> Evidence<'a> {
 
     /// Evidence for a scheduled plateau.
     pub fn of(&self, plateau: &ScheduledPlateau) -> Candidate<'_> {
-        let width = level_width(&plateau.nominal_z);
         Candidate {
             evidence: self,
             reach: self.reach(plateau.omega),
             white: self.noise * (self.blocks.interval / self.blocks.width).sqrt(),
-            levels: widest(LevelDensity { levels: &self.levels, nominal_z: plateau.nominal_z, width, span: self.span }),
+            nominal_z: plateau.nominal_z,
+            width: level_width(&plateau.nominal_z),
+            boundaries: Vec::new(),
         }
     }
 
@@ -193,28 +197,27 @@ impl WithSimd for InnerChanges<'_> {
     }
 }
 
-/// Density of levels near a nominal one, over that of any level; logarithm.
+/// Multiplies a density by that of levels near a nominal one, over that of any level; logarithms.
 struct LevelDensity<'a> {
-    levels: &'a [Vec<f64>; 3],
+    levels: [&'a [f64]; 3],
     nominal_z: Vector3<f64>,
     width: f64,
     span: f64,
+    density: &'a mut [f64],
 }
 
 impl WithSimd for LevelDensity<'_> {
-    type Output = Vec<f64>;
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
-        let [f1, f2, f3] = self.levels.each_ref().map(Vec::as_slice);
+    fn with_simd<S: Simd>(self, _: S) {
+        let [f1, f2, f3] = self.levels;
         let nominal = self.nominal_z;
         let (scale, any) = (1.0 / (self.width * self.width), 3.0 * (self.span / self.width).ln());
-        let mut density = vec![0.0; f1.len()];
-        for (((density, f1), f2), f3) in density.iter_mut().zip(f1).zip(f2).zip(f3) {
+        for (((density, f1), f2), f3) in self.density.iter_mut().zip(f1).zip(f2).zip(f3) {
             let (d1, d2, d3) = (f1 - nominal[0], f2 - nominal[1], f3 - nominal[2]);
-            *density = any - 2.0 * ln(PI * (1.0 + (d1 * d1 + d2 * d2 + d3 * d3) * scale));
+            *density += any - 2.0 * ln(PI * (1.0 + (d1 * d1 + d2 * d2 + d3 * d3) * scale));
         }
-        density
     }
 }
 
@@ -267,8 +270,23 @@ impl Candidate<'_> {
     /// blocks from one on.
     pub fn density(&self, noise: &Vector3<f64>, from: usize, density: &mut [f64]) {
         self.evidence.density_of_change(self.reach, noise, from, density);
-        density.iter_mut().zip(&self.levels[from..]).for_each(|(x, level)| *x += level);
+        self.multiply_by_level(from, density);
         widest(Mixture { share: 1.0 - DISTURBED, x: density });
+    }
+
+    /// Multiplies the density of a piece of blocks from one on by that of their levels.
+    fn multiply_by_level(&self, from: usize, density: &mut [f64]) {
+        let Self { evidence, nominal_z, width, .. } = *self;
+        let piece = from..from + density.len();
+        let levels = evidence.levels.each_ref().map(|levels| &levels[piece.clone()]);
+        widest(LevelDensity { levels, nominal_z, width, span: evidence.span, density: &mut *density });
+        for (way, half_way) in &self.boundaries {
+            for (density, f_z) in density.iter_mut().zip(&evidence.blocks.f_z[piece.clone()]) {
+                if f_z.dot(way) > *half_way {
+                    *density = f64::NEG_INFINITY;
+                }
+            }
+        }
     }
 
     /// Leaves the blocks to a neighbouring plateau whose level is more than half-way to its own, now that the level `level_z` of
@@ -277,20 +295,16 @@ impl Candidate<'_> {
     /// Plateaus whose levels real units may exchange have no such boundary.
     pub fn leave_to(&mut self, neighbour: &ScheduledPlateau, plateau: &ScheduledPlateau, level_z: &Vector3<f64>) {
         let way = neighbour.nominal_z - plateau.nominal_z;
-        if way.norm() < level_width(&plateau.nominal_z) {
-            return;
-        }
-        let half_way = level_z.dot(&way) + 0.5 * way.norm_squared();
-        for (density, f_z) in self.levels.iter_mut().zip(&self.evidence.blocks.f_z) {
-            if f_z.dot(&way) > half_way {
-                *density = f64::NEG_INFINITY;
-            }
+        if way.norm() >= level_width(&plateau.nominal_z) {
+            self.boundaries.push((way, level_z.dot(&way) + 0.5 * way.norm_squared()));
         }
     }
 
     /// Whether the level of a block is more likely the plateau's than any other.
     pub fn has_level(&self, block: usize) -> bool {
-        self.levels[block] > 0.0
+        let mut density = [0.0];
+        self.multiply_by_level(block, &mut density);
+        density[0] > 0.0
     }
 
     /// Robust standard deviation of the change over some blocks, not below what white noise makes.
