@@ -10,10 +10,7 @@ use std::time::Duration;
 #[cfg(feature = "serve")]
 use centrical_live::{Running, Server, Watched};
 use centrical_report::{AlarmKind, alarm_text, write_history_plot};
-use centrical_session::{
-    self as session, Error, Following, LiveRequest, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder,
-    refuse_inputs, with_rests_there,
-};
+use centrical_session::{self as session, Error, LiveRequest, Session, WatchEnd, WatchEvent, WatchRequest, watch};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -179,16 +176,13 @@ fn follow(
     events: &Sender<Event>,
 ) -> Result<Option<Box<session::CalibrationResult>>, Error> {
     let session = Session::read_before_rests(session)?;
-    let _claim = claim_folder(&request.out)?;
-    let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "watch-live.json", "result.json"];
-    refuse_inputs(&outputs.map(|name| request.out.join(name)), &session.files())?;
     let mut reported = Ok(());
     let mut hear = |event: WatchEvent| {
         if let Some((kind, found)) = alarm_text(&event) {
             // Whether somebody receives it shows with the event itself.
             let _ = events.send(Event::Alarm(kind, found));
         }
-        let has_gone = match message(&event) {
+        let has_gone = match message(&event, &request.out) {
             Ok(event) => event.is_some_and(|event| events.send(event).is_err()),
             Err(error) => {
                 reported = std::mem::replace(&mut reported, Ok(())).and(Err(error));
@@ -199,15 +193,7 @@ fn follow(
             stop.store(true, Ordering::Relaxed);
         }
     };
-    let end = loop {
-        let session = with_rests_there(&session, request.quiet)?;
-        let model = session.model()?;
-        let end = Following::resume(request, &session, &model)?.run(stop, &mut hear)?;
-        write_history_plot(&model, &request.out)?;
-        if let Some(end) = end {
-            break end;
-        }
-    };
+    let end = watch(&session, request, stop, &mut hear)?;
     reported?;
     Ok(match end {
         WatchEnd::Stopped { .. } => None,
@@ -260,8 +246,10 @@ fn alarm_event(kind: AlarmKind) -> &'static str {
 }
 
 /// The event for the other thread; a plateau as its line of the history.
-fn message(event: &WatchEvent) -> Result<Option<Event>, Error> {
+fn message(event: &WatchEvent, out: &Path) -> Result<Option<Event>, Error> {
     match event {
+        WatchEvent::Begun(_) => Ok(None),
+        WatchEvent::Followed(model) => write_history_plot(model, out).map(|()| None),
         WatchEvent::Waiting(note) => Ok(Some(Event::Waiting((*note).to_owned()))),
         WatchEvent::Frozen { file, age } => {
             Ok(Some(Event::Waiting(format!("no new sample in {} for {:.0} s", file.display(), age.as_secs_f64()))))

@@ -79,12 +79,12 @@ pub use experiment::{
 };
 pub use job::{
     Assessment, AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn,
-    FirstOutside, Following, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest,
-    Problem, Recorded, Series, SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch,
-    WatchEnd, WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
+    FirstOutside, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem,
+    Recorded, Series, SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd,
+    WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
     calibrate_series, calibrate_without, collect_results, compare_results, compensate, compensate_record, init,
     list_store, noise_of, plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs, select_model,
-    settings_schema, simulate_session, subject, tumble, with_rests_there, write_reduced,
+    settings_schema, simulate_session, subject, tumble, watch, write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,

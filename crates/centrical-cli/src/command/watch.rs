@@ -7,10 +7,7 @@ use std::time::Duration;
 use centrical_report::{
     counted, frozen_text, states_text, terminal_table, verdict_text, watch_table, write_history_plot,
 };
-use centrical_session::{
-    Error, Following, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, claim_folder, refuse_inputs,
-    with_rests_there,
-};
+use centrical_session::{Error, PlateauName, Session, WatchEnd, WatchEvent, WatchRequest, watch};
 
 #[cfg(feature = "serve")]
 use centrical_live::Watched;
@@ -73,14 +70,11 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read_before_rests(&arguments.session)?;
     #[cfg(feature = "serve")]
-    let mut server = arguments.serving.bind()?;
+    let server = arguments.serving.bind()?;
     #[cfg(feature = "serve")]
     let live = server.as_ref().map(|_| LiveRequest { targets: arguments.target.clone() });
     #[cfg(not(feature = "serve"))]
     let live = None;
-    let _claim = claim_folder(&arguments.out)?;
-    let outputs = ["watch.json", "watch-history.jsonl", "watch-history.svg", "watch-live.json", "result.json"];
-    refuse_inputs(&outputs.map(|name| arguments.out.join(name)), &session.files())?;
     let request = WatchRequest {
         out: arguments.out.clone(),
         false_alarm: arguments.false_alarm,
@@ -95,30 +89,15 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let alarm = Alarm::new(arguments.on_alarm.as_deref(), &session.file);
     #[cfg(feature = "serve")]
-    let mut url = None;
+    let url = server.map(|server| serve(server, Watched::new(&arguments.out))).transpose()?;
     let mut shown = Ok(());
-    let end = loop {
-        let session = with_rests_there(&session, request.quiet)?;
-        let model = session.model()?;
-        let mut following = Following::resume(&request, &session, &model)?;
-        let order: Vec<usize> = (0..session.experiment.set_points.len()).collect();
-        remark(&states_text(&model, &order));
-        #[cfg(feature = "serve")]
-        if let Some(server) = server.take() {
-            url = Some(serve(server, Watched::new(&arguments.out))?);
+    let end = watch(&session, &request, asked_to_end(), &mut |event| {
+        alarm.hear(&event);
+        let outcome = show(&event, arguments);
+        if shown.is_ok() {
+            shown = outcome;
         }
-        let end = following.run(asked_to_end(), &mut |event| {
-            alarm.hear(&event);
-            let outcome = if arguments.json { show_line(&event) } else { show(&event, &arguments.target) };
-            if shown.is_ok() {
-                shown = outcome;
-            }
-        })?;
-        write_history_plot(&model, &arguments.out)?;
-        if let Some(end) = end {
-            break end;
-        }
-    };
+    })?;
     shown?;
     match end {
         WatchEnd::Stopped { plateaus } => {
@@ -150,15 +129,19 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     }
 }
 
-fn show(event: &WatchEvent, targets: &[(String, f64)]) -> Result<(), Error> {
+fn show(event: &WatchEvent, arguments: &Arguments) -> Result<(), Error> {
     match event {
-        WatchEvent::Waiting(note) => {
-            say(&format!("{note}\n"));
-            Ok(())
+        WatchEvent::Begun(model) => {
+            let order: Vec<usize> = (0..model.experiment().set_points.len()).collect();
+            remark(&states_text(model, &order));
         }
-        WatchEvent::Frozen { file, age } => {
-            say(&format!("{}\n", frozen_text(file, *age)));
-            Ok(())
+        WatchEvent::Followed(model) => write_history_plot(model, &arguments.out)?,
+        WatchEvent::Waiting(note) => say(&format!("{note}\n")),
+        WatchEvent::Frozen { file, age } => say(&format!("{}\n", frozen_text(file, *age))),
+        WatchEvent::Plateau(progress) if arguments.json => {
+            if let Some(last) = progress.plateaus.last() {
+                print(&last.entry(progress.plateaus.len(), progress.model, &progress.now).line()?)?;
+            }
         }
         WatchEvent::Plateau(progress) => {
             // On a terminal the table stays in its place.
@@ -166,30 +149,12 @@ fn show(event: &WatchEvent, targets: &[(String, f64)]) -> Result<(), Error> {
             if is_cleared {
                 print_as_it_is("\x1b[2J\x1b[H")?;
             }
-            let mut screen = watch_table(progress, targets, is_cleared);
+            let mut screen = watch_table(progress, &arguments.target, is_cleared);
             screen.gap();
-            show_screen(&screen)
+            show_screen(&screen)?;
         }
     }
-}
-
-/// The line of a plateau in the history.
-fn show_line(event: &WatchEvent) -> Result<(), Error> {
-    match event {
-        WatchEvent::Waiting(note) => {
-            say(&format!("{note}\n"));
-            Ok(())
-        }
-        WatchEvent::Frozen { file, age } => {
-            say(&format!("{}\n", frozen_text(file, *age)));
-            Ok(())
-        }
-        WatchEvent::Plateau(progress) => {
-            let last = progress.plateaus.last();
-            let entry = last.map(|last| last.entry(progress.plateaus.len(), progress.model, &progress.now));
-            entry.map_or(Ok(()), |entry| print(&entry.line()?))
-        }
-    }
+    Ok(())
 }
 
 fn target(text: &str) -> Result<(String, f64), String> {

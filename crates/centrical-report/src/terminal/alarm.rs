@@ -25,7 +25,7 @@ pub fn alarm_text(event: &WatchEvent) -> Option<(AlarmKind, String)> {
             Some((AlarmKind::Plateau, found))
         }
         WatchEvent::Frozen { file, age } => Some((AlarmKind::Frozen, frozen_text(file, *age))),
-        WatchEvent::Waiting(_) => None,
+        WatchEvent::Begun(_) | WatchEvent::Followed(_) | WatchEvent::Waiting(_) => None,
     }
 }
 

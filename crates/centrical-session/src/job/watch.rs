@@ -5,10 +5,46 @@ mod board;
 mod following;
 mod growth;
 mod progress;
+mod request;
 mod rests;
+
+use std::sync::atomic::AtomicBool;
+
+use centrical_table::{claim_folder, refuse_inputs};
 
 pub use self::arrivals::Watch;
 pub use self::board::LiveRequest;
-pub use self::following::{Following, WatchEnd, WatchEvent, WatchRequest};
 pub use self::progress::WatchProgress;
-pub use self::rests::with_rests_there;
+pub use self::request::{WatchEnd, WatchEvent, WatchRequest};
+use crate::error::Error;
+use crate::experiment::Session;
+
+/// Files that a watch writes into its folder; the plot is drawn by who hears the events.
+const OUTPUTS: [&str; 5] = ["watch.json", "watch-history.jsonl", "watch-history.svg", "watch-live.json", "result.json"];
+
+/// Watches a session ([`Session::read_before_rests`]) until its schedule is complete or `stop` is raised. Rests join it when their files
+/// are there: the watch then begins anew with the model of them.
+///
+/// # Errors
+/// [`Error`] when the request names an unknown group or plateau, a finished record is wrong, or the folder is in use, holds an input
+/// or the state of another session, or does not take the state.
+pub fn watch(
+    session: &Session,
+    request: &WatchRequest,
+    stop: &AtomicBool,
+    report: &mut dyn FnMut(WatchEvent),
+) -> Result<WatchEnd, Error> {
+    let _claim = claim_folder(&request.out)?;
+    refuse_inputs(&OUTPUTS.map(|name| request.out.join(name)), &session.files())?;
+    loop {
+        let session = rests::with_rests_there(session, request.quiet)?;
+        let model = session.model()?;
+        let mut following = following::Following::resume(request, &session, &model)?;
+        report(WatchEvent::Begun(&model));
+        let end = following.run(stop, report)?;
+        report(WatchEvent::Followed(&model));
+        if let Some(end) = end {
+            return Ok(end);
+        }
+    }
+}

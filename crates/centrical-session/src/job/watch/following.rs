@@ -1,7 +1,6 @@
 //! A session that is watched: every plateau is tested, taken up or held out, and kept; the calibration when all have arrived.
 
 use std::collections::HashSet;
-use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -14,72 +13,18 @@ use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linea
 use nalgebra::Vector3;
 
 use super::arrivals::Watch;
-use super::board::{Board, LiveRequest};
+use super::board::Board;
 use super::progress::WatchProgress;
+use super::request::{WatchEnd, WatchEvent, WatchRequest};
 use super::rests;
-use crate::document::{
-    CalibrationResult, LiveStatus, Method, WatchState, WatchedPlateau, append_history, keep_history,
-};
+use crate::document::{LiveStatus, Method, WatchState, WatchedPlateau, append_history, keep_history};
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
 use crate::job::calibrate::calibrate_without;
 
-/// How a session is watched.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WatchRequest {
-    /// Folder for the state, the history and the result.
-    pub out: PathBuf,
-    /// Probability that a good session raises an alarm.
-    pub false_alarm: f64,
-    /// Plateaus that are held out whatever their test says.
-    pub hold_out: Vec<PlateauName>,
-    /// Whether plateaus that raise an alarm are held out.
-    pub hold_out_alarms: bool,
-    /// Groups of parameters for which an uncertainty is wanted.
-    pub groups: Vec<String>,
-    /// Time between two looks at the folder.
-    pub interval: Duration,
-    /// Time without change after which a record counts as finished.
-    pub quiet: Duration,
-    /// Time without a sample after which a record counts as frozen in the midst of its schedule.
-    pub frozen: Duration,
-    /// Whether one look is enough.
-    pub once: bool,
-    /// How the watch is shown in `watch-live.json`, if it is.
-    pub live: Option<LiveRequest>,
-}
-
-/// What happens while a session is watched.
-#[derive(Debug)]
-pub enum WatchEvent<'a> {
-    /// A plateau was taken up or held out.
-    Plateau(WatchProgress<'a>),
-    /// What is waited for.
-    Waiting(&'a str),
-    /// A record has stopped growing in the midst of its schedule.
-    Frozen {
-        /// Its file.
-        file: &'a Path,
-        /// Since it changed last.
-        age: Duration,
-    },
-}
-
-/// How a watch ends.
-#[derive(Debug)]
-pub enum WatchEnd {
-    /// Stopped; the state on disk is whole.
-    Stopped {
-        /// Plateaus that have arrived.
-        plateaus: usize,
-    },
-    /// The schedule is complete: the calibration of the session, from its files anew.
-    Complete(Box<CalibrationResult>),
-}
-
 /// A session that is watched: the estimates, and where they are kept.
 #[derive(Debug)]
-pub struct Following<'a> {
+pub(super) struct Following<'a> {
     request: &'a WatchRequest,
     session: &'a Session,
     model: &'a MeasurementModel,
@@ -145,7 +90,7 @@ impl<'a> Following<'a> {
     }
 
     /// Looks at the session again and again, until its schedule is complete or `stop` is raised; `None` when the files of further
-    /// rests have come, and the watch has to go on with the session [`with_rests_there`](super::with_rests_there).
+    /// rests have come, and the watch has to go on with the session [`rests::with_rests_there`].
     ///
     /// # Errors
     /// [`Error`] when a finished record is wrong, or the folder does not take the state.

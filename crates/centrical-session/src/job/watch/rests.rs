@@ -14,7 +14,7 @@ use crate::job::reduce::with_all_rests;
 ///
 /// # Errors
 /// [`Error`] when a table or a record that has been left alone is wrong.
-pub fn with_rests_there(session: &Session, quiet: Duration) -> Result<Session, Error> {
+pub(super) fn with_rests_there(session: &Session, quiet: Duration) -> Result<Session, Error> {
     let mut tables = session.rest_tables.clone();
     let waited_for = tables.iter().position(|table| !is_there(table, quiet)).unwrap_or(tables.len());
     let later = tables.split_off(waited_for);
