@@ -14,6 +14,7 @@ mod arrays;
 mod compensation;
 mod drawing;
 mod failure;
+mod given;
 mod jobs;
 mod pool;
 mod progress;
@@ -47,7 +48,7 @@ pub mod _native {
     #[pymodule_export]
     pub use crate::jobs::montecarlo::montecarlo;
     #[pymodule_export]
-    pub use crate::jobs::noise::noise;
+    pub use crate::jobs::noise::{noise, noise_of_session};
     #[pymodule_export]
     pub use crate::jobs::observe::observe;
     #[pymodule_export]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical_session::{Error, Place, read_bytes};
+use centrical_session::{Error, Place, Source};
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
@@ -22,7 +22,7 @@ const LARGEST_SIDE: usize = 2048;
 /// [`Error`] when the file is not there, is not a PNG file or is larger than a mark on a certificate is.
 pub(crate) fn read_picture(file: &Path) -> Result<Picture, Error> {
     let expected = format!("a PNG picture of up to {LARGEST_SIDE} pixels a side in 1 MB at most");
-    let bytes = read_bytes(file, LARGEST_FILE, &expected)?;
+    let bytes = Source::open(file, &expected)?.bytes(LARGEST_FILE, &expected)?;
     decode(&bytes).map_err(|found| Error::content(file, Place::Whole, found, expected))
 }
 

@@ -35,8 +35,8 @@ pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use centrical::stability::Estimator;
 pub use centrical::{OnProgress, STANDARD_GRAVITY, Stopped, unwatched};
 pub use centrical_table::{
-    ClaimedFolder, ColumnName, TableFormat, abandon_files, claim_folder, create_folder, harmless, harmless_line,
-    read_bytes, refuse_inputs, write_stream, write_whole,
+    Bytes, ClaimedFolder, ColumnName, Source, TableFormat, abandon_files, claim_folder, create_folder, harmless,
+    harmless_line, refuse_inputs, write_stream, write_whole,
 };
 pub use document::{
     ADDED_SCHEMA, ASSESSMENT_SCHEMA, AddedReport, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport,
@@ -73,9 +73,9 @@ pub use document::{
 };
 pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, KnownAttitudes, Measured, MountingFiles, OutputUnit, Plan, PlannedRests, Planning, PlateauMean,
-    PlateauName, PlateauTable, RecordedRests, RestSource, RestTable, Session, SpeedSource, Speeds, StatedAttitudes,
-    available_time, read_plateaus, write_plateaus,
+    ExpectedValues, Folder, KnownAttitudes, Measured, MountingFiles, OutputUnit, Plan, PlannedRests, Planning,
+    PlateauMean, PlateauName, PlateauTable, RecordedRests, RestSource, RestTable, Session, SpeedSource, Speeds,
+    StatedAttitudes, available_time, read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn,
@@ -83,8 +83,9 @@ pub use job::{
     Recorded, Series, SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd,
     WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
     calibrate_series, calibrate_without, collect_results, compare_results, compensate, compensate_record, init,
-    list_store, noise_of, plan, read_plan, read_planning, reduce, reduce_recorded, reduce_without_inputs, select_model,
-    settings_schema, simulate_session, subject, tumble, watch, write_reduced,
+    list_store, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded,
+    reduce_without_inputs, select_model, settings_schema, simulate_session, subject, subject_of, tumble, watch,
+    write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
@@ -97,8 +98,7 @@ pub use laboratory::{
 };
 pub use quantity::{Date, Dimension, NotADay, NotThatQuantity, Quantity};
 pub use record::{
-    Column, Columns, Input, RecordOverview, RecordReader, RecordWriter, Scale, read_growing_record, read_pulses,
-    read_record, read_telemetry, stretch,
+    Column, Columns, Input, RecordOverview, RecordReader, RecordWriter, Scale, read_record, read_telemetry, stretch,
 };
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use store::{

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical_table::{cut, read_document};
+use centrical_table::{Source, cut};
 use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Place};
@@ -18,12 +18,17 @@ const LONGEST_SENTENCE: usize = 200;
 
 /// The text of a file of settings, which should be what `expected` says.
 pub(crate) fn read_settings(file: &Path, expected: &str) -> Result<String, Error> {
-    Ok(read_document(file, LARGEST_SETTINGS, expected)?)
+    settings_of(&Source::open(file, expected)?, expected)
+}
+
+/// The same of a source.
+pub(crate) fn settings_of(source: &Source, expected: &str) -> Result<String, Error> {
+    Ok(source.text(LARGEST_SETTINGS, expected)?)
 }
 
 /// The text of a result, a state or a history.
 pub(crate) fn read_result(file: &Path, expected: &str) -> Result<String, Error> {
-    Ok(read_document(file, LARGEST_DOCUMENT, expected)?)
+    Ok(Source::open(file, expected)?.text(LARGEST_DOCUMENT, expected)?)
 }
 
 /// Settings from the text of `file`.

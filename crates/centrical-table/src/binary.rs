@@ -15,9 +15,6 @@ mod parquet_pages;
 mod tdms;
 mod typed;
 
-use std::fs::File;
-use std::path::Path;
-
 #[cfg(feature = "xlsx")]
 pub(crate) use self::catch_panic::catch_panic;
 pub use self::cells::{Cell, Kind, TypedColumn};
@@ -25,6 +22,7 @@ pub(crate) use self::columnar::ColumnReader;
 pub use self::typed::TypedReader;
 use crate::column::Field;
 use crate::error::{Error, Place};
+use crate::source::Source;
 
 /// The binary formats, recognised by their first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,38 +63,38 @@ impl BinaryFormat {
         MAGIC.into_iter().find(|(start, _)| magic.starts_with(start)).map(|(_, format)| format)
     }
 
-    /// Reads `fields` of a file of this format, which can hold `most` rows.
-    pub fn open(self, file: &Path, input: File, fields: Vec<Field>, most: u64) -> Result<ColumnReader, Error> {
+    /// Reads `fields` of a source of this format, which can hold `most` rows.
+    pub fn open(self, source: &Source, fields: Vec<Field>, most: u64) -> Result<ColumnReader, Error> {
         let columns = match self {
             Self::Parquet => {
-                let parts = parquet::parts(file, &input, &fields)?;
-                return Ok(ColumnReader::new(file, fields, parts, most));
+                let parts = parquet::parts(source, &fields)?;
+                return Ok(ColumnReader::new(source.name(), fields, parts, most));
             }
             Self::Arrow => {
-                let parts = arrow::parts(file, input, &fields)?;
-                return Ok(ColumnReader::new(file, fields, parts, most));
+                let parts = arrow::parts(source, &fields)?;
+                return Ok(ColumnReader::new(source.name(), fields, parts, most));
             }
-            Self::Npy => npy::columns(file, &input, &fields)?,
-            Self::Npz => npy::archive_columns(file, input, &fields)?,
-            Self::Mat => mat::columns(file, &input, &fields)?,
-            Self::Tdms => tdms::columns(file, input, &fields)?,
+            Self::Npy => npy::columns(source, &fields)?,
+            Self::Npz => npy::archive_columns(source, &fields)?,
+            Self::Mat => mat::columns(source, &fields)?,
+            Self::Tdms => tdms::columns(source, &fields)?,
             Self::TdmsIndex => {
                 let expected = "the file of the same name that ends in .tdms";
                 return Err(Error::content(
-                    file,
+                    source.name(),
                     Place::Whole,
                     "the index of a TDMS file, without its numbers",
                     expected,
                 ));
             }
             #[cfg(feature = "hdf5")]
-            Self::Hdf5 | Self::MatHdf5 => hdf5::columns(file, self == Self::MatHdf5, &fields, most)?,
+            Self::Hdf5 | Self::MatHdf5 => hdf5::columns(source, self == Self::MatHdf5, &fields, most)?,
             #[cfg(not(feature = "hdf5"))]
             Self::Hdf5 | Self::MatHdf5 => {
                 let expected = "another format (this program was built without the feature hdf5)";
-                return Err(Error::content(file, Place::Whole, "HDF5", expected));
+                return Err(Error::content(source.name(), Place::Whole, "HDF5", expected));
             }
         };
-        Ok(ColumnReader::whole(file, fields, columns, most))
+        Ok(ColumnReader::whole(source.name(), fields, columns, most))
     }
 }

@@ -41,25 +41,27 @@
 
 mod binary;
 mod column;
-mod document;
 mod error;
 mod foreign;
 mod reader;
 mod rows;
 #[cfg(feature = "xlsx")]
 mod sheet;
+mod source;
 mod stamp;
 mod text;
 mod unpacking;
 mod write;
 
+pub use bytes::Bytes;
+
 pub use binary::{Cell, Kind, TypedColumn, TypedReader};
 pub use column::{ColumnName, Field, Rule, TableLines, UnitsFound};
-pub use document::{open_regular, read_bytes, read_document};
 pub use error::{Error, Place, quoted, shown_path};
 pub use foreign::{cut, harmless, harmless_line};
 pub use reader::{Extent, TableReader, estimate_rows, text_form};
 pub use rows::{Rows, to_scale};
+pub use source::{Source, SourceReader};
 pub use stamp::{StampKind, Stamps};
 pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm};
 pub use write::{

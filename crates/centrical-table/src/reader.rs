@@ -2,8 +2,7 @@
 //!
 //! The first bytes of the file show its format, not its name.
 
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
@@ -13,9 +12,9 @@ use memchr::{memchr_iter, memrchr};
 use crate::binary::catch_panic;
 use crate::binary::{BinaryFormat, ColumnReader};
 use crate::column::{Field, TableLines, UnitsFound};
-use crate::document::open_regular;
 use crate::error::{Error, Place};
 use crate::rows::{RowNumber, Rows};
+use crate::source::Source;
 use crate::stamp::Stamps;
 use crate::text::{FromUtf16, Index, Lines, Packed, Plain, SIGHT, TextEncoding, TextForm, TextReader};
 use crate::unpacking::Unpacked;
@@ -44,14 +43,14 @@ pub struct TableReader {
     /// Its length, and how much of it was read.
     length: u64,
     bytes: u64,
-    source: Source,
+    table: Table,
     row_number: RowNumber,
     /// Rows that were handed out, and sets of rows in the last batch.
     count: u64,
     batch: usize,
 }
 
-enum Source {
+enum Table {
     Text(Box<TextReader>),
     Binary(ColumnReader),
 }
@@ -62,56 +61,37 @@ impl TableReader {
     /// # Errors
     /// If it cannot be read, or a binary table lacks a column.
     pub fn open(file: &Path, extent: Extent, fields: &[Field], expected: &str) -> Result<Self, Error> {
-        Self::open_at(file, extent, fields, expected, TableLines::default())
+        Self::new(Source::open(file, expected)?, extent, fields, expected, TableLines::default())
     }
 
-    /// The same of a text whose header or first row stands in a line that is known.
+    /// The table in a source, which should be what `expected` says, to read `fields`; of a text, `lines` says in which of them
+    /// the header or the first row stands, where that is known.
     ///
     /// # Errors
     /// As [`TableReader::open`].
-    pub fn open_at(
-        file: &Path,
+    pub fn new(
+        source: Source,
         extent: Extent,
         fields: &[Field],
         expected: &str,
         lines: TableLines,
     ) -> Result<Self, Error> {
-        let said = lines;
-        let failed = |e| Error::reading(file, e, expected);
-        let mut input = open_regular(file, expected)?;
-        let length = input.metadata().map_err(failed)?.len();
-        let magic = first_bytes(&mut input, SIGHT).map_err(failed)?;
+        let (file, length) = (source.name().to_owned(), source.length());
+        let magic = first_bytes(&source).map_err(|e| Error::reading(&file, e, expected))?;
         if magic.is_empty() {
-            return Err(Error::content(file, Place::Whole, "an empty file", expected));
+            return Err(Error::content(&file, Place::Whole, "an empty file", expected));
         }
         let mut fields = fields.to_vec();
         let row_number = RowNumber::take_out(&mut fields);
-        let source = match Format::of(&magic) {
-            Format::Binary(BinaryFormat::Npz) if is_workbook(&mut input) => {
-                let text = workbook_text(file, input)?;
-                let most = length.max(text.len() as u64);
-                let lines = Lines::Packed(Packed::new(file, io::Cursor::new(text), most));
-                Source::Text(Box::new(TextReader::new(file, lines, fields, said)))
-            }
-            Format::Binary(format) => Source::Binary(format.open(file, input, fields, most_rows(length))?),
+        let table = match Format::of(&magic, &source) {
+            Format::Binary(format) => Table::Binary(format.open(&source, fields, most_rows(length))?),
             format => {
-                let utf_16 = TextEncoding::utf_16(&magic).filter(|_| format == Format::Text);
-                let lines = match (format, extent) {
-                    _ if utf_16.is_some() => Lines::Packed(utf_16_lines(file, input, utf_16, extent).map_err(failed)?),
-                    (Format::Gzip, _) => Lines::Packed(Packed::new(file, MultiGzDecoder::new(input), length)),
-                    (Format::Zstd, _) => {
-                        Lines::Packed(Packed::new(file, zstd::Decoder::new(input).map_err(failed)?, length))
-                    }
-                    (_, Extent::Whole) => Lines::Plain(Plain::new(file, input).map_err(failed)?),
-                    (_, Extent::Growing) => {
-                        Lines::Plain(Plain::new(file, input).and_then(Plain::complete).map_err(failed)?)
-                    }
-                };
-                Source::Text(Box::new(TextReader::new(file, lines, fields, said)))
+                let text = text_lines(source, format, &magic, extent, expected)?;
+                Table::Text(Box::new(TextReader::new(&file, text, fields, lines)))
             }
         };
-        let (file, expected) = (file.to_owned(), expected.to_owned());
-        Ok(Self { file, expected, length, bytes: 0, source, row_number, count: 0, batch: 0 })
+        let expected = expected.to_owned();
+        Ok(Self { file, expected, length, bytes: 0, table, row_number, count: 0, batch: 0 })
     }
 
     /// The next rows, several sets of them so that they may be worked on in parallel; none at the end. They belong to the
@@ -120,10 +100,10 @@ impl TableReader {
     /// # Errors
     /// If the file cannot be read, has no rows, lacks a column, or a value is not what its field asks for.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
-        self.row_number.remove(self.source.rows(std::mem::take(&mut self.batch)));
-        let read = match &mut self.source {
-            Source::Text(text) => text.read()?,
-            Source::Binary(columns) => Some((columns.read()?, 0)).filter(|(sets, _)| *sets > 0),
+        self.row_number.remove(self.table.rows(std::mem::take(&mut self.batch)));
+        let read = match &mut self.table {
+            Table::Text(text) => text.read()?,
+            Table::Binary(columns) => Some((columns.read()?, 0)).filter(|(sets, _)| *sets > 0),
         };
         let Some((sets, bytes)) = read else {
             self.bytes = self.length;
@@ -131,7 +111,7 @@ impl TableReader {
         };
         self.bytes += bytes;
         self.batch = sets;
-        for rows in self.source.rows(sets) {
+        for rows in self.table.rows(sets) {
             let first = self.count;
             self.count += rows[0].len() as u64;
             self.row_number.put(first, rows);
@@ -141,27 +121,27 @@ impl TableReader {
             let found = format!("a file of {} bytes that unpacks to more than {most} rows", self.length);
             return Err(self.refuse(found));
         }
-        Ok(Some(self.source.rows(sets)))
+        Ok(Some(self.table.rows(sets)))
     }
 
     /// The rows that were read last, once more.
     pub fn batch(&mut self) -> &mut [Rows] {
-        self.source.rows(self.batch)
+        self.table.rows(self.batch)
     }
 
     /// Keeps stamps in the first field as they are read, for [`TableReader::take_stamps`].
     pub fn keep_stamps(&mut self) {
-        match &mut self.source {
-            Source::Text(text) => text.keep_stamps(),
-            Source::Binary(columns) => columns.keep_stamps(),
+        match &mut self.table {
+            Table::Text(text) => text.keep_stamps(),
+            Table::Binary(columns) => columns.keep_stamps(),
         }
     }
 
     /// The stamps of the rows that were read last, for each set of them; none where the field is of numbers.
     pub fn take_stamps(&mut self) -> Vec<Stamps> {
-        match &mut self.source {
-            Source::Text(text) => text.take_stamps(self.batch),
-            Source::Binary(columns) => columns.take_stamps(self.batch),
+        match &mut self.table {
+            Table::Text(text) => text.take_stamps(self.batch),
+            Table::Binary(columns) => columns.take_stamps(self.batch),
         }
     }
 
@@ -176,20 +156,20 @@ impl TableReader {
 
     /// Units that a text names beside or below the names of its columns, once rows were read.
     pub fn units(&self) -> Option<UnitsFound> {
-        let Source::Text(text) = &self.source else { return None };
+        let Table::Text(text) = &self.table else { return None };
         Some(self.row_number.in_all(text.units()?.clone()))
     }
 
     /// After the end: where the rows are, so that any part can be read again; only of a text that is not packed.
     pub fn into_index(self) -> Option<Index> {
-        match self.source {
-            Source::Text(text) => text.into_index(self.row_number),
-            Source::Binary(_) => None,
+        match self.table {
+            Table::Text(text) => text.into_index(self.row_number),
+            Table::Binary(_) => None,
         }
     }
 }
 
-impl Source {
+impl Table {
     /// The rows that were read last.
     fn rows(&mut self, sets: usize) -> &mut [Rows] {
         match self {
@@ -205,18 +185,15 @@ fn most_rows(length: u64) -> u64 {
 }
 
 /// Estimates the rows of a table: of a text by how long the lines in its middle are; none of other formats.
-pub fn estimate_rows(file: &Path) -> Option<u64> {
+pub fn estimate_rows(source: &Source) -> Option<u64> {
     const SAMPLE: u64 = 1 << 16;
-    let mut input = open_regular(file, "a table of numbers").ok()?;
-    let bytes = input.metadata().ok()?.len();
-    let magic = first_bytes(&mut input, SIGHT).ok()?;
-    let format = Format::of(&magic);
+    let magic = first_bytes(source).ok()?;
+    let format = Format::of(&magic, source);
     let mut sample = Vec::new();
-    input.seek(SeekFrom::Start(bytes.saturating_sub(SAMPLE) / 2)).ok()?;
-    input.take(SAMPLE).read_to_end(&mut sample).ok()?;
+    source.reader_at(source.length().saturating_sub(SAMPLE) / 2).take(SAMPLE).read_to_end(&mut sample).ok()?;
     let lines = memchr_iter(b'\n', &sample).count() as u64;
     (format == Format::Text && TextEncoding::utf_16(&magic).is_none() && lines > 0)
-        .then(|| bytes.div_ceil(sample.len() as u64) * lines)
+        .then(|| source.length().div_ceil(sample.len() as u64) * lines)
 }
 
 /// The formats, recognised by their first bytes.
@@ -227,17 +204,47 @@ enum Format {
     Gzip,
     /// Text in Zstandard.
     Zstd,
+    /// Text in the cells of a sheet.
+    Workbook,
     Binary(BinaryFormat),
 }
 
 impl Format {
-    fn of(magic: &[u8]) -> Self {
+    /// The format of a source that begins with `magic`.
+    fn of(magic: &[u8], source: &Source) -> Self {
         match magic {
             [0x1f, 0x8b, ..] => Self::Gzip,
             [0x28, 0xb5, 0x2f, 0xfd, ..] => Self::Zstd,
-            _ => BinaryFormat::of(magic).map_or(Self::Text, Self::Binary),
+            _ => match BinaryFormat::of(magic) {
+                None => Self::Text,
+                Some(BinaryFormat::Npz) if is_workbook(source) => Self::Workbook,
+                Some(format) => Self::Binary(format),
+            },
         }
     }
+}
+
+/// The lines of a text that begins with `magic`.
+fn text_lines(source: Source, format: Format, magic: &[u8], extent: Extent, expected: &str) -> Result<Lines, Error> {
+    let (file, length) = (source.name().to_owned(), source.length());
+    let failed = |e| Error::reading(&file, e, expected);
+    let whole = source.reader_at(0);
+    Ok(match (format, TextEncoding::utf_16(magic), extent) {
+        (Format::Gzip, ..) => Lines::Packed(Packed::new(&file, MultiGzDecoder::new(whole), length)),
+        (Format::Zstd, ..) => Lines::Packed(Packed::new(&file, zstd::Decoder::new(whole).map_err(failed)?, length)),
+        (Format::Workbook, ..) => {
+            let text = workbook_text(&source)?;
+            let most = length.max(text.len() as u64);
+            Lines::Packed(Packed::new(&file, io::Cursor::new(text), most))
+        }
+        (_, Some(_), Extent::Whole) => Lines::Packed(Packed::new(&file, whole, length)),
+        (_, Some(encoding), Extent::Growing) => {
+            let complete = complete_lines(&source, encoding).map_err(failed)?;
+            Lines::Packed(Packed::new(&file, whole.take(complete), complete))
+        }
+        (_, None, Extent::Whole) => Lines::Plain(Plain::new(source)),
+        (_, None, Extent::Growing) => Lines::Plain(Plain::new(source).complete().map_err(failed)?),
+    })
 }
 
 /// What a table as text looks like, from its first lines: encoding, delimiter, decimal sign, lines above the header, names, units, kind
@@ -249,15 +256,13 @@ pub fn text_form(file: &Path) -> Result<Option<TextForm>, Error> {
     const SAMPLE: u64 = 1 << 16;
     const EXPECTED: &str = "a table of numbers";
     let failed = |e| Error::reading(file, e, EXPECTED);
-    let mut input = open_regular(file, EXPECTED)?;
-    let length = input.metadata().map_err(failed)?.len();
-    let text: Box<dyn Read> = match Format::of(&first_bytes(&mut input, SIGHT).map_err(failed)?) {
-        Format::Text => Box::new(input),
-        Format::Gzip => Box::new(Unpacked::new(MultiGzDecoder::new(input), length, None)),
-        Format::Zstd => Box::new(Unpacked::new(zstd::Decoder::new(input).map_err(failed)?, length, None)),
-        Format::Binary(BinaryFormat::Npz) if is_workbook(&mut input) => {
-            Box::new(io::Cursor::new(workbook_text(file, input)?))
-        }
+    let source = Source::open(file, EXPECTED)?;
+    let (whole, length) = (source.reader_at(0), source.length());
+    let text: Box<dyn Read> = match Format::of(&first_bytes(&source).map_err(failed)?, &source) {
+        Format::Text => Box::new(whole),
+        Format::Gzip => Box::new(Unpacked::new(MultiGzDecoder::new(whole), length, None)),
+        Format::Zstd => Box::new(Unpacked::new(zstd::Decoder::new(whole).map_err(failed)?, length, None)),
+        Format::Workbook => Box::new(io::Cursor::new(workbook_text(&source)?)),
         Format::Binary(_) => return Ok(None),
     };
     let mut sample = Vec::new();
@@ -275,18 +280,18 @@ pub fn text_form(file: &Path) -> Result<Option<TextForm>, Error> {
     Ok(TextForm::of(sample.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&sample), encoding))
 }
 
-/// Whether a zip archive is a workbook. The file is at its start then.
-fn is_workbook(input: &mut File) -> bool {
-    let is = zip::ZipArchive::new(&*input).is_ok_and(|archive| archive.index_for_name("xl/workbook.xml").is_some());
-    input.rewind().is_ok() && is
+/// Whether a zip archive is a workbook.
+fn is_workbook(source: &Source) -> bool {
+    let archive = zip::ZipArchive::new(source.reader_at(0));
+    archive.is_ok_and(|archive| archive.index_for_name("xl/workbook.xml").is_some())
 }
 
 /// The first sheet of a workbook as text.
-fn workbook_text(file: &Path, input: File) -> Result<Vec<u8>, Error> {
+fn workbook_text(source: &Source) -> Result<Vec<u8>, Error> {
     #[cfg(feature = "xlsx")]
     {
-        let damaged = |found| Error::content(file, Place::Whole, found, "a workbook (.xlsx) that is whole");
-        match catch_panic(|| crate::sheet::text(input)) {
+        let damaged = |found| Error::content(source.name(), Place::Whole, found, "a workbook (.xlsx) that is whole");
+        match catch_panic(|| crate::sheet::text(source)) {
             Ok(text) => Ok(text),
             Err(Some(error)) => Err(damaged(format!("a damaged workbook ({error})"))),
             Err(None) => Err(damaged("a damaged workbook".to_owned())),
@@ -294,45 +299,31 @@ fn workbook_text(file: &Path, input: File) -> Result<Vec<u8>, Error> {
     }
     #[cfg(not(feature = "xlsx"))]
     {
-        drop(input);
         let expected = "the sheet saved as text (this program was built without the feature xlsx)";
-        Err(Error::content(file, Place::Whole, "a workbook (.xlsx)", expected))
+        Err(Error::content(source.name(), Place::Whole, "a workbook (.xlsx)", expected))
     }
 }
 
-/// A text in UTF-16, from its start to its end or to that of the last complete line.
-fn utf_16_lines(file: &Path, mut input: File, encoding: Option<TextEncoding>, extent: Extent) -> io::Result<Packed> {
-    let length = match (encoding, extent) {
-        (Some(encoding), Extent::Growing) => complete_lines(&mut input, encoding)?,
-        _ => input.metadata()?.len(),
-    };
-    Ok(Packed::new(file, input.take(length), length))
-}
-
-/// Bytes up to the end of the last complete line of a text in UTF-16, leaving the file at its start.
-fn complete_lines(input: &mut File, encoding: TextEncoding) -> io::Result<u64> {
+/// Bytes up to the end of the last complete line of a text in UTF-16.
+fn complete_lines(source: &Source, encoding: TextEncoding) -> io::Result<u64> {
     const PIECE: u64 = 1 << 16;
     let newline: [u8; 2] = if encoding == TextEncoding::Utf16Be { [0, b'\n'] } else { [b'\n', 0] };
-    let (mut end, mut bytes) = (input.metadata()?.len() & !1, Vec::new());
+    let (mut end, mut bytes) = (source.length() & !1, Vec::new());
     while end > 0 {
         let start = end.saturating_sub(PIECE);
-        input.seek(SeekFrom::Start(start))?;
         bytes.clear();
-        input.take(end - start).read_to_end(&mut bytes)?;
+        source.reader_at(start).take(end - start).read_to_end(&mut bytes)?;
         if let Some(last) = bytes.as_chunks().0.iter().rposition(|unit| *unit == newline) {
-            end = start + 2 * (last as u64 + 1);
-            break;
+            return Ok(start + 2 * (last as u64 + 1));
         }
         end = start;
     }
-    input.rewind()?;
-    Ok(end)
+    Ok(0)
 }
 
-/// The first bytes, `most` of them, leaving the file at its start.
-fn first_bytes(input: &mut File, most: usize) -> io::Result<Vec<u8>> {
+/// The first bytes, by which a format is recognised.
+fn first_bytes(source: &Source) -> io::Result<Vec<u8>> {
     let mut magic = Vec::new();
-    input.take(most as u64).read_to_end(&mut magic)?;
-    input.rewind()?;
+    source.reader_at(0).take(SIGHT as u64).read_to_end(&mut magic)?;
     Ok(magic)
 }

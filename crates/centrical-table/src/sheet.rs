@@ -3,11 +3,11 @@
 //! A line is a row of the sheet. A formula counts as the value that was saved with it; a merged cell has its value in its first cell. A
 //! date is a stamp.
 
-use std::fs::File;
 use std::io::{self, Read};
 
 use calamine::{DataRef, Reader, Xlsx};
 
+use crate::source::Source;
 use crate::unpacking::Unpacked;
 
 /// What a workbook that people type may hold: cells, columns, and bytes of its text and of what is packed in it.
@@ -19,9 +19,9 @@ const MOST_BYTES: usize = 32 << 20;
 type Cell = (u32, u32, String);
 
 /// The text of the first sheet.
-pub(crate) fn text(file: File) -> io::Result<Vec<u8>> {
-    check_size(&file)?;
-    let mut workbook = Xlsx::new(io::BufReader::new(file)).map_err(|e| wrong(&e))?;
+pub(crate) fn text(source: &Source) -> io::Result<Vec<u8>> {
+    check_size(source)?;
+    let mut workbook = Xlsx::new(io::BufReader::new(source.reader_at(0))).map_err(|e| wrong(&e))?;
     let name = workbook.sheet_names().first().cloned().ok_or_else(|| wrong(&"no sheet"))?;
     let mut reader = workbook.worksheet_cells_reader(&name).map_err(|e| wrong(&e))?;
     let (mut cells, mut bytes): (Vec<Cell>, usize) = (Vec::new(), 0);
@@ -42,8 +42,8 @@ pub(crate) fn text(file: File) -> io::Result<Vec<u8>> {
 }
 
 /// Refuses archives that unpack to more than a workbook that people type.
-fn check_size(file: &File) -> io::Result<()> {
-    let mut archive = zip::ZipArchive::new(file).map_err(|e| wrong(&e))?;
+fn check_size(source: &Source) -> io::Result<()> {
+    let mut archive = zip::ZipArchive::new(source.reader_at(0)).map_err(|e| wrong(&e))?;
     let mut left = MOST_BYTES as u64;
     for member in 0..archive.len() {
         let member = archive.by_index(member).map_err(|e| wrong(&e))?;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{Emphasis, Screen, noise_table, noise_warnings, write_noise};
-use centrical_session::{ColumnName, Error, Estimator, NoiseRequest, PlateauName, noise_of, unwatched};
+use centrical_session::{ColumnName, Error, Estimator, Folder, NoiseRequest, PlateauName, noise_of, unwatched};
 
 use crate::given::{column_name, frequency, time};
 use crate::outcome::Outcome;
@@ -58,6 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let (analysis, plateau) = noise_of(
         &NoiseRequest {
             file: arguments.file.clone(),
+            folder: Folder::default(),
             plateau: arguments.plateau,
             session: arguments.session.clone(),
             time: arguments.time.clone(),

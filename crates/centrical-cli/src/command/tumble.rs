@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::{read_issuer, terminal_table, unit_text, verdict_text, write_all_documents};
 use centrical_session::{
-    ColumnName, Dimension, Error, NotThatQuantity, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder,
-    refuse_inputs, tumble, unwatched,
+    ColumnName, Dimension, Error, Folder, NotThatQuantity, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest,
+    claim_folder, refuse_inputs, tumble, unwatched,
 };
 
 use crate::command::calibrate::outputs;
@@ -73,6 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let uncertain = if arguments.gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
     let request = TumbleRequest {
         files: arguments.records.clone(),
+        folder: Folder::default(),
         time: arguments.time.clone(),
         rate: arguments.rate,
         readings: arguments.readings.0.clone(),

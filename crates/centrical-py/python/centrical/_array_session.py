@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _native
 from ._errors import InputError, no_session
+from ._given import InMemory, bytes_of, is_file
 from ._progress import Bar
 from ._result import Result
 from ._table import columns_named, names_of
@@ -33,9 +34,8 @@ class ArraySession:
         ``inputs`` of the result is empty: there is no file to take a hash of.
         """
         with Bar("reducing") as shown:
-            native = _native.calibrate_arrays(
-                self._text, self._file, self._records, self._plateaus, method, list(hold_out), shown
-            )
+            given = (self._text, self._file, [], [])
+            native = _native.calibrate_arrays(given, self._records, self._plateaus, method, list(hold_out), shown)
         return Result(native)
 
     def __repr__(self) -> str:
@@ -62,6 +62,33 @@ def from_arrays(
     _refuse_gaps(numbered)
     mountings = [_mounting(m, numbered[m], traces.get(m), counted.get(m)) for m in sorted(numbered)]
     return ArraySession(text, file, mountings, None)
+
+
+def are_files(records: Any) -> bool:
+    """Whether records are files in memory, and not arrays."""
+    values = list(records.values()) if isinstance(records, Mapping) else records
+    return isinstance(values, (list, tuple)) and any(is_file(value) for value in values)
+
+
+def from_files(experiment: str | os.PathLike[str], records: Any, telemetry: Any, pulses: Any) -> InMemory:
+    """What the native functions take of a session whose records are files in memory."""
+    of_mountings = [_by_mounting("records", records), _by_mounting("telemetry", telemetry), _by_mounting("pulses", pulses)]
+    _refuse_gaps(of_mountings[0])
+    files: list[tuple[str, bytes]] = []
+
+    def name(kind: str, numbered: dict[int, Any], m: int) -> str | None:
+        source = numbered.get(m)
+        if source is None:
+            return None
+        found = bytes_of(source)
+        if found is None:
+            raise TypeError(f"{kind}[{m}]: found {type(source).__name__}, expected a file, as others of the session are")
+        files.append((f"{kind}[{m}]", found))
+        return files[-1][0]
+
+    kinds = ("records", "telemetry", "pulses")
+    names = [[name(kind, of, m) for kind, of in zip(kinds, of_mountings)] for m in sorted(of_mountings[0])]
+    return (*_experiment(experiment), files, [(record or "", trace, counted) for record, trace, counted in names])
 
 
 def _experiment(experiment: str | os.PathLike[str]) -> tuple[str, str]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from . import _native
 from ._document import Document
 from ._documents import check_documents
+from ._given import given_file, given_session, is_file
 from ._noise import Noise, noise_of_array
 from ._paths import paths
 from ._plan import Plan
@@ -23,11 +24,12 @@ from ._result import Result
 if TYPE_CHECKING:
     from typing import Literal
 
-    from ._types import Form, Format, Language, Method, Path, Quantity
+    from ._session import Session
+    from ._types import File, Form, Format, Language, Method, Path, Quantity
 
 
 def calibrate(
-    session: Path,
+    session: Path | Session,
     *,
     method: Method = "exact",
     hold_out: Iterable[str] = (),
@@ -40,7 +42,7 @@ def calibrate(
     Parameters
     ----------
     session
-        The folder of a session, or its ``experiment.toml``.
+        The folder of a session, its ``experiment.toml``, or a :class:`Session`.
     method
         ``"exact"``: Gauss-Newton on the exact model; ``"recursive"``: the same estimates by the recursive filter;
         ``"linear"``: the linear fit of [K5.3] alone, with its second-order error.
@@ -53,11 +55,11 @@ def calibrate(
     ('alpha_1', 'alpha_2')
     """
     with Bar("calibrating") as shown:
-        return Result(_native.calibrate(session, method, _texts(hold_out), out, laboratory, language, shown))
+        return Result(_native.calibrate(given_session(session), method, _texts(hold_out), out, laboratory, language, shown))
 
 
 def tumble(
-    records: Path | Sequence[Path],
+    records: Path | File | Sequence[Path | File],
     *,
     time: str | int = "t",
     rate: Quantity | None = None,
@@ -77,7 +79,7 @@ def tumble(
     Parameters
     ----------
     records
-        One record or several of one unit, in any format.
+        One record or several of one unit, in any format: paths, bytes, or files that are open.
     rate
         Sampling rate [Hz], or a text such as ``"100 Hz"``, of records without a column of time.
     unit
@@ -103,13 +105,14 @@ def tumble(
     elif attitudes is not None:
         known = ([[float(component) for component in up] for up in attitudes], attitude_uncertainty)
     at = (gravity, gravity_uncertainty)
+    files = [given_file(f"records[{n}]", record) for n, record in enumerate(paths(records), 1)]
     with Bar("finding rests") as shown:
         return Result(
-            _native.tumble(paths(records), time, rate, list(readings), unit, at, known, given, serial, date, out, shown)
+            _native.tumble(files, time, rate, list(readings), unit, at, known, given, serial, date, out, shown)
         )
 
 
-def observe(subject: Path, combinations: Iterable[str] = ()) -> Document:
+def observe(subject: Path | Session, combinations: Iterable[str] = ()) -> Document:
     """Rank, undetermined combinations, causes and remedies, of a session or a plan, before or after the experiment.
 
     ``combinations`` are sums of parameters to look at, such as ``"dR_2[A] + drho_22"``.
@@ -118,11 +121,11 @@ def observe(subject: Path, combinations: Iterable[str] = ()) -> Document:
     49
     """
     with Bar("observing") as shown:
-        return Document(_native.observe(subject, _texts(combinations), shown))
+        return Document(_native.observe(given_session(subject), _texts(combinations), shown))
 
 
 def assess(
-    session: Path,
+    session: Path | Session,
     *,
     coverage: float = 0.9545,
     without_outliers: float | None = None,
@@ -135,11 +138,11 @@ def assess(
     the largest specific force of the prediction [m/s^2], by default the highest of the session.
     """
     with Bar("assessing") as shown:
-        return Document(_native.assess(session, coverage, without_outliers, scale_by_residuals, range, shown))
+        return Document(_native.assess(given_session(session), coverage, without_outliers, scale_by_residuals, range, shown))
 
 
 def montecarlo(
-    subject: Path,
+    subject: Path | Session,
     *,
     runs: int = 10_000,
     seed: int = 1,
@@ -157,13 +160,13 @@ def montecarlo(
     20
     """
     with Bar("calibrating") as shown:
-        return Document(_native.montecarlo(subject, runs, seed, coverage, linear, noise_ug, typical, shown))
+        return Document(_native.montecarlo(given_session(subject), runs, seed, coverage, linear, noise_ug, typical, shown))
 
 
-def models(session: Path) -> Document:
+def models(session: Path | Session) -> Document:
     """Fits the model with each effect that it leaves out, and with pairs of the best: F test, BIC, hold-out."""
     with Bar("fitting rivals") as shown:
-        return Document(_native.models(session, shown))
+        return Document(_native.models(given_session(session), shown))
 
 
 def noise(
@@ -185,8 +188,8 @@ def noise(
     Parameters
     ----------
     source
-        A record, a session and one ``plateau`` of it, or an array of readings, shape ``(n,)`` or ``(n, k)``,
-        which needs a ``rate``; it goes through a temporary file.
+        A record, by its path, as bytes or as a file that is open; a session and one ``plateau`` of it; or an array of readings,
+        shape ``(n,)`` or ``(n, k)``, which needs a ``rate`` and is copied.
     rate
         Sampling rate [Hz], or a text such as ``"250 Hz"``, of readings without a column of time.
     readings
@@ -202,10 +205,13 @@ def noise(
     True
     """
     with Bar("analysing noise") as shown:
-        if hasattr(source, "__array__") or isinstance(source, (list, tuple)):
+        if not is_file(source) and (hasattr(source, "__array__") or isinstance(source, (list, tuple))):
             return noise_of_array(source, rate, unit, (start, end), list(estimators), out, shown)
+        given = given_file("record", given_session(source))
+        if isinstance(given, tuple) and len(given) > 2:
+            return Noise(_native.noise_of_session(given, plateau, list(estimators), out, shown))
         text = _native.noise(
-            source, plateau, session, time, rate, list(readings), unit, (start, end), list(estimators), out, shown
+            given, plateau, session, time, rate, list(readings), unit, (start, end), list(estimators), out, shown
         )
         return Noise(text)
 
@@ -257,10 +263,10 @@ def compare(
     return Document(_native.compare(natives, years, other_units, svg))
 
 
-def reduce(session: Path, out: Path, *, format: Format = "csv") -> Document:
+def reduce(session: Path | Session, out: Path, *, format: Format = "csv") -> Document:
     """Converts records to a session of plateau means in the folder ``out`` that calibrates to the same numbers."""
     with Bar("reducing") as shown:
-        return Document(_native.reduce(session, out, format, shown))
+        return Document(_native.reduce(given_session(session), out, format, shown))
 
 
 def series(

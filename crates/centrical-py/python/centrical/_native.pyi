@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 _Path = Union[str, os.PathLike[str]]
 _Quantity = Union[float, str]
 _Shown = Union[Callable[[int, int], None], None]
+_File = Union[_Path, tuple[str, bytes]]
+_Names = tuple[str, Union[str, None], Union[str, None]]
+_Session = Union[_Path, tuple[str, str, list[tuple[str, bytes]], list[_Names]]]
 _Column = NDArray[np.float64]
 _Recorded = tuple[_Column, list[_Column], Union[list[_Column], None], Union[_Column, None]]
 
@@ -29,6 +32,7 @@ __all__ = [
     "models",
     "montecarlo",
     "noise",
+    "noise_of_session",
     "observe",
     "plan",
     "plateau_columns",
@@ -102,7 +106,7 @@ def draw_curves(
     curves: Sequence[tuple[str, _Column, _Column, _Column, _Column]],
 ) -> str: ...
 def assess(
-    session: _Path,
+    session: _Session,
     coverage: float,
     without_outliers: float | None,
     scale_by_residuals: bool,
@@ -110,7 +114,7 @@ def assess(
     shown: _Shown,
 ) -> str: ...
 def calibrate(
-    session: _Path,
+    session: _Session,
     method: str,
     hold_out: Sequence[str],
     out: _Path | None,
@@ -139,8 +143,7 @@ def series(
     shown: _Shown,
 ) -> str: ...
 def calibrate_arrays(
-    text: str,
-    file: _Path,
+    session: _Session,
     records: Sequence[_Recorded],
     plateaus: Sequence[_Column] | None,
     method: str,
@@ -162,9 +165,9 @@ def compensate(
     shown: _Shown,
 ) -> str: ...
 def init(inputs: Sequence[_Path], out: _Path | None, positions: str | None, tumble: _Path | None) -> str: ...
-def models(session: _Path, shown: _Shown) -> str: ...
+def models(session: _Session, shown: _Shown) -> str: ...
 def montecarlo(
-    subject: _Path,
+    subject: _Session,
     runs: int,
     seed: int,
     coverage: float,
@@ -174,7 +177,7 @@ def montecarlo(
     shown: _Shown,
 ) -> str: ...
 def noise(
-    file: _Path,
+    source: _File,
     plateau_name: str | None,
     session: _Path | None,
     time: str | int,
@@ -186,8 +189,15 @@ def noise(
     out: _Path | None,
     shown: _Shown,
 ) -> str: ...
+def noise_of_session(
+    session: _Session,
+    plateau_name: str | None,
+    estimators: Sequence[str],
+    out: _Path | None,
+    shown: _Shown,
+) -> str: ...
 def tumble(
-    records: Sequence[_Path],
+    records: Sequence[_File],
     time: str | int,
     rate: _Quantity | None,
     readings: Sequence[str | int],
@@ -200,7 +210,7 @@ def tumble(
     out: _Path | None,
     shown: _Shown,
 ) -> CalibrationResult: ...
-def observe(file: _Path, combinations: Sequence[str], shown: _Shown) -> str: ...
+def observe(given: _Session, combinations: Sequence[str], shown: _Shown) -> str: ...
 def plan(
     file: _Path,
     time: _Quantity | None,
@@ -212,7 +222,7 @@ def plan(
     coverage: float,
     shown: _Shown,
 ) -> str: ...
-def reduce(session: _Path, out: _Path, format: str, shown: _Shown) -> str: ...
+def reduce(session: _Session, out: _Path, format: str, shown: _Shown) -> str: ...
 def report(
     result: _Path,
     name: _Path | None,

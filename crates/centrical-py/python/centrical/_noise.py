@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -71,7 +71,7 @@ def noise_of_array(
     out: Any,
     shown: Shown | None,
 ) -> Noise:
-    """Analyses an array by way of a temporary file."""
+    """Analyses an array, as the file that NumPy would save of it."""
     if rate is None:
         raise ValueError("rate: found nothing, expected the sampling rate of the array in Hz")
     values = np.asarray(array, dtype=np.float64)
@@ -79,12 +79,7 @@ def noise_of_array(
     if values.ndim != 2 or values.size == 0:
         raise ValueError(f"source: found shape {np.shape(array)}, expected (n,) or (n, k)")
     columns: list[str | int] = list(range(1, values.shape[1] + 1))
-    # Imported late: it costs as much as all else.
-    import tempfile
-
-    with tempfile.TemporaryDirectory() as folder:
-        file = os.path.join(folder, "readings.npy")
-        np.save(file, np.ascontiguousarray(values))
-        return Noise(
-            _native.noise(file, None, None, "t", rate, columns, unit, window, list(estimators), out, shown)
-        )
+    file = io.BytesIO()
+    np.save(file, np.ascontiguousarray(values))
+    given = ("readings.npy", file.getvalue())
+    return Noise(_native.noise(given, None, None, "t", rate, columns, unit, window, list(estimators), out, shown))

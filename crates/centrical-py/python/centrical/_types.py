@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
-from typing import Literal, Union
+from typing import IO, Any, Literal, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Path = Union[str, "os.PathLike[str]"]
+#: The bytes of a file, or a file that is open.
+File = Union[bytes, bytearray, memoryview, IO[Any]]
 #: A number in SI, or a text with a unit such as "120 g".
 Quantity = Union[float, str]
 Format = Literal["csv", "parquet"]

@@ -1,10 +1,9 @@
 //! `assess`: uncertainty budget and checks of a session's calibration.
 
-use std::path::PathBuf;
-
-use centrical_session::{self as session, AssessmentRequest, Dimension, Session};
+use centrical_session::{self as session, AssessmentRequest, Dimension};
 use pyo3::prelude::*;
 
+use crate::given::GivenSession;
 use crate::progress::{self, Shown};
 use crate::words::{Amount, probability};
 
@@ -12,7 +11,7 @@ use crate::words::{Amount, probability};
 #[pyfunction]
 pub fn assess(
     py: Python,
-    session: PathBuf,
+    session: GivenSession,
     coverage: f64,
     without_outliers: Option<f64>,
     scale_by_residuals: bool,
@@ -24,7 +23,7 @@ pub fn assess(
     let range = Amount::optional(range, "range", Dimension::Acceleration)?;
     let request = AssessmentRequest { without_outliers, scale_by_residuals, range };
     progress::run(py, &shown, |work| {
-        let session = Session::read(&session)?;
+        let session = session.read()?;
         work.expect(2 * session.record_bytes());
         session::assess(&session, &request, &|bytes| work.advance(bytes))?.report(coverage).to_json()
     })

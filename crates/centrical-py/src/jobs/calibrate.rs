@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::{read_issuer, write_all_documents};
-use centrical_session::{Session, calibrate_without, claim_folder, refuse_inputs};
+use centrical_session::{calibrate_without, claim_folder, refuse_inputs};
 use pyo3::prelude::*;
 
+use crate::given::GivenSession;
 use crate::progress::{self, Shown};
 use crate::result::CalibrationResult;
 use crate::words;
@@ -14,7 +15,7 @@ use crate::words;
 #[pyfunction]
 pub fn calibrate(
     py: Python,
-    session: PathBuf,
+    session: GivenSession,
     method: &str,
     hold_out: Vec<String>,
     out: Option<PathBuf>,
@@ -25,7 +26,7 @@ pub fn calibrate(
     let (method, language) = (words::method(method)?, words::language(language)?);
     let hold_out = words::plateaus("hold_out", &hold_out)?;
     let result = progress::run(py, &shown, |work| {
-        let session = Session::read(&session)?;
+        let session = session.read()?;
         work.expect(2 * session.record_bytes());
         let claim = out.as_deref().map(claim_folder).transpose()?;
         let inputs = [session.files(), laboratory.as_deref().into_iter().collect()].concat();

@@ -1,7 +1,5 @@
 //! `Session.from_arrays`: a session whose records, or whose plateaus, are arrays.
 
-use std::path::PathBuf;
-
 use centrical_session::{
     Method, PlateauName, PlateauTable, Record, Recorded, Reduced, Session, SpeedTrace, calibrate_reduced,
     reduce_recorded, reduce_without_inputs,
@@ -9,6 +7,7 @@ use centrical_session::{
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
+use crate::given::GivenSession;
 use crate::progress::{self, Shown, Work};
 use crate::result::CalibrationResult;
 use crate::words;
@@ -24,13 +23,12 @@ enum Origin {
     Plateaus(Vec<Vec<f64>>),
 }
 
-/// The result of a session with the experiment file `text`: of its records or, if they are given, of its plateaus.
+/// The result of a session whose numbers are arrays: of its records or, if they are given, of its plateaus.
 #[pyfunction]
 #[allow(clippy::too_many_arguments, reason = "what a session is made of")]
 pub fn calibrate_arrays(
     py: Python,
-    text: String,
-    file: PathBuf,
+    session: GivenSession,
     records: Vec<OfMounting>,
     plateaus: Option<Vec<Column>>,
     method: &str,
@@ -42,10 +40,7 @@ pub fn calibrate_arrays(
         Some(columns) => Origin::Plateaus(columns.iter().map(numbers).collect::<PyResult<_>>()?),
         None => Origin::Records(records.iter().map(recorded).collect::<PyResult<_>>()?),
     };
-    let result = progress::run(py, &shown, |work| {
-        let session = Session::parse(&text, &file)?;
-        calibrated(session, origin, method, &hold_out, work)
-    })?;
+    let result = progress::run(py, &shown, |work| calibrated(session.read()?, origin, method, &hold_out, work))?;
     Ok(result.into())
 }
 

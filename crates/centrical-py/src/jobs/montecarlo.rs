@@ -1,10 +1,9 @@
 //! `montecarlo`: the whole calibration repeated on simulated readings.
 
-use std::path::PathBuf;
-
-use centrical_session::{MonteCarloCase, MonteCarloRequest, Session, read_plan};
+use centrical_session::{MonteCarloCase, MonteCarloRequest, read_plan};
 use pyo3::prelude::*;
 
+use crate::given::GivenSession;
 use crate::progress::{self, Shown};
 use crate::words::probability;
 
@@ -12,7 +11,7 @@ use crate::words::probability;
 #[pyfunction]
 pub fn montecarlo(
     py: Python,
-    subject: PathBuf,
+    subject: GivenSession,
     runs: usize,
     seed: u64,
     coverage: f64,
@@ -23,12 +22,15 @@ pub fn montecarlo(
 ) -> PyResult<String> {
     let request = MonteCarloRequest { runs, seed, coverage: probability("coverage", coverage)?, linear };
     progress::run(py, &shown, |work| {
-        let inside = subject.join("experiment.toml");
-        let file = if subject.is_dir() { &inside } else { &subject };
-        let mut case = if let Some(plan) = read_plan(file)? {
+        let plan = match &subject {
+            GivenSession::Path(folder) if folder.is_dir() => read_plan(&folder.join("experiment.toml"))?,
+            GivenSession::Path(file) => read_plan(file)?,
+            GivenSession::InMemory(..) => None,
+        };
+        let mut case = if let Some(plan) = plan {
             MonteCarloCase::planned(plan, noise)?
         } else {
-            let session = Session::read(file)?;
+            let session = subject.read()?;
             work.expect(2 * session.record_bytes());
             MonteCarloCase::measured(&session, &|bytes| work.advance(bytes))?
         };

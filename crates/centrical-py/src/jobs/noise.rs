@@ -1,11 +1,12 @@
 //! `noise`: deviations of the Allan family, spectrum and noise terms of a record.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use centrical_report::write_noise;
-use centrical_session::{Estimator, NoiseRequest, noise_of};
+use centrical_session::{Error, Estimator, Folder, NoiseAnalysis, NoiseRequest, noise_of, noise_of_plateau};
 use pyo3::prelude::*;
 
+use crate::given::{GivenFile, GivenSession};
 use crate::progress::{self, Shown};
 use crate::words::{Amount, Named, column, one_of, plateau, sampling_rate};
 
@@ -13,7 +14,7 @@ use crate::words::{Amount, Named, column, one_of, plateau, sampling_rate};
 #[pyfunction]
 pub fn noise(
     py: Python,
-    file: PathBuf,
+    source: GivenFile,
     plateau_name: Option<&str>,
     session: Option<PathBuf>,
     time: Named,
@@ -25,8 +26,10 @@ pub fn noise(
     out: Option<PathBuf>,
     shown: Shown,
 ) -> PyResult<String> {
+    let (file, folder) = source.in_folder(Folder::default());
     let request = NoiseRequest {
         file,
+        folder,
         plateau: plateau_name.map(|name| plateau("plateau", name)).transpose()?,
         session,
         time: column("time", time)?,
@@ -38,11 +41,32 @@ pub fn noise(
     };
     progress::run(py, &shown, |work| {
         let (analysis, _) = noise_of(&request, &|bytes| work.advance(bytes))?;
-        if let Some(folder) = &out {
-            write_noise(&analysis, folder)?;
-        }
-        Ok(analysis.to_json())
+        written(&analysis, out.as_deref())
     })
+}
+
+/// The same of a plateau of a session that is in memory.
+#[pyfunction]
+pub fn noise_of_session(
+    py: Python,
+    session: GivenSession,
+    plateau_name: Option<&str>,
+    estimators: Vec<String>,
+    out: Option<PathBuf>,
+    shown: Shown,
+) -> PyResult<String> {
+    let plateau = plateau_name.map(|name| plateau("plateau", name)).transpose()?;
+    let estimators = named(&estimators)?;
+    progress::run(py, &shown, |work| {
+        let (analysis, _) = noise_of_plateau(&session.read()?, plateau, &estimators, &|bytes| work.advance(bytes))?;
+        written(&analysis, out.as_deref())
+    })
+}
+
+/// The document; with its drawing in a folder, if one is given.
+fn written(analysis: &NoiseAnalysis, folder: Option<&Path>) -> Result<String, Error> {
+    folder.map_or(Ok(()), |folder| write_noise(analysis, folder))?;
+    Ok(analysis.to_json())
 }
 
 fn named(names: &[String]) -> PyResult<Vec<Estimator>> {

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::{Language, write_all_documents};
 use centrical_session::{
-    Dimension, Error, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder, refuse_inputs,
+    Dimension, Error, Folder, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder, refuse_inputs,
 };
 use nalgebra::Vector3;
 use pyo3::prelude::*;
 
+use crate::given::GivenFile;
 use crate::progress::{self, Shown};
 use crate::result::CalibrationResult;
 use crate::words::{Amount, Named, column, refused, sampling_rate};
@@ -27,7 +28,7 @@ pub enum Attitudes {
 #[allow(clippy::too_many_arguments, reason = "what is said of a record")]
 pub fn tumble(
     py: Python,
-    records: Vec<PathBuf>,
+    records: Vec<GivenFile>,
     time: Named,
     rate: Option<Amount>,
     readings: [Named; 3],
@@ -44,8 +45,15 @@ pub fn tumble(
     let [gravity, uncertainty] = gravity.map(|amount| Amount::optional(amount, "gravity", Dimension::Acceleration));
     let (gravity, uncertainty) = (gravity?, uncertainty?);
     let anywhere = if gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
+    let (mut files, mut folder) = (Vec::new(), Folder::default());
+    for record in records {
+        let file;
+        (file, folder) = record.in_folder(folder);
+        files.push(file);
+    }
     let mut request = TumbleRequest {
-        files: records,
+        files,
+        folder,
         time: column("time", time)?,
         rate: sampling_rate(rate)?,
         readings: [column("readings", first)?, column("readings", second)?, column("readings", third)?],

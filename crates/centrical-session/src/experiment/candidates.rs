@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use centrical::plan::{Candidates, Costs, Criterion, Goal, Noise, PlanError, ReadingRange, Robustness, Scenario, Task};
 use centrical::{Experiment, MeasurementModel, STANDARD_GRAVITY, SetPoint};
 
+use super::folder::Folder;
 use super::form::{self, CandidatesTable, Form, MountingTable, Steps};
 use super::plan::{EarlierResult, ExpectedValues, expected_of, expected_values, noise};
 use super::prior;
@@ -56,7 +57,7 @@ impl Planning {
         form.target.time = time.map(Quantity::Number).or(form.target.time);
         let form = form;
         let table = stated(&at, &form)?;
-        let mut session = Session::without_plateaus(path, &form)?;
+        let mut session = Session::without_plateaus(path, Folder::of(path), &form)?;
         if session.experiment.has_arm() {
             session.experiment.set_points = set_points(&at, table, &session.experiment)?;
         }
@@ -109,7 +110,7 @@ fn stated<'f>(at: &TomlPath, form: &'f Form) -> Result<&'f CandidatesTable, Erro
 
 /// The rests beside the arm.
 fn rests(file: &Path, at: &TomlPath, table: &CandidatesTable) -> Result<Vec<RestTable>, Error> {
-    let folder = file.parent().unwrap_or(Path::new(""));
+    let folder = &Folder::of(file);
     let uncertain = table.attitude_uncertainty.as_ref();
     match (&table.attitudes, uncertain) {
         (Some(entry), _) => Ok(vec![RestTable::planned(at, folder, entry, uncertain)?]),

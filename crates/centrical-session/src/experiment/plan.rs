@@ -9,6 +9,7 @@ use centrical::{Kind, MeasurementModel, Parameter, TypeB, Weight};
 use nalgebra::Matrix3;
 use serde::Deserialize;
 
+use super::folder::Folder;
 use super::form::{Form, PlanTable, PresetForm, PresetTable};
 use super::rests::{self, RestTable};
 use super::session::{Session, extensions, pair_relation, read_text};
@@ -111,12 +112,12 @@ impl Plan {
     }
 
     fn of_form(file: &Path, form: &Form, expected: &ExpectedValues) -> Result<Self, Error> {
-        let mut session = Session::without_plateaus(file, form)?;
+        let mut session = Session::without_plateaus(file, Folder::of(file), form)?;
         session.experiment.set_points =
             schedule::set_points(file, &form.mounting, session.experiment.centrifuge.rotation)?;
         session.durations = schedule::durations(file, &form.mounting)?;
         rests::refuse_records(file, &session.rest_tables)?;
-        session.rest_tables.iter_mut().try_for_each(RestTable::read)?;
+        session.rest_tables.iter_mut().try_for_each(|table| table.read(&session.folder))?;
         session.add_rests();
         let table = form.plan.as_ref();
         let of_table = |key: fn(&PlanTable) -> &Option<Quantity>| table.and_then(|table| key(table).as_ref());
@@ -148,9 +149,10 @@ impl Plan {
         let (noise, duration) = noise(file, table.noise.as_ref(), table.floor.as_ref(), table.duration.as_ref())?;
         let speeds = preset_speeds(file, &form.centrifuge)?;
         experiment.centrifuge.speed_uncertainty = speeds.expected_uncertainty();
-        let mut rest_tables = RestTable::named(file, &form.tumble)?;
+        let folder = Folder::of(file);
+        let mut rest_tables = RestTable::named(file, &folder, &form.tumble)?;
         rests::refuse_records(file, &rest_tables)?;
-        rest_tables.iter_mut().try_for_each(RestTable::read)?;
+        rest_tables.iter_mut().try_for_each(|table| table.read(&folder))?;
         let mut durations = vec![duration; experiment.set_points.len()];
         durations.extend(rest_tables.iter().flat_map(RestTable::durations).map(|stated| stated.unwrap_or(duration)));
         rests::add_rests(&mut experiment, &rest_tables);

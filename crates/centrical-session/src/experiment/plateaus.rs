@@ -14,9 +14,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use centrical::{Rotation, SetPoint};
-use centrical_table::{ColumnName, Extent, Field, Rule, TableReader, parquet_bytes, write_whole};
+use centrical_table::{ColumnName, Extent, Field, Rule, Source, TableLines, TableReader, parquet_bytes, write_whole};
 use nalgebra::{Matrix3, Vector3};
 
+use super::folder::Folder;
 use super::schedule::FASTEST;
 use crate::error::{Error, Place};
 use crate::record::StatedUnits;
@@ -50,10 +51,12 @@ pub struct PlateauTable {
 }
 
 impl PlateauTable {
-    /// Reads the table and sorts it by mounting, keeping the order within each.
-    pub(crate) fn read(file: PathBuf, mountings: usize, has_speeds: bool) -> Result<Self, Error> {
+    /// Reads the table of that name and sorts it by mounting, keeping the order within each.
+    pub(crate) fn read(folder: &Folder, name: &str, mountings: usize, has_speeds: bool) -> Result<Self, Error> {
+        let file = folder.join(name);
+        let table = folder.open(&file, PLATEAUS)?;
         let mut rows =
-            if has_speeds { read_measured_plateaus(&file, mountings) } else { read_plateaus(&file, mountings) }?;
+            if has_speeds { measured_plateaus_of(&table, mountings) } else { plateaus_of(&table, mountings) }?;
         rows.sort_by_key(|row| row.mounting);
         Ok(Self { file: Some(file), rows })
     }
@@ -125,19 +128,24 @@ const ANGLE: usize = 2;
 /// If the file can not be read or lacks a column; if a row names no mounting, rests without an angle, or has a
 /// covariance that is not positive definite.
 pub fn read_plateaus(file: &Path, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
-    read_columns(file, mountings, &COLUMNS)
+    plateaus_of(&Source::open(file, PLATEAUS)?, mountings)
+}
+
+/// The same of a source.
+pub(super) fn plateaus_of(table: &Source, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
+    read_columns(table, mountings, &COLUMNS)
 }
 
 /// The same with the uncertainty of each speed.
-///
-/// # Errors
-/// As [`read_plateaus`].
-pub(crate) fn read_measured_plateaus(file: &Path, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
+fn measured_plateaus_of(table: &Source, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
     let columns: Vec<_> = COLUMNS.into_iter().chain([SPEED_UNCERTAINTY]).collect();
-    read_columns(file, mountings, &columns)
+    read_columns(table, mountings, &columns)
 }
 
-fn read_columns(file: &Path, mountings: usize, columns: &[(&str, &str)]) -> Result<Vec<PlateauMean>, Error> {
+/// What a table of plateaus is expected to be.
+pub(super) const PLATEAUS: &str = "a table of plateaus";
+
+fn read_columns(source: &Source, mountings: usize, columns: &[(&str, &str)]) -> Result<Vec<PlateauMean>, Error> {
     let field = |(k, (name, expected)): (usize, &(&str, &str))| Field {
         name: ColumnName::Name((*name).to_owned()),
         expected: (*expected).to_owned(),
@@ -145,17 +153,17 @@ fn read_columns(file: &Path, mountings: usize, columns: &[(&str, &str)]) -> Resu
     };
     let fields: Vec<Field> = columns.iter().enumerate().map(field).collect();
     let mut rows: Vec<Row> = Vec::new();
-    let mut table = TableReader::open(file, Extent::Whole, &fields, "a table of plateaus")?;
+    let mut table = TableReader::new(source.clone(), Extent::Whole, &fields, PLATEAUS, TableLines::default())?;
     let named = columns.iter().map(|(name, expected)| ((*name).to_owned(), unit_of(expected).to_owned()));
     let mut units = StatedUnits::new(named.collect());
     while table.next_batch()?.is_some() {
-        units.check(file, &table)?;
+        units.check(source.name(), &table)?;
         for columns in table.batch() {
             let uncertainty = |row: usize| columns.get(COLUMNS.len()).map_or(f64::NAN, |column| column[row]);
             rows.extend((0..columns[0].len()).map(|row| (std::array::from_fn(|k| columns[k][row]), uncertainty(row))));
         }
     }
-    checked(file, &rows, mountings)
+    checked(source.name(), &rows, mountings)
 }
 
 /// The numbers of a row, and the uncertainty of its speed.
@@ -298,7 +306,8 @@ mod tests {
         assert_eq!(read_plateaus(&file, 2).unwrap(), [rest, spin]);
         let measured = PlateauMean { speed: -14.0 / 3.0, speed_uncertainty: Some(1e-6 / 3.0), ..spin };
         write_plateaus(&file, &[rest, measured]).unwrap();
-        assert_eq!(read_measured_plateaus(&file, 2).unwrap(), [rest, measured]);
+        let table = Source::open(&file, PLATEAUS).unwrap();
+        assert_eq!(measured_plateaus_of(&table, 2).unwrap(), [rest, measured]);
         let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
         assert_eq!(left.len(), 1, "nothing is left beside the table");
     }

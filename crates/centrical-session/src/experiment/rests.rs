@@ -7,12 +7,14 @@ use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use centrical::{Experiment, Mounting, Position, SetPoint, SwitchOn};
+use centrical_table::Source;
 use nalgebra::Vector3;
 
+use super::folder::Folder;
 use super::form::{AttitudeList, RecordEntry, TumbleTable};
-use super::plateaus::{PlateauMean, read_plateaus};
+use super::plateaus::{PLATEAUS, PlateauMean, plateaus_of};
 use super::schedule;
-use super::stated_attitudes::{CUBE, MOST_UNCERTAIN, StatedAttitudes, directions, read_attitudes};
+use super::stated_attitudes::{ATTITUDES, CUBE, MOST_UNCERTAIN, StatedAttitudes, directions, read_attitudes};
 use super::toml_path::TomlPath;
 use crate::error::{Error, Place};
 use crate::quantity::{Dimension, Quantity};
@@ -92,8 +94,7 @@ impl RestTable {
     /// # Errors
     /// If one has neither a table of rests nor attitudes, an uncertainty without attitudes, or a table and attitudes without
     /// an uncertainty; if stated attitudes are none.
-    pub(crate) fn named(file: &Path, tables: &[TumbleTable]) -> Result<Vec<Self>, Error> {
-        let folder = file.parent().unwrap_or(Path::new(""));
+    pub(crate) fn named(file: &Path, folder: &Folder, tables: &[TumbleTable]) -> Result<Vec<Self>, Error> {
         let named = tables.iter().enumerate().map(|(n, table)| {
             let at = TomlPath::entry(file, "tumble", n);
             let switch_on = switch_on(file, tables, n)?;
@@ -122,7 +123,7 @@ impl RestTable {
         Self { source, means: Vec::new(), attitudes, switch_on: SwitchOn { number: 1, bias_change: None } }
     }
 
-    fn measured(at: &TomlPath, folder: &Path, table: &TumbleTable, rests: &str) -> Result<Self, Error> {
+    fn measured(at: &TomlPath, folder: &Folder, table: &TumbleTable, rests: &str) -> Result<Self, Error> {
         refuse_duration(at, table)?;
         let attitudes = match known(at, table)? {
             None => None,
@@ -135,7 +136,7 @@ impl RestTable {
         Ok(Self::of(RestSource::Table(folder.join(rests)), attitudes))
     }
 
-    fn recorded(at: &TomlPath, folder: &Path, table: &TumbleTable, record: &RecordEntry) -> Result<Self, Error> {
+    fn recorded(at: &TomlPath, folder: &Folder, table: &TumbleTable, record: &RecordEntry) -> Result<Self, Error> {
         refuse_duration(at, table)?;
         let attitudes = known(at, table)?.map(|(entry, u)| stated(at, folder, entry, u)).transpose()?;
         let files = record.paths().map(|name| folder.join(name)).collect();
@@ -148,7 +149,7 @@ impl RestTable {
     /// If an attitude has no direction, or the uncertainty makes no sense.
     pub(crate) fn planned(
         at: &TomlPath,
-        folder: &Path,
+        folder: &Folder,
         entry: &AttitudeList,
         uncertain: Option<&Quantity>,
     ) -> Result<Self, Error> {
@@ -182,12 +183,12 @@ impl RestTable {
     ///
     /// # Errors
     /// If a table can not be read, a rest has a speed, the tables differ in length, or the attitude of a row is not that of its rest.
-    pub(crate) fn read(&mut self) -> Result<(), Error> {
+    pub(crate) fn read(&mut self, folder: &Folder) -> Result<(), Error> {
         let RestSource::Table(file) = &self.source else { return Ok(()) };
-        self.means = read_rests(file)?;
+        self.means = read_rests(&folder.open(file, PLATEAUS)?)?;
         let Some(attitudes) = &mut self.attitudes else { return Ok(()) };
         if let Some(file) = attitudes.file.as_ref() {
-            attitudes.up_b = read_attitudes(file)?;
+            attitudes.up_b = read_attitudes(&folder.open(file, ATTITUDES)?)?;
         }
         let named = attitudes.file.as_ref().unwrap_or(file);
         if attitudes.up_b.len() != self.means.len() {
@@ -360,7 +361,7 @@ fn known<'a>(at: &TomlPath, table: &'a TumbleTable) -> Result<Option<(&'a Attitu
 }
 
 /// Attitudes of this standard uncertainty [rad] as the key `attitudes` has them; paths start from `folder`.
-fn stated(at: &TomlPath, folder: &Path, entry: &AttitudeList, uncertainty: f64) -> Result<StatedAttitudes, Error> {
+fn stated(at: &TomlPath, folder: &Folder, entry: &AttitudeList, uncertainty: f64) -> Result<StatedAttitudes, Error> {
     let (up_b, file) = directions(at, folder, entry)?;
     Ok(StatedAttitudes { up_b, uncertainty, file })
 }
@@ -377,12 +378,12 @@ fn uncertainty(at: &TomlPath, stated: Option<&Quantity>) -> Result<Option<f64>, 
 const FARTHEST: f64 = PI / 6.0;
 
 /// The rests of a table: each row is one, and none has a speed.
-fn read_rests(table: &Path) -> Result<Vec<PlateauMean>, Error> {
-    let rests = read_plateaus(table, usize::MAX)?;
+fn read_rests(table: &Source) -> Result<Vec<PlateauMean>, Error> {
+    let rests = plateaus_of(table, usize::MAX)?;
     match (1..).zip(&rests).find(|(_, rest)| rest.speed != 0.0) {
         Some((row, rest)) => {
             let place = Place::Row { row, column: "speed".to_owned() };
-            Err(Error::content(table, place, rest.speed.to_string(), "0 in a table of rests"))
+            Err(Error::content(table.name(), place, rest.speed.to_string(), "0 in a table of rests"))
         }
         None => Ok(rests),
     }

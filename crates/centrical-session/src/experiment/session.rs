@@ -1,6 +1,5 @@
 //! A session: what `experiment.toml` says and the files that it names.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical::TypeB;
@@ -8,7 +7,9 @@ use centrical::reduction::{PulseTrain, Record, SpeedTrace};
 use centrical::{
     Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
 };
+use centrical_table::{Extent, Source};
 
+use super::folder::Folder;
 use super::form::{Form, ModelTable, RecordEntry, SiteTable};
 use super::plateaus::{PlateauMean, PlateauTable};
 use super::prior::{self, PriorEntry};
@@ -19,8 +20,8 @@ use super::unit::OutputUnit;
 use super::{attitude, columns, rests, schedule, speeds, terms, uncertainty, unit};
 use crate::error::{Error, quoted};
 use crate::quantity::Dimension;
-use crate::record::{Columns, read_pulses, read_records, read_telemetry};
-use crate::settings::{from_toml, read_settings};
+use crate::record::{Columns, PULSES, TELEMETRY, pulses_of, read_records, telemetry_of};
+use crate::settings::{from_toml, read_settings, settings_of};
 
 /// Name of the experiment file in a session folder.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
@@ -65,6 +66,8 @@ pub struct Session {
     /// Duration that the schedule states for each set point, if it does [s].
     pub durations: Vec<Option<f64>>,
     priors: Vec<PriorEntry>,
+    /// Where its files are.
+    pub(crate) folder: Folder,
 }
 
 /// The files of one mounting.
@@ -95,7 +98,7 @@ impl Session {
     /// known, every quantity finite and of its dimension, every position a rotation and mounted.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let file = experiment_file(path);
-        Self::parse(&read_text(&file)?, &file)
+        Self::parse_with(&read_text(&file)?, &file, Folder::of(&file), RestTable::read)
     }
 
     /// [`Session::read`] of a session whose tables of rests need not be there yet: they are not read.
@@ -104,38 +107,46 @@ impl Session {
     /// As [`Session::read`].
     pub fn read_before_rests(path: &Path) -> Result<Self, Error> {
         let file = experiment_file(path);
-        Self::parse_with(&read_text(&file)?, &file, |_| Ok(()))
+        Self::parse_with(&read_text(&file)?, &file, Folder::of(&file), |_, _| Ok(()))
     }
 
-    /// The session of an experiment file with this `text`. Messages name `file`, which need not exist, and paths start from its
-    /// folder.
+    /// The session of an experiment file with this `text`, as if it were `experiment.toml` in `folder`.
     ///
     /// # Errors
     /// As [`Session::read`].
-    pub fn parse(text: &str, file: &Path) -> Result<Self, Error> {
-        Self::parse_with(text, file, RestTable::read)
+    pub fn parse(text: &str, folder: Folder) -> Result<Self, Error> {
+        Self::parse_file(text, &folder.join(EXPERIMENT_FILE), folder)
     }
 
-    /// [`Session::parse`] with tables of rests that `read` fills.
+    /// The same as if the text were `file`.
+    ///
+    /// # Errors
+    /// As [`Session::read`].
+    pub fn parse_file(text: &str, file: &Path, folder: Folder) -> Result<Self, Error> {
+        let folder = folder.with_file(file, text.to_owned().into());
+        Self::parse_with(text, file, folder, RestTable::read)
+    }
+
+    /// [`Session::parse_file`] with tables of rests that `read` fills.
     pub(crate) fn parse_with(
         text: &str,
         file: &Path,
-        read: impl FnMut(&mut RestTable) -> Result<(), Error>,
+        folder: Folder,
+        mut read: impl FnMut(&mut RestTable, &Folder) -> Result<(), Error>,
     ) -> Result<Self, Error> {
         let form = from_toml::<Form>(file, text)?.with_schedules();
-        let folder = file.parent().unwrap_or(Path::new(""));
-        let mut session = Self::without_plateaus(file, &form)?;
+        let mut session = Self::without_plateaus(file, folder, &form)?;
         let rotation = session.experiment.centrifuge.rotation;
         if let Some(table) = &form.plateaus {
             let has_speeds = has_measured_speeds(file, &session.speeds)?;
-            let table = PlateauTable::read(folder.join(table), form.mounting.len(), has_speeds)?;
+            let table = PlateauTable::read(&session.folder, table, form.mounting.len(), has_speeds)?;
             session.experiment.set_points = table.set_points(rotation);
             session.plateaus = Some(table);
         } else {
             session.experiment.set_points = schedule::set_points(file, &form.mounting, rotation)?;
             session.durations = schedule::durations(file, &form.mounting)?;
         }
-        session.rest_tables.iter_mut().try_for_each(read)?;
+        session.rest_tables.iter_mut().try_for_each(|table| read(table, &session.folder))?;
         session.refuse_rests_alone()?;
         session.add_rests();
         // Whatever is wrong with the priors is said before any record is read, unless they may be of rests that are to be found.
@@ -243,8 +254,7 @@ impl Session {
     }
 
     /// Everything but the set points.
-    pub(crate) fn without_plateaus(file: &Path, form: &Form) -> Result<Self, Error> {
-        let folder = file.parent().unwrap_or(Path::new(""));
+    pub(crate) fn without_plateaus(file: &Path, folder: Folder, form: &Form) -> Result<Self, Error> {
         let has_arm = form.has_arm();
         if has_arm {
             refuse_missing_keys(file, form)?;
@@ -296,9 +306,10 @@ impl Session {
                 })
                 .collect(),
             plateaus: None,
-            rest_tables: RestTable::named(file, &form.tumble)?,
+            rest_tables: RestTable::named(file, &folder, &form.tumble)?,
             durations: Vec::new(),
             priors: prior::entries(&form.prior),
+            folder,
         })
     }
 
@@ -307,7 +318,7 @@ impl Session {
     /// # Errors
     /// If the mounting has no record, or as [`read_record`].
     pub fn record(&self, mounting: usize) -> Result<Record, Error> {
-        read_records(&self.record_files(mounting)?, &self.columns)
+        read_records(self.open_record(mounting)?, &self.columns, Extent::Whole)
     }
 
     /// Reads the telemetry of a mounting, if it has any.
@@ -315,8 +326,13 @@ impl Session {
     /// # Errors
     /// As [`read_record`].
     pub fn telemetry(&self, mounting: usize) -> Result<Option<SpeedTrace>, Error> {
+        self.telemetry_to(mounting, Extent::Whole)
+    }
+
+    /// The same of telemetry that may still be growing.
+    pub(crate) fn telemetry_to(&self, mounting: usize, extent: Extent) -> Result<Option<SpeedTrace>, Error> {
         let file = self.mountings.get(mounting).and_then(|m| m.telemetry.as_ref());
-        file.map(|file| read_telemetry(file, &self.columns)).transpose()
+        file.map(|file| telemetry_of(self.folder.open(file, TELEMETRY)?, &self.columns, extent)).transpose()
     }
 
     /// Reads the pulses of a mounting, if it has any.
@@ -324,9 +340,17 @@ impl Session {
     /// # Errors
     /// As [`read_record`].
     pub fn pulses(&self, mounting: usize) -> Result<Option<PulseTrain>, Error> {
+        self.pulses_to(mounting, Extent::Whole)
+    }
+
+    /// The same of pulses that may still be coming.
+    pub(crate) fn pulses_to(&self, mounting: usize, extent: Extent) -> Result<Option<PulseTrain>, Error> {
         let file = self.mountings.get(mounting).and_then(|m| m.pulses.as_ref());
         let per_revolution = self.pulses_per_revolution();
-        let read = |file: &PathBuf| Ok(PulseTrain { t: read_pulses(file, &self.columns)?, per_revolution });
+        let read = |file: &PathBuf| {
+            let t = pulses_of(self.folder.open(file, PULSES)?, &self.columns, extent)?;
+            Ok(PulseTrain { t, per_revolution })
+        };
         file.map(read).transpose()
     }
 
@@ -340,7 +364,7 @@ impl Session {
     pub fn record_bytes(&self) -> u64 {
         let of_arm = self.mountings.iter().filter(|_| self.plateaus.is_none()).flat_map(MountingFiles::records);
         let files = of_arm.chain(self.rest_records().flat_map(|(_, recorded)| &recorded.files));
-        files.filter_map(|file| fs::metadata(file).ok()).map(|metadata| metadata.len()).sum()
+        files.map(|file| self.folder.length(file)).sum()
     }
 
     /// All files of the session in the order they are named: the experiment file first.
@@ -360,6 +384,16 @@ impl Session {
         Ok(self.mountings[mounting].records().map(PathBuf::as_path).collect())
     }
 
+    /// Opens the file of a mounting's record, or the three of its newtonometers.
+    pub(crate) fn open_record(&self, mounting: usize) -> Result<Vec<Source>, Error> {
+        self.folder.open_record(&self.record_files(mounting)?)
+    }
+
+    /// The text of the experiment file.
+    pub(crate) fn experiment_text(&self) -> Result<String, Error> {
+        settings_of(&self.folder.open(&self.file, EXPERIMENT)?, EXPERIMENT)
+    }
+
     /// The file of a mounting's record, the first of several.
     pub(crate) fn record_file(&self, mounting: usize) -> Result<&Path, Error> {
         let record = self.mountings.get(mounting).and_then(|m| m.record.as_deref());
@@ -368,6 +402,9 @@ impl Session {
         })
     }
 }
+
+/// What an experiment file is expected to be.
+const EXPERIMENT: &str = "an experiment file, or the folder with its experiment.toml";
 
 /// Refuses a session with an arm that says nothing of what only an arm has.
 fn refuse_missing_keys(file: &Path, form: &Form) -> Result<(), Error> {
@@ -392,7 +429,7 @@ fn experiment_file(path: &Path) -> PathBuf {
 
 /// The text of the experiment file.
 pub(crate) fn read_text(file: &Path) -> Result<String, Error> {
-    read_settings(file, "an experiment file, or the folder with its experiment.toml")
+    read_settings(file, EXPERIMENT)
 }
 
 fn site(file: &Path, table: &SiteTable) -> Result<Site, Error> {

@@ -11,9 +11,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use centrical::observability::cube_directions;
-use centrical_table::{ColumnName, Extent, Field, Rule, TableReader, write_whole};
+use centrical_table::{ColumnName, Extent, Field, Rule, Source, TableLines, TableReader, write_whole};
 use nalgebra::Vector3;
 
+use super::folder::Folder;
 use super::form::AttitudeList;
 use super::toml_path::TomlPath;
 use crate::error::{Error, Place};
@@ -39,7 +40,7 @@ impl StatedAttitudes {
         if name.as_os_str() == CUBE {
             return Ok(Self { up_b: cube_directions(), uncertainty, file: None });
         }
-        Ok(Self { up_b: read_directions(name)?, uncertainty, file: Some(name.to_owned()) })
+        Ok(Self { up_b: read_directions(&Source::open(name, ATTITUDES)?)?, uncertainty, file: Some(name.to_owned()) })
     }
 
     /// The attitude of each rest of these mean forces: the nearest one, if it is nearer than any other could be. A rest beside all of
@@ -94,14 +95,14 @@ const SAME: f64 = 1e-3;
 /// If a listed direction is none, or the file as [`StatedAttitudes::named`].
 pub(crate) fn directions(
     at: &TomlPath,
-    folder: &Path,
+    folder: &Folder,
     entry: &AttitudeList,
 ) -> Result<(Vec<Vector3<f64>>, Option<PathBuf>), Error> {
     let listed = match entry {
         AttitudeList::Named(name) if name == CUBE => return Ok((cube_directions(), None)),
         AttitudeList::Named(name) => {
             let file = folder.join(name);
-            return Ok((read_directions(&file)?, Some(file)));
+            return Ok((read_directions(&folder.open(&file, ATTITUDES)?)?, Some(file)));
         }
         AttitudeList::Listed(listed) => listed,
     };
@@ -116,12 +117,13 @@ pub(crate) fn directions(
 }
 
 /// The rows of a table of attitudes, each with a direction.
-fn read_directions(file: &Path) -> Result<Vec<Vector3<f64>>, Error> {
+fn read_directions(table: &Source) -> Result<Vec<Vector3<f64>>, Error> {
+    let file = table.name();
     let no_direction = |row: u64| {
         let place = Place::Row { row, column: UP[0].to_owned() };
         Error::content(file, place, "a row of zeros", "the direction of up")
     };
-    let rows = (1..).zip(read_attitudes(file)?).map(|(row, up_b)| up_b.ok_or_else(|| no_direction(row)));
+    let rows = (1..).zip(read_attitudes(table)?).map(|(row, up_b)| up_b.ok_or_else(|| no_direction(row)));
     let up_b: Vec<Vector3<f64>> = rows.collect::<Result<_, _>>()?;
     if up_b.is_empty() {
         return Err(Error::content(file, Place::Whole, "no attitude", "a row for each attitude"));
@@ -132,14 +134,14 @@ fn read_directions(file: &Path) -> Result<Vec<Vector3<f64>>, Error> {
 /// Directions in the columns `up_1`, `up_2`, `up_3` of a table, of length 1; `None` for a row of zeros.
 ///
 /// # Errors
-/// If the file can not be read, or lacks a column or a number.
-pub(crate) fn read_attitudes(file: &Path) -> Result<Vec<Option<Vector3<f64>>>, Error> {
+/// If it can not be read, or lacks a column or a number.
+pub(crate) fn read_attitudes(table: &Source) -> Result<Vec<Option<Vector3<f64>>>, Error> {
     let fields = UP.map(|name| Field {
         name: ColumnName::Name(name.to_owned()),
         expected: "a component of the direction of up".to_owned(),
         rule: Rule::Any,
     });
-    let mut table = TableReader::open(file, Extent::Whole, &fields, "a table of attitudes")?;
+    let mut table = TableReader::new(table.clone(), Extent::Whole, &fields, ATTITUDES, TableLines::default())?;
     let mut rows = Vec::new();
     while table.next_batch()?.is_some() {
         for columns in table.batch() {
@@ -177,6 +179,9 @@ pub(crate) fn write_attitudes(file: &Path, up_b: &[Option<Vector3<f64>>]) -> Res
 
 /// The name of the faces, edges and corners of a cube.
 pub(crate) const CUBE: &str = "cube";
+
+/// What a table of attitudes is expected to be.
+pub(super) const ATTITUDES: &str = "a table of attitudes";
 
 /// Columns of a table of attitudes.
 const UP: [&str; 3] = ["up_1", "up_2", "up_3"];

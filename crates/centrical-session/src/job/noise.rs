@@ -4,5 +4,5 @@ mod analysis;
 mod request;
 mod series;
 
-pub use self::request::{NoiseRequest, noise_of};
+pub use self::request::{NoiseRequest, noise_of, noise_of_plateau};
 pub use self::series::Series;

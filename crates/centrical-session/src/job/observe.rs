@@ -18,11 +18,15 @@ use crate::experiment::Session;
 pub fn subject(path: &Path, progress: OnProgress) -> Result<Subject, Error> {
     match read_plan(path)? {
         Some(plan) => Ok(plan.into()),
-        None => of_session(&Session::read(path)?, progress),
+        None => subject_of(&Session::read(path)?, progress),
     }
 }
 
-fn of_session(session: &Session, progress: OnProgress) -> Result<Subject, Error> {
+/// A session and the noise of its records. `progress` is called as in [`subject`].
+///
+/// # Errors
+/// As [`subject`].
+pub fn subject_of(session: &Session, progress: OnProgress) -> Result<Subject, Error> {
     let (session, reduced) = reduce(session, progress)?;
     let model = reduced.model(&session)?;
     Ok(Subject {

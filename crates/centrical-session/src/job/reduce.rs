@@ -7,7 +7,6 @@ mod rests;
 mod scheduler;
 
 use std::borrow::Cow;
-use std::path::Path;
 
 use centrical::OnProgress;
 use rayon::ThreadPoolBuilder;
@@ -30,8 +29,9 @@ use crate::reduced::Reduced;
 /// [`Error`] naming the file, the place, what was found and what was expected.
 pub fn reduce<'s>(session: &'s Session, progress: OnProgress) -> Result<(Cow<'s, Session>, Reduced), Error> {
     let (session, mut reduced) = reduce_without_inputs(session, progress)?;
-    let folder = session.file.parent().unwrap_or(Path::new(""));
-    let inputs = session.files().into_par_iter().map(|file| Input::of(folder, file, progress));
+    let folder = &session.folder;
+    let input = |file| Input::of(folder.path(), &folder.open(file, Input::EXPECTED)?, progress);
+    let inputs = session.files().into_par_iter().map(input);
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
     Ok((session, reduced))
 }

@@ -7,8 +7,7 @@ use toml_edit::{InlineTable, Item, TableLike, Value, value};
 
 use crate::error::{Error, Place};
 use crate::experiment::{
-    EXPERIMENT_FILE, PlateauMean, Session, SpeedSource, read_text, write_attitudes, write_plateaus,
-    write_plateaus_parquet,
+    EXPERIMENT_FILE, PlateauMean, Session, SpeedSource, write_attitudes, write_plateaus, write_plateaus_parquet,
 };
 use crate::reduced::Reduced;
 use crate::settings::editable;
@@ -45,7 +44,7 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
     let of_plateaus = session.speeds.measured.is_none() && rows.iter().any(|row| row.speed_uncertainty.is_some());
     // Rests alone have tables of their own.
     let name = (!session.mountings.is_empty()).then_some(name);
-    let text = experiment(&session.file, name, of_plateaus.then_some(session.speeds.set_uncertainty))?;
+    let text = experiment(session, name, of_plateaus.then_some(session.speeds.set_uncertainty))?;
     if let Some(name) = name {
         write(&folder.join(name), &rows)?;
     }
@@ -60,9 +59,8 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
 
 /// The experiment file with the table, if there is one, instead of records, and all else, comments too, as it was. With `uncertainty` it says
 /// that plateaus state measured speeds, the others as uncertain as this.
-fn experiment(file: &Path, table: Option<&str>, uncertainty: Option<f64>) -> Result<String, Error> {
-    let text = read_text(file)?;
-    let mut document = editable(file, &text)?;
+fn experiment(session: &Session, table: Option<&str>, uncertainty: Option<f64>) -> Result<String, Error> {
+    let mut document = editable(&session.file, &session.experiment_text()?)?;
     match document.get_mut("mounting") {
         Some(Item::ArrayOfTables(mountings)) => mountings.iter_mut().for_each(|mounting| strip(mounting)),
         Some(Item::Value(Value::Array(mountings))) => {

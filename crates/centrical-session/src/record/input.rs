@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use centrical::{OnProgress, advance};
-use centrical_table::open_regular;
+use centrical_table::Source;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -23,14 +23,17 @@ pub struct Input {
 }
 
 impl Input {
-    /// Path within the session's folder and hash of the bytes of a file, read in pieces. They do not count as `progress`.
+    /// What it is expected to be.
+    pub(crate) const EXPECTED: &str = "a file of the session";
+
+    /// Path within the session's folder and hash of the bytes of a source, read in pieces. They do not count as `progress`.
     ///
     /// # Errors
     /// [`Error`] when it cannot be read, or the caller stops.
-    pub fn of(folder: &Path, file: &Path, progress: OnProgress) -> Result<Self, Error> {
-        let input = open_regular(file, "a file of the session")?;
-        let failed = |source| Error::reading(file, source, "a file of the session");
-        let mut pieces = BufReader::with_capacity(PIECE, input);
+    pub fn of(folder: &Path, source: &Source, progress: OnProgress) -> Result<Self, Error> {
+        let file = source.name();
+        let failed = |error| Error::reading(file, error, Self::EXPECTED);
+        let mut pieces = BufReader::with_capacity(PIECE, source.reader_at(0));
         let mut hash = Sha256::new();
         loop {
             let piece = pieces.fill_buf().map_err(failed)?;

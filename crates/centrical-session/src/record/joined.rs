@@ -8,9 +8,7 @@ mod interpolation;
 mod part;
 mod stamps;
 
-use std::path::Path;
-
-use centrical_table::{Extent, Rows};
+use centrical_table::{Extent, Rows, Source};
 
 use self::interpolation::{Reading, reading_at};
 use self::part::Part;
@@ -41,9 +39,10 @@ pub(super) struct Joined {
 }
 
 impl Joined {
-    /// Opens the files of newtonometers 1, 2, 3.
-    pub fn open(files: [&Path; 3], extent: Extent, columns: &Columns) -> Result<Self, Error> {
-        let [x, y, z] = [0, 1, 2].map(|j: usize| Part::open(files[j], j, extent, columns));
+    /// Reads the sources of newtonometers 1, 2, 3.
+    pub fn open([x, y, z]: [Source; 3], extent: Extent, columns: &Columns) -> Result<Self, Error> {
+        let part = |(j, source)| Part::open(source, j, extent, columns);
+        let [x, y, z] = [(0, x), (1, y), (2, z)].map(part);
         let sets = vec![vec![Vec::new(); 4]; SETS];
         let (interpolated, missed) = ([0; 3], [0; 3]);
         Ok(Self { parts: [x?, y?, z?], extent, joining: None, sets, filled: 0, count: 0, interpolated, missed })

@@ -1,11 +1,9 @@
 //! The two passes of a reduction over the record in a file, in memory that does not grow with it. A record that is not too
 //! long is read once.
 
-use std::path::Path;
-
 use centrical::reduction::{Averaging, Located, PlateauFit, Record, RecordSlice, ReductionError, Survey};
 use centrical::{OnProgress, advance};
-use centrical_table::Extent;
+use centrical_table::{Extent, Source};
 use rayon::prelude::*;
 
 use super::columns::Columns;
@@ -22,22 +20,22 @@ type Mean = Result<PlateauFit, ReductionError>;
 
 /// The record in a file.
 pub(crate) struct RecordFile<'a> {
-    /// The file, or the three of the newtonometers.
-    files: Vec<&'a Path>,
+    /// One, or three of the newtonometers.
+    sources: Vec<Source>,
     columns: &'a Columns,
     /// Bytes as they are read.
     progress: OnProgress<'a>,
 }
 
 impl<'a> RecordFile<'a> {
-    pub fn new(files: Vec<&'a Path>, columns: &'a Columns, progress: OnProgress<'a>) -> Self {
-        Self { files, columns, progress }
+    pub fn new(sources: Vec<Source>, columns: &'a Columns, progress: OnProgress<'a>) -> Self {
+        Self { sources, columns, progress }
     }
 
     /// First pass: surveys the record, its stretches condensed on all threads, and keeps its samples if they are not too
     /// many. The survey, and how many readings of each newtonometer were interpolated to the stamps of another one, if any.
     pub fn survey(&self, cache: &mut SampleCache) -> Result<(Survey, Option<[u64; 3]>), Error> {
-        let mut record = RecordReader::open_all(&self.files, Extent::Whole, self.columns)?;
+        let mut record = RecordReader::open_all(self.sources.clone(), Extent::Whole, self.columns)?;
         let mut beginning = Record::default();
         let mut survey: Option<Survey> = None;
         cache.begin();
@@ -74,8 +72,7 @@ impl<'a> RecordFile<'a> {
             (0..located.windows().len()).map(|k| PlateauInParts::new(located, k)).collect();
         match &cache.index {
             _ if cache.is_whole => {
-                let length = |file: &&Path| std::fs::metadata(file).map_or(0, |file| file.len());
-                advance(self.progress, self.files.iter().map(length).sum())?;
+                advance(self.progress, self.sources.iter().map(Source::length).sum())?;
                 self.means_of_cache(cache, plateaus)
             }
             Some(index) => self.means_reread(index, plateaus),
@@ -131,7 +128,7 @@ impl<'a> RecordFile<'a> {
 
     /// All of the record once more, where it can only be read from its start.
     fn means_in_order(&self, mut plateaus: Vec<PlateauInParts>) -> Result<Vec<Mean>, Error> {
-        let mut record = RecordReader::open_all(&self.files, Extent::Whole, self.columns)?;
+        let mut record = RecordReader::open_all(self.sources.clone(), Extent::Whole, self.columns)?;
         let mut gathered: Vec<Record> = plateaus.iter().map(|_| Record::default()).collect();
         while let Some(batch) = record.next_batch()? {
             for stretch in batch.iter().map(stretch) {

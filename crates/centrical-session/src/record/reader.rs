@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
-use centrical_table::{Extent, Index, Reread, Rows, Stamps, TableLines, TableReader};
+use centrical_table::{Extent, Index, Reread, Rows, Source, Stamps, TableLines, TableReader};
 
 use super::columns::{Column, Columns, Scale, fields};
 use super::joined::Joined;
@@ -18,30 +18,12 @@ pub fn read_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
     RecordReader::open(file, columns)?.into_record()
 }
 
-/// Reads the whole record of a mounting in its file, or in the three of its newtonometers.
+/// Reads the record of a mounting in its file, or in the three of its newtonometers, as far as it was written.
 ///
 /// # Errors
 /// As [`RecordReader::next_batch`].
-pub(crate) fn read_records(files: &[&Path], columns: &Columns) -> Result<Record, Error> {
-    RecordReader::open_all(files, Extent::Whole, columns)?.into_record()
-}
-
-/// Reads the part of them that was written so far.
-///
-/// # Errors
-/// As [`RecordReader::next_batch`].
-pub(crate) fn read_growing_records(files: &[&Path], columns: &Columns) -> Result<Record, Error> {
-    RecordReader::open_all(files, Extent::Growing, columns)?.into_record()
-}
-
-/// Reads the part written so far of a record that is still growing: an incomplete last line is left for the next
-/// time. A file of another format than text has to appear whole, by renaming.
-///
-/// # Errors
-/// As [`RecordReader::next_batch`].
-pub fn read_growing_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
-    let lines = columns.record_lines;
-    RecordReader::with(file, Extent::Growing, &columns.of_record(), lines, "a record")?.into_record()
+pub(crate) fn read_records(sources: Vec<Source>, columns: &Columns, extent: Extent) -> Result<Record, Error> {
+    RecordReader::open_all(sources, extent, columns)?.into_record()
 }
 
 /// Reads the telemetry of `file`.
@@ -49,20 +31,21 @@ pub fn read_growing_record(file: &Path, columns: &Columns) -> Result<Record, Err
 /// # Errors
 /// As [`RecordReader::next_batch`].
 pub fn read_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Error> {
-    telemetry_of(file, columns, Extent::Whole)
+    telemetry_of(Source::open(file, TELEMETRY)?, columns, Extent::Whole)
 }
 
-/// Reads the part written so far of telemetry that is still growing.
+/// What a record, telemetry, and times of pulses are expected to be.
+pub(crate) const RECORD: &str = "a record";
+pub(crate) const TELEMETRY: &str = "telemetry";
+pub(crate) const PULSES: &str = "times of pulses";
+
+/// Reads telemetry as far as it was written.
 ///
 /// # Errors
 /// As [`RecordReader::next_batch`].
-pub(crate) fn read_growing_telemetry(file: &Path, columns: &Columns) -> Result<SpeedTrace, Error> {
-    telemetry_of(file, columns, Extent::Growing)
-}
-
-fn telemetry_of(file: &Path, columns: &Columns, extent: Extent) -> Result<SpeedTrace, Error> {
+pub(crate) fn telemetry_of(source: Source, columns: &Columns, extent: Extent) -> Result<SpeedTrace, Error> {
     let of_telemetry = [&columns.telemetry_time, &columns.speed];
-    let mut reader = RecordReader::with(file, extent, &of_telemetry, columns.telemetry_lines, "telemetry")?;
+    let mut reader = RecordReader::with(source, extent, &of_telemetry, columns.telemetry_lines, TELEMETRY)?;
     let mut telemetry = SpeedTrace::default();
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
@@ -73,24 +56,12 @@ fn telemetry_of(file: &Path, columns: &Columns, extent: Extent) -> Result<SpeedT
     Ok(telemetry)
 }
 
-/// Reads the times of the pulses in `file` [s].
+/// Reads times of pulses [s] as far as they were written.
 ///
 /// # Errors
 /// As [`RecordReader::next_batch`].
-pub fn read_pulses(file: &Path, columns: &Columns) -> Result<Vec<f64>, Error> {
-    pulses_of(file, columns, Extent::Whole)
-}
-
-/// Reads the part written so far of times that are still being written.
-///
-/// # Errors
-/// As [`RecordReader::next_batch`].
-pub(crate) fn read_growing_pulses(file: &Path, columns: &Columns) -> Result<Vec<f64>, Error> {
-    pulses_of(file, columns, Extent::Growing)
-}
-
-fn pulses_of(file: &Path, columns: &Columns, extent: Extent) -> Result<Vec<f64>, Error> {
-    let mut reader = RecordReader::with(file, extent, &[&columns.pulse], TableLines::default(), "times of pulses")?;
+pub(crate) fn pulses_of(source: Source, columns: &Columns, extent: Extent) -> Result<Vec<f64>, Error> {
+    let mut reader = RecordReader::with(source, extent, &[&columns.pulse], TableLines::default(), PULSES)?;
     let mut times = Vec::new();
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
@@ -103,7 +74,7 @@ fn pulses_of(file: &Path, columns: &Columns, extent: Extent) -> Result<Vec<f64>,
 /// A record that is read in memory that does not grow with it.
 pub struct RecordReader {
     file: PathBuf,
-    table: Source,
+    table: Tables,
     scales: Scales,
     units: StatedUnits,
     /// Bytes that [`RecordReader::newly_read`] has returned.
@@ -116,37 +87,38 @@ impl RecordReader {
     /// # Errors
     /// If it cannot be read.
     pub fn open(file: &Path, columns: &Columns) -> Result<Self, Error> {
-        Self::with(file, Extent::Whole, &columns.of_record(), columns.record_lines, "a record")
+        Self::open_all(vec![Source::open(file, RECORD)?], Extent::Whole, columns)
     }
 
-    /// Opens the record in a file, or in three, one for each newtonometer.
+    /// Reads the record in a source, or in three, one for each newtonometer.
     ///
     /// # Errors
     /// If one cannot be read.
-    pub(crate) fn open_all(files: &[&Path], extent: Extent, columns: &Columns) -> Result<Self, Error> {
+    pub(crate) fn open_all(sources: Vec<Source>, extent: Extent, columns: &Columns) -> Result<Self, Error> {
         let of_record = columns.of_record();
-        if let [x, y, z] = *files {
-            let joined = Box::new(Joined::open([x, y, z], extent, columns)?);
-            let (file, scales) = (x.to_owned(), Scales::of(&of_record));
-            // Each file's part has its own.
-            let units = StatedUnits::of([]);
-            return Ok(Self { file, table: Source::Three(joined), scales, units, reported: 0 });
+        match <[Source; 3]>::try_from(sources) {
+            Ok(sources) => {
+                let (file, scales) = (sources[0].name().to_owned(), Scales::of(&of_record));
+                let joined = Box::new(Joined::open(sources, extent, columns)?);
+                // Each file's part has its own.
+                let units = StatedUnits::of([]);
+                Ok(Self { file, table: Tables::Three(joined), scales, units, reported: 0 })
+            }
+            Err(mut sources) => Self::with(sources.remove(0), extent, &of_record, columns.record_lines, RECORD),
         }
-        let file = files.first().copied().unwrap_or(Path::new(""));
-        Self::with(file, extent, &of_record, columns.record_lines, "a record")
     }
 
     fn with(
-        file: &Path,
+        source: Source,
         extent: Extent,
         columns: &[&Column],
         lines: TableLines,
         expected: &str,
     ) -> Result<Self, Error> {
-        let table = TableReader::open_at(file, extent, &fields(columns), expected, lines)?;
+        let file = source.name().to_owned();
+        let table = TableReader::new(source, extent, &fields(columns), expected, lines)?;
         let units = StatedUnits::of(columns.iter().copied());
-        let table = Source::One(Box::new(table));
-        Ok(Self { file: file.to_owned(), table, scales: Scales::of(columns), units, reported: 0 })
+        Ok(Self { file, table: Tables::One(Box::new(table)), scales: Scales::of(columns), units, reported: 0 })
     }
 
     /// The next rows: columns of time [s] and of readings [m/s^2] ([`stretch`]), several sets of them, to be worked on where they
@@ -159,13 +131,13 @@ impl RecordReader {
     /// backwards; if the file names other units than those of the columns.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
         let is_over = match &mut self.table {
-            Source::One(table) => table.next_batch()?.is_none(),
-            Source::Three(joined) => joined.next_batch()? == 0,
+            Tables::One(table) => table.next_batch()?.is_none(),
+            Tables::Three(joined) => joined.next_batch()? == 0,
         };
         if is_over {
             return Ok(None);
         }
-        if let Source::One(table) = &self.table {
+        if let Tables::One(table) = &self.table {
             self.units.check(&self.file, table)?;
         }
         Ok(Some(self.scales.apply_to(self.table.batch())))
@@ -178,7 +150,7 @@ impl RecordReader {
 
     /// Keeps stamps as they are read, for [`RecordReader::take_stamps`].
     pub(crate) fn keep_stamps(&mut self) {
-        if let Source::One(table) = &mut self.table {
+        if let Tables::One(table) = &mut self.table {
             table.keep_stamps();
         }
     }
@@ -186,8 +158,8 @@ impl RecordReader {
     /// Stamps of the rows that were read last; one entry for each set.
     pub(crate) fn take_stamps(&mut self) -> Vec<Stamps> {
         match &mut self.table {
-            Source::One(table) => table.take_stamps(),
-            Source::Three(joined) => vec![Stamps::default(); joined.batch().len()],
+            Tables::One(table) => table.take_stamps(),
+            Tables::Three(joined) => vec![Stamps::default(); joined.batch().len()],
         }
     }
 
@@ -195,8 +167,8 @@ impl RecordReader {
     /// file, or joined by their stamps.
     pub(super) fn interpolated(&self) -> Option<[u64; 3]> {
         match &self.table {
-            Source::One(_) => None,
-            Source::Three(joined) => joined.interpolated(),
+            Tables::One(_) => None,
+            Tables::Three(joined) => joined.interpolated(),
         }
     }
 
@@ -209,7 +181,7 @@ impl RecordReader {
     /// After the end: where the samples are, if any part can be read again.
     pub(super) fn into_index(self) -> Option<RecordIndex> {
         let scales = self.scales;
-        let Source::One(table) = self.table else { return None };
+        let Tables::One(table) = self.table else { return None };
         table.into_index().map(|index| RecordIndex { index, scales })
     }
 
@@ -225,12 +197,12 @@ impl RecordReader {
 }
 
 /// The file of a record, or its three.
-enum Source {
+enum Tables {
     One(Box<TableReader>),
     Three(Box<Joined>),
 }
 
-impl Source {
+impl Tables {
     fn batch(&mut self) -> &mut [Rows] {
         match self {
             Self::One(table) => table.batch(),

@@ -4,9 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    Error, ErrorKind, Method, PlateauMean, PlateauTable, Recorded, Session, TableFormat, calibrate, calibrate_reduced,
-    reduce, reduce_recorded, unwatched, write_reduced,
+    Error, ErrorKind, Folder, Method, PlateauMean, PlateauTable, Recorded, Session, TableFormat, calibrate,
+    calibrate_reduced, reduce, reduce_recorded, unwatched, write_reduced,
 };
+
+use crate::rests::alone;
 
 fn example() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/ta-200")
@@ -26,8 +28,8 @@ fn recorded(session: &Session) -> Vec<Recorded> {
 fn the_result_has_the_bytes_of_that_from_files() {
     let files = Session::read(&example()).unwrap();
     let text = fs::read_to_string(&files.file).unwrap();
-    let memory = Session::parse(&text, &files.file).unwrap();
-    assert_eq!(memory, files);
+    let memory = Session::parse(&text, Folder::at(&example())).unwrap();
+    assert_eq!((&memory.experiment, &memory.mountings), (&files.experiment, &files.mountings));
     let (_, of_files) = reduce(&files, &unwatched).unwrap();
     let (_, mut of_memory) = reduce_recorded(&memory, recorded(&files), &unwatched).unwrap();
     // Memory has no files to be known by.
@@ -38,13 +40,54 @@ fn the_result_has_the_bytes_of_that_from_files() {
     assert_eq!(json(&of_memory), calibrate(&files, Method::Exact, &unwatched).unwrap().to_json().unwrap());
 }
 
+/// The session of the same files in memory, and none on disk.
+fn in_memory(session: &Session) -> Session {
+    let on_disk = session.file.parent().unwrap();
+    let text = fs::read_to_string(&session.file).unwrap();
+    let nowhere = Folder::at(Path::new("nowhere"));
+    let missing = Session::parse(&text, nowhere.clone()).and_then(|s| calibrate(&s, Method::Exact, &unwatched));
+    assert_eq!(missing.unwrap_err().kind(), ErrorKind::Missing);
+    let with = |folder: Folder, file: &Path| {
+        folder.with(file.strip_prefix(on_disk).unwrap().to_str().unwrap(), fs::read(file).unwrap().into())
+    };
+    Session::parse(&text, session.files().into_iter().skip(1).fold(nowhere, with)).unwrap()
+}
+
+/// Records, telemetry, a record of rests, its attitudes; and the tables to which these are reduced.
+#[test]
+fn files_in_memory_give_the_bytes_of_those_on_disk() {
+    let folder = tempfile::tempdir().unwrap();
+    let of_rests = folder.path().join("rests");
+    fs::create_dir(&of_rests).unwrap();
+    for name in ["record.csv", "attitudes.csv"] {
+        fs::copy(example().join("../tumble").join(name), of_rests.join(name)).unwrap();
+    }
+    let names = "record = \"record.csv\"\nattitudes = \"attitudes.csv\"\nattitude_uncertainty = \"1 mrad\"";
+    fs::write(of_rests.join("experiment.toml"), alone(names)).unwrap();
+    for (n, of_records) in [example(), of_rests].into_iter().enumerate() {
+        let of_tables = folder.path().join(format!("reduced{n}"));
+        for on_disk in [of_records, of_tables.clone()] {
+            let files = Session::read(&on_disk).unwrap();
+            let memory = in_memory(&files);
+            assert_eq!(memory.record_bytes(), files.record_bytes());
+            let json = |session| calibrate(session, Method::Exact, &unwatched).unwrap().to_json().unwrap();
+            assert_eq!(json(&memory), json(&files));
+            // The experiment file is in memory, too.
+            let (session, reduced) = reduce(&memory, &unwatched).unwrap();
+            if on_disk != of_tables {
+                write_reduced(&session, &reduced, TableFormat::Csv, &of_tables).unwrap();
+            }
+        }
+    }
+}
+
 /// With half a volt per m/s^2, which is exact, the means are those in SI to the bit.
 #[test]
 fn numbers_are_in_the_units_of_the_columns() {
     let files = Session::read(&example()).unwrap();
     let text = fs::read_to_string(&files.file).unwrap();
     let volts = "output_unit = \"V\"\nvolts = { scale = [0.5, 0.5, 0.5], bias = [0.0, 0.0, 0.0] }";
-    let session = Session::parse(&text.replace("output_unit = \"m/s^2\"", volts), &files.file).unwrap();
+    let session = Session::parse(&text.replace("output_unit = \"m/s^2\"", volts), Folder::at(&example())).unwrap();
     let mut in_volts = recorded(&files);
     in_volts.iter_mut().flat_map(|r| r.record.f_z.iter_mut().flatten()).for_each(|f| *f *= 0.5);
     let plateaus = |session, recorded| reduce_recorded(session, recorded, &unwatched).unwrap().1.plateaus;
@@ -114,7 +157,7 @@ fn errors_tell_their_parts() {
 
     let file = example().join("experiment.toml");
     let text = fs::read_to_string(&file).unwrap().replace("gravity = ", "gravity = \"9.8 ft\" # ");
-    let error = Session::parse(&text, &file).unwrap_err();
+    let error = Session::parse(&text, Folder::at(&example())).unwrap_err();
     assert_eq!((error.kind(), error.file()), (ErrorKind::Input, Some(file.as_path())));
     assert_eq!(error.place().map(ToString::to_string).as_deref(), Some(", [site], gravity"));
     assert_eq!(error.found(), Some("\"9.8 ft\""));

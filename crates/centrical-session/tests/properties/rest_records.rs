@@ -1,11 +1,10 @@
 //! Rests that a session finds in the records of its `[[tumble]]`.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    CalibrationResult, ColumnName, Method, Session, StatedAttitudes, TableFormat, TumbleRequest, calibrate, reduce,
-    tumble, unwatched, write_reduced,
+    CalibrationResult, ColumnName, Folder, Method, Session, StatedAttitudes, TableFormat, TumbleRequest, calibrate,
+    reduce, tumble, unwatched, write_reduced,
 };
 
 use crate::rests::alone;
@@ -22,6 +21,7 @@ fn of_example(more: &str) -> String {
 fn tumbled(folder: &Path, attitudes: Option<StatedAttitudes>) -> CalibrationResult {
     let request = TumbleRequest {
         files: vec![example("tumble/record.csv")],
+        folder: Folder::default(),
         time: ColumnName::Name("t".to_owned()),
         rate: None,
         readings: ["f1", "f2", "f3"].map(|name| ColumnName::Name(name.to_owned())),
@@ -44,8 +44,7 @@ fn a_session_finds_the_rests_that_a_tumble_finds() {
     let table = example("tumble/attitudes.csv");
     let known = format!("attitudes = \"{}\"\nattitude_uncertainty = \"1 mrad\"", table.display());
     for (n, more) in ["", &known].into_iter().enumerate() {
-        let session = Session::parse(&of_example(more), &folder.path().join("experiment.toml")).unwrap();
-        fs::write(&session.file, of_example(more)).unwrap();
+        let session = Session::parse(&of_example(more), Folder::at(folder.path())).unwrap();
         let stated = (!more.is_empty()).then(|| StatedAttitudes::named(&table, 1e-3).unwrap());
         let expected = tumbled(folder.path(), stated);
         let result = calibrate(&session, Method::Exact, &unwatched).unwrap();
@@ -66,7 +65,7 @@ fn a_session_finds_the_rests_that_a_tumble_finds() {
 fn wrong_records_of_rests_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |text: &str| {
-        let session = Session::parse(text, &folder.path().join("experiment.toml"));
+        let session = Session::parse(text, Folder::at(folder.path()));
         session.and_then(|session| calibrate(&session, Method::Exact, &unwatched)).unwrap_err().to_string()
     };
     for (more, expected) in [

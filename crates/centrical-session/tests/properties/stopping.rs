@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical_session::{
-    AssessmentRequest, ColumnName, CompensationRequest, Error, Estimator, Method, MonteCarloCase, MonteCarloRequest,
-    NoiseRequest, PlanRequest, Session, TableFormat, Truth, assess, calibrate, calibrate_reduced, compensate, noise_of,
-    plan, reduce, select_model, simulate_session, subject, unwatched,
+    AssessmentRequest, ColumnName, CompensationRequest, Error, Estimator, Folder, Method, MonteCarloCase,
+    MonteCarloRequest, NoiseRequest, PlanRequest, Session, TableFormat, Truth, assess, calibrate, calibrate_reduced,
+    compensate, noise_of, plan, reduce, select_model, simulate_session, subject, unwatched,
 };
 use tempfile::TempDir;
 
@@ -85,6 +85,7 @@ fn calibrations_repeated() {
 fn noise_of_a_record() {
     let request = NoiseRequest {
         file: example().join("ta-200/records/m01.csv"),
+        folder: Folder::default(),
         plateau: None,
         session: None,
         time: ColumnName::Name("t".to_owned()),

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use centrical_session::{
-    CalibrationResult, ColumnName, Method, NoiseRequest, Session, TableFormat, Truth, calibrate, noise_of,
+    CalibrationResult, ColumnName, Folder, Method, NoiseRequest, Session, TableFormat, Truth, calibrate, noise_of,
     reduce_without_inputs, simulate_session, unwatched,
 };
 use centrical_table::{Decimals, TableWriter};
@@ -207,6 +207,7 @@ fn threads_change_nothing() {
     // A mean of neighbours has other noise than they have: of noise, the session says nothing.
     let request = NoiseRequest {
         file: session.file.clone(),
+        folder: Folder::default(),
         plateau: None,
         session: None,
         time: ColumnName::Number(1),

@@ -6,7 +6,7 @@ mod simulate;
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    Axes, Column, ColumnName, Columns, Scale, Session, Tumble, TumbleRequest, read_record, tumble, unwatched,
+    Axes, Column, ColumnName, Columns, Folder, Scale, Session, Tumble, TumbleRequest, read_record, tumble, unwatched,
 };
 
 fn data(session: &str) -> PathBuf {
@@ -120,6 +120,7 @@ const OWNED: [Owned; 3] = [
 fn request(file: &str, has_time: bool, readings: [ColumnName; 3], unit: &str, gravity: f64) -> TumbleRequest {
     TumbleRequest {
         files: vec![data(file)],
+        folder: Folder::default(),
         time: ColumnName::Number(1),
         rate: (!has_time).then_some(100.0),
         readings,

@@ -1,7 +1,6 @@
 //! Numbers as arrays of bytes: columns of vectors, matrices and records, wherever they lie in a file.
 
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Read};
 use std::path::Path;
 
 use flate2::read::{DeflateDecoder, ZlibDecoder};
@@ -11,6 +10,7 @@ use super::columnar::Column;
 use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
+use crate::source::Source;
 use crate::stamp::TickForm;
 use crate::unpacking::Unpacked;
 
@@ -89,8 +89,8 @@ pub(super) enum ScalarKind {
 ///
 /// A name is that of an array of one column, or of a column of an array; a number counts the columns of the only
 /// array.
-pub(super) fn columns(file: &Path, arrays: &[Array], fields: &[Field]) -> Result<Vec<Column>, Error> {
-    fields.iter().map(|field| column(file, find(file, arrays, field)?, field)).collect()
+pub(super) fn columns(source: &Source, arrays: &[Array], fields: &[Field]) -> Result<Vec<Column>, Error> {
+    fields.iter().map(|field| column(source, find(source.name(), arrays, field)?, field)).collect()
 }
 
 /// The array and the column in it that a field asks for.
@@ -141,18 +141,23 @@ fn contents(arrays: &[Array]) -> String {
 }
 
 /// A reader of one column of numbers.
-pub(super) fn column(file: &Path, of: (&Array, &ArrayColumn), field: &Field) -> Result<Column, Error> {
+pub(super) fn column(source: &Source, of: (&Array, &ArrayColumn), field: &Field) -> Result<Column, Error> {
     let scalar = of.1.scalar;
-    let mut next = next_bytes(file, of, field)?;
+    let mut next = next_bytes(source, of, field)?;
     Ok(Column::Numbers(Box::new(move |values| {
         next(&mut |stride, bytes| values.extend(bytes.chunks(stride).map(|row| scalar.read(&row[..scalar.size]))))
     })))
 }
 
 /// A reader of one column of stamps, which are integers of 64 bits.
-pub(super) fn stamps(file: &Path, of: (&Array, &ArrayColumn), field: &Field, form: TickForm) -> Result<Column, Error> {
+pub(super) fn stamps(
+    source: &Source,
+    of: (&Array, &ArrayColumn),
+    field: &Field,
+    form: TickForm,
+) -> Result<Column, Error> {
     let (scalar, unit) = (of.1.scalar, form.unit.seconds());
-    let mut next = next_bytes(file, of, field)?;
+    let mut next = next_bytes(source, of, field)?;
     Ok(Column::Stamps(
         form,
         Box::new(move |values, ticks| {
@@ -171,11 +176,11 @@ type TakeBytes<'a> = &'a mut dyn FnMut(usize, &[u8]);
 
 /// Hands out the next rows of a column, [`ROWS`] at most, from the first byte of each number on.
 fn next_bytes(
-    file: &Path,
+    source: &Source,
     (array, place): (&Array, &ArrayColumn),
     field: &Field,
 ) -> Result<impl FnMut(TakeBytes) -> Result<(), Error> + Send + use<>, Error> {
-    let (name, path) = (Place::Column(field.name.to_string()), file.to_owned());
+    let (name, path) = (Place::Column(field.name.to_string()), source.name().to_owned());
     let failed = move |e: io::Error| {
         let expected = "an array as long as it says";
         match e.kind() {
@@ -188,7 +193,7 @@ fn next_bytes(
     if array.stride > LONGEST_ROW || scalar.size > stride {
         return Err(failed(io::Error::other(format!("{} bytes a row", array.stride))));
     }
-    let mut input = array.bytes.open(file, place.start).map_err(&failed)?;
+    let mut input = array.bytes.open(source, place.start).map_err(&failed)?;
     let has_checksum = array.bytes.packing != Packing::Plain || array.bytes.crc_32.is_some();
     let at_a_time = (BUFFER / stride.max(1)).max(1) as u64;
     let mut buffer = Vec::new();
@@ -213,10 +218,8 @@ fn next_bytes(
 
 impl Bytes {
     /// The bytes of the array from `start` on.
-    pub fn open(&self, file: &Path, start: u64) -> io::Result<Box<dyn Read + Send>> {
-        let mut input = File::open(file)?;
-        input.seek(SeekFrom::Start(self.offset))?;
-        let input = io::BufReader::with_capacity(1 << 16, input.take(self.length));
+    pub fn open(&self, source: &Source, start: u64) -> io::Result<Box<dyn Read + Send>> {
+        let input = io::BufReader::with_capacity(1 << 16, source.reader_at(self.offset).take(self.length));
         let mut unpacked: Box<dyn Read + Send> = match self.packing {
             Packing::Plain => Box::new(input),
             Packing::Deflate => Box::new(DeflateDecoder::new(input)),

@@ -7,9 +7,6 @@
 mod messages;
 mod schema;
 
-use std::fs::File;
-use std::path::Path;
-
 use polars_arrow_format::ipc::planus::ReadAsRoot;
 use polars_arrow_format::ipc::{CompressionType, FooterRef, MessageHeaderRef, RecordBatchRef};
 
@@ -22,10 +19,11 @@ use super::catch_panic::catch_panic;
 use super::columnar::{Column, Parts};
 use crate::column::Field;
 use crate::error::{Error, Place};
+use crate::source::Source;
 
-/// The batches of rows of `file`.
-pub(super) fn parts(file: &Path, input: File, fields: &[Field]) -> Result<Parts, Error> {
-    let mut messages = Messages::new(file, input)?;
+/// The batches of rows of a file or a stream.
+pub(super) fn parts(source: &Source, fields: &[Field]) -> Result<Parts, Error> {
+    let messages = Messages::new(source);
     let fields = fields.to_vec();
     if messages.is_stream()? { Ok(of_stream(messages, fields)) } else { of_file(messages, fields) }
 }
@@ -43,14 +41,16 @@ fn next_of_stream(
     fields: &[Field],
 ) -> Result<Option<Vec<Column>>, Error> {
     while let Some(message) = messages.next()? {
-        let header = message.metadata()?.header().map_err(|e| damaged(message.file, e))?;
+        let header = message.metadata()?.header().map_err(|e| damaged(message.source.name(), e))?;
         match (header, &*columns) {
-            (Some(MessageHeaderRef::Schema(schema)), None) => *columns = Some(find(message.file, schema, fields)?),
+            (Some(MessageHeaderRef::Schema(schema)), None) => {
+                *columns = Some(find(message.source.name(), schema, fields)?);
+            }
             (Some(MessageHeaderRef::RecordBatch(batch)), Some(columns)) => {
                 return batch_columns(&message, batch, columns, fields).map(Some);
             }
             (Some(MessageHeaderRef::RecordBatch(_)), None) => {
-                return Err(damaged(message.file, "rows before the schema"));
+                return Err(damaged(message.source.name(), "rows before the schema"));
             }
             _ => {}
         }
@@ -61,10 +61,12 @@ fn next_of_stream(
 /// A file: its footer has the schema and says where the batches are. Not every writer puts a whole stream before it.
 fn of_file(mut messages: Messages, fields: Vec<Field>) -> Result<Parts, Error> {
     let bytes = messages.footer()?;
-    let failed = |e| damaged(&messages.file, e);
+    let source = messages.source.clone();
+    let file = source.name();
+    let failed = |e| damaged(file, e);
     let footer = FooterRef::read_as_root(&bytes).map_err(failed)?;
-    let schema = footer.schema().map_err(failed)?.ok_or_else(|| contradiction(&messages.file))?;
-    let columns = find(&messages.file, schema, &fields)?;
+    let schema = footer.schema().map_err(failed)?.ok_or_else(|| contradiction(file))?;
+    let columns = find(file, schema, &fields)?;
     let blocks = footer.record_batches().map_err(failed)?;
     let places: Vec<i64> = blocks.into_iter().flatten().map(|block| block.offset()).collect();
     Ok(Box::new(places.into_iter().map(move |place| batch_at(&mut messages, place, &columns, &fields))))
@@ -77,12 +79,12 @@ fn batch_at(
     columns: &[ArrowColumn],
     fields: &[Field],
 ) -> Result<Vec<Column>, Error> {
-    messages.at = u64::try_from(place).map_err(|_| contradiction(&messages.file))?;
-    let file = messages.file.clone();
-    let message = messages.next()?.ok_or_else(|| contradiction(&file))?;
-    let Some(MessageHeaderRef::RecordBatch(batch)) = message.metadata()?.header().map_err(|e| damaged(&file, e))?
-    else {
-        return Err(contradiction(&file));
+    let source = messages.source.clone();
+    let file = source.name();
+    messages.at = u64::try_from(place).map_err(|_| contradiction(file))?;
+    let message = messages.next()?.ok_or_else(|| contradiction(file))?;
+    let Some(MessageHeaderRef::RecordBatch(batch)) = message.metadata()?.header().map_err(|e| damaged(file, e))? else {
+        return Err(contradiction(file));
     };
     batch_columns(&message, batch, columns, fields)
 }
@@ -94,19 +96,19 @@ fn batch_columns(
     columns: &[ArrowColumn],
     fields: &[Field],
 ) -> Result<Vec<Column>, Error> {
-    let file = message.file;
-    let arrays =
-        catch_panic(|| arrays(message, batch, columns)).map_err(|e| e.unwrap_or_else(|| contradiction(file)))?;
+    let source = message.source;
+    let arrays = catch_panic(|| arrays(message, batch, columns))
+        .map_err(|e| e.unwrap_or_else(|| contradiction(source.name())))?;
     let numbers = |((array, column), field): ((&Array, &ArrowColumn), &Field)| {
         let of = (array, &array.columns[0]);
-        column.stamps.map_or_else(|| arrays::column(file, of, field), |form| arrays::stamps(file, of, field, form))
+        column.stamps.map_or_else(|| arrays::column(source, of, field), |form| arrays::stamps(source, of, field, form))
     };
     arrays.iter().zip(columns).zip(fields).map(numbers).collect()
 }
 
 /// The arrays of the wanted columns in a batch of rows.
 fn arrays(message: &Message, batch: RecordBatchRef, columns: &[ArrowColumn]) -> Result<Vec<Array>, Error> {
-    let failed = |e| damaged(message.file, e);
+    let failed = |e| damaged(message.source.name(), e);
     let rows = batch.length().map_err(failed)?;
     let packing = match batch.compression().map_err(failed)?.map(|c| c.codec()).transpose().map_err(failed)? {
         None => None,
@@ -117,15 +119,15 @@ fn arrays(message: &Message, batch: RecordBatchRef, columns: &[ArrowColumn]) -> 
     let array = |column: &ArrowColumn| {
         let node = nodes.as_ref().and_then(|nodes| nodes.get(column.node));
         let buffer = buffers.as_ref().and_then(|buffers| buffers.get(column.buffer + 1));
-        let (Some(node), Some(buffer)) = (node, buffer) else { return Err(contradiction(message.file)) };
+        let (Some(node), Some(buffer)) = (node, buffer) else { return Err(contradiction(message.source.name())) };
         if node.null_count() != 0 {
             let place = Place::Column(column.name.clone());
             let found = format!("{} values missing", node.null_count());
-            return Err(Error::content(message.file, place, found, "a value in every row"));
+            return Err(Error::content(message.source.name(), place, found, "a value in every row"));
         }
         let count = u64::try_from(rows).ok().filter(|_| node.length() == rows);
         let bytes = message.bytes_of(buffer.offset(), buffer.length(), packing)?;
-        let rows = count.ok_or_else(|| contradiction(message.file))?;
+        let rows = count.ok_or_else(|| contradiction(message.source.name()))?;
         Ok(column.array(rows, bytes))
     };
     columns.iter().map(array).collect()

@@ -1,15 +1,15 @@
 //! HDF5 files, and MATLAB files of version 7.3, which are HDF5 too.
 
-use std::fs;
 use std::path::Path;
 
-use hdf5_pure::{ChunkIndex, Dataset, Error as HdfError, File, FormatError};
+use hdf5_pure::{ChunkIndex, Dataset, Error as HdfError, File, FormatError, ReadSeekSource};
 
 use super::catch_panic::catch_panic;
 use super::columnar::Column;
 use crate::column::{ColumnName, Field};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
+use crate::source::Source;
 
 /// Numbers of a matrix that are read together.
 const AT_ONCE: u64 = 16 * ROWS as u64;
@@ -18,9 +18,10 @@ const AT_ONCE: u64 = 16 * ROWS as u64;
 const LARGEST_NUMBER: u64 = 16;
 
 /// The columns of an HDF5 file that can hold `most` rows. MATLAB keeps its matrices there by columns.
-pub(super) fn columns(file: &Path, by_columns: bool, fields: &[Field], most: u64) -> Result<Vec<Column>, Error> {
-    let hdf = catch_panic(|| File::open_streaming(file)).map_err(|e| damaged(file, Place::Whole, e.as_ref()))?;
-    fields.iter().map(|field| column(file, &hdf, field, by_columns, most)).collect()
+pub(super) fn columns(source: &Source, by_columns: bool, fields: &[Field], most: u64) -> Result<Vec<Column>, Error> {
+    let hdf = catch_panic(|| File::from_source(ReadSeekSource::new(source.reader_at(0)).map_err(HdfError::Format)?));
+    let hdf = hdf.map_err(|e| damaged(source.name(), Place::Whole, e.as_ref()))?;
+    fields.iter().map(|field| column(source, &hdf, field, by_columns, most)).collect()
 }
 
 /// What the library complains of.
@@ -30,8 +31,8 @@ fn damaged(file: &Path, place: Place, error: Option<&HdfError>) -> Error {
 }
 
 /// One column: a vector by the path of its dataset, or a column of the only dataset by its number.
-fn column(file: &Path, hdf: &File, field: &Field, by_columns: bool, most: u64) -> Result<Column, Error> {
-    let place = || Place::Column(field.name.to_string());
+fn column(source: &Source, hdf: &File, field: &Field, by_columns: bool, most: u64) -> Result<Column, Error> {
+    let (file, place) = (source.name(), || Place::Column(field.name.to_string()));
     let (path, name) = (file.to_owned(), place());
     let damaged = move |e: Option<HdfError>| damaged(&path, name.clone(), e.as_ref());
     let wrong = |found: String, expected: &str| Err(Error::content(file, place(), found, expected));
@@ -62,7 +63,7 @@ fn column(file: &Path, hdf: &File, field: &Field, by_columns: bool, most: u64) -
     if size > LARGEST_NUMBER {
         return wrong(format!("elements of {size} bytes"), "numbers");
     }
-    if let Some(found) = too_large_chunk(file, &dataset, most).map_err(&damaged)? {
+    if let Some(found) = too_large_chunk(source.length(), &dataset, most).map_err(&damaged)? {
         return wrong(found, "chunks that the file can hold");
     }
     if by_columns || shape.first() == Some(&1) {
@@ -103,7 +104,7 @@ fn unreadable(dataset: &Dataset) -> Result<Option<(String, &'static str)>, Optio
 
 /// A chunk that claims more than there can be: it is unpacked as a whole, and room is made for what it claims to take in the file
 /// before that is read.
-fn too_large_chunk(file: &Path, dataset: &Dataset, most: u64) -> Result<Option<String>, Option<HdfError>> {
+fn too_large_chunk(bytes: u64, dataset: &Dataset, most: u64) -> Result<Option<String>, Option<HdfError>> {
     if !dataset.is_chunked() {
         return Ok(None);
     }
@@ -111,7 +112,6 @@ fn too_large_chunk(file: &Path, dataset: &Dataset, most: u64) -> Result<Option<S
     if shape.iter().fold(1, |numbers: u64, length| numbers.saturating_mul(*length)) > most {
         return Ok(Some(format!("chunks of shape {shape:?}")));
     }
-    let bytes = fs::metadata(file).map_or(0, |metadata| metadata.len());
     let stored = catch_panic(|| dataset.chunks())?;
     let size = stored.iter().map(|chunk| chunk.storage_size).find(|size| *size > bytes);
     Ok(size.map(|size| format!("a chunk of {size} bytes")))

@@ -4,15 +4,14 @@
 //! matrix, or a matrix packed by zlib; inside, further elements hold its class, dimensions, name and numbers. What
 //! is not a real matrix of numbers (text, cells, structures, complex numbers) is passed over.
 
-use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
 
 use super::arrays;
 use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
 use super::columnar::Column;
 use crate::column::Field;
 use crate::error::{Error, Place};
+use crate::source::Source;
 
 /// Length of the header; its last two bytes are `IM` where the numbers start with the low byte.
 const HEADER: u64 = 128;
@@ -25,14 +24,14 @@ const PACKED: u32 = 15;
 const MOST: u64 = 1 << 16;
 
 /// The columns of a MATLAB file.
-pub(super) fn columns(file: &Path, input: &File, fields: &[Field]) -> Result<Vec<Column>, Error> {
-    let damaged = |e: io::Error| Error::content(file, Place::Whole, format!("damaged ({e})"), "a MATLAB file");
-    let length = input.metadata().map_err(damaged)?.len();
-    arrays::columns(file, &arrays(file, length).map_err(damaged)?, fields)
+pub(super) fn columns(source: &Source, fields: &[Field]) -> Result<Vec<Column>, Error> {
+    let damaged = |e| Error::content(source.name(), Place::Whole, format!("damaged ({e})"), "a MATLAB file");
+    arrays::columns(source, &arrays(source).map_err(damaged)?, fields)
 }
 
 /// The matrices of numbers in the file.
-fn arrays(file: &Path, length: u64) -> io::Result<Vec<Array>> {
+fn arrays(source: &Source) -> io::Result<Vec<Array>> {
+    let length = source.length();
     let plain = |offset: u64| Bytes {
         packing: Packing::Plain,
         offset,
@@ -41,20 +40,20 @@ fn arrays(file: &Path, length: u64) -> io::Result<Vec<Array>> {
         crc_32: None,
     };
     let mut order = [0; 2];
-    plain(HEADER - 2).open(file, 0)?.read_exact(&mut order)?;
+    plain(HEADER - 2).open(source, 0)?.read_exact(&mut order)?;
     let big_endian = order == *b"MI";
     let mut arrays = Vec::new();
     let mut offset = HEADER;
     while offset + 8 <= length {
-        let tag = Stream { input: plain(offset).open(file, 0)?, read: 0, big_endian }.tag()?;
+        let tag = Stream { input: plain(offset).open(source, 0)?, read: 0, big_endian }.tag()?;
         let bytes = Bytes { packing: Packing::Plain, offset: offset + 8, length: tag.size, skip: 0, crc_32: None };
         match tag.kind {
-            MATRIX => arrays.extend(array(file, bytes, big_endian)?),
+            MATRIX => arrays.extend(array(source, bytes, big_endian)?),
             PACKED => {
                 let bytes = Bytes { packing: Packing::Zlib, ..bytes };
-                let inner = Stream { input: bytes.open(file, 0)?, read: 0, big_endian }.tag()?;
+                let inner = Stream { input: bytes.open(source, 0)?, read: 0, big_endian }.tag()?;
                 if inner.kind == MATRIX {
-                    arrays.extend(array(file, Bytes { skip: 8, ..bytes }, big_endian)?);
+                    arrays.extend(array(source, Bytes { skip: 8, ..bytes }, big_endian)?);
                 }
             }
             _ => {}
@@ -65,10 +64,10 @@ fn arrays(file: &Path, length: u64) -> io::Result<Vec<Array>> {
 }
 
 /// A matrix of numbers, if these bytes are one.
-fn array(file: &Path, bytes: Bytes, big_endian: bool) -> io::Result<Option<Array>> {
+fn array(source: &Source, bytes: Bytes, big_endian: bool) -> io::Result<Option<Array>> {
     /// Classes 6 to 15 are the real numbers, this flag makes them complex.
     const COMPLEX: u32 = 0x800;
-    let mut stream = Stream { input: bytes.open(file, 0)?, read: 0, big_endian };
+    let mut stream = Stream { input: bytes.open(source, 0)?, read: 0, big_endian };
     let flags = stream.element(8)?;
     let class = word(&flags, big_endian);
     let dimensions = stream.element(8)?;

@@ -3,9 +3,7 @@
 //! A `.npy` file opens with the magic bytes, a version, the length of the header and the header: a Python
 //! dictionary of `descr` (type of the numbers), `fortran_order` and `shape`.
 
-use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
 
 use super::arrays;
 use super::arrays::{Array, ArrayColumn, Bytes, Packing, Scalar, ScalarKind};
@@ -13,24 +11,30 @@ use super::columnar::Column;
 use super::npy_literal::Literal;
 use crate::column::Field;
 use crate::error::{Error, Place, quoted};
+use crate::source::Source;
 
 /// Longest header [bytes].
 const LONGEST_HEADER: usize = 1 << 16;
 
 /// The columns of a `.npy` file.
-pub(super) fn columns(file: &Path, input: &File, fields: &[Field]) -> Result<Vec<Column>, Error> {
-    let length = input.metadata().map_err(|e| Error::reading(file, e, "a .npy file"))?.len();
-    let bytes = Bytes { packing: Packing::Plain, offset: 0, length, skip: 0, crc_32: None };
-    match array(file, "", bytes)? {
-        Some(array) => arrays::columns(file, &[array], fields),
-        None => Err(Error::content(file, Place::Whole, "an array of another shape", "a vector, a matrix or records")),
+pub(super) fn columns(source: &Source, fields: &[Field]) -> Result<Vec<Column>, Error> {
+    let bytes = Bytes { packing: Packing::Plain, offset: 0, length: source.length(), skip: 0, crc_32: None };
+    match array(source, "", bytes)? {
+        Some(array) => arrays::columns(source, &[array], fields),
+        None => Err(Error::content(
+            source.name(),
+            Place::Whole,
+            "an array of another shape",
+            "a vector, a matrix or records",
+        )),
     }
 }
 
 /// The columns of a `.npz` archive.
-pub(super) fn archive_columns(file: &Path, input: File, fields: &[Field]) -> Result<Vec<Column>, Error> {
+pub(super) fn archive_columns(source: &Source, fields: &[Field]) -> Result<Vec<Column>, Error> {
+    let file = source.name();
     let damaged = |e: zip::result::ZipError| Error::content(file, Place::Whole, e.to_string(), "a .npz archive");
-    let mut archive = zip::ZipArchive::new(input).map_err(damaged)?;
+    let mut archive = zip::ZipArchive::new(source.reader_at(0)).map_err(damaged)?;
     let mut arrays = Vec::new();
     for member in 0..archive.len() {
         let member = archive.by_index_raw(member).map_err(damaged)?;
@@ -46,16 +50,16 @@ pub(super) fn archive_columns(file: &Path, input: File, fields: &[Field]) -> Res
         };
         let offset = member.data_start().unwrap_or(0);
         let (length, crc_32) = (member.compressed_size(), Some(member.crc32()));
-        arrays.extend(array(file, name, Bytes { packing, offset, length, skip: 0, crc_32 })?);
+        arrays.extend(array(source, name, Bytes { packing, offset, length, skip: 0, crc_32 })?);
     }
-    arrays::columns(file, &arrays, fields)
+    arrays::columns(source, &arrays, fields)
 }
 
 /// The array that starts with a header at these bytes, if it has rows and columns.
-fn array(file: &Path, name: &str, bytes: Bytes) -> Result<Option<Array>, Error> {
+fn array(source: &Source, name: &str, bytes: Bytes) -> Result<Option<Array>, Error> {
     let place = || if name.is_empty() { Place::Whole } else { Place::Column(name.to_owned()) };
-    let wrong = |found: String| Error::content(file, place(), found, "the header of an array of NumPy");
-    let header = header(bytes, file).map_err(|e| wrong(format!("a damaged header ({e})")))?;
+    let wrong = |found: String| Error::content(source.name(), place(), found, "the header of an array of NumPy");
+    let header = header(bytes, source).map_err(|e| wrong(format!("a damaged header ({e})")))?;
     let literal = Literal::parse(&header.text).ok_or_else(|| wrong(quoted(header.text.trim_ascii())))?;
     Ok(Shape::of(&literal).map(|shape| shape.array(name, Bytes { skip: header.length, ..bytes })))
 }
@@ -66,8 +70,8 @@ struct Header {
     length: u64,
 }
 
-fn header(bytes: Bytes, file: &Path) -> io::Result<Header> {
-    let mut input = bytes.open(file, 0)?;
+fn header(bytes: Bytes, source: &Source) -> io::Result<Header> {
+    let mut input = bytes.open(source, 0)?;
     let mut start = [0; 8];
     input.read_exact(&mut start)?;
     let (length, before) = match start {

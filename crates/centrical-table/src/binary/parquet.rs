@@ -1,6 +1,5 @@
 //! Tables in Parquet files, some rows at a time.
 
-use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -16,27 +15,25 @@ use parquet::schema::types::ColumnDescPtr;
 use super::arrow;
 use super::catch_panic::catch_panic;
 use super::columnar::{Column, MISSING, Parts};
-use super::parquet_pages::{Checked, Source};
+use super::parquet_pages::{Checked, Pages};
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
+use crate::source::Source;
 use crate::stamp::{TickForm, TickUnit};
 
-/// The row groups of `file`.
-pub(super) fn parts(file: &Path, input: &File, fields: &[Field]) -> Result<Parts, Error> {
-    let metadata = catch_panic(|| ParquetMetaDataReader::new().parse_and_finish(input));
+/// The row groups of a file.
+pub(super) fn parts(source: &Source, fields: &[Field]) -> Result<Parts, Error> {
+    let file = source.name();
+    let metadata = catch_panic(|| ParquetMetaDataReader::new().parse_and_finish(source));
     let metadata = metadata.map_err(|e| damaged(file, e.as_ref()))?;
     let durations = durations(&metadata);
     let found = fields.iter().map(|field| find(file, &metadata, &durations, field));
     let columns: Vec<usize> = found.collect::<Result<_, Error>>()?;
-    // Columns are read at the same time, and a file has one place that is read next: each column opens it for itself.
-    let open = |_: &usize| File::open(file).map(|input| Arc::new(Source(input)));
-    let sources: Vec<Arc<Source>> =
-        columns.iter().map(open).collect::<std::io::Result<_>>().map_err(|e| Error::reading(file, e, "Parquet"))?;
-    let file = file.to_owned();
+    let (file, pages) = (file.to_owned(), Arc::new(Pages(source.clone())));
     Ok(Box::new((0..metadata.num_row_groups()).map(move |group| {
-        let open = |(c, source): (&usize, &Arc<Source>)| column(&file, source, &metadata, group, *c);
-        let columns = columns.iter().zip(&sources).map(open).collect::<ParquetResult<Vec<_>>>();
+        let open = |c: &usize| column(&file, &pages, &metadata, group, *c);
+        let columns = columns.iter().map(open).collect::<ParquetResult<Vec<_>>>();
         columns.map_err(|e| damaged(&file, Some(&e)))
     })))
 }
@@ -139,12 +136,12 @@ fn stamp_form(column: &ColumnDescPtr) -> Option<TickForm> {
 /// One column of one row group.
 fn column(
     file: &Path,
-    source: &Arc<Source>,
+    pages: &Arc<Pages>,
     metadata: &ParquetMetaData,
     group: usize,
     column: usize,
 ) -> ParquetResult<Column> {
-    let pages = Checked::new(source, metadata.row_group(group), column)?;
+    let pages = Checked::new(pages, metadata.row_group(group), column)?;
     let description = metadata.file_metadata().schema_descr().column(column);
     let (stamps, is_unsigned) = (stamp_form(&description), is_unsigned(&description));
     let whole = description.max_def_level();

@@ -3,7 +3,6 @@
 //! Every size in a Parquet file is a claim. The library believes the size of an uncompressed page and the length
 //! of a dictionary, and would set aside gigabytes for a damaged file of a few kilobytes: both are checked here.
 
-use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::sync::Arc;
 
@@ -14,6 +13,8 @@ use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{ChunkReader, Length};
 use parquet::file::serialized_reader::SerializedPageReader;
 
+use crate::source::{Source, SourceReader};
+
 /// Largest page that needs no packed bytes to back it [bytes]; writers make pages of 1 MiB.
 const LARGEST_PAGE: i64 = 64 << 20;
 
@@ -21,11 +22,11 @@ const LARGEST_PAGE: i64 = 64 << 20;
 const LARGEST_RATIO: i64 = 256;
 
 /// A file that is read page by page, every read starting at the header of a page.
-pub(super) struct Source(pub File);
+pub(super) struct Pages(pub Source);
 
 /// A file to be read on from a place, not beyond its end: what the library does not know it passes over as often as the file
 /// claims, billions of times where nothing is left to be passed over.
-pub(super) struct Strict(BufReader<File>);
+pub(super) struct Strict(BufReader<SourceReader>);
 
 impl Read for Strict {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
@@ -38,11 +39,33 @@ impl Read for Strict {
 
 impl Length for Source {
     fn len(&self) -> u64 {
-        self.0.len()
+        self.length()
     }
 }
 
 impl ChunkReader for Source {
+    type T = BufReader<SourceReader>;
+
+    fn get_read(&self, start: u64) -> Result<Self::T> {
+        Ok(BufReader::new(self.reader_at(start)))
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
+        let end = start.checked_add(length as u64).filter(|end| *end <= self.length());
+        let end = end.ok_or_else(|| general(format!("{length} bytes from {start} of {}", self.length())))?;
+        let mut bytes = Vec::with_capacity(length);
+        self.reader_at(start).take(end - start).read_to_end(&mut bytes)?;
+        if bytes.len() == length { Ok(bytes.into()) } else { Err(io::Error::from(io::ErrorKind::UnexpectedEof).into()) }
+    }
+}
+
+impl Length for Pages {
+    fn len(&self) -> u64 {
+        self.0.length()
+    }
+}
+
+impl ChunkReader for Pages {
     type T = Strict;
 
     fn get_read(&self, start: u64) -> Result<Self::T> {
@@ -82,20 +105,20 @@ fn page_sizes(header: &[u8]) -> Option<(i64, i64)> {
 }
 
 /// Pages of one column of one row group.
-pub(super) struct Checked(SerializedPageReader<Source>);
+pub(super) struct Checked(SerializedPageReader<Pages>);
 
 impl Checked {
     /// The pages of `column` in `group`.
-    pub fn new(source: &Arc<Source>, group: &RowGroupMetaData, column: usize) -> Result<Self> {
+    pub fn new(pages: &Arc<Pages>, group: &RowGroupMetaData, column: usize) -> Result<Self> {
         let column = group.column(column);
         let start = column.dictionary_page_offset().unwrap_or_else(|| column.data_page_offset());
         let end = start.checked_add(column.compressed_size());
-        let length = i64::try_from(source.len()).unwrap_or(i64::MAX);
+        let length = i64::try_from(pages.len()).unwrap_or(i64::MAX);
         if start < 0 || column.compressed_size() < 0 || end.is_none_or(|end| end > length) {
             return Err(general(format!("a column from byte {start} to {end:?} of {length}")));
         }
         let rows = usize::try_from(group.num_rows()).map_err(|_| general("a negative number of rows".to_owned()))?;
-        Ok(Self(SerializedPageReader::new(Arc::clone(source), column, rows, None)?))
+        Ok(Self(SerializedPageReader::new(Arc::clone(pages), column, rows, None)?))
     }
 }
 

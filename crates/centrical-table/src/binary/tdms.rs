@@ -7,9 +7,8 @@ mod metadata;
 mod scaling;
 
 use std::collections::BTreeSet;
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::io::{self, Read};
+use std::path::Path;
 use std::rc::Rc;
 
 use self::metadata::{Kind, Layout, Listed, Metadata, Properties, Segment, Value};
@@ -18,6 +17,7 @@ use super::columnar::Column;
 use crate::column::{ColumnName, Field, Rule};
 use crate::error::{Error, Place, quoted};
 use crate::rows::ROWS;
+use crate::source::Source;
 
 /// Bytes that are read at a time.
 const BUFFER: u64 = 1 << 18;
@@ -56,13 +56,14 @@ struct Channel<'a> {
 }
 
 /// The wanted columns, in the order of the fields.
-pub(super) fn columns(file: &Path, mut input: File, fields: &[Field]) -> Result<Vec<Column>, Error> {
-    let metadata = Metadata::read(&mut input).map_err(|e| damaged(file, Place::Whole, &e))?;
+pub(super) fn columns(source: &Source, fields: &[Field]) -> Result<Vec<Column>, Error> {
+    let file = source.name();
+    let metadata = Metadata::read(source).map_err(|e| damaged(file, Place::Whole, &e))?;
     let channels = channels(&metadata);
     let places = fields.iter().map(|field| find(file, &channels, field)).collect::<Result<Vec<_>, _>>()?;
     let reading = places.iter().flatten().next();
     let column = |(field, place): (&Field, &Option<usize>)| match place {
-        Some(place) => channel_column(file, &metadata, &channels[*place], field),
+        Some(place) => channel_column(source, &metadata, &channels[*place], field),
         None => time_column(file, &metadata, reading.map(|place| &channels[*place]), field),
     };
     fields.iter().zip(&places).map(column).collect()
@@ -132,20 +133,19 @@ fn find(file: &Path, channels: &[Channel], field: &Field) -> Result<Option<usize
 }
 
 /// A reader of a channel.
-fn channel_column(file: &Path, metadata: &Metadata, channel: &Channel, field: &Field) -> Result<Column, Error> {
-    let place = Place::Column(field.name.to_string());
+fn channel_column(source: &Source, metadata: &Metadata, channel: &Channel, field: &Field) -> Result<Column, Error> {
+    let (file, place) = (source.name(), Place::Column(field.name.to_string()));
     let runs = runs(metadata, channel.object).map_err(|e| damaged(file, place.clone(), &e))?;
     let daqmx = metadata.scale_of_driver(channel.object);
     let scaling = scaling(metadata, channel, daqmx).map_err(|found| {
         let expected = "linear and polynomial scales, or data that are scaled already";
         Error::content(file, place.clone(), found, expected)
     })?;
-    let input = File::open(file).map_err(|e| Error::reading(file, e, "a TDMS file"))?;
     let is_stamps = field.rule == (Rule::Ascending { stamps: true })
         && scaling == Scaling::default()
         && runs.iter().all(|run| run.kind == Kind::Stamp);
-    let (runs, file) = (runs.into_iter(), file.to_owned());
-    let mut reader = RunReader { file, place, input, runs, run: None, buffer: Vec::new() };
+    let (runs, source) = (runs.into_iter(), source.clone());
+    let mut reader = RunReader { place, source, runs, run: None, buffer: Vec::new() };
     if is_stamps {
         return Ok(Column::Stamps(
             metadata::STAMPS,
@@ -167,9 +167,8 @@ fn channel_column(file: &Path, metadata: &Metadata, channel: &Channel, field: &F
 
 /// The values of a channel, run after run.
 struct RunReader {
-    file: PathBuf,
     place: Place,
-    input: File,
+    source: Source,
     runs: std::vec::IntoIter<Run>,
     /// The run that is being read.
     run: Option<Run>,
@@ -187,8 +186,8 @@ impl RunReader {
                 left -= 1;
                 push(run, bytes);
             };
-            let read = read(&mut self.input, run, before, &mut self.buffer, push);
-            self.run = read.map_err(|e| damaged(&self.file, self.place.clone(), &e))?;
+            let read = read(&self.source, run, before, &mut self.buffer, push);
+            self.run = read.map_err(|e| damaged(self.source.name(), self.place.clone(), &e))?;
         }
         Ok(())
     }
@@ -283,7 +282,7 @@ fn run(segment: &Segment, in_chunk: InChunk) -> Option<Run> {
 /// Reads values of a run, `wanted` at most and a buffer full, and hands out the bytes of each. Returns the run with its unread
 /// values.
 fn read(
-    input: &mut File,
+    source: &Source,
     mut run: Run,
     wanted: u64,
     buffer: &mut Vec<u8>,
@@ -297,8 +296,7 @@ fn read(
     }
     let length = run.place(end - 1) + size - begin;
     buffer.resize(usize::try_from(length).unwrap_or(0), 0);
-    input.seek(SeekFrom::Start(begin))?;
-    input.read_exact(buffer)?;
+    source.reader_at(begin).read_exact(buffer)?;
     for value in run.read..end {
         let at = usize::try_from(run.place(value) - begin).unwrap_or(usize::MAX);
         let bytes = buffer.get(at..).ok_or_else(|| metadata::wrong("values that are not in order"))?;

@@ -10,9 +10,9 @@ use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 
 use super::catch_panic::catch_panic;
 use super::cells::{Cell, Kind, TypedColumn};
-use super::parquet_pages::{Checked, Source};
-use crate::document::open_regular;
+use super::parquet_pages::{Checked, Pages};
 use crate::error::{Error, Place};
+use crate::source::Source;
 
 /// Values that a column of one row group may hold: above, a damaged file would fill the memory.
 const MOST: i64 = 1 << 26;
@@ -20,7 +20,7 @@ const MOST: i64 = 1 << 26;
 /// A Parquet table with columns of several kinds, open.
 pub struct TypedReader {
     file: PathBuf,
-    source: Arc<Source>,
+    pages: Arc<Pages>,
     metadata: ParquetMetaData,
 }
 
@@ -30,10 +30,10 @@ impl TypedReader {
     /// # Errors
     /// [`Error`] if it is not there, or is no whole Parquet file.
     pub fn open(file: &Path, expected: &str) -> Result<Self, Error> {
-        let input = open_regular(file, expected)?;
-        let metadata = catch_panic(|| ParquetMetaDataReader::new().parse_and_finish(&input));
+        let source = Source::open(file, expected)?;
+        let metadata = catch_panic(|| ParquetMetaDataReader::new().parse_and_finish(&source));
         let metadata = metadata.map_err(|error| damaged(file, Place::Whole, error.as_ref(), expected))?;
-        Ok(Self { file: file.to_owned(), source: Arc::new(Source(input)), metadata })
+        Ok(Self { file: file.to_owned(), pages: Arc::new(Pages(source)), metadata })
     }
 
     /// The text that the footer keeps under a key.
@@ -78,7 +78,7 @@ impl TypedReader {
         if is_list != kind.is_list() || description.max_rep_level() > 1 {
             return Err(general("lists where single values are due, or the other way".to_owned()));
         }
-        let pages = Box::new(Checked::new(&self.source, of_group, number)?);
+        let pages = Box::new(Checked::new(&self.pages, of_group, number)?);
         let (rows, most) = (usize::try_from(rows).unwrap_or(0), description.max_def_level());
         let text = |bytes: ByteArray| String::from_utf8_lossy(bytes.data()).into_owned();
         match (get_column_reader(description, pages), kind) {

@@ -1,6 +1,5 @@
-//! A text in pieces of whole lines: of a file any piece by its number, of a packed one each after the other.
+//! A text in pieces of whole lines: of a plain one any piece by its number, of a packed one each after the other.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
@@ -9,6 +8,7 @@ use memchr::{memchr, memchr_iter, memrchr};
 
 use super::encoding::{FromUtf16, SIGHT, TextEncoding};
 use crate::error::Error;
+use crate::source::Source;
 use crate::unpacking::Unpacked;
 
 /// Bytes in a piece, more or less a line: several make up a plateau, and each is worth the way to it.
@@ -48,10 +48,9 @@ pub(crate) enum Lines {
     Packed(Packed),
 }
 
-/// A text in an ordinary file. A piece has the lines that begin in its range of bytes.
+/// A text that is not packed. A piece has the lines that begin in its range of bytes.
 pub(crate) struct Plain {
-    file: PathBuf,
-    input: File,
+    source: Source,
     length: u64,
 }
 
@@ -67,10 +66,9 @@ pub(crate) struct Packed {
 }
 
 impl Plain {
-    /// The text in a file, as long as it is now.
-    pub fn new(file: &Path, input: File) -> io::Result<Self> {
-        let length = input.metadata()?.len();
-        Ok(Self { file: file.to_owned(), input, length })
+    /// The text, as long as it is now.
+    pub fn new(source: Source) -> Self {
+        Self { length: source.length(), source }
     }
 
     /// The same, ending with the last complete line.
@@ -101,7 +99,7 @@ impl Plain {
 
     /// Reads the piece of that number; any thread may read any piece.
     pub(super) fn read(&self, number: u64, text: &mut Text) -> Result<(), Error> {
-        self.try_read(number, text).map_err(|e| Error::reading(&self.file, e, TABLE))
+        self.try_read(number, text).map_err(|e| Error::reading(self.source.name(), e, TABLE))
     }
 
     fn try_read(&self, number: u64, text: &mut Text) -> io::Result<()> {
@@ -141,7 +139,7 @@ impl Plain {
         let most = filled + usize::try_from(left).unwrap_or(usize::MAX).min(count);
         bytes.resize(bytes.len().max(most), 0);
         while filled < most {
-            match read_at(&self.input, &mut bytes[filled..most], from + filled as u64) {
+            match self.source.read_at(&mut bytes[filled..most], from + filled as u64) {
                 Ok(0) => break,
                 Ok(read) => filled += read,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
@@ -150,18 +148,6 @@ impl Plain {
         }
         Ok(filled)
     }
-}
-
-/// Reads at a place in a file, wherever others read.
-#[cfg(unix)]
-fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
-    std::os::unix::fs::FileExt::read_at(file, bytes, place)
-}
-
-/// Reads at a place in a file, wherever others read.
-#[cfg(windows)]
-fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
-    std::os::windows::fs::FileExt::seek_read(file, bytes, place)
 }
 
 impl Packed {

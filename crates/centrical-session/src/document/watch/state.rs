@@ -77,8 +77,9 @@ impl WatchState {
     /// # Errors
     /// [`Error`] when the experiment file cannot be read.
     pub fn new(session: &Session) -> Result<Self, Error> {
-        let folder = session.file.parent().unwrap_or(Path::new(""));
-        let experiment = Input::of(folder, &session.file, &unwatched)?;
+        let folder = &session.folder;
+        let experiment = folder.open(&session.file, Input::EXPECTED)?;
+        let experiment = Input::of(folder.path(), &experiment, &unwatched)?;
         let (schema, point, plateaus) = (SCHEMA.to_owned(), Vec::new(), Vec::new());
         Ok(Self { schema, experiment, point, reference: None, referenced: 0, plateaus })
     }

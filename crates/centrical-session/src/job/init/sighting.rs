@@ -8,6 +8,7 @@ use centrical_table::ColumnName;
 use super::file_roles::{FileColumns, Group, Label};
 use super::raw::Extremes;
 use crate::error::Error;
+use crate::experiment::Folder;
 use crate::quantity::Dimension;
 use crate::record::{Column, Columns, RecordReader, Scale, read_telemetry};
 
@@ -84,7 +85,8 @@ impl Seen {
         let middles: Vec<[f64; 2]> = plateaus.iter().map(middle).collect();
         let columns = columns_of_records(&group.records);
         let files: Vec<&std::path::Path> = group.records.iter().map(|file| file.path.as_path()).collect();
-        let mut reader = RecordReader::open_all(&files, centrical_table::Extent::Whole, &columns)?;
+        let sources = Folder::default().open_record(&files)?;
+        let mut reader = RecordReader::open_all(sources, centrical_table::Extent::Whole, &columns)?;
         while let Some(batch) = reader.next_batch()? {
             for rows in batch {
                 for (n, &t) in rows[0].iter().enumerate() {

@@ -10,14 +10,16 @@ use super::analysis::analyse_noise;
 use super::series::Series;
 use crate::document::NoiseAnalysis;
 use crate::error::Error;
-use crate::experiment::{PlateauName, Session};
-use crate::record::{Columns, named_columns};
+use crate::experiment::{Folder, PlateauName, Session};
+use crate::record::{Columns, RECORD, named_columns};
 
 /// Which readings are analysed, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseRequest {
     /// A record, or a session.
     pub file: PathBuf,
+    /// Where the record is.
+    pub folder: Folder,
     /// Plateau of the session; `None` for the longest at rest.
     pub plateau: Option<PlateauName>,
     /// The session that says columns and units of the record, in place of the four fields below.
@@ -42,22 +44,40 @@ pub struct NoiseRequest {
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
 pub fn noise_of(request: &NoiseRequest, progress: OnProgress) -> Result<(NoiseAnalysis, Option<PlateauName>), Error> {
-    let (series, plateau) = series(request, progress)?;
-    let mut estimators: Vec<Estimator> = Vec::new();
-    for estimator in &request.estimators {
-        if !estimators.contains(estimator) {
-            estimators.push(*estimator);
-        }
+    let NoiseRequest { file, estimators, .. } = request;
+    if file.is_dir() || file.extension().is_some_and(|extension| extension == "toml") {
+        let (analysis, name) = noise_of_plateau(&Session::read(file)?, request.plateau, estimators, progress)?;
+        return Ok((analysis, Some(name)));
     }
-    Ok((analyse_noise(&series, &estimators, progress)?, plateau))
+    Ok((analyse_noise(&series(request, progress)?, &each_once(estimators), progress)?, None))
 }
 
-fn series(request: &NoiseRequest, progress: OnProgress) -> Result<(Series, Option<PlateauName>), Error> {
-    let NoiseRequest { file, .. } = request;
-    if file.is_dir() || file.extension().is_some_and(|extension| extension == "toml") {
-        let (series, name) = Series::of_plateau(&Session::read(file)?, request.plateau, progress)?;
-        return Ok((series, Some(name)));
+/// Analyses the noise of a plateau of a session; without a name of the longest at rest. Its name as well.
+///
+/// # Errors
+/// As [`noise_of`].
+pub fn noise_of_plateau(
+    session: &Session,
+    plateau: Option<PlateauName>,
+    estimators: &[Estimator],
+    progress: OnProgress,
+) -> Result<(NoiseAnalysis, PlateauName), Error> {
+    let (series, name) = Series::of_plateau(session, plateau, progress)?;
+    Ok((analyse_noise(&series, &each_once(estimators), progress)?, name))
+}
+
+fn each_once(estimators: &[Estimator]) -> Vec<Estimator> {
+    let mut once: Vec<Estimator> = Vec::new();
+    for estimator in estimators {
+        if !once.contains(estimator) {
+            once.push(*estimator);
+        }
     }
+    once
+}
+
+/// The readings of a record.
+fn series(request: &NoiseRequest, progress: OnProgress) -> Result<Series, Error> {
     let mut lines = TableLines::default();
     let (time, readings) = match &request.session {
         Some(session) => {
@@ -67,5 +87,6 @@ fn series(request: &NoiseRequest, progress: OnProgress) -> Result<(Series, Optio
         }
         None => named_columns(&request.time, request.rate, &request.readings, &request.unit),
     };
-    Ok((Series::read(file, lines, &time, &readings, request.window, progress)?, None))
+    let source = request.folder.open(&request.file, RECORD)?;
+    Series::read(source, lines, &time, &readings, request.window, progress)
 }

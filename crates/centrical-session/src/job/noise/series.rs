@@ -1,15 +1,15 @@
 //! Columns of readings over a stretch of time.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use centrical::{OnProgress, advance};
-use centrical_table::{Extent, Rule, TableLines, TableReader};
+use centrical_table::{Extent, Rule, Source, TableLines, TableReader};
 
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
 use crate::job::reduce::reduce;
 use crate::quantity::Dimension;
-use crate::record::{Column, Scale, StatedUnits};
+use crate::record::{Column, RECORD, Scale, StatedUnits};
 
 /// Columns of readings, and their time.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +29,7 @@ impl Series {
     /// # Errors
     /// As of a record; and if nothing is in the window.
     pub fn read(
-        file: &Path,
+        source: Source,
         lines: TableLines,
         time: &Column,
         readings: &[Column],
@@ -40,11 +40,12 @@ impl Series {
         fields.extend(readings.iter().map(|column| column.field(Rule::OrMissing)));
         let (mut t, mut values) = (Vec::new(), vec![Vec::new(); readings.len()]);
         let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut table = TableReader::open_at(file, Extent::Whole, &fields, "a record", lines)?;
+        let file = source.name().to_owned();
+        let mut table = TableReader::new(source, Extent::Whole, &fields, RECORD, lines)?;
         let mut bytes = 0;
         let mut units = StatedUnits::of(std::iter::once(time).chain(readings));
         while table.next_batch()?.is_some() {
-            units.check(file, &table)?;
+            units.check(&file, &table)?;
             advance(progress, table.bytes() - std::mem::replace(&mut bytes, table.bytes()))?;
             let batch = table.batch();
             for rows in batch.iter().filter(|rows| !rows[0].is_empty()) {
@@ -60,10 +61,10 @@ impl Series {
         if t.is_empty() {
             let found = format!("nothing from {} s to {} s", window[0], window[1]);
             let expected = format!("a stretch of the record, which runs from {} s to {} s", ends[0], ends[1]);
-            return Err(Error::content(file, Place::Whole, found, expected));
+            return Err(Error::content(&file, Place::Whole, found, expected));
         }
         let named = |(column, values): (&Column, Vec<f64>)| (column.name.to_string(), si_unit(column), values);
-        Ok(Self { file: file.to_owned(), t, columns: readings.iter().zip(values).map(named).collect() })
+        Ok(Self { file, t, columns: readings.iter().zip(values).map(named).collect() })
     }
 
     /// The readings of a mounting whose newtonometers have a file each.
@@ -110,7 +111,14 @@ impl Series {
             let series = Self::of_files(session, set_points[set_point].mounting, window)?;
             return Ok((series, PlateauName::of(session, set_point)));
         }
-        let series = Self::read(record, columns.record_lines, &columns.time, &columns.f, window, progress)?;
+        let series = Self::read(
+            session.folder.open(record, RECORD)?,
+            columns.record_lines,
+            &columns.time,
+            &columns.f,
+            window,
+            progress,
+        )?;
         Ok((series, PlateauName::of(session, set_point)))
     }
 }

@@ -22,7 +22,7 @@ pub(super) fn reduce_mounting(
     progress: OnProgress,
     cache: &mut SampleCache,
 ) -> Result<OfRecord, Error> {
-    let record = RecordFile::new(session.record_files(number)?, &session.columns, progress);
+    let record = RecordFile::new(session.open_record(number)?, &session.columns, progress);
     let file = session.record_file(number)?;
     let refused = |source: ReductionError| Error::Reduction {
         file: file.to_owned(),

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use centrical::reduction::{PlateauMean, Record, reduce_rests};
 use centrical::{OnProgress, advance};
+use centrical_table::{Extent, Source};
 use nalgebra::Vector3;
 
 use crate::error::{Error, Place};
@@ -77,8 +78,9 @@ pub(crate) fn with_all_rests<'s>(
 /// A record with its unit turned and left alone, in SI.
 fn record(session: &Session, recorded: &RecordedRests, progress: OnProgress) -> Result<Record, Error> {
     let files: Vec<&Path> = recorded.files.iter().map(AsRef::as_ref).collect();
-    let record = read_records(&files, &session.columns)?;
-    let bytes = files.iter().filter_map(|file| file.metadata().ok()).map(|metadata| metadata.len()).sum();
+    let sources = session.folder.open_record(&files)?;
+    let bytes = sources.iter().map(Source::length).sum();
+    let record = read_records(sources, &session.columns, Extent::Whole)?;
     advance(progress, bytes)?;
     Ok(record)
 }

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical::OnProgress;
+use centrical_table::estimate_rows;
 use rayon::prelude::*;
 
 use super::mounting::{OfRecord, reduce_mounting};
@@ -66,7 +67,8 @@ impl<'a> Scheduler<'a> {
     /// Samples of the longest record, if all files show them.
     fn estimate_samples(&self) -> Option<u64> {
         let numbers = 0..self.session.mountings.len();
-        let samples = numbers.map(|number| centrical_table::estimate_rows(self.session.record_file(number).ok()?));
+        let rows = |number| estimate_rows(self.session.open_record(number).ok()?.first()?);
+        let samples = numbers.map(rows);
         samples.collect::<Option<Vec<_>>>()?.into_iter().max()
     }
 }

@@ -12,12 +12,12 @@ use super::request::TumbleRequest;
 use super::session_text::{ATTITUDES, TABLE, session_text};
 use crate::document::{CalibrationResult, Method};
 use crate::error::{Error, Place};
-use crate::experiment::{EXPERIMENT_FILE, Session, write_attitudes, write_plateaus};
+use crate::experiment::{EXPERIMENT_FILE, Folder, Session, write_attitudes, write_plateaus};
 use crate::job::calibrate::calibrate_reduced;
 use crate::job::noise::Series;
 use crate::job::reduce::find_rests;
 use crate::quantity::Dimension;
-use crate::record::{Input, Scale, named_columns};
+use crate::record::{Input, RECORD, Scale, named_columns};
 use crate::reduced::{Reduced, ReducedPlateau, rest_rows};
 
 /// A calibration by rests.
@@ -68,9 +68,13 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
     let plateaus: Vec<ReducedPlateau> = rests.into_iter().map(ReducedPlateau::from).collect();
     let text = session_text(request, coarse.as_ref());
     let mut reduced = Reduced { plateaus, ..Reduced::of_table(&[]) };
-    let inputs = request.inputs().map(|file| Input::of(file.parent().unwrap_or(Path::new("")), file, progress));
+    let input = |file: &Path| {
+        let source = request.folder.open(file, Input::EXPECTED)?;
+        Input::of(file.parent().unwrap_or(Path::new("")), &source, progress)
+    };
+    let inputs = request.inputs().map(input);
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
-    let session = Session::parse_with(&text, &folder.join(EXPERIMENT_FILE), |table| {
+    let session = Session::parse_with(&text, &folder.join(EXPERIMENT_FILE), Folder::at(folder), |table, _| {
         table.means = rest_rows(&reduced.plateaus);
         if let (Some(table), Some(known)) = (&mut table.attitudes, &known) {
             table.up_b.clone_from(known);
@@ -103,7 +107,14 @@ impl Tumble {
 fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<Record, Error> {
     let (time, readings) = named_columns(&request.time, request.rate, &request.readings, &request.unit);
     let everything = [f64::NEG_INFINITY, f64::INFINITY];
-    let series = Series::read(file, TableLines::default(), &time, &readings, everything, progress)?;
+    let series = Series::read(
+        request.folder.open(file, RECORD)?,
+        TableLines::default(),
+        &time,
+        &readings,
+        everything,
+        progress,
+    )?;
     let mut columns = series.columns.into_iter().map(|(_, _, values)| values);
     Ok(Record { t: series.t, f_z: std::array::from_fn(|_| columns.next().unwrap_or_default()) })
 }

@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 
 use centrical_table::ColumnName;
 
-use crate::experiment::StatedAttitudes;
+use crate::experiment::{Folder, StatedAttitudes};
 
 /// Records of a unit that rested in attitudes that only gravity shows, and what is to be made of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TumbleRequest {
     /// The records, in any format.
     pub files: Vec<PathBuf>,
+    /// Where they are.
+    pub folder: Folder,
     /// Column of time [s].
     pub time: ColumnName,
     /// Sampling rate of records without a column of time [Hz].

@@ -6,16 +6,17 @@ use std::path::Path;
 use std::time::{Duration, SystemTime};
 
 use centrical::reduction::{
-    MeasuredSpeed, NoiseModel, PulseTrain, Record, ReducedMounting, ReductionError, ScheduledPlateau, measured_speeds,
+    MeasuredSpeed, NoiseModel, Record, ReducedMounting, ReductionError, ScheduledPlateau, measured_speeds,
     plateau_means, reduce, reduce_counted,
 };
 use centrical::{Observation, SetPoint, linear};
+use centrical_table::Extent;
 
 use super::growth::Growth;
 use super::rests;
 use crate::error::Error;
 use crate::experiment::{PlateauMean, Session, SpeedSource};
-use crate::record::{read_growing_pulses, read_growing_records, read_growing_telemetry};
+use crate::record::read_records;
 
 /// A session folder that is looked into again and again.
 ///
@@ -207,7 +208,7 @@ impl<'s> Watch<'s> {
         if look.left_alone {
             self.session.record(mounting)
         } else {
-            read_growing_records(&self.session.record_files(mounting)?, &self.session.columns)
+            read_records(self.session.open_record(mounting)?, &self.session.columns, Extent::Growing)
         }
     }
 
@@ -244,20 +245,15 @@ impl<'s> Watch<'s> {
         record: &Record,
         schedule: &[ScheduledPlateau],
     ) -> Result<ReducedMounting, ReductionError> {
-        let (files, columns) = (&self.session.mountings[mounting], &self.session.columns);
         let measured = self.session.speeds.measured;
         // What is not there yet, or not whole, is read when the session is calibrated at its end.
         match measured.map_or(SpeedSource::Telemetry, |measured| measured.source) {
             SpeedSource::Telemetry => {
-                let telemetry = files.telemetry.as_ref().and_then(|file| read_growing_telemetry(file, columns).ok());
+                let telemetry = self.session.telemetry_to(mounting, Extent::Growing).ok().flatten();
                 reduce(record, telemetry.as_ref(), schedule)
             }
-            SpeedSource::Pulses => match files.pulses.as_ref().and_then(|file| read_growing_pulses(file, columns).ok())
-            {
-                Some(t) => {
-                    let per_revolution = measured.map_or(1.0, |measured| measured.pulses_per_revolution);
-                    reduce_counted(record, &PulseTrain { t, per_revolution }, schedule)
-                }
+            SpeedSource::Pulses => match self.session.pulses_to(mounting, Extent::Growing).ok().flatten() {
+                Some(pulses) => reduce_counted(record, &pulses, schedule),
                 None => reduce(record, None, schedule),
             },
             SpeedSource::Plateaus => reduce(record, None, schedule),

@@ -18,7 +18,7 @@ pub(super) fn with_rests_there(session: &Session, quiet: Duration) -> Result<Ses
     let mut tables = session.rest_tables.clone();
     let waited_for = tables.iter().position(|table| !is_there(table, quiet)).unwrap_or(tables.len());
     let later = tables.split_off(waited_for);
-    tables.iter_mut().try_for_each(RestTable::read)?;
+    tables.iter_mut().try_for_each(|table| table.read(&session.folder))?;
     let there = session.clone().with_rest_tables(tables);
     let (filled, _) = with_all_rests(&there, &unwatched)?;
     let tables = filled.rest_tables.iter().cloned().chain(later).collect();

@@ -1,8 +1,8 @@
 //! The file of one newtonometer: rows that are read and not taken yet.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use centrical_table::{Extent, Rows, TableReader};
+use centrical_table::{Extent, Rows, Source, TableReader};
 
 use crate::error::Error;
 use crate::record::columns::{Columns, fields};
@@ -24,14 +24,14 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Opens the file of newtonometer `j`, counted from 0.
-    pub fn open(file: &Path, j: usize, extent: Extent, columns: &Columns) -> Result<Self, Error> {
+    /// Reads the source of newtonometer `j`, counted from 0.
+    pub fn open(source: Source, j: usize, extent: Extent, columns: &Columns) -> Result<Self, Error> {
         let of_file = [&columns.time, &columns.f[j]];
-        let expected = "the record of a newtonometer";
-        let table = TableReader::open_at(file, extent, &fields(&of_file), expected, columns.record_lines)?;
+        let (file, expected) = (source.name().to_owned(), "the record of a newtonometer");
+        let table = TableReader::new(source, extent, &fields(&of_file), expected, columns.record_lines)?;
         let units = StatedUnits::of(of_file);
         let rows = vec![Vec::new(); 2];
-        Ok(Self { file: file.to_owned(), units, table, rows, at: 0, is_over: false, count: 0, before: None })
+        Ok(Self { file, units, table, rows, at: 0, is_over: false, count: 0, before: None })
     }
 
     /// The time of the next row; none at the end.

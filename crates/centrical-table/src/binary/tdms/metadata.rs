@@ -4,11 +4,11 @@
 //! its raw data and properties. What a segment does not say is as in the one before (NI, "TDMS File Format Internal Structure").
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Read};
 use std::rc::Rc;
 
 use crate::binary::arrays::{Scalar, ScalarKind};
+use crate::source::Source;
 use crate::stamp::{TickForm, TickUnit};
 
 /// First bytes of a segment.
@@ -89,13 +89,13 @@ pub(super) struct Metadata {
 
 impl Metadata {
     /// Reads the lead-ins and metadata of all segments. A segment that the recorder did not end is read as far as it came.
-    pub fn read(file: &mut File) -> io::Result<Self> {
-        let length = file.metadata()?.len();
+    pub fn read(source: &Source) -> io::Result<Self> {
+        let length = source.length();
         let mut metadata = Self::default();
         let mut list = Rc::new(Vec::new());
         let mut at = 0;
         while at + LEAD_IN <= length {
-            let lead_in = LeadIn::read(file, at)?;
+            let lead_in = LeadIn::read(source, at)?;
             let begin = at + LEAD_IN;
             let end = if lead_in.next == u64::MAX { length } else { begin.saturating_add(lead_in.next).min(length) };
             let raw = begin.saturating_add(lead_in.raw).min(end);
@@ -104,7 +104,7 @@ impl Metadata {
                     return Err(wrong(format!("{} bytes of metadata", raw - begin)));
                 }
                 let mut bytes = vec![0; usize::try_from(raw - begin).unwrap_or(0)];
-                file.read_exact(&mut bytes)?;
+                source.reader_at(begin).read_exact(&mut bytes)?;
                 let big_endian = lead_in.contents & BIG_ENDIAN != 0;
                 let kept = if lead_in.contents & NEW_LIST == 0 { list.as_ref().clone() } else { Vec::new() };
                 let read = metadata.read_list(&mut Cursor { bytes: &bytes, big_endian }, kept)?;
@@ -193,10 +193,9 @@ struct LeadIn {
 }
 
 impl LeadIn {
-    fn read(file: &mut File, at: u64) -> io::Result<Self> {
+    fn read(source: &Source, at: u64) -> io::Result<Self> {
         let mut bytes = [0; LEAD_IN_BYTES];
-        file.seek(SeekFrom::Start(at))?;
-        file.read_exact(&mut bytes)?;
+        source.reader_at(at).read_exact(&mut bytes)?;
         let Some(rest) = bytes.strip_prefix(TAG) else { return Err(wrong(format!("no segment at byte {at}"))) };
         let contents = Cursor { bytes: rest, big_endian: false }.u32()?;
         let mut input = Cursor { bytes: &rest[8..], big_endian: contents & BIG_ENDIAN != 0 };
