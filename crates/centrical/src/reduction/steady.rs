@@ -6,7 +6,10 @@
 //! neighbours, `1.4826 median |y_k+1 - y_k| / sqrt(2)`. The value of a stretch is the median over its later three
 //! quarters: the beginning may still settle.
 
-use crate::statistics::{MAD, median};
+use std::f64::consts::SQRT_2;
+
+use crate::progress::{OnProgress, Stopped, advance};
+use crate::statistics::{MAD, median, watched_median};
 
 /// Length of a block [s].
 const BLOCK: f64 = 0.5;
@@ -44,14 +47,22 @@ pub struct Staircase {
 
 /// Whether a signal moves from one steady stretch to another: it stands still for half of the time, at values that differ by
 /// more than a hundred times the noise of a sample and a twentieth of the largest. Drift and noise of any colour do not.
-pub fn staircase(t: &[f64], y: &[f64]) -> Option<Staircase> {
-    let stretches = steady_stretches(t, y);
+/// `progress` is asked again and again.
+///
+/// # Errors
+/// [`Stopped`] when the caller stops the search.
+pub fn staircase(t: &[f64], y: &[f64], progress: OnProgress<()>) -> Result<Option<Staircase>, Stopped> {
+    let mut steps = steps(y);
+    advance(progress, ())?;
+    let noise = NOISE_OF_STEPS * watched_median(&mut steps, progress)?;
+    let stretches = stretches(&blocks(t, y), noise);
+    advance(progress, ())?;
     let still: f64 = stretches.iter().map(|stretch| stretch.window[1] - stretch.window[0]).sum();
     let values = stretches.iter().map(|stretch| stretch.value);
     let [lowest, highest] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
-    let is_apart = highest - lowest > (100.0 * noise(y)).max(0.05 * lowest.abs().max(highest.abs()));
-    let is_still = 2.0 * still >= t.last()? - t.first()?;
-    (is_apart && is_still).then_some(Staircase { stretches: stretches.len(), lowest, highest })
+    let is_apart = highest - lowest > (100.0 * noise).max(0.05 * lowest.abs().max(highest.abs()));
+    let is_still = t.first().zip(t.last()).is_some_and(|(first, last)| 2.0 * still >= last - first);
+    Ok((is_apart && is_still).then_some(Staircase { stretches: stretches.len(), lowest, highest }))
 }
 
 /// Mean of consecutive samples.
@@ -63,8 +74,11 @@ struct Block {
 
 /// The steady stretches of a signal `y` over the times `t` [s], which do not decrease; as many samples as there are of both.
 pub fn steady_stretches(t: &[f64], y: &[f64]) -> Vec<SteadyStretch> {
-    let blocks = blocks(t, y);
-    let noise = noise(y);
+    stretches(&blocks(t, y), NOISE_OF_STEPS * median(&mut steps(y)))
+}
+
+/// The stretches of blocks that stand still, samples having this noise.
+fn stretches(blocks: &[Block], noise: f64) -> Vec<SteadyStretch> {
     let largest = blocks.iter().map(|block| block.mean.abs()).fold(0.0, f64::max);
     let is_still = |pair: &[Block]| {
         let white = 5.0 * noise * (1.0 / pair[0].samples as f64 + 1.0 / pair[1].samples as f64).sqrt();
@@ -116,8 +130,10 @@ fn blocks(t: &[f64], y: &[f64]) -> Vec<Block> {
     blocks
 }
 
-/// Standard deviation of a sample, from neighbours.
-fn noise(y: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = y.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
-    if steps.is_empty() { 0.0 } else { MAD / 2.0_f64.sqrt() * median(&mut steps) }
+/// Standard deviation of a sample, as a part of the median step between neighbours.
+const NOISE_OF_STEPS: f64 = MAD / SQRT_2;
+
+/// Sizes of the steps between neighbours.
+fn steps(y: &[f64]) -> Vec<f64> {
+    y.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect()
 }

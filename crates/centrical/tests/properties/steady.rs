@@ -1,6 +1,7 @@
 //! Steady stretches of a signal, without its schedule.
 
 use centrical::reduction::{staircase, steady_stretches};
+use centrical::unwatched;
 
 use crate::common::Random;
 
@@ -27,7 +28,7 @@ fn stretches_of_a_noisy_staircase() {
             }
         }
         let found = steady_stretches(&t, &y);
-        assert_eq!(staircase(&t, &y).map(|s| s.stretches), Some(set.len()));
+        assert_eq!(staircase(&t, &y, &unwatched).unwrap().map(|s| s.stretches), Some(set.len()));
         assert_eq!(found.len(), set.len(), "seed {seed}: {found:?}");
         for (stretch, set) in found.iter().zip(set) {
             assert!(stretch.window[1] - stretch.window[0] > 8.0, "{stretch:?}");
@@ -62,7 +63,7 @@ fn noise_is_no_staircase() {
         let sine: Vec<f64> = t.iter().zip(&white).map(|(t, w)| 30.0 * (t / 7.0).sin() + w).collect();
         let drift: Vec<f64> = t.iter().zip(&white).map(|(t, w)| 9.8 + 1e-3 * (w + t / 10.0)).collect();
         for (name, y) in [("white", white), ("walk", walked), ("sine", sine), ("drift", drift)] {
-            assert_eq!(staircase(&t, &y), None, "{name}, seed {seed}");
+            assert_eq!(staircase(&t, &y, &unwatched).unwrap(), None, "{name}, seed {seed}");
         }
     }
 }

@@ -19,12 +19,8 @@ pub fn analyse_noise(series: &Series, estimators: &[Estimator], progress: OnProg
     let analysed = columns.map(|(name, unit, values)| {
         let failed = |source| Error::noise(&series.file, name, source);
         let noise = analyse(&series.t, values, estimators, &|()| progress(0)).map_err(failed)?;
-        Ok::<_, Error>(ReadingNoise {
-            name: name.clone(),
-            unit: unit.clone(),
-            staircase: staircase(&series.t, values),
-            noise,
-        })
+        let staircase = staircase(&series.t, values, &|()| progress(0))?;
+        Ok::<_, Error>(ReadingNoise { name: name.clone(), unit: unit.clone(), staircase, noise })
     });
     Ok(NoiseAnalysis {
         file: series.file.clone(),
