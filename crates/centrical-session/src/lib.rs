@@ -33,7 +33,7 @@ mod units;
 
 pub use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 pub use centrical::stability::Estimator;
-pub use centrical::{OnProgress, STANDARD_GRAVITY, Stopped, unwatched};
+pub use centrical::{OnProgress, STANDARD_GRAVITY, Stopped, advance, unwatched};
 pub use centrical_table::{
     Bytes, ClaimedFolder, ColumnName, Source, TableFormat, abandon_files, claim_folder, create_folder, harmless,
     harmless_line, refuse_inputs, write_stream, write_whole,
@@ -83,14 +83,14 @@ pub use job::{
     Recorded, Series, SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd,
     WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
     calibrate_series, calibrate_without, collect_results, compare_results, compensate, compensate_record, init,
-    list_store, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded,
-    reduce_without_inputs, select_model, settings_schema, simulate_session, subject, subject_of, tumble, watch,
-    write_reduced,
+    list_store, list_store_watched, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce,
+    reduce_recorded, reduce_without_inputs, select_model, settings_schema, simulate_session, subject, subject_of,
+    tumble, watch, write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
-    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, read_limits, station_history,
-    unit_history, unit_means, units_history,
+    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, read_calibrations_watched,
+    read_limits, station_history, unit_history, unit_means, units_history,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Decision, DecisionRule, Environment, Item, Laboratory,

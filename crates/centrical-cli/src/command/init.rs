@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical_report::Screen;
-use centrical_session::{Draft, Error, InitRequest, Place, init, write_whole};
+use centrical_session::{Draft, Error, InitRequest, Place, init, unwatched, write_whole};
 use clap::ValueEnum;
 
 use crate::outcome::Outcome;
@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let six_positions = arguments.positions == Some(Positions::Six);
     let (inputs, tumble) = (arguments.inputs.clone(), arguments.tumble.clone());
-    let draft = init(&InitRequest { inputs, folder, tumble, six_positions })?;
+    let draft = init(&InitRequest { inputs, folder, tumble, six_positions }, &unwatched)?;
     if let Some(file) = &arguments.out {
         write_whole(file, draft.text.as_bytes())?;
     }

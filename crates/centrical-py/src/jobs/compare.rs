@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use centrical_report::comparison_plot;
 use centrical_session::{
-    CalibrationResult as Calibrated, ComparisonRequest, compare_results, refuse_inputs, write_whole,
+    CalibrationResult as Calibrated, ComparisonRequest, advance, compare_results, refuse_inputs, write_whole,
 };
 use pyo3::prelude::*;
 
@@ -33,10 +33,11 @@ pub fn compare(
     if results.len() < 2 {
         return Err(refused("results", format!("found {}, expected two or more", results.len())));
     }
-    progress::run(py, &None, |_| {
+    progress::run(py, &None, |work| {
         let mut named = Vec::new();
         let mut files = Vec::new();
         for (n, result) in (1..).zip(&results) {
+            advance(&|done| work.advance(done), 0)?;
             named.push(match result {
                 Compared::File(file) => {
                     files.push(file.clone());

@@ -18,7 +18,7 @@ pub fn init(
     tumble: Option<PathBuf>,
 ) -> PyResult<String> {
     let six_positions = positions.map_or(Ok(false), |word| one_of("positions", word, &[("six", true)]))?;
-    progress::run(py, &None, |_| {
+    progress::run(py, &None, |work| {
         if let Some(file) = out.as_ref().filter(|file| file.exists()) {
             let expected = "a new file: no draft replaces what was written";
             return Err(Error::content(file, Place::Whole, "a file that exists", expected));
@@ -27,7 +27,7 @@ pub fn init(
             Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
             _ => PathBuf::from("."),
         };
-        let draft = session::init(&InitRequest { inputs, folder, tumble, six_positions })?;
+        let draft = session::init(&InitRequest { inputs, folder, tumble, six_positions }, &|done| work.advance(done))?;
         if let Some(file) = &out {
             write_whole(file, draft.text.as_bytes())?;
         }

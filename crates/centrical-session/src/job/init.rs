@@ -19,23 +19,26 @@ mod tumbled;
 
 use std::path::{Path, PathBuf};
 
+use centrical::OnProgress;
+
 pub use self::draft::{Draft, FillIn};
 pub use self::request::InitRequest;
 use self::tumbled::Tumbled;
 use crate::error::{Error, Place};
 
-/// Drafts an experiment file.
+/// Drafts an experiment file. `progress` is asked while records are read, with none done.
 ///
 /// # Errors
-/// [`Error`] when a file cannot be read, when none is a record, or when the tumble is of another unit of readings.
-pub fn init(request: &InitRequest) -> Result<Draft, Error> {
+/// [`Error`] when a file cannot be read, when none is a record, or when the tumble is of another unit of readings;
+/// [`Error::Stopped`].
+pub fn init(request: &InitRequest, progress: OnProgress) -> Result<Draft, Error> {
     let groups = file_roles::groups(&request.inputs)?;
     if groups.is_empty() {
         let inputs = request.inputs.first().map_or(Path::new("."), PathBuf::as_path);
         let expected = "a table with a time and three readings, as text, Parquet, Arrow, NumPy, MATLAB or TDMS";
         return Err(Error::content(inputs, Place::Whole, "no record", expected));
     }
-    let mountings = groups.into_iter().map(sighting::sight).collect::<Result<Vec<_>, _>>()?;
+    let mountings = groups.into_iter().map(|group| sighting::sight(group, progress)).collect::<Result<Vec<_>, _>>()?;
     let tumbled = request.tumble.as_deref().map(Tumbled::read).transpose()?;
     experiment_text::draft(&mountings, tumbled.as_ref(), request)
 }

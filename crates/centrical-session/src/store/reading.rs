@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeSet, HashSet, VecDeque};
 
+use centrical::{OnProgress, advance, unwatched};
+
 use super::folder::Store;
 use super::part::Part;
 use super::row::Row;
@@ -27,13 +29,14 @@ pub struct Selection {
 }
 
 /// The rows of a store, in no particular order.
-pub struct Rows {
+pub struct Rows<'a> {
     selection: Selection,
     parts: VecDeque<Part>,
     group: usize,
     ready: std::vec::IntoIter<Row>,
     /// Keys that were seen.
     seen: HashSet<[u8; 32]>,
+    progress: OnProgress<'a>,
 }
 
 impl Selection {
@@ -57,9 +60,17 @@ impl Store {
     ///
     /// # Errors
     /// [`Error`] if a part cannot be opened; later ones come with the rows.
-    pub fn rows(&self, selection: Selection) -> Result<Rows, Error> {
+    pub fn rows(&self, selection: Selection) -> Result<Rows<'static>, Error> {
+        self.rows_watched(selection, &unwatched)
+    }
+
+    /// The same, asking `progress` at each row group, with none done.
+    ///
+    /// # Errors
+    /// As [`Store::rows`]; [`Error::Stopped`] in the place of a row.
+    pub fn rows_watched<'a>(&self, selection: Selection, progress: OnProgress<'a>) -> Result<Rows<'a>, Error> {
         let parts = self.open_parts()?.into();
-        Ok(Rows { selection, parts, group: 0, ready: Vec::new().into_iter(), seen: HashSet::new() })
+        Ok(Rows { selection, parts, group: 0, ready: Vec::new().into_iter(), seen: HashSet::new(), progress })
     }
 
     /// The whole row of a key.
@@ -83,7 +94,7 @@ impl Store {
     }
 }
 
-impl Iterator for Rows {
+impl Iterator for Rows<'_> {
     type Item = Result<Row, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -99,12 +110,13 @@ impl Iterator for Rows {
             }
             let (selection, seen) = (&self.selection, &mut self.seen);
             let wanted = |row: &Row| selection.takes(row) && seen.insert(bytes(&row.key));
-            let read = part.read(self.group, selection.depth, |key| selection.has_key(key), wanted);
+            let read = advance(self.progress, 0).map_err(Error::from);
+            let read = read.and_then(|()| part.read(self.group, selection.depth, |key| selection.has_key(key), wanted));
             self.group += 1;
             match read {
                 Ok(rows) => self.ready = rows.into_iter(),
                 Err(error) => {
-                    // Nothing after a damaged part: half of a history would look like a history.
+                    // Nothing after it: half of a history would look like a history.
                     self.parts.clear();
                     return Some(Err(error));
                 }

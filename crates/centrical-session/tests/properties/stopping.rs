@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use centrical_session::{
-    AssessmentRequest, ColumnName, CompensationRequest, Error, Estimator, Folder, Method, MonteCarloCase,
-    MonteCarloRequest, NoiseRequest, PlanRequest, Session, TableFormat, Truth, assess, calibrate, calibrate_reduced,
-    compensate, noise_of, plan, reduce, select_model, simulate_session, subject, unwatched,
+    AssessmentRequest, ColumnName, CompensationRequest, Error, Estimator, Folder, InitRequest, Method, MonteCarloCase,
+    MonteCarloRequest, NoiseRequest, PlanRequest, Selection, Session, TableFormat, Truth, add_results, assess,
+    calibrate, calibrate_reduced, compensate, init, list_store_watched, noise_of, plan, read_calibrations_watched,
+    reduce, select_model, simulate_session, subject, unwatched,
 };
 use tempfile::TempDir;
 
@@ -98,6 +99,36 @@ fn noise_of_a_record() {
     is_stopped(|caller| noise_of(&request, &|n| caller.asked(n)));
     // After the record is read the caller is asked with no bytes.
     is_stopped(|caller| noise_of(&request, &|n| if n == 0 { caller.asked(n) } else { ControlFlow::Continue(()) }));
+}
+
+#[test]
+fn a_draft() {
+    let request = InitRequest {
+        inputs: ["records", "telemetry"].map(|name| example().join("ta-200").join(name)).to_vec(),
+        folder: example(),
+        tumble: None,
+        six_positions: false,
+    };
+    is_stopped(|caller| init(&request, &|n| caller.asked(n)));
+}
+
+/// Ten results; a store of them has one row group, at which the caller is asked.
+#[test]
+fn histories() {
+    let folder = TempDir::new().unwrap();
+    let mut result = calibrate(&session(), Method::Exact, &unwatched).unwrap();
+    let mut files = Vec::new();
+    for day in 10..20 {
+        result.session.date = format!("2026-01-{day}");
+        files.push(folder.path().join(format!("{day}.json")));
+        result.write(files.last().unwrap()).unwrap();
+    }
+    let selection = Selection::default();
+    is_stopped(|caller| read_calibrations_watched(&files, &selection, &|n| caller.asked(n)));
+    let store = folder.path().join("store");
+    add_results(&store, &files, true, &unwatched).unwrap();
+    is_stopped(|caller| read_calibrations_watched(std::slice::from_ref(&store), &selection, &|n| caller.asked(n)));
+    is_stopped(|caller| list_store_watched(&store, selection.clone(), &|n| caller.asked(n)));
 }
 
 #[test]

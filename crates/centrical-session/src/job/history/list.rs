@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use centrical::{OnProgress, unwatched};
+
 use crate::document::HistoryList;
 use crate::error::Error;
 use crate::store::{Selection, Store};
@@ -11,6 +13,14 @@ use crate::store::{Selection, Store};
 /// # Errors
 /// [`Error`] if the folder is no store, or a part is damaged.
 pub fn list_store(folder: &Path, selection: Selection) -> Result<HistoryList, Error> {
-    let rows = Store::open(folder)?.rows(selection)?.collect::<Result<Vec<_>, _>>()?;
+    list_store_watched(folder, selection, &unwatched)
+}
+
+/// The same, asking `progress` at each row group, with none done.
+///
+/// # Errors
+/// As [`list_store`]; [`Error::Stopped`].
+pub fn list_store_watched(folder: &Path, selection: Selection, progress: OnProgress) -> Result<HistoryList, Error> {
+    let rows = Store::open(folder)?.rows_watched(selection, progress)?.collect::<Result<Vec<_>, _>>()?;
     Ok(HistoryList::new(&folder.display().to_string(), rows))
 }

@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use centrical::{OnProgress, advance, unwatched};
+
 use super::calibrated::{Calibrated, Kinds};
 use super::results::collect_results;
 use crate::document::CalibrationResult;
@@ -16,7 +18,20 @@ use crate::store::{Row, Selection, Status, Store};
 /// # Errors
 /// [`Error`] when a result or a store cannot be read, or a session has no day for a date.
 pub fn read_calibrations(paths: &[PathBuf], selection: &Selection) -> Result<Vec<Calibrated>, Error> {
-    let mut found = Found { selection, kinds: Kinds::default(), keys: HashSet::new(), calibrations: Vec::new() };
+    read_calibrations_watched(paths, selection, &unwatched)
+}
+
+/// The same, asking `progress` at each result and at each row group of a store, with none done.
+///
+/// # Errors
+/// As [`read_calibrations`]; [`Error::Stopped`].
+pub fn read_calibrations_watched(
+    paths: &[PathBuf],
+    selection: &Selection,
+    progress: OnProgress,
+) -> Result<Vec<Calibrated>, Error> {
+    let mut found =
+        Found { selection, progress, kinds: Kinds::default(), keys: HashSet::new(), calibrations: Vec::new() };
     for path in paths {
         match Store::open(path) {
             Ok(store) => found.take_store(&store)?,
@@ -42,6 +57,7 @@ pub fn by_unit(calibrations: Vec<Calibrated>) -> Vec<Vec<Calibrated>> {
 
 struct Found<'a> {
     selection: &'a Selection,
+    progress: OnProgress<'a>,
     kinds: Kinds,
     keys: HashSet<String>,
     calibrations: Vec<Calibrated>,
@@ -49,7 +65,7 @@ struct Found<'a> {
 
 impl Found<'_> {
     fn take_store(&mut self, store: &Store) -> Result<(), Error> {
-        for row in store.rows(self.selection.clone())? {
+        for row in store.rows_watched(self.selection.clone(), self.progress)? {
             let row = row?;
             self.take(store.folder(), row.key.clone(), row)?;
         }
@@ -63,6 +79,7 @@ impl Found<'_> {
     }
 
     fn take_result(&mut self, file: &Path) -> Result<(), Error> {
+        advance(self.progress, 0)?;
         let text = read_result(file, "a result.json, a folder of them, or a store")?;
         let row = CalibrationResult::parse(file, &text)?.row(text.as_bytes());
         if self.selection.takes(&row) { self.take(file, file.display().to_string(), row) } else { Ok(()) }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use centrical::reduction::{SteadyStretch, steady_stretches};
+use centrical::{OnProgress, advance};
 use centrical_table::ColumnName;
 
 use super::file_roles::{FileColumns, Group, Label};
@@ -38,7 +39,7 @@ pub(super) struct SeenPlateau {
 }
 
 /// Reads the files of a mounting.
-pub(super) fn sight(group: Group) -> Result<SeenMounting, Error> {
+pub(super) fn sight(group: Group, progress: OnProgress) -> Result<SeenMounting, Error> {
     let mut seen = Seen::default();
     let mut plateaus = Vec::new();
     if let Some(telemetry) = &group.telemetry {
@@ -47,15 +48,15 @@ pub(super) fn sight(group: Group) -> Result<SeenMounting, Error> {
         let speed = |stretch: &SteadyStretch| Some([stretch.value, stretch.standard_uncertainty]);
         plateaus =
             stretches.iter().map(|l| SeenPlateau { window: l.window, speed: speed(l), readings: None }).collect();
-        seen.read(&group, &plateaus, false)?;
+        seen.read(&group, &plateaus, false, progress)?;
     } else {
-        seen.read(&group, &[], true)?;
+        seen.read(&group, &[], true, progress)?;
         let magnitude: Vec<f64> = seen.thinned.iter().map(|(_, f)| *f).collect();
         let times: Vec<f64> = seen.thinned.iter().map(|(t, _)| *t).collect();
         let bare = |l: &SteadyStretch| SeenPlateau { window: l.window, speed: None, readings: None };
         plateaus.extend(steady_stretches(&times, &magnitude).iter().map(bare));
         seen = Seen::default();
-        seen.read(&group, &plateaus, false)?;
+        seen.read(&group, &plateaus, false, progress)?;
     }
     for (plateau, (sum, count)) in plateaus.iter_mut().zip(&seen.sums) {
         plateau.readings = (*count > 0).then(|| sum.map(|sum| sum / *count as f64));
@@ -76,7 +77,13 @@ struct Seen {
 
 impl Seen {
     /// Sums the readings in the middle of every plateau, or keeps thinned magnitudes.
-    fn read(&mut self, group: &Group, plateaus: &[SeenPlateau], is_thinned: bool) -> Result<(), Error> {
+    fn read(
+        &mut self,
+        group: &Group,
+        plateaus: &[SeenPlateau],
+        is_thinned: bool,
+        progress: OnProgress,
+    ) -> Result<(), Error> {
         self.sums = vec![([0.0; 3], 0); plateaus.len()];
         let middle = |plateau: &SeenPlateau| {
             let [start, end] = plateau.window;
@@ -88,6 +95,7 @@ impl Seen {
         let sources = Folder::default().open_record(&files)?;
         let mut reader = RecordReader::open_all(sources, centrical_table::Extent::Whole, &columns)?;
         while let Some(batch) = reader.next_batch()? {
+            advance(progress, 0)?;
             for rows in batch {
                 for (n, &t) in rows[0].iter().enumerate() {
                     let f = [rows[1][n], rows[2][n], rows[3][n]];
