@@ -6,7 +6,7 @@ use super::criterion::{Criterion, Goal};
 use super::error::PlanError;
 use super::information::LinearisedScenario;
 use super::search::Problem;
-use crate::progress::unwatched;
+use crate::progress::{OnProgress, advance};
 
 /// The purpose of a part of a schedule.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,20 +32,29 @@ pub struct Rationale {
 }
 
 impl Rationale {
-    /// The rationale of a `schedule` that was planned by `criterion`.
+    /// The rationale of a `schedule` that was planned by `criterion`. `progress` is asked at each part.
     ///
     /// # Errors
     /// As [`super::best_for_time`].
-    pub fn of(candidates: &Candidates, criterion: &Criterion, schedule: &Schedule) -> Result<Self, PlanError> {
-        let reference = Reference::new(candidates, criterion, schedule)?;
+    pub fn of(
+        candidates: &Candidates,
+        criterion: &Criterion,
+        schedule: &Schedule,
+        progress: OnProgress<()>,
+    ) -> Result<Self, PlanError> {
+        let reference = Reference::new(candidates, criterion, schedule, progress)?;
+        let without = |visits: &[usize]| {
+            advance(progress, ())?;
+            Ok(reference.without(visits))
+        };
         let of_set_up = |set_up: usize| {
             let there = |n: usize| candidates.set_up_of(schedule.visits[n].candidate) == set_up;
             let visits: Vec<usize> = (0..schedule.visits.len()).filter(|&n| there(n)).collect();
-            (!visits.is_empty()).then(|| reference.without(&visits))
+            (!visits.is_empty()).then(|| without(&visits)).transpose()
         };
         Ok(Self {
-            visits: (0..schedule.visits.len()).map(|n| reference.without(&[n])).collect(),
-            set_ups: (0..candidates.set_ups()).map(of_set_up).collect(),
+            visits: (0..schedule.visits.len()).map(|n| without(&[n])).collect::<Result<_, PlanError>>()?,
+            set_ups: (0..candidates.set_ups()).map(of_set_up).collect::<Result<_, PlanError>>()?,
         })
     }
 }
@@ -63,8 +72,13 @@ struct Reference<'a> {
 }
 
 impl<'a> Reference<'a> {
-    fn new(candidates: &'a Candidates, criterion: &Criterion, schedule: &'a Schedule) -> Result<Self, PlanError> {
-        let problem = Problem::new(candidates, criterion, &unwatched)?;
+    fn new(
+        candidates: &'a Candidates,
+        criterion: &Criterion,
+        schedule: &'a Schedule,
+        progress: OnProgress<'a, ()>,
+    ) -> Result<Self, PlanError> {
+        let problem = Problem::new(candidates, criterion, progress)?;
         let model = &candidates.scenarios[0].model;
         let parameters: Vec<usize> =
             (0..model.parameters().len()).filter(|&j| model.parameters()[j].is_of_instrument()).collect();

@@ -659,7 +659,7 @@ fn next_best_is_the_best() {
 fn rationales_are_what_is_lost() {
     let (candidates, schedule) = planned();
     let criterion = Criterion::Average;
-    let rationale = Rationale::of(&candidates, &criterion, &schedule).unwrap();
+    let rationale = Rationale::of(&candidates, &criterion, &schedule, &unwatched).unwrap();
     assert_eq!(rationale.visits.len(), schedule.visits.len());
     let with = value(&criterion, &candidates, &schedule.visits);
     for n in (0..schedule.visits.len()).step_by(7) {

@@ -28,7 +28,7 @@ pub(super) fn report(
     let task = &planning.task;
     let candidates = &task.candidates;
     let schedule = &plan.schedule;
-    let rationale = Rationale::of(candidates, &task.criterion, schedule).map_err(failed)?;
+    let rationale = Rationale::of(candidates, &task.criterion, schedule, progress).map_err(failed)?;
     let measuring: f64 = schedule.visits.iter().map(|v| v.duration).sum();
     let visits: f64 = schedule.visits.iter().map(|v| candidates.visit_time(v)).sum();
     let prediction = task.predict(schedule).map_err(|source| failed(PlanError::from(source)))?;
