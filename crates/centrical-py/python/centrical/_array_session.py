@@ -34,7 +34,7 @@ class ArraySession:
         ``inputs`` of the result is empty: there is no file to take a hash of.
         """
         with Bar("reducing") as shown:
-            given = (self._text, self._file, [], [])
+            given: InMemory = (self._text, self._file, [], [])
             native = _native.calibrate_arrays(given, self._records, self._plateaus, method, list(hold_out), shown)
         return Result(native)
 

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import Any
 
 from ._given import is_file
 
-if TYPE_CHECKING:
-    from ._types import Path
 
-
-def paths(given: Path | Iterable[Path]) -> list[Path]:
+def paths(given: Any) -> list[Any]:
     """A list of one path or file in memory, or of those given.
 
     >>> from centrical._paths import paths
