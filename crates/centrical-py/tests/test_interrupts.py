@@ -18,7 +18,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of this
 AT_MOST = 0.2
 
 #: Seconds in which such a machine adds half a million squares.
-ADDED = 0.03
+ADDED = 0.015
 
 #: When signals come, as parts of the time that the work takes undisturbed.
 MOMENTS = np.random.default_rng(20).uniform(size=4)

@@ -24,8 +24,7 @@ from ._result import Result
 if TYPE_CHECKING:
     from typing import Literal
 
-    from ._session import Session
-    from ._types import File, Form, Format, Language, Method, Path, Quantity
+    from ._types import File, Form, Format, Language, Method, Path, Quantity, Session
 
 
 def calibrate(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import IO, Any, Literal, Union
+from typing import IO, Any, Literal, Protocol, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,3 +18,9 @@ Format = Literal["csv", "parquet"]
 Form = Literal["experiment", "plan", "truth", "laboratory"]
 Language = Literal["en", "ru"]
 Method = Literal["exact", "recursive", "linear"]
+
+
+class Session(Protocol):
+    """A :class:`centrical.Session`: what the native functions take stands for it."""
+
+    _given: Any
