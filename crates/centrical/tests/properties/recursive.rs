@@ -433,7 +433,7 @@ fn assert_uniform(probabilities: &mut [f64]) {
 fn a_followed_session() {
     let once = |relation| experiment(AxisOneUp, relation, &[1.0, 0.5]);
     let (common, opposite) = (once(PairRelation::Common), once(PairRelation::Opposite));
-    let repeated = twice(common.clone());
+    let repeated = twice(&common);
     for (seed, experiment) in [(50, common), (54, opposite), (59, repeated)] {
         let (relation, model) = (experiment.pair_relation, kozlov(experiment));
         let mut data = noisy(&model, &mut Random::new(seed));
@@ -453,7 +453,7 @@ fn a_followed_session() {
 }
 
 /// Every mounting runs its plateaus twice: plateaus that read alike are followed together.
-fn twice(experiment: Experiment) -> Experiment {
+fn twice(experiment: &Experiment) -> Experiment {
     let of = |mounting: usize| experiment.set_points.iter().filter(move |set_point| set_point.mounting == mounting);
     let set_points = (0..experiment.mountings.len()).flat_map(|mounting| of(mounting).chain(of(mounting))).copied();
     Experiment { set_points: set_points.collect(), ..experiment.clone() }
@@ -562,7 +562,7 @@ fn a_gross_plateau_anywhere_is_alarmed_and_survived() {
 #[test]
 fn a_follower_resumed_anywhere_is_the_same() {
     let mut random = Random::new(58);
-    let model = kozlov(twice(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5])));
+    let model = kozlov(twice(&experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5])));
     let data = noisy(&model, &mut random);
     let mut through = Follower::new(&model);
     let mut stopped = through.clone();
