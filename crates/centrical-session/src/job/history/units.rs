@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use centrical::history::{Between, Curve, FEWEST_UNITS, Series, batch_test, capability, distances, unit_trends};
+use centrical::history::{
+    Between, Curve, FEWEST_UNITS, Series, UnitMeans, batch_test, capability, distances, unit_trends,
+};
 use centrical::uncertainty::family_wise;
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::calibrated::{Basis, Calibrated, Finder, series, single};
@@ -14,7 +15,6 @@ use crate::document::{
     BatchSummary, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA, UnitFinding, UnitsHistoryReport,
     UnitsParameter,
 };
-use crate::quantity::Date;
 
 /// What is asked of units.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -41,34 +41,27 @@ pub fn units_history(units: &[Vec<Calibrated>], request: &UnitsHistoryRequest) -
     if names.is_empty() {
         return None;
     }
-    let means = means(units, &names);
-    let values = |n: usize| means.column(n).iter().copied().collect::<Vec<f64>>();
-    let parameters = names.iter().enumerate().filter_map(|(n, name)| parameter(&lasts, name, &values(n), request));
+    let parameters = names.iter().filter_map(|name| parameter(&lasts, name, &unit_means(units, name), request));
     let mut parameters: Vec<UnitsParameter> = parameters.collect();
     let batches: Vec<f64> = parameters.iter().map(|p| p.batch_probability.unwrap_or(1.0)).collect();
     for (parameter, chance) in parameters.iter_mut().zip(family_wise(&batches)) {
         parameter.batches_differ = chance < FAMILY;
     }
-    let outlying = outlying(&lasts, &names, &means);
-    let findings = over_time(units, &lasts, &names, &all);
+    let by_parameter = by_parameter(units, &lasts, &names, &all);
+    let outlying = outlying(&lasts, &by_parameter);
+    let findings = over_time(by_parameter);
     Some(UnitsHistoryReport {
         schema: UNITS_HISTORY_SCHEMA,
         program: Program::this(),
         unit_model: lasts[0].unit_model.clone(),
         units: units.len(),
         sessions: all.len(),
-        is_tested: means.nrows() >= FEWEST_UNITS,
+        is_tested: units.len() >= FEWEST_UNITS,
         is_sound: outlying.is_empty() && findings.is_empty() && !parameters.iter().any(|p| p.batches_differ),
         outlying,
         findings,
         parameters,
     })
-}
-
-/// Mean of each parameter over the calibrations of each unit.
-fn means(units: &[Vec<Calibrated>], names: &[String]) -> DMatrix<f64> {
-    let columns = names.iter().flat_map(|name| unit_means(units, name));
-    DMatrix::from_iterator(units.len(), names.len(), columns)
 }
 
 /// Mean of one parameter over the calibrations of each unit, all of which determine it.
@@ -120,9 +113,42 @@ fn parameter(
     })
 }
 
+/// One parameter of all units over time.
+struct OfParameter {
+    name: String,
+    /// `None` where a unit has no uncertainty.
+    means: Option<UnitMeans>,
+    /// Drift and scatter of each unit, each with its own probability.
+    findings: Vec<UnitFinding>,
+}
+
+/// All parameters. Values are as stated: priors, if there are any, draw all units in the same way.
+fn by_parameter(
+    units: &[Vec<Calibrated>],
+    lasts: &[&Calibrated],
+    names: &[String],
+    all: &[&Calibrated],
+) -> Vec<OfParameter> {
+    let Some(zero) = all.iter().map(|c| c.date).min() else { return Vec::new() };
+    let of_parameter = |name: &String| {
+        let of_unit = |(n, unit): (usize, &Vec<Calibrated>)| {
+            Some((n, series(&unit.iter().collect::<Vec<_>>(), &single(name), zero, Basis::Stated)?))
+        };
+        let (numbers, series): (Vec<usize>, Vec<Series>) = units.iter().enumerate().filter_map(of_unit).unzip();
+        OfParameter {
+            name: name.clone(),
+            means: (series.len() == units.len()).then(|| UnitMeans::of(&series)),
+            findings: findings(&numbers, &series, lasts, name),
+        }
+    };
+    names.par_iter().map(of_parameter).collect()
+}
+
 /// Units whose robust distance no sound unit would have.
-fn outlying(lasts: &[&Calibrated], names: &[String], means: &DMatrix<f64>) -> Vec<OutlyingUnit> {
-    let Some(distances) = distances(means, SEED) else { return Vec::new() };
+fn outlying(lasts: &[&Calibrated], by_parameter: &[OfParameter]) -> Vec<OutlyingUnit> {
+    let with_means = by_parameter.iter().filter_map(|of| Some((of.name.clone(), of.means.clone()?)));
+    let (names, means): (Vec<String>, Vec<UnitMeans>) = with_means.unzip();
+    let Some(distances) = distances(&means, SEED) else { return Vec::new() };
     let found = lasts.iter().zip(distances).filter(|(_, distance)| distance.probability < FAMILY);
     let mut found: Vec<OutlyingUnit> = found
         .map(|(unit, distance)| {
@@ -141,16 +167,11 @@ fn outlying(lasts: &[&Calibrated], names: &[String], means: &DMatrix<f64>) -> Ve
     found
 }
 
-/// The drift and the scatter of each unit in one parameter, each with its own probability. Values are as stated: priors, if there are any, draw
-/// all units in the same way.
-fn trends(units: &[Vec<Calibrated>], lasts: &[&Calibrated], name: &str, zero: Date) -> Vec<UnitFinding> {
-    let of_unit = |(n, unit): (usize, &Vec<Calibrated>)| {
-        Some((n, series(&unit.iter().collect::<Vec<_>>(), &single(name), zero, Basis::Stated)?))
-    };
-    let (numbers, series): (Vec<usize>, Vec<Series>) = units.iter().enumerate().filter_map(of_unit).unzip();
-    let Some(between) = Between::of(&series, Curve::Line, COVERAGE) else { return Vec::new() };
-    let trends = numbers.into_iter().zip(unit_trends(&series, between.variance, FAMILY));
-    let findings = trends.filter_map(|(n, trend)| {
+/// The drift and the scatter of the units by their `numbers` in one parameter.
+fn findings(numbers: &[usize], series: &[Series], lasts: &[&Calibrated], name: &str) -> Vec<UnitFinding> {
+    let Some(between) = Between::of(series, Curve::Line, COVERAGE) else { return Vec::new() };
+    let trends = numbers.iter().zip(unit_trends(series, between.variance, FAMILY));
+    let findings = trends.filter_map(|(&n, trend)| {
         let trend = trend?;
         let finding = |kind, probability| UnitFinding {
             kind,
@@ -167,15 +188,8 @@ fn trends(units: &[Vec<Calibrated>], lasts: &[&Calibrated], name: &str, zero: Da
 }
 
 /// Units that drift, or scatter more than the others, in any parameter.
-fn over_time(
-    units: &[Vec<Calibrated>],
-    lasts: &[&Calibrated],
-    names: &[String],
-    all: &[&Calibrated],
-) -> Vec<UnitFinding> {
-    let Some(zero) = all.iter().map(|c| c.date).min() else { return Vec::new() };
-    let of_each = names.par_iter().map(|name| trends(units, lasts, name, zero));
-    let findings: Vec<UnitFinding> = of_each.collect::<Vec<_>>().concat();
+fn over_time(by_parameter: Vec<OfParameter>) -> Vec<UnitFinding> {
+    let findings: Vec<UnitFinding> = by_parameter.into_iter().flat_map(|of| of.findings).collect();
     let chances: Vec<f64> = findings.iter().map(|finding| finding.probability).collect();
     let family_wise = family_wise(&chances);
     let with_family =
