@@ -299,11 +299,10 @@ fn few_units_are_not_called_outlying_more_often() {
 fn found_among_unequal(units: usize, scatter: f64, planted: usize, seed: u64) -> Vec<usize> {
     const PARAMETERS: usize = 12;
     let mut random = Random::new(1000 + seed);
-    let mut points: Vec<Vec<Vec<Point>>> = vec![Vec::new(); PARAMETERS];
+    let mut points: Vec<Vec<Vec<Point>>> = vec![vec![Vec::new(); units]; PARAMETERS];
     for unit in 0..units {
-        let count = [1, 2, 3, 8][(4.0 * random.uniform()) as usize];
+        let count = [1, 2, 3, 8][unit % 4];
         let own: Vec<f64> = (0..PARAMETERS).map(|_| scatter * random.normal()).collect();
-        points.iter_mut().for_each(|units| units.push(Vec::new()));
         for time in 0..count {
             let size = if random.uniform() < 0.5 { 1.0 } else { 2.0 };
             let common = random.normal();
