@@ -44,7 +44,7 @@ pub use self::history::{
     UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitHistoryReport, UnitParameter, UnitsHistoryReport,
     UnitsParameter,
 };
-pub use self::history_list::{HISTORY_LIST_SCHEMA, HistoryLine, HistoryList};
+pub use self::history_list::{Doubt, DoubtKind, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList};
 pub use self::models::{CandidateSummary, MODELS_SCHEMA, ModelsReport, NestedTestSummary, TermSupport};
 pub(crate) use self::montecarlo::Repeated;
 pub use self::montecarlo::{MONTE_CARLO_SCHEMA, MonteCarloReport, RepeatedFit, RepeatedParameter, SquareSummary};

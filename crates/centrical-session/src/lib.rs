@@ -42,11 +42,11 @@ pub use document::{
     ADDED_SCHEMA, ASSESSMENT_SCHEMA, AddedReport, AssessedFit, AssessedParameter, AssessedPlateau, AssessmentReport,
     COMPARISON_SCHEMA, COMPENSATION_SCHEMA, CandidateSummary, ComparedResultSummary, ComparisonReport,
     CompensatedUncertainty, CompensationReport, DOCUMENTS_SCHEMA, DRAFT_SCHEMA, DifferenceSummary, DocumentKind,
-    DocumentsReport, DraftReport, FirstReading, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList, ImprovementSummary,
-    LeftOutPlateau, LineToFillIn, MODELS_SCHEMA, MONTE_CARLO_SCHEMA, ModelsReport, MonteCarloReport, NestedTestSummary,
-    ObjectionName, PairComparison, REDUCTION_SCHEMA, ReadingsBeyond, ReducedPlateauSummary, ReductionReport,
-    RepeatedFit, RepeatedParameter, SERIES_SCHEMA, SIMULATION_SCHEMA, SeriesSummary, SimulationReport, SquareSummary,
-    TermSupport, WithoutOutliers, WrittenDocument,
+    DocumentsReport, Doubt, DoubtKind, DraftReport, FirstReading, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList,
+    ImprovementSummary, LeftOutPlateau, LineToFillIn, MODELS_SCHEMA, MONTE_CARLO_SCHEMA, ModelsReport,
+    MonteCarloReport, NestedTestSummary, ObjectionName, PairComparison, REDUCTION_SCHEMA, ReadingsBeyond,
+    ReducedPlateauSummary, ReductionReport, RepeatedFit, RepeatedParameter, SERIES_SCHEMA, SIMULATION_SCHEMA,
+    SeriesSummary, SimulationReport, SquareSummary, TermSupport, WithoutOutliers, WrittenDocument,
 };
 pub use document::{
     AxesName, AxesParameter, AxesSummary, BetweenRestsSummary, BudgetSource, BudgetSummary, CalibrationResult,
@@ -82,8 +82,8 @@ pub use job::{
     FirstOutside, InitRequest, LiveRequest, MonteCarloCase, MonteCarloRequest, NoiseRequest, PlanRequest, Problem,
     Recorded, Series, SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd,
     WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
-    calibrate_series, calibrate_without, collect_results, compare_results, compensate, compensate_record, init,
-    list_store, list_store_watched, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce,
+    calibrate_series, calibrate_without, check_store, collect_results, compare_results, compensate, compensate_record,
+    init, list_store, list_store_watched, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce,
     reduce_recorded, reduce_without_inputs, select_model, settings_schema, simulate_session, subject, subject_of,
     tumble, watch, write_reduced,
 };

@@ -209,3 +209,67 @@ fn sixteen_killed_writers_lose_nothing_and_add_nothing_twice() {
         assert!(fs::read(folder.path().join(copy)).unwrap().len() > first.len() / 2);
     }
 }
+
+/// What laboratories do wrong with a store is found with its kind, and nothing is found in a store without mistakes.
+#[test]
+fn mistakes_in_a_store_are_found() {
+    let folder = TempDir::new().unwrap();
+    let made = run(folder.path(), &["calibrate", example().to_str().unwrap(), "--out", "first", "-q"]);
+    assert!(made.status.success(), "{made:?}");
+    let first: Value = serde_json::from_slice(&fs::read(folder.path().join("first/result.json")).unwrap()).unwrap();
+    let add = |name: &str, serial: &str, date: &str, hash: Option<&str>| {
+        let mut result = first.clone();
+        result["session"]["unit_serial"] = json!(serial);
+        result["session"]["date"] = json!(date);
+        result["session"]["title"] = json!(name);
+        if let Some(hash) = hash {
+            result["inputs"][0]["sha256"] = json!(hash.repeat(64));
+        }
+        fs::create_dir(folder.path().join(name)).unwrap();
+        fs::write(folder.path().join(name).join("result.json"), result.to_string()).unwrap();
+        let added = run(folder.path(), &["history", "add", "store", name]);
+        assert_eq!(String::from_utf8_lossy(&added.stdout), "1 new, 0 known\n");
+    };
+    let doubts = || {
+        let output = run(folder.path(), &["history", "list", "store", "--check", "--json"]);
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let found = document["doubts"].as_array().unwrap().clone();
+        assert_eq!(output.status.code(), Some(i32::from(!found.is_empty())));
+        found.iter().map(|doubt| (doubt["kind"].as_str().unwrap().to_owned(), doubt["of"].clone())).collect::<Vec<_>>()
+    };
+    add("a", "TA-1", "2021-03-04", Some("a"));
+    add("b", "TA-2", "2021-03-04", Some("b"));
+    assert_eq!(doubts(), []);
+    // The first two letters of the serial number are Cyrillic.
+    add("c", "\u{422}\u{410}-1 ", "2022-03-04", Some("c"));
+    add("d", "TA-2", "2021-03-04", Some("d"));
+    add("e", "TA-3", "2021-03-04", Some("d"));
+    add("f", "TA-4", "2999-03-04", Some("f"));
+    add("g", "TA-5", "March", Some("e"));
+    let listed = list(folder.path(), &["store"]);
+    let key = |title: &str| {
+        let found = listed.iter().find(|calibration| calibration["title"] == title).unwrap();
+        found["key"].as_str().unwrap().to_owned()
+    };
+    fs::remove_file(folder.path().join(format!("store/results/{}.json", key("a")))).unwrap();
+    fs::write(folder.path().join(format!("store/results/{}.json", key("b"))), "{}").unwrap();
+    let pair = |one: &str, other: &str| {
+        let mut keys = [key(one), key(other)];
+        keys.sort();
+        json!(keys)
+    };
+    let model = first["session"]["unit_model"].as_str().unwrap();
+    let names = json!([format!("{model:?} \"TA-1\""), format!("{model:?} \"\u{422}\u{410}-1 \"")]);
+    let mut found = doubts();
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    let expected = [
+        ("ahead", json!([key("f")])),
+        ("changed", json!([key("b")])),
+        ("missing", json!([key("a")])),
+        ("no-day", json!([key("g")])),
+        ("same-day", pair("b", "d")),
+        ("same-inputs", pair("d", "e")),
+        ("spelling", names),
+    ];
+    assert_eq!(found, expected.map(|(kind, of)| (kind.to_owned(), of)));
+}

@@ -21,6 +21,38 @@ pub struct HistoryList {
     pub store: String,
     /// The calibrations by unit and day.
     pub calibrations: Vec<HistoryLine>,
+    /// What may not be meant, if the store was checked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubts: Option<Vec<Doubt>>,
+}
+
+/// Something in a store that may not be meant.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Doubt {
+    /// What it is.
+    pub kind: DoubtKind,
+    /// Keys of the calibrations; of [`DoubtKind::Spelling`] the units, model and serial number.
+    pub of: Vec<String>,
+}
+
+/// What may not be meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DoubtKind {
+    /// Units whose names differ in no more than spaces, hyphens, case, or Cyrillic for Latin letters.
+    Spelling,
+    /// Results of the same files.
+    SameInputs,
+    /// Results of one unit and day from other files.
+    SameDay,
+    /// A date that is no day.
+    NoDay,
+    /// A day that is still to come.
+    Ahead,
+    /// No copy of the result.
+    Missing,
+    /// A copy that is not what was added.
+    Changed,
 }
 
 /// One calibration.
@@ -62,7 +94,13 @@ impl HistoryList {
             of_unit.then_with(|| order(a).cmp(&order(b))).then_with(|| a.key.cmp(&b.key))
         });
         let calibrations = rows.into_iter().map(HistoryLine::new).collect();
-        Self { schema: HISTORY_LIST_SCHEMA, program: Program::this(), store: folder.to_owned(), calibrations }
+        Self {
+            schema: HISTORY_LIST_SCHEMA,
+            program: Program::this(),
+            store: folder.to_owned(),
+            calibrations,
+            doubts: None,
+        }
     }
 
     /// The text of the document.

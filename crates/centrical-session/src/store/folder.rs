@@ -72,6 +72,11 @@ impl Store {
         self.results_folder().join(format!("{key}.json"))
     }
 
+    /// Whether the store keeps copies of results.
+    pub(crate) fn keeps_results(&self) -> bool {
+        self.results_folder().is_dir()
+    }
+
     pub(super) fn rows_folder(&self) -> PathBuf {
         self.folder.join("rows")
     }

@@ -1,9 +1,10 @@
 //! `centrical history list STORE`: the calibrations of a store.
 
 use std::path::PathBuf;
+use std::time::SystemTime;
 
 use centrical_report::history_list_text;
-use centrical_session::{Error, Selection, list_store};
+use centrical_session::{Error, Selection, check_store, list_store};
 
 use crate::outcome::Outcome;
 use crate::printing::Printing;
@@ -23,11 +24,14 @@ pub struct Arguments {
     /// Of this station alone
     #[arg(long)]
     station: Option<String>,
+    /// Say what may not be meant: one unit under two names, one session twice, days to come, copies that are missing or changed
+    #[arg(long)]
+    check: bool,
     #[command(flatten)]
     printing: Printing,
 }
 
-/// Runs the command.
+/// Runs the command. Exit code 1 when a check finds something.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let selection = Selection {
         unit_model: arguments.model.clone(),
@@ -35,7 +39,17 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         station: arguments.station.clone(),
         ..Selection::default()
     };
-    let list = list_store(&arguments.store, selection)?;
+    let list = if arguments.check {
+        check_store(&arguments.store, selection, today())?
+    } else {
+        list_store(&arguments.store, selection)?
+    };
     arguments.printing.show(|| history_list_text(&list), || list.to_json())?;
-    Ok(Outcome::Done)
+    Ok(Outcome::acceptable(list.doubts.is_none_or(|doubts| doubts.is_empty())))
+}
+
+/// Days from 1970-01-01; a day more, since a station may be east of here.
+fn today() -> i64 {
+    let passed = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(passed.as_secs() / 86_400 + 1).unwrap_or(i64::MAX)
 }

@@ -1,9 +1,9 @@
 //! The calibrations of a store as text for the terminal.
 
-use centrical_session::{HistoryLine, HistoryList};
+use centrical_session::{DoubtKind, HistoryLine, HistoryList};
 
 use crate::number::counted;
-use crate::terminal::screen::Screen;
+use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::table::{Align, Table};
 
 /// A line for each calibration, by unit and day.
@@ -27,6 +27,7 @@ pub fn history_list_text(list: &HistoryList) -> Screen {
         table.row(cells.into_iter().chain([ratio.into(), verdict(line).into()]));
     }
     screen.table(table);
+    doubts(&mut screen, list);
     screen
 }
 
@@ -35,5 +36,41 @@ fn verdict(line: &HistoryLine) -> String {
         (Some(true), _) => "acceptable".to_owned(),
         (Some(false), _) => format!("not acceptable: {}", line.objections.join(", ")),
         (None, message) => format!("failed: {}", message.as_deref().unwrap_or_default()),
+    }
+}
+
+/// What may not be meant in a store that was checked.
+fn doubts(screen: &mut Screen, list: &HistoryList) {
+    let Some(doubts) = &list.doubts else { return };
+    screen.gap();
+    if doubts.is_empty() {
+        screen.marked(Emphasis::Acceptable, "CHECKED", "names, days, repeated results and copies raise no doubt");
+    }
+    for doubt in doubts {
+        let (mark, words) = words(doubt.kind);
+        screen.marked(Emphasis::NotAcceptable, mark, &format!("{}: {words}", doubt.of.join(", ")));
+    }
+}
+
+/// What was found and what was expected.
+const fn words(kind: DoubtKind) -> (&'static str, &'static str) {
+    match kind {
+        DoubtKind::Spelling => (
+            "SPELLING",
+            "found names that differ in spaces, hyphens, case or Cyrillic letters alone, expected one name for one unit",
+        ),
+        DoubtKind::SameInputs => {
+            ("SAME FILES", "found results of the same files, expected one: histories count each as a session")
+        }
+        DoubtKind::SameDay => (
+            "SAME DAY",
+            "found results of one unit and day, expected one, or a switch-on between them: histories count each as a session",
+        ),
+        DoubtKind::NoDay => {
+            ("NO DAY", "found a date that is no day, expected one such as 2026-10-05: histories refuse it")
+        }
+        DoubtKind::Ahead => ("AHEAD", "found a date later than today, expected the day of the session"),
+        DoubtKind::Missing => ("MISSING", "found no copy of the result in the folder results, expected one"),
+        DoubtKind::Changed => ("CHANGED", "found a copy with other bytes, expected those of the result that was added"),
     }
 }
