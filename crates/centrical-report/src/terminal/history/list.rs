@@ -48,9 +48,15 @@ fn doubts(screen: &mut Screen, list: &HistoryList) {
     }
     for doubt in doubts {
         let (mark, words) = words(doubt.kind);
-        screen.marked(Emphasis::NotAcceptable, mark, &format!("{}: {words}", doubt.of.join(", ")));
+        let shown = &doubt.of[..doubt.of.len().min(MOST_SHOWN)];
+        let more = doubt.of.len() - shown.len();
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        screen.marked(Emphasis::NotAcceptable, mark, &format!("{}{more}: {words}", shown.join(", ")));
     }
 }
+
+/// Calibrations that a line names; the document has all.
+const MOST_SHOWN: usize = 4;
 
 /// What was found and what was expected.
 const fn words(kind: DoubtKind) -> (&'static str, &'static str) {
