@@ -30,7 +30,9 @@ pub use self::history::{
     UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, read_calibrations_watched,
     read_limits, station_history, unit_history, unit_means, units_history,
 };
-pub use self::history::{add_result, add_results, check_store, collect_results, list_store, list_store_watched};
+pub use self::history::{
+    add_result, add_results, check_store, collect_results, list_store, list_store_watched, spelling,
+};
 pub use self::init::{Draft, FillIn, InitRequest, init};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};

@@ -242,6 +242,12 @@ fn mistakes_in_a_store_are_found() {
     assert_eq!(doubts(), []);
     // The first two letters of the serial number are Cyrillic.
     add("c", "\u{422}\u{410}-1 ", "2022-03-04", Some("c"));
+    let asked = run(folder.path(), &["history", "unit", "store", "--serial", "ta 1"]);
+    let said = String::from_utf8_lossy(&asked.stderr).into_owned();
+    assert!(
+        said.contains("found no such calibration but those of serial \"TA-1\", \"\u{422}\u{410}-1 \", expected"),
+        "{said}"
+    );
     add("d", "TA-2", "2021-03-04", Some("d"));
     add("e", "TA-3", "2021-03-04", Some("d"));
     add("f", "TA-4", "2999-03-04", Some("f"));

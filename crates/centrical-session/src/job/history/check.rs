@@ -38,7 +38,8 @@ fn two_spellings(rows: &[&Row]) -> Vec<Doubt> {
     several.map(|names| Doubt { kind: DoubtKind::Spelling, of: names.iter().map(named).collect() }).collect()
 }
 
-fn spelling(name: &str) -> String {
+/// A name without what is mistaken: small Latin letters and digits alone.
+pub fn spelling(name: &str) -> String {
     let letters = name.chars().flat_map(char::to_lowercase).filter(|c| c.is_alphanumeric());
     letters.map(|c| LOOKALIKES.iter().find(|(cyrillic, _)| *cyrillic == c).map_or(c, |(_, latin)| *latin)).collect()
 }
