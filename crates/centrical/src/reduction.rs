@@ -43,14 +43,14 @@ mod survey;
 mod triangle;
 
 pub use average::{Averaging, PlateauFit, ReducedMounting, average};
-pub use colour::{NoiseModel, plateau_means};
+pub use colour::{EXCLUDED, NoiseModel, plateau_means};
 pub use error::{ReductionError, Stretch};
 pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate, locate_rests};
 pub use mistake::Mistake;
 pub use packed_times::PackedTimes;
 pub use plateau::{LeftOut, PlateauMean, ScheduledPlateau};
 pub use record::{Record, RecordSlice};
-pub use rests::{CoarseScale, coarse_scale, reduce_rests};
+pub use rests::{CoarseScale, Rests, coarse_scale, reduce_rests};
 pub use speed::{MeasuredSpeed, measured_speeds};
 pub use steady::{Staircase, SteadyStretch, staircase, steady_stretches};
 pub use survey::{Condensed, Extremes, Survey};

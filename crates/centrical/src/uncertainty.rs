@@ -51,4 +51,4 @@ pub use selection::{
 pub use speeds::{Extent, ShownSpeed, SpeedContradiction, StatedSpeeds, speed_contradictions};
 pub use tilt::{OncePerRevolution, TiltComparison};
 pub use validity::{Cleaned, MountingCheck, PlateauCheck, Prediction, Validity};
-pub use verdict::{Findings, Level, Objection, objections};
+pub use verdict::{Findings, Level, Objection, chance_of_residuals, objections};

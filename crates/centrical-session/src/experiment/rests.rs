@@ -30,6 +30,8 @@ pub struct RestTable {
     pub attitudes: Option<KnownAttitudes>,
     /// When the unit was on.
     pub switch_on: SwitchOn,
+    /// Variance of the means at most, over the one stated, 1 or more.
+    pub noise_at_most: f64,
 }
 
 /// Where rests come from.
@@ -113,14 +115,23 @@ impl RestTable {
                     Err(at.unexpected("rests", "no such key", expected))
                 }
             };
-            Ok(Self { switch_on, ..rests? })
+            let noise_at_most = match table.noise_at_most {
+                None => 1.0,
+                Some(ratio) if ratio.is_finite() && ratio >= 1.0 && table.rests.is_some() => ratio,
+                Some(ratio) => {
+                    let expected = "a ratio of variances, 1 or more, beside a table of rests";
+                    return Err(at.unexpected("noise_at_most", ratio.to_string(), expected));
+                }
+            };
+            Ok(Self { switch_on, noise_at_most, ..rests? })
         });
         named.collect()
     }
 
     /// Rests in the first switch-on, without means.
     fn of(source: RestSource, attitudes: Option<KnownAttitudes>) -> Self {
-        Self { source, means: Vec::new(), attitudes, switch_on: SwitchOn { number: 1, bias_change: None } }
+        let switch_on = SwitchOn { number: 1, bias_change: None };
+        Self { source, means: Vec::new(), attitudes, switch_on, noise_at_most: 1.0 }
     }
 
     fn measured(at: &TomlPath, folder: &Folder, table: &TumbleTable, rests: &str) -> Result<Self, Error> {

@@ -91,6 +91,12 @@ impl MountingFiles {
 }
 
 impl Session {
+    /// Variance of the means of rests at most, over the one stated, where there are rests alone and it is not 1: on an arm plateaus judge.
+    pub(crate) fn noise_at_most(&self) -> Option<f64> {
+        let most = self.rest_tables.iter().map(|table| table.noise_at_most).fold(1.0, f64::max);
+        (most > 1.0 && !self.experiment.has_arm()).then_some(most)
+    }
+
     /// Reads the session in a folder, or of an experiment file. The records themselves are not touched.
     ///
     /// # Errors

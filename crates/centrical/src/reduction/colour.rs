@@ -9,7 +9,7 @@ mod settling;
 use super::average::{PlateauFit, ReducedMounting};
 use super::plateau::PlateauMean;
 use mean::mean;
-pub use noise_model::NoiseModel;
+pub use noise_model::{EXCLUDED, NoiseModel};
 use settling::TimeStep;
 
 /// The plateau means of a mounting in the order of the schedule, with their covariances under the session's noise.

@@ -12,12 +12,24 @@ use super::record::RecordSlice;
 use super::survey::Survey;
 use crate::linalg::least_squares::LeastSquares;
 
-/// The means of the rests of some records, record by record in the order of time. The colour of the noise is pooled over all of
-/// them. A rest whose samples are not steady is left out.
+/// The rests of some records.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rests {
+    /// Their means, record by record in the order of time.
+    pub means: Vec<Vec<PlateauMean>>,
+    /// Variance of the means along the specific force at most, over the one stated, but for a chance of [`EXCLUDED`]: few rests show the colour of
+    /// their noise poorly.
+    ///
+    /// [`EXCLUDED`]: super::EXCLUDED
+    pub noise_at_most: f64,
+}
+
+/// The means of the rests of some records. The colour of the noise is pooled over all of them. A rest whose samples are not steady
+/// is left out.
 ///
 /// # Errors
 /// [`ReductionError`] if a record is invalid (lengths, times) or too short.
-pub fn reduce_rests(records: &[RecordSlice]) -> Result<Vec<Vec<PlateauMean>>, ReductionError> {
+pub fn reduce_rests(records: &[RecordSlice]) -> Result<Rests, ReductionError> {
     let reduced = records.iter().map(|record| {
         let located = locate_rests(&Survey::of(*record)?)?;
         let fits = (0..located.windows().len()).filter_map(|rest| average(&located, rest, *record, 0).ok());
@@ -26,7 +38,8 @@ pub fn reduce_rests(records: &[RecordSlice]) -> Result<Vec<Vec<PlateauMean>>, Re
     });
     let reduced: Vec<ReducedMounting> = reduced.collect::<Result<_, _>>()?;
     let noise = NoiseModel::pool_rests(&reduced);
-    Ok(reduced.iter().map(|record| plateau_means(record, &noise)).collect())
+    let means = reduced.iter().map(|record| plateau_means(record, &noise)).collect();
+    Ok(Rests { means, noise_at_most: noise.at_most(&reduced) })
 }
 
 /// Coarse scale and bias of three newtonometers: `reading = scale f + bias`.

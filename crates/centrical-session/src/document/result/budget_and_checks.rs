@@ -42,6 +42,10 @@ pub struct BudgetSource {
 pub struct ValiditySummary {
     /// Probability of so large a chi^2 by chance.
     pub probability: f64,
+    /// Variance of the residuals of rests at most, over the one stated, where the colour of their noise is known poorly. The
+    /// verdict takes it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_at_most: Option<f64>,
     /// Plateaus that stand out at a family-wise error of 5 % (Bonferroni), the most outlying first.
     pub outlying: Vec<OutlyingPlateau>,
     /// Each mounting predicted from all others.
@@ -206,6 +210,7 @@ impl ValiditySummary {
         let reported = patterns.iter().filter(|pattern| Level::Reported.is_passed_by(pattern.family_wise));
         Self {
             probability: validity.probability,
+            noise_at_most: None,
             outlying,
             mountings: validity.mountings.iter().map(|m| prediction(m.mounting, &m.prediction)).collect(),
             patterns_tested: patterns.len(),

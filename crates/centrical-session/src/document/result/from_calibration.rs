@@ -42,7 +42,8 @@ impl CalibrationResult {
         } else {
             let rivals = Rivals::of(calibration)?;
             advance(progress, 0)?;
-            let checks = ValiditySummary::of(calibration, &rivals)?;
+            let mut checks = ValiditySummary::of(calibration, &rivals)?;
+            checks.noise_at_most = session.noise_at_most();
             advance(progress, 0)?;
             (Some(checks), RestsOn::all(model, rivals.rests_on()?))
         };

@@ -25,6 +25,7 @@ impl CalibrationResult {
             iterations: self.fit.iterations,
             chi_squared: self.fit.chi_squared,
             degrees_of_freedom: self.fit.degrees_of_freedom,
+            noise_at_most: self.validity.as_ref().and_then(|validity| validity.noise_at_most).unwrap_or(1.0),
             outlying: outlying.map(|p| (format!("{}:{}", p.mounting, p.index + 1), p.probability)).collect(),
             rivals: rivals.map(|rival| (rival.clone(), rival.probability)).collect(),
             patterns: patterns.map(|pattern| (pattern.clone(), pattern.probability)).collect(),

@@ -403,6 +403,8 @@ pub(crate) struct TumbleTable {
     pub bias_change: Option<Quantity>,
     /// Name of the time through which the unit was on without a break, if it is that of other rests too.
     pub switch_on: Option<String>,
+    /// Variance of the means of the table at most, over the one that it states: the colour of their noise is known poorly. 1 if absent.
+    pub noise_at_most: Option<f64>,
 }
 
 /// The schedule common to mountings.

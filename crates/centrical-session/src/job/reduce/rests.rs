@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use centrical::reduction::{PlateauMean, Record, reduce_rests};
+use centrical::reduction::{Record, Rests, reduce_rests};
 use centrical::{OnProgress, advance};
 use centrical_table::{Extent, Source};
 use nalgebra::Vector3;
@@ -13,16 +13,16 @@ use crate::experiment::{KnownAttitudes, RecordedRests, RestTable, Session};
 use crate::record::read_records;
 use crate::reduced::{ReducedPlateau, rest_rows};
 
-/// The rests of all records, record by record in the order of time: one search for a tumble and for a session. The colour of the
-/// noise is pooled over all of them. Messages name `file`.
+/// The rests of all records: one search for a tumble and for a session. The colour of the noise is pooled over all of them. Messages
+/// name `file`.
 ///
 /// # Errors
 /// If a record is invalid, or there are fewer than two rests: a single one shows nothing.
-pub(crate) fn find_rests(records: &[Record], file: &Path) -> Result<Vec<Vec<PlateauMean>>, Error> {
+pub(crate) fn find_rests(records: &[Record], file: &Path) -> Result<Rests, Error> {
     let slices: Vec<_> = records.iter().map(Record::as_slice).collect();
     let refused = |source| Error::Reduction { file: file.to_owned(), mounting: 1, source: Box::new(source) };
     let rests = reduce_rests(&slices).map_err(refused)?;
-    let count: usize = rests.iter().map(Vec::len).sum();
+    let count: usize = rests.means.iter().map(Vec::len).sum();
     if count < 2 {
         let stretches = if count == 1 { "stretch" } else { "stretches" };
         let found = format!("{count} {stretches} in which the unit rests");
@@ -61,12 +61,16 @@ pub(crate) fn with_all_rests<'s>(
         let averaged = session.rests().map(ReducedPlateau::from).collect();
         return Ok((Cow::Borrowed(session), averaged));
     };
-    let mut found = find_rests(&records, file)?.into_iter();
+    let Rests { means, noise_at_most } = find_rests(&records, file)?;
+    let mut found = means.into_iter();
     let mut rests = Vec::new();
     let mut tables = session.rest_tables.clone();
     for table in &mut tables {
         let of_table: Vec<ReducedPlateau> = match table.record() {
-            Some(_) => found.next().unwrap_or_default().into_iter().map(ReducedPlateau::from).collect(),
+            Some(_) => {
+                table.noise_at_most = noise_at_most;
+                found.next().unwrap_or_default().into_iter().map(ReducedPlateau::from).collect()
+            }
             None => table.means.iter().map(ReducedPlateau::from).collect(),
         };
         fill(table, &of_table, session.experiment.site.gravity)?;

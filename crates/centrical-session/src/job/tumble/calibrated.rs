@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical::reduction::{CoarseScale, PlateauMean, Record, coarse_scale};
+use centrical::reduction::{CoarseScale, Record, Rests, coarse_scale};
 use centrical::{OnProgress, advance};
 use centrical_table::{TableLines, refuse_inputs, write_whole};
 use nalgebra::Vector3;
@@ -45,7 +45,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         answers(request, &record, file)?;
         records.push(record);
     }
-    let mut rests = rests(request, &records)?;
+    let mut rests = find_rests(&records, &first(request))?;
     advance(progress, 0)?;
     let coarse = if Dimension::Acceleration.factor(&request.unit).is_some() {
         None
@@ -54,10 +54,10 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         for record in &mut records {
             in_si(record, &coarse);
         }
-        rests = self::rests(request, &records)?;
+        rests = find_rests(&records, &first(request))?;
         Some(coarse)
     };
-    let means: Vec<Vector3<f64>> = rests.iter().map(|rest| rest.mean).collect();
+    let means = means(&rests);
     if request.attitudes.is_none() {
         turns(request, &means)?;
     }
@@ -65,8 +65,8 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         has_unit(request, &means)?;
     }
     let known = (request.attitudes.as_ref()).map(|stated| stated.of_rests(&means, &first(request))).transpose()?;
-    let plateaus: Vec<ReducedPlateau> = rests.into_iter().map(ReducedPlateau::from).collect();
-    let text = session_text(request, coarse.as_ref());
+    let text = session_text(request, coarse.as_ref(), rests.noise_at_most);
+    let plateaus: Vec<ReducedPlateau> = rests.means.into_iter().flatten().map(ReducedPlateau::from).collect();
     let mut reduced = Reduced { plateaus, ..Reduced::of_table(&[]) };
     let input = |file: &Path| {
         let source = request.folder.open(file, Input::EXPECTED)?;
@@ -119,16 +119,16 @@ fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<
     Ok(Record { t: series.t, f_z: std::array::from_fn(|_| columns.next().unwrap_or_default()) })
 }
 
-/// The rests of all records.
-fn rests(request: &TumbleRequest, records: &[Record]) -> Result<Vec<PlateauMean>, Error> {
-    Ok(find_rests(records, &first(request))?.into_iter().flatten().collect())
+/// The mean readings of the rests of all records.
+fn means(rests: &Rests) -> Vec<Vector3<f64>> {
+    rests.means.iter().flatten().map(|rest| rest.mean).collect()
 }
 
 /// The coarse scale and bias of readings in counts or volts.
-fn coarse(request: &TumbleRequest, rests: &[PlateauMean]) -> Result<CoarseScale, Error> {
-    let means: Vec<Vector3<f64>> = rests.iter().map(|rest| rest.mean).collect();
+fn coarse(request: &TumbleRequest, rests: &Rests) -> Result<CoarseScale, Error> {
+    let means = means(rests);
     coarse_scale(&means, request.gravity).ok_or_else(|| {
-        let found = format!("{} rests that do not show scale and bias of {}", rests.len(), request.unit);
+        let found = format!("{} rests that do not show scale and bias of {}", means.len(), request.unit);
         let expected = "rests with each axis about up and about down, six at least";
         Error::content(&first(request), Place::Whole, found, expected)
     })

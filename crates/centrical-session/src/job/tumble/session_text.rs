@@ -13,7 +13,8 @@ pub(super) const TABLE: &str = "rests.csv";
 pub(super) const ATTITUDES: &str = "attitudes.csv";
 
 /// The experiment file of rests in a table beside it, of readings with this coarse scale where they are in no unit of acceleration.
-pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>) -> String {
+/// `noise_at_most`: variance of the means at most, over the one stated.
+pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>, noise_at_most: f64) -> String {
     let mut text = String::new();
     let mut line = |line: String| {
         // Writing to a String does not fail.
@@ -35,6 +36,9 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
     }
     line(format!("[model]\nerror_model = {:?}\n", request.terms));
     line(format!("[[tumble]]\nrests = {TABLE:?}"));
+    if noise_at_most > 1.0 {
+        line(format!("noise_at_most = {noise_at_most:?}"));
+    }
     if let Some(attitudes) = &request.attitudes {
         let uncertainty = attitudes.uncertainty;
         line(format!("attitudes = {ATTITUDES:?}\nattitude_uncertainty = \"{uncertainty:?} rad\""));

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::posterior::{Power, posterior_mean};
+use super::posterior::{Mixture, Power, posterior};
 use crate::reduction::average::{CELLS, Cells, PlateauFit, ReducedMounting, Weights};
 use crate::reduction::simd::lanes::{dot, widest};
 use crate::statistics::whole;
@@ -23,14 +23,26 @@ const PER_OCTAVE: f64 = 4.0;
 /// Steps of the likelihood's ascent for a candidate, and for the final model.
 const STEPS: (usize, usize) = (100, 400);
 
+/// Chance that noise is excluded which is there: a tenth of the level of an objection.
+pub const EXCLUDED: f64 = 1e-5;
+
 /// Noise of a unit, which gives the covariance of a mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseModel {
     components: Vec<Component>,
     /// Of rests: the part along the specific force, the third axis, by itself, in every direction alike.
-    along: Option<Vec<Component>>,
+    along: Option<Along>,
     /// Least variance of a sample on any plateau [m^2/s^4].
     quietest: Vector3<f64>,
+}
+
+/// Noise along the specific force of rests.
+#[derive(Debug, Clone, PartialEq)]
+struct Along {
+    components: Vec<Component>,
+    /// All noise that the rests do not exclude, and the correlation times that it names [s].
+    not_excluded: Vec<Mixture>,
+    times: Vec<f64>,
 }
 
 /// One component of the noise.
@@ -64,7 +76,7 @@ impl NoiseModel {
         Self {
             // A density has six entries, or one.
             components: components(&groups, &times, 6.0),
-            along: are_rests.then(|| components_along(&along(), &times)),
+            along: are_rests.then(|| Along::of(&along(), &times)),
             quietest,
         }
     }
@@ -95,9 +107,28 @@ impl NoiseModel {
             for axis in 0..2 {
                 (covariance[(axis, 2)], covariance[(2, axis)]) = (0.0, 0.0);
             }
-            covariance[(2, 2)] = of(along)[(2, 2)];
+            covariance[(2, 2)] = of(&along.components)[(2, 2)];
         }
         covariance
+    }
+}
+
+impl NoiseModel {
+    /// Variance of the means of rests along the specific force, at most, over that which this model gives them: the largest mean
+    /// ratio by noise that the rests do not exclude, 1 or more.
+    pub fn at_most<'a>(&self, mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> f64 {
+        let Some(Along { not_excluded, times, .. }) = &self.along else { return 1.0 };
+        let plateaus = plateaus_of(mountings);
+        let (mut white, mut slow) = (0.0, vec![0.0; times.len()]);
+        for plateau in &plateaus {
+            let (cells, weights) = (&plateau.cells, plateau.cells.mean_weights());
+            let share = 1.0 / (self.covariance(&weights, cells)[(2, 2)] * plateaus.len() as f64);
+            white += share * gain(None, &weights, cells);
+            let gains = widest(Gains { markov: &Markov::new(times, cells.width), weights: &weights });
+            slow.iter_mut().zip(gains).for_each(|(sum, gain)| *sum += share * gain);
+        }
+        let ratios = not_excluded.iter().map(|noise| noise.white * white + noise.slow * slow[noise.time]);
+        ratios.filter(|ratio| ratio.is_finite()).fold(1.0, f64::max)
     }
 }
 
@@ -129,16 +160,22 @@ fn components(groups: &[Group], times: &[f64], entries: f64) -> Vec<Component> {
     fit.parts.iter().map(part).collect()
 }
 
-/// The components along the specific force: their posterior mean, if one Markov process at most is found beside white noise, and the
-/// likeliest ones otherwise.
-fn components_along(groups: &[Group], times: &[f64]) -> Vec<Component> {
-    let likeliest = components(groups, times, 1.0);
-    let powers: Vec<Power> = groups.iter().map(Group::as_power).collect();
-    let mean = if likeliest.len() > 2 { None } else { posterior_mean(&powers) };
-    let Some((white, densities)) = mean else { return likeliest };
-    let part = |correlation_time, density: f64| Component { correlation_time, density: Matrix3::identity() * density };
-    let markov = times.iter().zip(densities).map(|(time, density)| part(Some(*time), density));
-    std::iter::once(part(None, white)).chain(markov).collect()
+impl Along {
+    /// The posterior mean, if one Markov process at most is found beside white noise, and the likeliest components otherwise.
+    fn of(groups: &[Group], times: &[f64]) -> Self {
+        let likeliest = components(groups, times, 1.0);
+        let powers: Vec<Power> = groups.iter().map(Group::as_power).collect();
+        let times = times.to_vec();
+        let Some(posterior) = posterior(&powers, EXCLUDED) else {
+            return Self { components: likeliest, not_excluded: Vec::new(), times };
+        };
+        let part =
+            |correlation_time, density: f64| Component { correlation_time, density: Matrix3::identity() * density };
+        let markov = times.iter().zip(&posterior.slow).map(|(time, density)| part(Some(*time), *density));
+        let mean = std::iter::once(part(None, posterior.white)).chain(markov).collect();
+        let components = if likeliest.len() > 2 { likeliest } else { mean };
+        Self { components, not_excluded: posterior.not_excluded, times }
+    }
 }
 
 /// Quarter-octaves from an eighth of a cell of the shortest window to a quarter of the longest: noise slower than

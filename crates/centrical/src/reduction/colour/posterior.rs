@@ -9,6 +9,10 @@
 //! preferred. The integral over `d` is a closed form,
 //!
 //! `p(r, tau) ~ prod s_j^(-n_j/2) Q^(-n/2) / r`, `Q = sum_j n_j y_j^2 / s_j`, `E[d | r, tau] = Q / (n - 2)`.
+//!
+//! A test of residuals against the noise asks for more than a mean: for all noise that the contrasts do not exclude. Those are the `r` and
+//! `tau` whose likelihood is no less than `beta` of the largest. Twice the logarithm of that ratio is chi^2 of two degrees of freedom
+//! (Wilks 1938), so the region holds the true ones but for a chance of `beta`.
 
 /// Ratios of the densities: per decade, and from where on. Below the first the process adds less than a thousandth to the variance of
 /// any mean; above the last it is all of it.
@@ -27,9 +31,31 @@ pub(super) struct Power<'a> {
     pub gains: &'a [f64],
 }
 
-/// Posterior means of the densities: of white noise, and of the process of each correlation time. `None` where the contrasts are too
-/// few, or show no noise.
-pub(super) fn posterior_mean(powers: &[Power]) -> Option<(f64, Vec<f64>)> {
+/// White noise and one Markov process beside it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Mixture {
+    /// Density of the white noise.
+    pub white: f64,
+    /// Index of the correlation time of the process.
+    pub time: usize,
+    /// Density of the process at zero frequency.
+    pub slow: f64,
+}
+
+/// What contrasts say of the densities.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Posterior {
+    /// Posterior mean of the density of white noise.
+    pub white: f64,
+    /// That of the process of each correlation time.
+    pub slow: Vec<f64>,
+    /// All noise that is not excluded.
+    pub not_excluded: Vec<Mixture>,
+}
+
+/// The posterior of the densities, and the noise that is not excluded but for a chance of `beta`. `None` where the contrasts are
+/// too few, or show no noise.
+pub(super) fn posterior(powers: &[Power], beta: f64) -> Option<Posterior> {
     let count: f64 = powers.iter().map(|power| power.count).sum();
     let times = powers.first().map_or(0, |power| power.gains.len());
     if count <= 2.0 || times == 0 {
@@ -55,14 +81,18 @@ pub(super) fn posterior_mean(powers: &[Power]) -> Option<(f64, Vec<f64>)> {
     if !highest.is_finite() {
         return None;
     }
-    let (mut sum, mut white, mut densities) = (0.0, 0.0, vec![0.0; times]);
+    let (mut sum, mut white, mut densities, mut not_excluded) = (0.0, 0.0, vec![0.0; times], Vec::new());
     for ((time, ratio), (logarithm, density)) in points.iter().zip(&likelihoods) {
+        if logarithm - highest >= beta.ln() {
+            not_excluded.push(Mixture { white: *density, time: *time, slow: density * ratio });
+        }
         let weight = prior(*ratio) * (logarithm - highest).exp();
         sum += weight;
         white += weight * density;
         densities[*time] += weight * density * ratio;
     }
-    Some((white / sum, densities.into_iter().map(|density| density / sum).collect()))
+    let slow = densities.into_iter().map(|density| density / sum).collect();
+    Some(Posterior { white: white / sum, slow, not_excluded })
 }
 
 #[cfg(test)]
@@ -76,8 +106,10 @@ mod tests {
         let at_zero = |count: f64| {
             let power = |gains| Power { count: count / 39.0, square: 4.0, gains };
             let powers: Vec<Power> = gains.iter().map(|gains| power(gains.as_slice())).collect();
-            let (white, densities) = posterior_mean(&powers).unwrap();
-            (white + densities.iter().sum::<f64>()) / 4.0
+            let Posterior { white, slow, not_excluded } = posterior(&powers, 1e-5).unwrap();
+            let most = not_excluded.iter().map(|noise| noise.white + noise.slow).fold(0.0, f64::max);
+            assert!(most >= white + slow.iter().sum::<f64>());
+            (white + slow.iter().sum::<f64>()) / 4.0
         };
         let found = [30.0, 1e3, 1e5].map(at_zero);
         // The most that could pass unseen: a strength is known to 1/sqrt(sum n g^2 / 2), 0.02 of white noise in 1e5 contrasts.
@@ -86,7 +118,7 @@ mod tests {
 
     #[test]
     fn nothing_follows_from_nothing() {
-        assert_eq!(posterior_mean(&[]), None);
-        assert_eq!(posterior_mean(&[Power { count: 100.0, square: 0.0, gains: &[0.5] }]), None);
+        assert_eq!(posterior(&[], 1e-5), None);
+        assert_eq!(posterior(&[Power { count: 100.0, square: 0.0, gains: &[0.5] }], 1e-5), None);
     }
 }
