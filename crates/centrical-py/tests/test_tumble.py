@@ -54,6 +54,26 @@ def test_attitudes_without_their_uncertainty():
         ct.tumble(RECORD, attitudes=[[0.0, 0.0, 0.0]], attitude_uncertainty="0.1 deg")
 
 
+def test_slow_rotation(program, tmp_path):
+    # A way through all attitudes at 2.8 deg/s and less, sampled at 20 Hz.
+    random = numpy.random.default_rng(3)
+    part = numpy.arange(12_000) / 12_000
+    passage = (4 * part) % 2
+    pole, round_ = numpy.pi * numpy.minimum(passage, 2 - passage), 8 * numpy.pi * part
+    up = numpy.stack([numpy.sin(pole) * numpy.cos(round_), numpy.sin(pole) * numpy.sin(round_), numpy.cos(pole)], axis=1)
+    readings = 9.81523 * up + [0.1, -0.2, 0.05] + 1e-3 * random.normal(size=up.shape)
+    record = tmp_path / "turned.csv"
+    numpy.savetxt(record, numpy.c_[600 * part, readings], "%.6f", ",", header="t,f1,f2,f3", comments="")
+    given = ct.tumble(record, gravity="9.81523 m/s^2", turning_radius=0.01)
+    said = program("tumble", record, "--gravity", "9.81523 m/s^2", "--turning-radius", "10 mm")
+    assert given.to_json() == said
+    assert json.loads(said)["turning"]["arcs"] > 50 and abs(given["df_2"].value + 0.2) < 4 * given["df_2"].u
+    with pytest.raises(ct.InputError, match="turning-radius"):
+        ct.tumble(record, gravity="9.81523 m/s^2")
+    with pytest.raises(ValueError, match="expected a distance"):
+        ct.tumble(record, turning_radius=-1.0)
+
+
 def test_what_is_no_record_of_rests():
     with pytest.raises(ct.InputError, match="found 1 stretch|found 0 stretches|expected"):
         ct.tumble("examples/tumble/truth.json")

@@ -66,7 +66,8 @@ pub use self::result::{
     ConvergenceSummary, FitSummary, Follows, Method, ModelSummary, MountingPrediction, MountingSummary,
     NextAttitudeSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary, ParameterEstimate, PatternSummary,
     PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA,
-    SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary, ValiditySummary,
+    SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary, TurningSummary,
+    ValiditySummary,
 };
 pub use self::series::{SERIES_SCHEMA, SeriesSummary};
 pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};

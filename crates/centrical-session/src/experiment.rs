@@ -26,7 +26,7 @@ pub use self::plan::{ExpectedValues, Plan};
 pub use self::plateau_name::PlateauName;
 pub(crate) use self::plateaus::write_plateaus_parquet;
 pub use self::plateaus::{PlateauMean, PlateauTable, read_plateaus, write_plateaus};
-pub use self::rests::{KnownAttitudes, PlannedRests, RecordedRests, RestSource, RestTable};
+pub use self::rests::{KnownAttitudes, MOST_DISTANT, PlannedRests, RecordedRests, RestSource, RestTable, Turning};
 pub(crate) use self::session::EXPERIMENT_FILE;
 pub use self::session::{MountingFiles, Session};
 pub use self::speeds::{Measured, SpeedSource, Speeds};

@@ -59,7 +59,7 @@ pub use document::{
     PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn, ResultObjection,
     RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport, SpeedDifference,
     SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, TiltVerdict,
-    ValiditySummary, WatchState, WatchedPlateau, read_history,
+    TurningSummary, ValiditySummary, WatchState, WatchedPlateau, read_history,
 };
 pub use document::{
     BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession,
@@ -73,9 +73,9 @@ pub use document::{
 };
 pub use error::{Error, ErrorKind, NoErrorModel, Place};
 pub use experiment::{
-    ExpectedValues, Folder, KnownAttitudes, Measured, MountingFiles, OutputUnit, Plan, PlannedRests, Planning,
-    PlateauMean, PlateauName, PlateauTable, RecordedRests, RestSource, RestTable, Session, SpeedSource, Speeds,
-    StatedAttitudes, available_time, read_plateaus, write_plateaus,
+    ExpectedValues, Folder, KnownAttitudes, MOST_DISTANT, Measured, MountingFiles, OutputUnit, Plan, PlannedRests,
+    Planning, PlateauMean, PlateauName, PlateauTable, RecordedRests, RestSource, RestTable, Session, SpeedSource,
+    Speeds, StatedAttitudes, Turning, available_time, read_plateaus, write_plateaus,
 };
 pub use job::{
     Assessment, AssessmentRequest, Axes, ComparisonRequest, Compensated, CompensationRequest, Draft, FillIn,

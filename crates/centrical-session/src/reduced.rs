@@ -206,7 +206,8 @@ impl From<PlateauMean> for ReducedPlateau {
             covariance: plateau.covariance,
             once_per_revolution: amplitude(&plateau.once_per_revolution),
             measured_speed: plateau.measured_speed,
-            steadiness: Some(Steadiness::from(&plateau)),
+            // The slope of an arc of slow rotation is its turn.
+            steadiness: (!plateau.turns).then(|| Steadiness::from(&plateau)),
         }
     }
 }

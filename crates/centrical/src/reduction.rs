@@ -41,6 +41,7 @@ mod speed;
 mod steady;
 mod survey;
 mod triangle;
+mod turning;
 
 pub use average::{Averaging, PlateauFit, ReducedMounting, average};
 pub use colour::{EXCLUDED, NoiseModel, plateau_means};
@@ -54,6 +55,7 @@ pub use rests::{CoarseScale, Rests, coarse_scale, reduce_rests};
 pub use speed::{MeasuredSpeed, measured_speeds};
 pub use steady::{Staircase, SteadyStretch, staircase, steady_stretches};
 pub use survey::{Condensed, Extremes, Survey};
+pub use turning::Turning;
 
 /// Finds and averages the scheduled plateaus of one mounting.
 ///

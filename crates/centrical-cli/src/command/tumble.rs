@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::{read_issuer, terminal_table, unit_text, verdict_text, write_all_documents};
 use centrical_session::{
-    ColumnName, Dimension, Error, Folder, NotThatQuantity, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest,
-    claim_folder, refuse_inputs, tumble, unwatched,
+    ColumnName, Dimension, Error, Folder, MOST_DISTANT, NotThatQuantity, STANDARD_GRAVITY, StatedAttitudes,
+    TumbleRequest, claim_folder, refuse_inputs, tumble, unwatched,
 };
 
 use crate::command::calibrate::outputs;
@@ -46,6 +46,9 @@ pub struct Arguments {
     /// Standard uncertainty of these attitudes, such as "0.1 deg"
     #[arg(long, value_name = "QUANTITY", value_parser = angle, requires = "attitudes")]
     attitude_uncertainty: Option<f64>,
+    /// Take slow rotation too, up to 3 deg/s: largest distance of the proof masses from its axis, such as "50 mm"
+    #[arg(long, value_name = "QUANTITY", value_parser = distance)]
+    turning_radius: Option<f64>,
     /// Terms of the error model, as in experiment.toml
     #[arg(long, value_name = "TERMS", value_delimiter = ',', default_values_t = TumbleRequest::USUAL_TERMS.map(str::to_owned))]
     terms: Vec<String>,
@@ -84,6 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
             .map(|(name, uncertainty)| StatedAttitudes::named(name, uncertainty))
             .next()
             .transpose()?,
+        turning_radius: arguments.turning_radius,
         terms: arguments.terms.clone(),
         serial: arguments.serial.clone(),
         date: arguments.date.clone(),
@@ -128,6 +132,12 @@ fn three_columns(text: &str) -> Result<Columns, String> {
 
 fn angle(text: &str) -> Result<f64, NotThatQuantity> {
     quantity(text, Dimension::Angle)
+}
+
+fn distance(text: &str) -> Result<f64, String> {
+    let distance = quantity(text, Dimension::Length).map_err(|not| not.to_string())?;
+    let is_distance = (0.0..=MOST_DISTANT).contains(&distance);
+    if is_distance { Ok(distance) } else { Err(format!("found {text}, expected a distance of 0 to {MOST_DISTANT} m")) }
 }
 
 fn acceleration(text: &str) -> Result<f64, NotThatQuantity> {

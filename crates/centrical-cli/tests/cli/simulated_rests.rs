@@ -115,6 +115,52 @@ fn rests_alone_give_the_truth_back() {
     }
 }
 
+/// A hand that turns the unit slowly and hardly rests: refused as rests, and calibrated to its truth with the turning radius. The folder is a session with
+/// the same numbers.
+#[test]
+fn slow_rotation_counts_as_rests_where_it_is_asked_for() {
+    let folder = TempDir::new().unwrap();
+    let plan = ALONE.replace(
+        "output_unit = \"counts\"\ncounts = { scale = [4e5, 4.1e5, -4.2e5], bias = [0, 100.5, -3] }",
+        "output_unit = \"m/s^2\"",
+    );
+    fs::write(folder.path().join("plan.toml"), format!("{plan}[[tumble]]\nrecord = \"x.csv\"\n")).unwrap();
+    let slowly = TRUTH.replace(
+        "rest = \"5 s\"\nrest_spread = \"3 s\"\nturn_spread = \"1 s\"\nshake = \"1 m/s^2\"",
+        "rest = \"0.3 s\"\nturn = \"60 s\"\nrests = 20",
+    );
+    fs::write(folder.path().join("truth.toml"), slowly).unwrap();
+    let run = |arguments: &[&str]| program::centrical().current_dir(folder.path()).args(arguments).output().unwrap();
+    done(&run(&["simulate", "plan.toml", "--truth", "truth.toml", "--seed", "3", "--out", "made"]));
+    let record = ["tumble", "made/records/tumble-1.csv", "--gravity", "9.81523 m/s^2"];
+    let refused = run(&record);
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(2) && message.contains("--turning-radius"), "{message}");
+    let found = run(&[&record[..], &["--turning-radius", "20 mm", "--out", "tumbled"]].concat());
+    let text = String::from_utf8_lossy(&found.stdout).into_owned();
+    assert_eq!(found.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&found.stderr));
+    assert!(text.contains("arcs of slow rotation") && text.contains("20 mm from its axis"), "{text}");
+    let (result, truth) =
+        (json(&folder.path().join("tumbled/result.json")), json(&folder.path().join("made/truth.json")));
+    assert!(
+        result["turning"]["arcs"].as_u64() > Some(100) && result["turning"]["share"].as_f64() > Some(0.9),
+        "{}",
+        result["turning"]
+    );
+    for parameter in truth["parameters"].as_array().unwrap() {
+        let found = result["parameters"].as_array().unwrap().iter().find(|p| p["name"] == parameter["name"]).unwrap();
+        let [value, uncertainty] = ["value", "standard_uncertainty"].map(|key| found[key].as_f64().unwrap());
+        let error = value - parameter["value"].as_f64().unwrap();
+        // Nine of them: by chance once in 5,000 sets.
+        assert!(error.abs() < 4.1 * uncertainty, "{}: {error} +- {uncertainty}", parameter["name"]);
+    }
+    done(&run(&["calibrate", "tumbled", "--out", "again"]));
+    let again = json(&folder.path().join("again/result.json"));
+    for key in ["parameters", "turning", "budget", "validity", "between_rests"] {
+        assert_eq!(again[key], result[key], "{key}");
+    }
+}
+
 /// An arm with rests after a switch-off: the arm's records are those of the plan without rests, and the calibration knows of the change
 /// of the bias that the truth tells.
 #[test]

@@ -68,6 +68,7 @@ def tumble(
     gravity_uncertainty: Quantity | None = None,
     attitudes: Path | Iterable[Iterable[float]] | None = None,
     attitude_uncertainty: Quantity | None = None,
+    turning_radius: Quantity | None = None,
     terms: Iterable[str] | None = None,
     serial: str = "",
     date: str = "",
@@ -90,6 +91,9 @@ def tumble(
         direction of up in axes of the case, the path of such a table, or ``"cube"`` for its faces, edges and corners.
     attitude_uncertainty
         Their standard uncertainty [rad], or a text such as ``"0.1 deg"``.
+    turning_radius
+        Takes slow rotation too, up to 3 deg/s: the largest distance of the proof masses from its axis [m], or a text such as
+        ``"50 mm"``.
     terms
         Of the error model, as in ``experiment.toml``; bias, scale and misalignment by default.
     out
@@ -107,7 +111,21 @@ def tumble(
     files = [given_file(f"records[{n}]", record) for n, record in enumerate(paths(records), 1)]
     with Bar("finding rests") as shown:
         return Result(
-            _native.tumble(files, time, rate, list(readings), unit, at, known, given, serial, date, out, shown)
+            _native.tumble(
+                files,
+                time,
+                rate,
+                list(readings),
+                unit,
+                at,
+                known,
+                turning_radius,
+                given,
+                serial,
+                date,
+                out,
+                shown,
+            )
         )
 
 

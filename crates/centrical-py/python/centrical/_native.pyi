@@ -204,6 +204,7 @@ def tumble(
     unit: str,
     gravity: tuple[_Quantity | None, _Quantity | None],
     attitudes: tuple[_Path | Sequence[Sequence[float]], _Quantity | None] | None,
+    turning_radius: _Quantity | None,
     terms: Sequence[str] | None,
     serial: str,
     date: str,

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::{Language, write_all_documents};
 use centrical_session::{
-    Dimension, Error, Folder, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder, refuse_inputs,
+    Dimension, Error, Folder, MOST_DISTANT, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder,
+    refuse_inputs,
 };
 use nalgebra::Vector3;
 use pyo3::prelude::*;
@@ -35,6 +36,7 @@ pub fn tumble(
     unit: String,
     gravity: [Option<Amount>; 2],
     attitudes: Option<(Attitudes, Option<Amount>)>,
+    turning_radius: Option<Amount>,
     terms: Option<Vec<String>>,
     serial: String,
     date: String,
@@ -61,6 +63,7 @@ pub fn tumble(
         gravity: gravity.unwrap_or(STANDARD_GRAVITY),
         gravity_uncertainty: uncertainty.unwrap_or(anywhere),
         attitudes: None,
+        turning_radius: distance(turning_radius)?,
         terms: terms.unwrap_or_else(|| TumbleRequest::USUAL_TERMS.map(str::to_owned).to_vec()),
         serial,
         date,
@@ -81,6 +84,18 @@ pub fn tumble(
         Ok(tumble.result)
     })?;
     Ok(result.into())
+}
+
+/// A distance from an axis of rotation [m].
+fn distance(turning_radius: Option<Amount>) -> PyResult<Option<f64>> {
+    let distance = Amount::optional(turning_radius, "turning_radius", Dimension::Length)?;
+    match distance.filter(|distance| !(0.0..=MOST_DISTANT).contains(distance)) {
+        Some(wrong) => {
+            let message = format!("found {wrong} m, expected a distance of 0 to {MOST_DISTANT} m");
+            Err(refused("turning_radius", message))
+        }
+        None => Ok(distance),
+    }
 }
 
 /// Rows that are no direction, and a missing uncertainty, are errors of the call.

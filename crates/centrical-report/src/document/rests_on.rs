@@ -49,10 +49,18 @@ pub(crate) fn counts_as_exact(result: &CalibrationResult, language: Language) ->
 pub(crate) fn presupposed(result: &CalibrationResult, language: Language) -> String {
     let messages = language.messages();
     let presupposed = if result.model.has_arm() { messages.presupposed } else { messages.presupposed_of_rests };
-    let Some(between) = &result.between_rests else { return presupposed.to_owned() };
     let size = |size: f64| format!("{} {}", language.significant(size / MICRO_G, 2), language.unit("ug"));
-    let included = (messages.words.between_rests)(&size(between.scatter), &size(between.drift));
-    format!("{presupposed} {included}")
+    let mut sentences = vec![presupposed.to_owned()];
+    if let Some(between) = &result.between_rests {
+        sentences.push((messages.words.between_rests)(&size(between.scatter), &size(between.drift)));
+    }
+    if let Some(turning) = &result.turning {
+        let in_unit = |value: f64, unit: &str| format!("{} {}", language.significant(value, 2), language.unit(unit));
+        let (rate, radius) = (in_unit(turning.rate.to_degrees(), "deg/s"), in_unit(1e3 * turning.radius, "mm"));
+        let share = language.significant(100.0 * turning.share, 2);
+        sentences.push((messages.words.turning)(turning.arcs, &share, [&rate, &radius, &size(turning.acceleration)]));
+    }
+    sentences.join(" ")
 }
 
 fn table(result: &CalibrationResult, rows: usize, language: Language) -> Table {

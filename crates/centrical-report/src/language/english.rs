@@ -277,6 +277,7 @@ pub(crate) const ENGLISH: Messages = Messages {
         axes: words::axes,
         known_attitudes: words::known_attitudes,
         between_rests: words::between_rests,
+        turning: words::turning,
         next_rest: words::next_rest,
         group: words::group,
         meaning: words::meaning,

@@ -292,6 +292,8 @@ pub(crate) struct Words {
     pub known_attitudes: fn(usize, usize, &str) -> String,
     /// The scatter from rest to rest and the drift of the biases that the uncertainties include.
     pub between_rests: fn(&str, &str) -> String,
+    /// How many arcs of slow rotation count as rests, their share of the weight in percent, rate, distance from the axis and acceleration.
+    pub turning: fn(usize, &str, [&str; 3]) -> String,
     /// Which attitude to add, and what it brings.
     pub next_rest: fn(&NextAttitudeSummary) -> String,
     pub group: fn(Group) -> &'static str,

@@ -41,6 +41,17 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
     let worst = misfits.iter().fold(0.0_f64, |most, misfit| most.max(misfit.abs())) / MICRO_G;
     let of_size = format!("size of the compensated force less gravity: {rms:.0} ug RMS, {worst:.0} ug at most");
     screen.say(2, &of_size);
+    if let Some(turning) = &result.turning {
+        let text = format!(
+            "{} of slow rotation among them, at {} deg/s and less, with {:.0} % of the weight; {} mm from its axis: {} ug in each bias, without rotation about the vertical, which does not show",
+            counted(turning.arcs, "arc"),
+            two_digits(turning.rate.to_degrees()),
+            100.0 * turning.share,
+            two_digits(1e3 * turning.radius),
+            two_digits(turning.acceleration / MICRO_G)
+        );
+        screen.sentence(2, 4, &text);
+    }
     if let Some(between) = &result.between_rests {
         let [scatter, drift] = [between.scatter, between.drift].map(|size| two_digits(size / MICRO_G));
         let text = format!(

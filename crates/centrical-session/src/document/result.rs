@@ -10,6 +10,7 @@ mod next_attitude;
 mod rivals;
 mod schema;
 mod speeds;
+mod turning;
 mod verdict;
 
 pub(crate) use self::axes::Attitude;
@@ -26,4 +27,5 @@ pub use self::schema::{
     StabilityCurve, TermSummary,
 };
 pub use self::speeds::{SpeedDifference, SpeedFinding, SpeedsSummary};
+pub use self::turning::TurningSummary;
 pub use self::verdict::ResultObjection;

@@ -10,5 +10,5 @@ pub(crate) use self::entries::{
 pub(crate) use self::tables::{
     CandidatesTable, CentrifugeTable, ColumnsTable, Form, MeasuredTable, ModelTable, MountingTable, PlanForm,
     PlanTable, PlateauEntry, PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, RawTable, SiteTable,
-    TumbleTable, UnitTable,
+    TumbleTable, TurningTable, UnitTable,
 };

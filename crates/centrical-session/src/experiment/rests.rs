@@ -11,7 +11,7 @@ use centrical_table::Source;
 use nalgebra::Vector3;
 
 use super::folder::Folder;
-use super::form::{AttitudeList, RecordEntry, TumbleTable};
+use super::form::{AttitudeList, RecordEntry, TumbleTable, TurningTable};
 use super::plateaus::{PLATEAUS, PlateauMean, plateaus_of};
 use super::schedule;
 use super::stated_attitudes::{ATTITUDES, CUBE, MOST_UNCERTAIN, StatedAttitudes, directions, read_attitudes};
@@ -32,7 +32,56 @@ pub struct RestTable {
     pub switch_on: SwitchOn,
     /// Variance of the means at most, over the one stated, 1 or more.
     pub noise_at_most: f64,
+    /// Slow rotation among them.
+    pub turning: Option<Turning>,
 }
+
+/// Arcs of slow rotation that count as rests.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turning {
+    /// Number of arcs.
+    pub arcs: usize,
+    /// Their part of all weight along the force, 0 to 1.
+    pub share: f64,
+    /// Fastest rotation of the force against the unit [rad/s].
+    pub rate: f64,
+    /// Largest distance of the proof masses from the axis of rotation [m].
+    pub radius: f64,
+    /// Standard uncertainty of an acceleration common to all rests, in each axis of the unit [m/s^2].
+    pub acceleration: f64,
+}
+
+impl Turning {
+    fn stated(at: &TomlPath, table: &TurningTable) -> Result<Self, Error> {
+        let zero_to =
+            |key, quantity, dimension, largest, meaning| at.bounded(key, quantity, dimension, (0.0, largest), meaning);
+        if !(0.0..=1.0).contains(&table.share) {
+            return Err(at.unexpected("turning.share", table.share.to_string(), "a part of the weight, 0 to 1"));
+        }
+        Ok(Self {
+            arcs: table.arcs,
+            share: table.share,
+            rate: zero_to("turning.rate", &table.rate, Dimension::Speed, 1.0, "a slow rate, up to 1 rad/s")?,
+            radius: zero_to(
+                "turning.radius",
+                &table.radius,
+                Dimension::Length,
+                MOST_DISTANT,
+                "a distance of 0 to 10 m",
+            )?,
+            acceleration: zero_to(
+                "turning.acceleration",
+                &table.acceleration,
+                Dimension::Acceleration,
+                10.0,
+                "a standard uncertainty from 0 to 10 m/s^2",
+            )?,
+        })
+    }
+}
+
+/// Largest distance from an axis of rotation [m]: beyond it a unit was mistaken.
+pub const MOST_DISTANT: f64 = 10.0;
 
 /// Where rests come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,15 +172,21 @@ impl RestTable {
                     return Err(at.unexpected("noise_at_most", ratio.to_string(), expected));
                 }
             };
-            Ok(Self { switch_on, noise_at_most, ..rests? })
+            let turning = table.turning.as_ref().map(|turning| Turning::stated(&at, turning)).transpose()?;
+            if turning.is_some() && table.rests.is_none() {
+                let expected = "slow rotation beside a table of rests";
+                return Err(at.unexpected("turning", "slow rotation without one", expected));
+            }
+            let switch_on = SwitchOn { turning: turning.map_or(0.0, |turning| turning.acceleration), ..switch_on };
+            Ok(Self { switch_on, noise_at_most, turning, ..rests? })
         });
         named.collect()
     }
 
     /// Rests in the first switch-on, without means.
     fn of(source: RestSource, attitudes: Option<KnownAttitudes>) -> Self {
-        let switch_on = SwitchOn { number: 1, bias_change: None };
-        Self { source, means: Vec::new(), attitudes, switch_on, noise_at_most: 1.0 }
+        let switch_on = SwitchOn { number: 1, bias_change: None, turning: 0.0 };
+        Self { source, means: Vec::new(), attitudes, switch_on, noise_at_most: 1.0, turning: None }
     }
 
     fn measured(at: &TomlPath, folder: &Folder, table: &TumbleTable, rests: &str) -> Result<Self, Error> {
@@ -342,7 +397,7 @@ fn switch_on(file: &Path, tables: &[TumbleTable], n: usize) -> Result<SwitchOn, 
             return Err(at.unexpected("bias_change", quantity.to_string(), expected));
         }
     }
-    Ok(SwitchOn { number, bias_change })
+    Ok(SwitchOn { number, bias_change, turning: 0.0 })
 }
 
 /// What has been measured lasted as long as it did.

@@ -29,6 +29,7 @@ fn tumbled(folder: &Path, attitudes: Option<StatedAttitudes>) -> CalibrationResu
         gravity: 9.81523,
         gravity_uncertainty: 0.0,
         attitudes,
+        turning_radius: None,
         terms: TumbleRequest::USUAL_TERMS.map(str::to_owned).to_vec(),
         serial: String::new(),
         date: String::new(),

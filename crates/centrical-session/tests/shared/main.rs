@@ -128,6 +128,7 @@ fn request(file: &str, has_time: bool, readings: [ColumnName; 3], unit: &str, gr
         gravity,
         gravity_uncertainty: 0.0,
         attitudes: None,
+        turning_radius: None,
         terms: TumbleRequest::USUAL_TERMS.map(str::to_owned).to_vec(),
         serial: String::new(),
         date: String::new(),

@@ -226,6 +226,17 @@ impl Experiment {
         others
     }
 
+    /// The switch-ons in which the unit turned slowly, each once.
+    pub fn turned_switch_ons(&self) -> Vec<SwitchOn> {
+        let mut turned: Vec<SwitchOn> = Vec::new();
+        for switch_on in self.positions.iter().map(|position| position.switch_on) {
+            if switch_on.turning > 0.0 && turned.iter().all(|other| other.number != switch_on.number) {
+                turned.push(switch_on);
+            }
+        }
+        turned
+    }
+
     /// Whether a mounting is on the arm, and not a rest in a free attitude.
     pub fn is_on_arm(&self, mounting: usize) -> bool {
         !self.positions[self.mountings[mounting].position].is_free

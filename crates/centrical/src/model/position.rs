@@ -30,6 +30,9 @@ pub struct SwitchOn {
     /// Standard uncertainty of the change of each bias against the reference, the switch-on of the arm or else of the first rest
     /// [m/s^2]; `None`: the one stated for all, [`TypeB::bias_change`](super::TypeB::bias_change).
     pub bias_change: Option<f64>,
+    /// Standard uncertainty of an acceleration in axes of the unit, common to all its rests [m/s^2]: that about the axis of a slow
+    /// rotation, zero without one.
+    pub turning: f64,
 }
 
 impl Position {
@@ -47,7 +50,7 @@ impl Position {
         // Opposite vectors have no shortest rotation between them; half a turn about axis 1 is one of many.
         let half_turn = || Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
         let p_zy = Rotation3::rotation_between(&Vector3::z(), f_z).unwrap_or_else(half_turn).into_inner();
-        let switch_on = SwitchOn { number: 1, bias_change: None };
+        let switch_on = SwitchOn { number: 1, bias_change: None, turning: 0.0 };
         Self { pair: id.clone(), id, p_zy, is_free: true, attitude_uncertainty: None, switch_on }
     }
 

@@ -70,6 +70,8 @@ pub enum Source {
     Attitude,
     /// Change of the bias from one switch-on to another, of the arm and of rests in free attitudes.
     BiasChange,
+    /// Acceleration about the axis of a slow rotation.
+    Turning,
     /// Resolution of the reading.
     Resolution,
     /// Effects that the model leaves out, as stated.
@@ -78,7 +80,7 @@ pub enum Source {
 
 impl Source {
     /// All sources in the order of the budget.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Noise,
         Self::PlateauSpeed,
         Self::Priors,
@@ -91,6 +93,7 @@ impl Source {
         Self::ProofMasses,
         Self::Attitude,
         Self::BiasChange,
+        Self::Turning,
         Self::Resolution,
         Self::Effects,
     ];
@@ -102,7 +105,7 @@ impl Source {
 
     /// Whether its errors stay the same from session to session on one station: stated, and not drawn anew for every plateau.
     pub fn is_shared(self) -> bool {
-        !self.is_weighed() && !matches!(self, Self::RestAngle | Self::BiasChange | Self::Resolution)
+        !self.is_weighed() && !matches!(self, Self::RestAngle | Self::BiasChange | Self::Turning | Self::Resolution)
     }
 
     /// Its name for people.
@@ -120,6 +123,7 @@ impl Source {
             Self::ProofMasses => "proof masses",
             Self::Attitude => "attitudes",
             Self::BiasChange => "change of bias",
+            Self::Turning => "slow rotation",
             Self::Resolution => "resolution",
             Self::Effects => "effects left out",
         }
@@ -168,10 +172,15 @@ impl TypeB {
         for (position, axis) in on_arm.flat_map(|k| (0..3).map(move |axis| (k, axis))) {
             add(Source::Attitude, Effect::PositionTurn { position, axis }, self.attitude);
         }
-        for SwitchOn { number: switch_on, bias_change } in experiment.other_switch_ons() {
+        for SwitchOn { number: switch_on, bias_change, .. } in experiment.other_switch_ons() {
             for axis in 0..3 {
                 let u = bias_change.unwrap_or(self.bias_change);
                 add(Source::BiasChange, Effect::BiasChange { axis, switch_on }, u);
+            }
+        }
+        for SwitchOn { number: switch_on, turning, .. } in experiment.turned_switch_ons() {
+            for axis in 0..3 {
+                add(Source::Turning, Effect::BiasChange { axis, switch_on }, turning);
             }
         }
         for first in repeated_rests(experiment) {

@@ -10,7 +10,7 @@ mod stuck;
 use nalgebra::{Matrix3, Vector3};
 
 use super::error::ReductionError;
-use super::locate::{ClockAgreement, ClockOffset, Located, SpeedReading, Window};
+use super::locate::{ClockAgreement, ClockOffset, Located, SpeedReading, TURNING, Window};
 use super::plateau::LeftOut;
 use super::record::RecordSlice;
 use super::survey::Blocks;
@@ -130,6 +130,7 @@ impl<'a> Averaging<'a> {
             left_out,
             mean: coefficients[terms - 1],
             once_per_revolution: if shape.omega == 0.0 { [zero; 2] } else { [coefficients[0], coefficients[1]] },
+            turning: if shape.turning.is_some() { std::array::from_fn(|k| coefficients[k]) } else { [zero; TURNING] },
             settling: shape.settling.map_or(zero, |_| coefficients[terms - 2]),
             shape: *shape,
             digit: blocks.digit,

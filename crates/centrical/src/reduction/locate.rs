@@ -10,6 +10,7 @@ mod rests;
 mod rotation;
 mod shape;
 mod tachometer;
+mod turning;
 mod window;
 
 use std::ops::Range;
@@ -21,7 +22,7 @@ use super::plateau::ScheduledPlateau;
 use super::survey::{Blocks, Survey};
 use crate::statistics::whole;
 pub use clock::{ClockAgreement, ClockOffset, SpeedTrace};
-pub(super) use shape::Shape;
+pub(super) use shape::{Interval, Shape, TURNING};
 pub use tachometer::{PulseTrain, SpeedReading};
 pub(super) use window::Window;
 
@@ -81,35 +82,60 @@ pub fn locate(
     Ok(located)
 }
 
-/// Finds the rests of a surveyed record without a schedule: wherever the unit stood still.
+/// Finds the rests of a surveyed record without a schedule: wherever the unit stood still. With `turning`, what turns slowly between them
+/// as well, in arcs.
 ///
 /// # Errors
 /// [`ReductionError::TooShort`] if the record is too short.
-pub fn locate_rests(survey: &Survey) -> Result<Located, ReductionError> {
+pub fn locate_rests(survey: &Survey, turning: bool) -> Result<Located, ReductionError> {
     let blocks = survey.blocks()?;
-    let cores = rests::rests(&blocks);
-    let schedule = |core: &Range<usize>| ScheduledPlateau { omega: 0.0, nominal_z: blocks.level(core) };
-    let schedule: Vec<ScheduledPlateau> = cores.iter().map(schedule).collect();
-    // The block at either end may hold the onset of the motion.
-    let window = |core: &Range<usize>| {
-        let half = 0.5 * blocks.width;
-        let span = [blocks.t[core.start + 1] - half, blocks.t[core.end - 2] + half];
-        Window { span, shape: Shape { start: span[0], omega: 0.0, settling: None } }
-    };
-    let windows: Vec<Window> = cores.iter().map(window).collect();
-    Ok(Located {
-        speeds: vec![None; windows.len()],
-        readings: vec![None; windows.len()],
-        clock_offset: None,
-        agreement: None,
-        ramps: Vec::new(),
-        blocks,
-        windows,
-        settling_time: None,
-        schedule,
-    })
+    let rests = rests::rests(&blocks);
+    let arcs = if turning { turning::arcs(&blocks, &rests) } else { Vec::new() };
+    Ok(Located::without_schedule(blocks, &rests, &arcs))
 }
 
+/// Stretches of a surveyed record, from and to [s], as if they were rests.
+pub(super) fn locate_spans(survey: &Survey, spans: &[[f64; 2]]) -> Result<Located, ReductionError> {
+    let located = Located::without_schedule(survey.blocks()?, &[], &[]);
+    let window = |span: &[f64; 2]| {
+        let shape = Shape { start: span[0], omega: 0.0, settling: None, turning: None };
+        Window { span: *span, shape }
+    };
+    Ok(Located { windows: spans.iter().map(window).collect(), ..located })
+}
+
+impl Located {
+    /// Of rests and of arcs that turn, in the order of time.
+    fn without_schedule(blocks: Blocks, rests: &[Range<usize>], arcs: &[Range<usize>]) -> Self {
+        let cores = |turns: bool, ranges: &[Range<usize>]| -> Vec<(bool, Range<usize>)> {
+            ranges.iter().map(|range| (turns, range.clone())).collect()
+        };
+        let mut cores = [cores(false, rests), cores(true, arcs)].concat();
+        cores.sort_by_key(|(_, core)| core.start);
+        let width = blocks.width;
+        let windows = cores.iter().map(|(turns, core)| {
+            // The block at either end may hold the onset of the motion.
+            let (first, last) = if *turns { (core.start, core.end - 1) } else { (core.start + 1, core.end - 2) };
+            let span = [blocks.t[first] - 0.5 * width, blocks.t[last] + 0.5 * width];
+            let interval = Interval { middle: 0.5 * (span[0] + span[1]), half: 0.5 * (span[1] - span[0]) };
+            let shape = Shape { start: span[0], omega: 0.0, settling: None, turning: turns.then_some(interval) };
+            Window { span, shape }
+        });
+        let windows: Vec<Window> = windows.collect();
+        let schedule = cores.iter().map(|(_, core)| ScheduledPlateau { omega: 0.0, nominal_z: blocks.level(core) });
+        Self {
+            schedule: schedule.collect(),
+            speeds: vec![None; windows.len()],
+            readings: vec![None; windows.len()],
+            clock_offset: None,
+            agreement: None,
+            ramps: Vec::new(),
+            blocks,
+            windows,
+            settling_time: None,
+        }
+    }
+}
 impl Located {
     /// Takes the speeds of the plateaus from a counter of revolutions, in place of those of the telemetry; its clock is found
     /// by the ramps.

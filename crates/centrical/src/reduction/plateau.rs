@@ -30,7 +30,9 @@ pub struct PlateauMean {
     pub covariance: Matrix3<f64>,
     /// Once-per-revolution term: column 0 in phase with the start of the window, column 1 a quarter turn later [m/s^2].
     pub once_per_revolution: [Vector3<f64>; 2],
-    /// Slope of the reading over the window [m/s^3]. It does not enter the mean.
+    /// Whether the unit turns slowly: the mean is that of a rest in the attitude of the arc.
+    pub turns: bool,
+    /// Slope of the reading over the window [m/s^3]; zero where the unit turns. It does not enter the mean.
     pub drift: Vector3<f64>,
     /// Standard uncertainty of the slope [m/s^3].
     pub drift_uncertainty: Vector3<f64>,

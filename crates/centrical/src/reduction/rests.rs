@@ -3,13 +3,14 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::average::{ReducedMounting, average};
+use super::average::{PlateauFit, ReducedMounting, average};
 use super::colour::{NoiseModel, plateau_means};
 use super::error::ReductionError;
-use super::locate::locate_rests;
+use super::locate::{Located, locate_rests};
 use super::plateau::PlateauMean;
 use super::record::RecordSlice;
 use super::survey::Survey;
+use super::turning::{Turning, draw_out, is_smooth, noise_along};
 use crate::linalg::least_squares::LeastSquares;
 
 /// The rests of some records.
@@ -22,24 +23,43 @@ pub struct Rests {
     ///
     /// [`EXCLUDED`]: super::EXCLUDED
     pub noise_at_most: f64,
+    /// Slow rotation, if it is among them.
+    pub turning: Option<Turning>,
 }
 
 /// The means of the rests of some records. The colour of the noise is pooled over all of them. A rest whose samples are not steady
-/// is left out.
+/// is left out. With `turning`, arcs of slow rotation are rests too, if the attitudes of all show an ellipsoid.
 ///
 /// # Errors
 /// [`ReductionError`] if a record is invalid (lengths, times) or too short.
-pub fn reduce_rests(records: &[RecordSlice]) -> Result<Rests, ReductionError> {
-    let reduced = records.iter().map(|record| {
-        let located = locate_rests(&Survey::of(*record)?)?;
+pub fn reduce_rests(records: &[RecordSlice], turning: bool) -> Result<Rests, ReductionError> {
+    let located = records.iter().map(|record| {
+        let located = locate_rests(&Survey::of(*record)?, turning)?;
         let fits = (0..located.windows().len()).filter_map(|rest| average(&located, rest, *record, 0).ok());
-        let rests = fits.map(|fit| fit.of_rest(located.sample_noise())).collect();
-        Ok(ReducedMounting::of_rests(located, rests))
+        let fits: Vec<PlateauFit> = fits.filter(|fit| is_smooth(fit, located.sample_noise())).collect();
+        Ok((located, fits))
     });
-    let reduced: Vec<ReducedMounting> = reduced.collect::<Result<_, _>>()?;
-    let noise = NoiseModel::pool_rests(&reduced);
+    let mut located: Vec<(Located, Vec<PlateauFit>)> = located.collect::<Result<_, _>>()?;
+    let with_noise = located.iter_mut().flat_map(|(located, fits)| {
+        let white = *located.sample_noise();
+        fits.iter_mut().map(move |fit| (fit, white))
+    });
+    let turned = draw_out(with_noise);
+    let mut along = Vec::new();
+    for (record, (located, fits)) in records.iter().zip(&mut located) {
+        match &turned {
+            Some((ellipsoid, _)) => along.extend(noise_along(*record, fits, ellipsoid, located.sample_noise())?),
+            None => fits.retain(|fit| !fit.turns()),
+        }
+    }
+    let reduced = located.into_iter().map(|(located, fits)| {
+        let rests = fits.into_iter().map(|fit| fit.of_rest(located.sample_noise())).collect();
+        ReducedMounting::of_rests(located, rests)
+    });
+    let reduced: Vec<ReducedMounting> = reduced.collect();
+    let noise = NoiseModel::pool_rests(&reduced, &along);
     let means = reduced.iter().map(|record| plateau_means(record, &noise)).collect();
-    Ok(Rests { means, noise_at_most: noise.at_most(&reduced) })
+    Ok(Rests { means, noise_at_most: noise.at_most(&reduced), turning: turned.map(|(_, turning)| turning) })
 }
 
 /// Coarse scale and bias of three newtonometers: `reading = scale f + bias`.

@@ -80,6 +80,7 @@ impl Calibration<'_> {
                 | Source::ProofMasses
                 | Source::Attitude
                 | Source::BiasChange
+                | Source::Turning
                 | Source::Effects => DMatrix::zeros(model.parameters().len(), 0),
             };
             let of_source = model.influences().iter().enumerate().filter(|(_, influence)| influence.source == source);

@@ -32,6 +32,7 @@ mod selection;
 mod simulate;
 mod simulated_noise;
 mod simulated_rests;
+mod slow_rotation;
 mod speeds;
 mod stated;
 mod steady;

@@ -4,45 +4,45 @@ use centrical::reduction::{PlateauMean, Record, coarse_scale, reduce_rests};
 use centrical::uncertainty::{Level, Rivals, chance_of_residuals};
 use centrical::{
     Calibration, Centrifuge, Data, ErrorModel, Experiment, Fit, MeasurementModel, Mounting, Observation, PairRelation,
-    Position, ReferencePoint, SetPoint, Site, TypeB, Unit,
+    Position, ReferencePoint, SetPoint, Site, SwitchOn, TypeB, Unit,
 };
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 
 use crate::common::{Random, exact};
 
-const GRAVITY: f64 = 9.815;
-const RATE: f64 = 100.0;
+pub const GRAVITY: f64 = 9.815;
+pub const RATE: f64 = 100.0;
 
 /// A unit that is turned again and again.
-struct Made {
-    record: Record,
+pub struct Made {
+    pub record: Record,
     /// From, to of each rest [s].
-    rests: Vec<[f64; 2]>,
+    pub rests: Vec<[f64; 2]>,
     /// `df_1..3`, then `G0` row by row of its lower triangle.
-    truth: [f64; 9],
+    pub truth: [f64; 9],
 }
 
 /// How a record is made.
 #[derive(Clone, Copy)]
-struct Making {
-    rests: usize,
+pub struct Making {
+    pub rests: usize,
     /// Shortest and longest rest [s].
-    lasting: [f64; 2],
+    pub lasting: [f64; 2],
     /// White noise of a sample [m/s^2].
-    white: Vector3<f64>,
+    pub white: Vector3<f64>,
     /// Noise of a correlation time of a second [m/s^2].
-    slow: f64,
+    pub slow: f64,
     /// Tremor of the attitude [rad].
-    tremor: f64,
+    pub tremor: f64,
     /// Chance that a rest is bumped.
-    bumps: f64,
+    pub bumps: f64,
     /// How much longer the first rest is [s].
-    first: f64,
+    pub first: f64,
     /// Change of the bias while the unit warms up, with a time constant of a third of the record [m/s^2].
-    warming: f64,
+    pub warming: f64,
 }
 
-const BY_HAND: Making = Making {
+pub const BY_HAND: Making = Making {
     rests: 22,
     lasting: [2.0, 6.0],
     white: Vector3::new(0.02, 0.02, 0.03),
@@ -53,7 +53,7 @@ const BY_HAND: Making = Making {
     warming: 0.0,
 };
 
-const ON_A_TABLE: Making = Making {
+pub const ON_A_TABLE: Making = Making {
     rests: 26,
     lasting: [5.0, 8.0],
     white: Vector3::new(1e-3, 1e-3, 1e-3),
@@ -65,7 +65,7 @@ const ON_A_TABLE: Making = Making {
 };
 
 /// Noise of a second of about the weight of the white noise in the mean of a rest, and just to be found within rests.
-const DOUBTFUL: Making = Making {
+pub const DOUBTFUL: Making = Making {
     rests: 24,
     lasting: [3.0, 6.0],
     white: Vector3::new(4e-3, 4e-3, 4e-3),
@@ -77,17 +77,17 @@ const DOUBTFUL: Making = Making {
 };
 
 /// First-order Markov noise of unit variance.
-struct Markov {
+pub struct Markov {
     keep: f64,
     value: Vector3<f64>,
 }
 
 impl Markov {
-    fn new(seconds: f64, random: &mut Random) -> Self {
+    pub fn new(seconds: f64, random: &mut Random) -> Self {
         Self { keep: (-1.0 / (RATE * seconds)).exp(), value: Vector3::from_fn(|_, _| random.normal()) }
     }
 
-    fn next(&mut self, random: &mut Random) -> Vector3<f64> {
+    pub fn next(&mut self, random: &mut Random) -> Vector3<f64> {
         let fresh = (1.0 - self.keep * self.keep).sqrt();
         self.value = self.value * self.keep + Vector3::from_fn(|_, _| fresh * random.normal());
         self.value
@@ -173,12 +173,19 @@ fn problem(positions: Vec<Position>, means: &[(Vector3<f64>, Matrix3<f64>)]) -> 
 
 /// The rests of a made record and the model of them.
 fn problem_of(made: &Made) -> (MeasurementModel, Vec<Observation>) {
-    problem_of_rests(&reduce_rests(&[made.record.as_slice()]).unwrap().means.concat())
+    problem_of_rests(&reduce_rests(&[made.record.as_slice()], false).unwrap().means.concat())
 }
 
 fn problem_of_rests(rests: &[PlateauMean]) -> (MeasurementModel, Vec<Observation>) {
+    problem_of_turned(rests, 0.0)
+}
+
+/// The same with an acceleration about the axis of rotation of this standard uncertainty [m/s^2].
+fn problem_of_turned(rests: &[PlateauMean], turning: f64) -> (MeasurementModel, Vec<Observation>) {
     let means: Vec<_> = rests.iter().map(|rest| (rest.mean, rest.covariance)).collect();
-    let positions = means.iter().enumerate().map(|(n, (mean, _))| Position::free(n.to_string(), mean)).collect();
+    let switch_on = SwitchOn { number: 1, bias_change: None, turning };
+    let position = |(n, mean): (usize, &Vector3<f64>)| Position::free(n.to_string(), mean).in_switch_on(switch_on);
+    let positions = means.iter().map(|(mean, _)| mean).enumerate().map(position).collect();
     problem(positions, &means)
 }
 
@@ -198,7 +205,7 @@ fn rests_are_found_as_they_were_made() {
     for making in [BY_HAND, ON_A_TABLE, Making { bumps: 0.0, lasting: [1.2, 2.0], ..BY_HAND }] {
         for _ in 0..10 {
             let made = made(&making, &mut random);
-            let found = reduce_rests(&[made.record.as_slice()]).unwrap().means.concat();
+            let found = reduce_rests(&[made.record.as_slice()], false).unwrap().means.concat();
             // A bump may part one rest in two.
             let bumped = if making.bumps > 0.0 { making.rests / 4 } else { 0 };
             assert!((making.rests..=making.rests + bumped).contains(&found.len()), "{}", found.len());
@@ -215,13 +222,13 @@ fn rests_are_found_as_they_were_made() {
 fn neither_rests_nor_motion_are_invented() {
     let mut random = Random::new(6);
     let still = made(&Making { rests: 1, lasting: [60.0, 60.0], bumps: 0.0, ..BY_HAND }, &mut random);
-    assert_eq!(reduce_rests(&[still.record.as_slice()]).unwrap().means.concat().len(), 1);
+    assert_eq!(reduce_rests(&[still.record.as_slice()], false).unwrap().means.concat().len(), 1);
     let count = 6000;
     let t: Vec<f64> = (0..count).map(|i| f64::from(i) / RATE).collect();
     let turned = |phase: f64| t.iter().map(|t| GRAVITY * (1.7 * t + phase).sin() + 0.01 * random.normal()).collect();
     let mut turned = turned;
     let moving = Record { f_z: [turned(0.0), turned(1.6), turned(0.3)], t: t.clone() };
-    assert!(reduce_rests(&[moving.as_slice()]).unwrap().means.concat().is_empty());
+    assert!(reduce_rests(&[moving.as_slice()], false).unwrap().means.concat().is_empty());
 }
 
 /// Readings in counts: scale and bias to what misalignment leaves, from the rests alone.
@@ -236,7 +243,7 @@ fn counts_become_accelerations() {
         }
     }
     let means: Vec<_> =
-        reduce_rests(&[made.record.as_slice()]).unwrap().means.concat().iter().map(|rest| rest.mean).collect();
+        reduce_rests(&[made.record.as_slice()], false).unwrap().means.concat().iter().map(|rest| rest.mean).collect();
     assert_eq!(means.len(), ON_A_TABLE.rests);
     let coarse = coarse_scale(&means, GRAVITY).unwrap();
     for axis in 0..3 {
@@ -267,27 +274,33 @@ fn errors_are_as_large_as_stated() {
 }
 
 /// A made record judged and calibrated as a session is.
-struct Judged {
+pub struct Judged {
     /// Squared errors over their covariance, with what differs between rests where the record is not refused.
-    squared: f64,
+    pub squared: f64,
     /// The same without.
-    of_noise: f64,
-    is_refused: bool,
+    pub of_noise: f64,
+    pub is_refused: bool,
     /// Whether chi^2 would refuse it if the noise were known.
-    is_by_noise: bool,
-    is_drifting: bool,
+    pub is_by_noise: bool,
+    pub is_drifting: bool,
 }
 
 fn judged(making: &Making, random: &mut Random) -> Judged {
-    let mut made = made(making, random);
-    let found = reduce_rests(&[made.record.as_slice()]).unwrap();
+    judged_record(making, made(making, random), None)
+}
+
+/// A record of slow rotation where the distance from its axis is stated [m].
+pub fn judged_record(making: &Making, mut made: Made, radius: Option<f64>) -> Judged {
+    let found = reduce_rests(&[made.record.as_slice()], radius.is_some()).unwrap();
+    // A rectangular distribution up to the most that the acceleration is.
+    let turning = radius.zip(found.turning).map_or(0.0, |(radius, found)| found.spin * radius / 3_f64.sqrt());
     let rests = found.means.concat();
     // The bias of a unit that warms up is its mean over the rests.
     let third = made.record.t.len() as f64 / RATE / 3.0;
     let warmed = rests.iter().map(|rest| 1.0 - (-(rest.window[0] + rest.window[1]) / (2.0 * third)).exp());
     let warmed = making.warming * warmed.sum::<f64>() / rests.len() as f64;
     made.truth[..3].iter_mut().for_each(|bias| *bias += warmed);
-    let (model, observations) = problem_of_rests(&rests);
+    let (model, observations) = problem_of_turned(&rests, turning);
     let data = Data::new(&model, observations.clone()).unwrap();
     let calibration = Calibration::exact(&data).unwrap();
     let level = Level::Objection;
@@ -312,6 +325,16 @@ fn judged(making: &Making, random: &mut Random) -> Judged {
         is_by_noise,
         is_drifting: shown.iter().any(|test| test.rival.name().contains("drift")),
     }
+}
+
+/// Noise that may pass unseen within rests refuses no sound record. Taken for known it refuses some.
+#[test]
+fn doubtful_noise_refuses_no_sound_record() {
+    let mut random = Random::new(14);
+    let records: Vec<Judged> = (0..40).map(|_| judged(&DOUBTFUL, &mut random)).collect();
+    assert!(records.iter().any(|record| record.is_by_noise));
+    // By chance in one of 125 sets.
+    assert!(!records.iter().any(|record| record.is_refused));
 }
 
 /// Many tumbles of each kind: the squared error over the covariance, and what the verdict says. Records that are not refused err by no more than
@@ -356,7 +379,10 @@ fn ten_thousand_runs_of_tumbles() {
             // Each of two tests refuses one sound record of 10,000: three of 300 come by chance once in 30,000 sets.
             assert!(refused <= 2, "{name}: {refused}");
         }
-        if kind < 10 {
+        if kind == 3 || kind == 4 {
+            // Found in a part of the records only: too small there, and brought up by the residuals.
+            assert!(mean < of_noise, "{name}: {mean}, {of_noise}");
+        } else if kind < 10 {
             // The squared error of nine parameters has a variance of 18 at least: three standard deviations of the mean, and 3 %.
             let chance = 3.0 * (2.0 / count).sqrt();
             assert!(mean < 1.03 + chance, "{name}: {mean}");

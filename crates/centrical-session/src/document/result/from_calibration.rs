@@ -16,6 +16,7 @@ use super::schema::{
     TermSummary,
 };
 use super::speeds::SpeedsSummary;
+use super::turning::TurningSummary;
 use crate::document::steadiness::{DriftSummary, TiltSummary};
 use crate::experiment::{OutputUnit, Session};
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
@@ -63,6 +64,7 @@ impl CalibrationResult {
             observability: ObservabilitySummary::new(model, fit),
             next_attitude: NextAttitudeSummary::of(calibration)?,
             between_rests: None,
+            turning: TurningSummary::of(session),
             fit: FitSummary::new(calibration),
             mountings: mountings(model, reduced),
             plateaus: plateaus(calibration, session, reduced),

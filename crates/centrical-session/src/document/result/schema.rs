@@ -18,6 +18,7 @@ use super::budget_and_checks::{BudgetSummary, ValiditySummary};
 use super::next_attitude::NextAttitudeSummary;
 use super::rivals::RestsOn;
 use super::speeds::SpeedsSummary;
+use super::turning::TurningSummary;
 use crate::document::json;
 use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
 use crate::error::{Error, Place};
@@ -59,6 +60,9 @@ pub struct CalibrationResult {
     /// What differs from rest to rest beside the noise within rests; of acceptable rests alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub between_rests: Option<BetweenRestsSummary>,
+    /// Slow rotation among the rests, where it was asked for and found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turning: Option<TurningSummary>,
     /// How the fit went.
     pub fit: FitSummary,
     /// The mountings, in the order of the session.

@@ -405,6 +405,24 @@ pub(crate) struct TumbleTable {
     pub switch_on: Option<String>,
     /// Variance of the means of the table at most, over the one that it states: the colour of their noise is known poorly. 1 if absent.
     pub noise_at_most: Option<f64>,
+    /// Slow rotation among the rests of the table.
+    pub turning: Option<TurningTable>,
+}
+
+/// Arcs of slow rotation that count as rests, such as `centrical tumble --turning-radius` writes them.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TurningTable {
+    /// Number of arcs among the rests.
+    pub arcs: usize,
+    /// Their part of all weight along the force, 0 to 1.
+    pub share: f64,
+    /// Fastest rotation of the force against the unit.
+    pub rate: Quantity,
+    /// Largest distance of the proof masses from the axis of rotation.
+    pub radius: Quantity,
+    /// Standard uncertainty of an acceleration common to all rests, in each axis of the unit.
+    pub acceleration: Quantity,
 }
 
 /// The schedule common to mountings.

@@ -13,20 +13,24 @@ use crate::experiment::{KnownAttitudes, RecordedRests, RestTable, Session};
 use crate::record::read_records;
 use crate::reduced::{ReducedPlateau, rest_rows};
 
-/// The rests of all records: one search for a tumble and for a session. The colour of the noise is pooled over all of them. Messages
+/// The rests of all records: one search for a tumble and for a session; with `turning`, arcs of slow rotation too. The colour of the noise is pooled over all of them. Messages
 /// name `file`.
 ///
 /// # Errors
 /// If a record is invalid, or there are fewer than two rests: a single one shows nothing.
-pub(crate) fn find_rests(records: &[Record], file: &Path) -> Result<Rests, Error> {
+pub(crate) fn find_rests(records: &[Record], turning: bool, file: &Path) -> Result<Rests, Error> {
     let slices: Vec<_> = records.iter().map(Record::as_slice).collect();
     let refused = |source| Error::Reduction { file: file.to_owned(), mounting: 1, source: Box::new(source) };
-    let rests = reduce_rests(&slices).map_err(refused)?;
+    let rests = reduce_rests(&slices, turning).map_err(refused)?;
     let count: usize = rests.means.iter().map(Vec::len).sum();
     if count < 2 {
         let stretches = if count == 1 { "stretch" } else { "stretches" };
         let found = format!("{count} {stretches} in which the unit rests");
-        let expected = "a unit that is turned, left alone for a second or more, and turned again";
+        let expected = if turning {
+            "a unit that is turned, left alone for a second or more, and turned again; or slow rotation through attitudes that show all coefficients"
+        } else {
+            "a unit that is turned, left alone for a second or more, and turned again; slow rotation counts with --turning-radius"
+        };
         return Err(Error::content(file, Place::Whole, found, expected));
     }
     Ok(rests)
@@ -61,7 +65,7 @@ pub(crate) fn with_all_rests<'s>(
         let averaged = session.rests().map(ReducedPlateau::from).collect();
         return Ok((Cow::Borrowed(session), averaged));
     };
-    let Rests { means, noise_at_most } = find_rests(&records, file)?;
+    let Rests { means, noise_at_most, .. } = find_rests(&records, false, file)?;
     let mut found = means.into_iter();
     let mut rests = Vec::new();
     let mut tables = session.rest_tables.clone();

@@ -45,7 +45,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         answers(request, &record, file)?;
         records.push(record);
     }
-    let mut rests = find_rests(&records, &first(request))?;
+    let mut rests = find_rests(&records, request.turning_radius.is_some(), &first(request))?;
     advance(progress, 0)?;
     let coarse = if Dimension::Acceleration.factor(&request.unit).is_some() {
         None
@@ -54,7 +54,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         for record in &mut records {
             in_si(record, &coarse);
         }
-        rests = find_rests(&records, &first(request))?;
+        rests = find_rests(&records, request.turning_radius.is_some(), &first(request))?;
         Some(coarse)
     };
     let means = means(&rests);
@@ -65,7 +65,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         has_unit(request, &means)?;
     }
     let known = (request.attitudes.as_ref()).map(|stated| stated.of_rests(&means, &first(request))).transpose()?;
-    let text = session_text(request, coarse.as_ref(), rests.noise_at_most);
+    let text = session_text(request, coarse.as_ref(), &rests);
     let plateaus: Vec<ReducedPlateau> = rests.means.into_iter().flatten().map(ReducedPlateau::from).collect();
     let mut reduced = Reduced { plateaus, ..Reduced::of_table(&[]) };
     let input = |file: &Path| {

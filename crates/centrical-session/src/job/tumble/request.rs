@@ -27,6 +27,8 @@ pub struct TumbleRequest {
     pub gravity_uncertainty: f64,
     /// Attitudes in which the unit was laid down, where they are known.
     pub attitudes: Option<StatedAttitudes>,
+    /// Largest distance of the proof masses from the axis of rotation [m]: slow rotation counts as rests. `None`: it does not count.
+    pub turning_radius: Option<f64>,
     /// Terms of the error model, as in `[model]`.
     pub terms: Vec<String>,
     /// Serial number of the unit.

@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use centrical::reduction::CoarseScale;
+use centrical::reduction::{CoarseScale, PlateauMean, Rests};
 
 use super::request::TumbleRequest;
+use crate::experiment::Turning;
 
 /// Name of the table of rests.
 pub(super) const TABLE: &str = "rests.csv";
@@ -13,8 +14,7 @@ pub(super) const TABLE: &str = "rests.csv";
 pub(super) const ATTITUDES: &str = "attitudes.csv";
 
 /// The experiment file of rests in a table beside it, of readings with this coarse scale where they are in no unit of acceleration.
-/// `noise_at_most`: variance of the means at most, over the one stated.
-pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>, noise_at_most: f64) -> String {
+pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>, rests: &Rests) -> String {
     let mut text = String::new();
     let mut line = |line: String| {
         // Writing to a String does not fail.
@@ -36,12 +36,37 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
     }
     line(format!("[model]\nerror_model = {:?}\n", request.terms));
     line(format!("[[tumble]]\nrests = {TABLE:?}"));
-    if noise_at_most > 1.0 {
-        line(format!("noise_at_most = {noise_at_most:?}"));
+    if rests.noise_at_most > 1.0 {
+        line(format!("noise_at_most = {:?}", rests.noise_at_most));
+    }
+    if let Some(Turning { arcs, share, rate, radius, acceleration }) = turning(request, rests) {
+        line(format!(
+            "turning = {{ arcs = {arcs}, share = {share:?}, rate = \"{rate:?} rad/s\", radius = \"{radius:?} m\", acceleration = \"{acceleration:?} m/s^2\" }}"
+        ));
     }
     if let Some(attitudes) = &request.attitudes {
         let uncertainty = attitudes.uncertainty;
         line(format!("attitudes = {ATTITUDES:?}\nattitude_uncertainty = \"{uncertainty:?} rad\""));
     }
     text
+}
+
+/// Slow rotation among the rests. The acceleration of a proof mass at the distance `r` from the axis is `(omega^2 + d omega/dt) r` at most, and
+/// its direction stays in axes of the unit: a rectangular distribution in each.
+fn turning(request: &TumbleRequest, rests: &Rests) -> Option<Turning> {
+    let (found, radius) = (rests.turning?, request.turning_radius?);
+    let weight = |rest: &&PlateauMean| {
+        let along = rest.mean.normalize();
+        1.0 / along.dot(&(rest.covariance * along))
+    };
+    let all = || rests.means.iter().flatten();
+    let share = all().filter(|rest| rest.turns).map(|rest| weight(&rest)).sum::<f64>()
+        / all().map(|rest| weight(&rest)).sum::<f64>();
+    Some(Turning {
+        arcs: found.arcs,
+        share,
+        rate: found.rate,
+        radius,
+        acceleration: radius * found.spin / 3_f64.sqrt(),
+    })
 }

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::cells::Cells;
 use super::samples::CELLS;
 use crate::model::Position;
-use crate::reduction::locate::Shape;
+use crate::reduction::locate::{Shape, TURNING};
 use crate::reduction::plateau::LeftOut;
 
 /// The fit of one plateau; the cells hold what its covariance needs.
@@ -24,6 +24,8 @@ pub struct PlateauFit {
     pub(in crate::reduction) variance: Vector3<f64>,
     /// Settling at the start of the window [m/s^2].
     pub(in crate::reduction) settling: Vector3<f64>,
+    /// Coefficients of the Legendre polynomials 1 to 3 where the unit turns [m/s^2].
+    pub(in crate::reduction) turning: [Vector3<f64>; TURNING],
     /// Residuals and design, summed by cell.
     pub(in crate::reduction) cells: Cells,
     /// Takes readings to the axes and the unit in which the noise is alike on all plateaus: the identity on an arm.
@@ -41,6 +43,11 @@ impl PlateauFit {
         let upright = Position::free("", &along).p_zy.transpose();
         let noise_axes = if noise > 0.0 { upright / noise } else { upright };
         Self { noise_axes, ..self }
+    }
+
+    /// Whether the unit turns slowly.
+    pub(in crate::reduction) fn turns(&self) -> bool {
+        self.shape.turning.is_some()
     }
 
     /// A covariance in the axes of the noise, as one of readings.

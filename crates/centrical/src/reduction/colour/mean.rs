@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::noise_model::NoiseModel;
 use super::rounding::bias_variance;
@@ -17,8 +17,9 @@ pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) ->
     let rounding = plateau.digit.zip_zip_map(&noise.quietest(), &amplitude, bias_variance);
     // What the time constant of the settling is off by is common to the mounting: it is no drift of each of its plateaus.
     let (weights, drift) = plateau.cells.slope(plateau.settling_rate().as_deref());
+    let drift = if plateau.turns() { Vector3::zeros() } else { drift };
     let (correction, of_correction) = step.effect(plateau);
-    let covariance = |weights: &Weights| plateau.in_readings(&noise.covariance(weights, &plateau.cells));
+    let covariance = |weights: &Weights| plateau.in_readings(&noise.covariance(weights, plateau));
     let of_slope = covariance(&weights).diagonal();
     let of_noise = covariance(&plateau.cells.mean_weights());
     PlateauMean {
@@ -34,6 +35,7 @@ pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) ->
         measured_speed: None,
         drift_uncertainty: (of_slope + rounding * largest_gain(&weights).powi(2)).map(f64::sqrt),
         settling: plateau.settling,
+        turns: plateau.turns(),
     }
 }
 

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 
 use super::posterior::{Mixture, Power, posterior};
 use crate::reduction::average::{CELLS, Cells, PlateauFit, ReducedMounting, Weights};
+use crate::reduction::locate::TURNING;
 use crate::reduction::simd::lanes::{dot, widest};
 use crate::statistics::whole;
 
@@ -59,26 +60,28 @@ impl NoiseModel {
     ///
     /// Components are added one by one, the likeliest first, as long as Schwarz's criterion accepts them.
     pub fn pool<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> Self {
-        Self::of(&plateaus_of(mountings), false)
+        Self::of(&plateaus_of(mountings))
     }
 
     /// Estimates the noise from rests in free attitudes, in the axes of each. Along the specific force it is estimated by itself:
     /// this part alone enters a calibration by the size of gravity, and the trembling of a hand is across.
-    pub fn pool_rests<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> Self {
-        Self::of(&plateaus_of(mountings), true)
+    ///
+    /// Where the unit turns slowly, the noise along the force is that of the stretches `along`, in the third axis.
+    pub fn pool_rests<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>, along: &'a [PlateauFit]) -> Self {
+        let plateaus = plateaus_of(mountings);
+        let still = plateaus.iter().copied().filter(|plateau| !plateau.turns()).chain(along);
+        let still: Vec<&PlateauFit> = still.collect();
+        let times = correlation_times(&still);
+        let groups = grouped_contrasts(&still, &times);
+        let along = groups.iter().map(Group::along).collect::<Vec<Group>>();
+        Self { along: Some(Along::of(&along, &times)), ..Self::of(&plateaus) }
     }
 
-    fn of(plateaus: &[&PlateauFit], are_rests: bool) -> Self {
+    fn of(plateaus: &[&PlateauFit]) -> Self {
         let quietest = plateaus.iter().map(|plateau| plateau.variance).reduce(|a, b| a.inf(&b)).unwrap_or_default();
         let times = correlation_times(plateaus);
-        let groups = grouped_contrasts(plateaus, &times);
-        let along = || groups.iter().map(Group::along).collect::<Vec<Group>>();
-        Self {
-            // A density has six entries, or one.
-            components: components(&groups, &times, 6.0),
-            along: are_rests.then(|| Along::of(&along(), &times)),
-            quietest,
-        }
+        // A density has six entries.
+        Self { components: components(&grouped_contrasts(plateaus, &times), &times, 6.0), along: None, quietest }
     }
 
     /// Variance of a sample on the quietest plateau [m^2/s^4]. Where the noise is below a digit, rounding shows its own spread
@@ -96,10 +99,13 @@ impl NoiseModel {
         self.components.iter().map(of).sum()
     }
 
-    /// Covariance of a linear functional of the samples.
-    pub(super) fn covariance(&self, weights: &Weights, cells: &Cells) -> Matrix3<f64> {
+    /// Covariance of a linear functional of the samples of a plateau. Of the arcs of slow rotation each counts as independent, with
+    /// the noise at zero frequency: what they share is in their sums.
+    pub(super) fn covariance(&self, weights: &Weights, plateau: &PlateauFit) -> Matrix3<f64> {
+        let cells = &plateau.cells;
+        let time = |part: &Component| if plateau.turns() { None } else { part.correlation_time };
         let of = |components: &[Component]| -> Matrix3<f64> {
-            components.iter().map(|part| part.density * gain(part.correlation_time, weights, cells)).sum()
+            components.iter().map(|part| part.density * gain(time(part), weights, cells)).sum()
         };
         let mut covariance = of(&self.components);
         if let Some(along) = &self.along {
@@ -122,9 +128,13 @@ impl NoiseModel {
         let (mut white, mut slow) = (0.0, vec![0.0; times.len()]);
         for plateau in &plateaus {
             let (cells, weights) = (&plateau.cells, plateau.cells.mean_weights());
-            let share = 1.0 / (self.covariance(&weights, cells)[(2, 2)] * plateaus.len() as f64);
+            let share = 1.0 / (self.covariance(&weights, plateau)[(2, 2)] * plateaus.len() as f64);
             white += share * gain(None, &weights, cells);
-            let gains = widest(Gains { markov: &Markov::new(times, cells.width), weights: &weights });
+            let gains = if plateau.turns() {
+                vec![gain(None, &weights, cells); times.len()]
+            } else {
+                widest(Gains { markov: &Markov::new(times, cells.width), weights: &weights })
+            };
             slow.iter_mut().zip(gains).for_each(|(sum, gain)| *sum += share * gain);
         }
         let ratios = not_excluded.iter().map(|noise| noise.white * white + noise.slow * slow[noise.time]);
@@ -283,7 +293,9 @@ fn grouped_contrasts(plateaus: &[&PlateauFit], times: &[f64]) -> Vec<Group> {
             let function = rate.as_ref().map(|rate| cells.free_of(cosine, rate));
             Some((group, Contrast::of(plateau, function.as_ref().unwrap_or(cosine), &markov)?))
         };
-        cosines.iter().filter_map(contrast).collect()
+        // The polynomials of an arc that turns absorb the lowest.
+        let absorbed = if plateau.turns() { TURNING } else { 0 };
+        cosines.iter().filter(|(number, _)| *number > absorbed).filter_map(contrast).collect()
     };
     let mut groups = BTreeMap::new();
     for (group, contrast) in plateaus.par_iter().map(of).collect::<Vec<_>>().into_iter().flatten() {

@@ -22,7 +22,7 @@ impl TimeStep {
         for plateau in plateaus {
             let Some(rate) = plateau.settling_rate() else { continue };
             let (weights, product) = plateau.cells.contrast(&rate);
-            let covariance = noise.covariance(&weights, &plateau.cells);
+            let covariance = noise.covariance(&weights, plateau);
             let Some(factor) = covariance.cholesky() else { continue };
             let weighted = factor.solve(&plateau.settling) * weights.squares;
             information += weighted.dot(&plateau.settling) * weights.squares;

@@ -8,7 +8,10 @@ use crate::reduction::simd::lanes::widest;
 /// Time constants after which the settling is below the rounding of a reading.
 pub(super) const FADED: f64 = 40.0;
 
-/// The terms of a plateau: `[cos, sin,] [settling,] 1`. The constant stands last.
+/// Terms of a unit that turns, beside the constant.
+pub(in crate::reduction) const TURNING: usize = 3;
+
+/// The terms of a plateau: `[cos, sin,] [settling,] 1`, or `P_1, P_2, P_3, 1` of a unit that turns. The constant stands last.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::reduction) struct Shape {
     /// Origin of phase and settling [s].
@@ -17,6 +20,17 @@ pub(in crate::reduction) struct Shape {
     pub omega: f64,
     /// The remaining settling.
     pub settling: Option<Settling>,
+    /// The unit turns slowly: Legendre polynomials in its place, no other terms.
+    pub turning: Option<Interval>,
+}
+
+/// An interval of time, on which Legendre polynomials are orthogonal.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::reduction) struct Interval {
+    /// Its middle [s].
+    pub middle: f64,
+    /// Half of its length [s].
+    pub half: f64,
 }
 
 /// Settling of the speed by `epsilon exp(-x)`, `x = (t - start) / time`: the force, that goes with the square of the
@@ -66,7 +80,8 @@ impl Settling {
 impl Shape {
     /// Terms of the reading.
     pub fn terms(&self) -> usize {
-        2 * usize::from(self.omega != 0.0) + usize::from(self.settling.is_some()) + 1
+        let turning = if self.turning.is_some() { TURNING } else { 0 };
+        2 * usize::from(self.omega != 0.0) + usize::from(self.settling.is_some()) + turning + 1
     }
 
     /// The design at the times `t`, one column a term.
@@ -90,6 +105,14 @@ impl Shape {
             && let Some(column) = columns.next()
         {
             settling.values(self.start, t, column);
+        }
+        if let Some(Interval { middle, half }) = self.turning
+            && let (Some(p1), Some(p2), Some(p3)) = (columns.next(), columns.next(), columns.next())
+        {
+            for (((t, p1), p2), p3) in t.iter().zip(p1.iter_mut()).zip(p2.iter_mut()).zip(p3.iter_mut()) {
+                let x = (t - middle) / half;
+                (*p1, *p2, *p3) = (x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x);
+            }
         }
         if let Some(constant) = columns.next() {
             constant.fill(1.0);

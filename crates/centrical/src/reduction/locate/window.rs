@@ -136,7 +136,11 @@ impl Search<'_> {
     fn levels(&self, k: usize, range: Range<usize>, shown: usize, settling: Option<Settling>) -> Levels {
         let omega = self.schedule[k].omega;
         let omega = if turns_seen(omega, self.blocks.width, shown) { omega } else { 0.0 };
-        Levels::new(self.blocks, range.clone(), &Shape { start: self.blocks.t[self.ranges[k].start], omega, settling })
+        Levels::new(
+            self.blocks,
+            range.clone(),
+            &Shape { start: self.blocks.t[self.ranges[k].start], omega, settling, turning: None },
+        )
     }
 
     /// Takes other ranges; the bends go with their starts.
@@ -186,7 +190,10 @@ impl Search<'_> {
             let from = self.blocks.t[range.start] - half + wait;
             let to = self.blocks.t[range.end - 1] + half - self.blocks.width;
             let settling = self.settling_at(k, range).map(|settling| settling.after(wait - half));
-            Window { span: [from, to], shape: Shape { start: from, omega: self.schedule[k].omega, settling } }
+            Window {
+                span: [from, to],
+                shape: Shape { start: from, omega: self.schedule[k].omega, settling, turning: None },
+            }
         };
         Windows { plateaus: (0..self.ranges.len()).map(window).collect(), settling_time: self.settling_time }
     }

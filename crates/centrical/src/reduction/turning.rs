@@ -1,0 +1,193 @@
+//! Slow rotation: gravity has one size in every attitude, also where the attitude changes.
+//!
+//! An arc of slow rotation is described by Legendre polynomials, `f(t) = f_0 + c_1 P_1 + c_2 P_2 + c_3 P_3`. Its mean `f_0` is shorter than
+//! gravity: the mean of `|f|^2 = g^2` over the arc is
+//!
+//! `|f_0|^2 + |c_1|^2 / 3 + |c_2|^2 / 5 + |c_3|^2 / 7 = g^2`.
+//!
+//! What the polynomials leave beside the white noise, a tremor or a turn that is not smooth, belongs to that sum with its mean square. An arc
+//! in which it counts for more than [`MOST_LEFT`] standard uncertainties is left out.
+//!
+//! So the mean reading, drawn out from the bias by the ratio of `g` to `|f_0|`, is that of a rest in the attitude of `f_0`, whatever bias, scale and
+//! misalignment are. For that ratio an ellipsoid through all means is enough: of second order in the angle, it takes bias and scale coarsely.
+//!
+//! What is noise along the force shows in the size of the readings by that ellipsoid, over whole stretches of rotation.
+
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+use super::average::{PlateauFit, average};
+use super::error::ReductionError;
+use super::locate::{Interval, TURNING, locate_spans};
+use super::record::{Record, RecordSlice};
+use super::survey::Survey;
+
+/// What slow rotation brings.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Turning {
+    /// Number of its arcs.
+    pub arcs: usize,
+    /// Fastest rotation of the force [rad/s]; rotation about the vertical does not show.
+    pub rate: f64,
+    /// Largest sum of the square of the rate and its change with time [1/s^2]: times the distance from the axis of rotation it is the most
+    /// that the acceleration of a proof mass is.
+    pub spin: f64,
+}
+
+/// Rounds in which ellipsoid and means follow from each other: each gains two digits or more.
+const ROUNDS: usize = 4;
+
+/// What the polynomials leave, at most, over the standard uncertainty of the mean along the force: it is known to a third or better.
+const MOST_LEFT: f64 = 3.0;
+
+/// Of so many samples of an arc one is left out as a spike at most.
+const MOST_SPIKES: usize = 20;
+
+/// Longest stretch of rotation whose noise is looked at as a whole [s].
+const STRETCH: f64 = 60.0;
+
+/// Whether a fit is that of a rest, or of an arc which the polynomials describe, of readings whose white noise is `white` [m/s^2].
+pub(super) fn is_smooth(fit: &PlateauFit, white: &Vector3<f64>) -> bool {
+    let along = fit.mean.normalize();
+    let uncertainty = along.component_mul(white).norm() / (fit.samples as f64).sqrt();
+    // A bump takes some samples; where many are left out it is the motion that the polynomials miss.
+    let is_described = fit.left_out.spikes <= fit.samples / MOST_SPIKES;
+    !fit.turns() || is_described && left(fit, white) / (2.0 * fit.mean.norm()) <= MOST_LEFT * uncertainty
+}
+
+/// Mean square of what the polynomials of an arc leave beside the white noise [m^2/s^4].
+fn left(fit: &PlateauFit, white: &Vector3<f64>) -> f64 {
+    if fit.turns() { (fit.variance.sum() - white.norm_squared()).max(0.0) } else { 0.0 }
+}
+
+/// Draws out the means of the arcs among the `fits` of all records, each with the white noise of its readings [m/s^2]. `None` if there
+/// are no arcs, or the attitudes show no ellipsoid.
+pub(super) fn draw_out<'a>(
+    fits: impl IntoIterator<Item = (&'a mut PlateauFit, Vector3<f64>)>,
+) -> Option<(Ellipsoid, Turning)> {
+    let mut fits: Vec<(&mut PlateauFit, Vector3<f64>)> = fits.into_iter().collect();
+    let mean: Vec<Vector3<f64>> = fits.iter().map(|(fit, _)| fit.mean).collect();
+    let mut ellipsoid = Ellipsoid::through(&mean)?;
+    for _ in 0..ROUNDS {
+        for ((fit, white), mean) in fits.iter_mut().zip(&mean) {
+            let part = |k: usize| ellipsoid.size(&fit.turning[k]).powi(2) / (2 * k + 3) as f64;
+            let left = left(fit, white) / (mean - ellipsoid.centre).norm_squared();
+            let size = (1.0 - (0..TURNING).map(part).sum::<f64>() - left).sqrt();
+            fit.mean = ellipsoid.centre + (mean - ellipsoid.centre) / size;
+        }
+        ellipsoid = Ellipsoid::through(&fits.iter().map(|(fit, _)| fit.mean).collect::<Vec<_>>())?;
+    }
+    let mut turning = Turning::default();
+    for (fit, _) in fits {
+        let Some(Interval { half, .. }) = fit.shape.turning else { continue };
+        let along = fit.mean - ellipsoid.centre;
+        let rate = ellipsoid.size(&((fit.turning[0] - fit.turning[2] * 1.5) / half));
+        let bend = fit.turning[1] * (3.0 / (half * half));
+        let across =
+            ellipsoid.size(&(bend - along * (ellipsoid.product(&bend, &along) / ellipsoid.product(&along, &along))));
+        turning.arcs += 1;
+        turning.rate = turning.rate.max(rate);
+        turning.spin = turning.spin.max(rate * rate + across);
+    }
+    (turning.arcs > 0).then_some((ellipsoid, turning))
+}
+
+/// The noise of a record along the force, in units of `white` [m/s^2], over the stretches of its arcs: their fits as those of rests.
+///
+/// # Errors
+/// [`ReductionError`] if the record is too short.
+pub(super) fn noise_along(
+    record: RecordSlice,
+    arcs: &[PlateauFit],
+    ellipsoid: &Ellipsoid,
+    white: &Vector3<f64>,
+) -> Result<Vec<PlateauFit>, ReductionError> {
+    let mut spans: Vec<[f64; 2]> = Vec::new();
+    for arc in arcs.iter().filter(|arc| arc.shape.turning.is_some()) {
+        let [from, to] = arc.window;
+        match spans.last_mut() {
+            Some(span) if from - span[1] < 1e-6 * (to - from) && to - span[0] <= STRETCH => span[1] = to,
+            _ => spans.push([from, to]),
+        }
+    }
+    if spans.is_empty() {
+        return Ok(Vec::new());
+    }
+    let noise = |n: usize| {
+        let from_centre = Vector3::from_fn(|axis, _| record.f_z[axis][n]) - ellipsoid.centre;
+        let size = ellipsoid.size(&from_centre);
+        (1.0 - 1.0 / size) * from_centre.norm_squared() / from_centre.component_mul(white).norm()
+    };
+    let noise: Vec<f64> = (0..record.t.len()).map(noise).collect();
+    let noise = Record { t: record.t.to_vec(), f_z: [noise.clone(), noise.clone(), noise] };
+    let located = locate_spans(&Survey::of(noise.as_slice())?, &spans)?;
+    Ok((0..spans.len()).filter_map(|span| average(&located, span, noise.as_slice(), 0).ok()).collect())
+}
+
+/// The ellipsoid `(y - c)^T A (y - c) = 1` of readings at the size of gravity.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ellipsoid {
+    centre: Vector3<f64>,
+    a: Matrix3<f64>,
+}
+
+impl Ellipsoid {
+    /// Through these readings, by linear least squares; `None` if they determine none.
+    fn through(means: &[Vector3<f64>]) -> Option<Self> {
+        /// Least singular value that is not rounding or noise, over the largest.
+        const LEAST: f64 = 1e-4;
+        let first = *means.first()?;
+        let (low, high) = means.iter().fold((first, first), |(low, high), mean| (low.inf(mean), high.sup(mean)));
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max());
+        let row = |mean: &Vector3<f64>| {
+            let y = (mean - middle) / half;
+            [y.x * y.x, y.y * y.y, y.z * y.z, 2.0 * y.x * y.y, 2.0 * y.x * y.z, 2.0 * y.y * y.z, y.x, y.y, y.z]
+        };
+        let rows = DMatrix::from_row_iterator(means.len(), 9, means.iter().flat_map(row));
+        if means.len() < 9 || rows.iter().any(|value| !value.is_finite()) {
+            return None;
+        }
+        let svd = rows.svd(true, true);
+        if svd.singular_values.min() < LEAST * svd.singular_values.max() {
+            return None;
+        }
+        let x = svd.solve(&DVector::repeat(means.len(), 1.0), 0.0).ok()?;
+        let a = Matrix3::new(x[0], x[3], x[4], x[3], x[1], x[5], x[4], x[5], x[2]);
+        let centre = a.cholesky()?.solve(&x.fixed_rows::<3>(6).into_owned()) * -0.5;
+        let size = 1.0 + centre.dot(&(a * centre));
+        Some(Self { centre: middle + centre * half, a: a / (size * half * half) })
+    }
+
+    fn product(&self, one: &Vector3<f64>, other: &Vector3<f64>) -> f64 {
+        one.dot(&(self.a * other))
+    }
+
+    /// Size of a difference of readings in units of gravity.
+    fn size(&self, of: &Vector3<f64>) -> f64 {
+        self.product(of, of).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Readings on an ellipsoid give it back.
+    #[test]
+    fn an_ellipsoid_goes_through_its_points() {
+        let gain = Matrix3::new(1.01, 0.0, 0.0, -0.02, 0.97, 0.0, 0.03, 0.01, 1.05) * 9.8;
+        let centre = Vector3::new(0.3, -0.2, 0.5);
+        let angle = |n: i32| (f64::from(n) * 2.4, f64::from(n) * 0.9);
+        let up = |n: i32| {
+            let (a, b) = angle(n);
+            Vector3::new(a.cos() * b.sin(), a.sin() * b.sin(), b.cos())
+        };
+        let means: Vec<Vector3<f64>> = (0..20).map(|n| centre + gain * up(n)).collect();
+        let ellipsoid = Ellipsoid::through(&means).unwrap();
+        assert!((ellipsoid.centre - centre).norm() < 1e-10, "{ellipsoid:?}");
+        assert!((ellipsoid.size(&(gain * Vector3::new(0.6, 0.0, 0.8))) - 1.0).abs() < 1e-10);
+        // Eight points determine none, nor do those of one plane.
+        assert!(Ellipsoid::through(&means[..8]).is_none());
+        let flat: Vec<Vector3<f64>> = means.iter().map(|mean| Vector3::new(mean.x, mean.y, 0.0)).collect();
+        assert!(Ellipsoid::through(&flat).is_none());
+    }
+}
