@@ -89,7 +89,8 @@ pub fn locate(
 /// [`ReductionError::TooShort`] if the record is too short.
 pub fn locate_rests(survey: &Survey, turning: bool) -> Result<Located, ReductionError> {
     let blocks = survey.blocks()?;
-    let rests = rests::rests(&blocks);
+    let mut rests = rests::rests(&blocks);
+    rests.retain(|rest| !turning || turning::is_still(&blocks, rest));
     let arcs = if turning { turning::arcs(&blocks, &rests) } else { Vec::new() };
     Ok(Located::without_schedule(blocks, &rests, &arcs))
 }

@@ -111,12 +111,12 @@ fn ten_thousand_runs_of_rotations() {
     let white = Making { slow: 0.0, ..ON_A_TABLE };
     let bumped = Making { bumps: 0.5, ..BY_HAND };
     let kinds = [
-        ("on a table, white noise", white, table),
-        ("on a table, noise of a second", ON_A_TABLE, table),
-        ("on a table, a tenth as fast", ON_A_TABLE, Rotation { rate: 0.1 * rate, duration: 3600.0, ..table }),
         ("by hand, half of the minutes bumped", bumped, hand),
         ("by hand, noise of a second just to be found", DOUBTFUL, hand),
         ("on a table, 50 mm from the axis", white, Rotation { radius: 0.05, ..table }),
+        ("on a table, white noise", white, table),
+        ("on a table, noise of a second", ON_A_TABLE, table),
+        ("on a table, a tenth as fast", ON_A_TABLE, Rotation { rate: 0.1 * rate, duration: 3600.0, ..table }),
         ("on a table, warming by 0.05 mg", Making { warming: 5e-4, ..ON_A_TABLE }, table),
         ("on a table, warming by 1 mg", Making { warming: 1e-2, ..ON_A_TABLE }, table),
     ];

@@ -23,6 +23,9 @@ const SHORTEST: f64 = 2.0;
 /// Parts of an arc whose angles are summed.
 const WAY: usize = 8;
 
+/// Most that a rest turns [rad]: its mean is `g STILL^2 / 24` shorter, below 4e-6 m/s^2.
+const STILL: f64 = 3e-3;
+
 /// Blocks about a rest, or about a block in faster motion, that belong to neither.
 const MARGIN: usize = 2;
 
@@ -48,6 +51,15 @@ pub(super) fn arcs(blocks: &Blocks, rests: &[Range<usize>]) -> Vec<Range<usize>>
         from = to.max(from + 1);
     }
     arcs
+}
+
+/// Whether the unit stood still in what was found as a rest: from its first quarter to the last the readings turn by [`STILL`] at most, and by
+/// four standard deviations of their noise. In a record of slow rotation the noise of rests is not known, and they may hold rotation.
+pub(super) fn is_still(blocks: &Blocks, rest: &Range<usize>) -> bool {
+    let quarter = (rest.len() / 4).max(1);
+    let [first, last] = [rest.start, rest.end - quarter].map(|n| level(blocks, n..n + quarter));
+    let noise = blocks.sample_noise.norm() * (2.0 * blocks.interval / (blocks.width * quarter as f64)).sqrt();
+    first.angle(&last) <= STILL + 4.0 * noise / first.norm()
 }
 
 /// Whether the readings change slowly about a block.
