@@ -37,7 +37,9 @@ pub(super) fn arcs(blocks: &Blocks, rests: &[Range<usize>]) -> Vec<Range<usize>>
         let (from, to) = (range.start.saturating_sub(MARGIN), (range.end + MARGIN).min(count));
         is_free[from..to].fill(false);
     };
-    rests.iter().for_each(|rest| exclude(rest.clone()));
+    for rest in rests {
+        exclude(rest.clone());
+    }
     for block in 0..count {
         if !is_slow(blocks, block) {
             exclude(block..block + 1);
