@@ -135,7 +135,10 @@ fn ten_thousand_runs_of_rotations() {
             // Each of two tests refuses one sound record of 10,000: two of 100 come by chance once in 5,000 sets.
             assert!(refused <= 1, "{name}: {refused}");
         }
-        if kind < 7 {
+        if kind == 2 {
+            // The rate varies from attitude to attitude, and the acceleration with it: the bias that stands for it is most of it, not all.
+            assert!(mean < 0.2 * of_noise, "{name}: {mean}, {of_noise}");
+        } else if kind < 7 {
             // Three standard deviations of the mean, and 3 %.
             assert!(mean < 1.03 + 3.0 * (2.0 / count).sqrt(), "{name}: {mean}");
         } else {
