@@ -2,6 +2,8 @@
 
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
+#[cfg(feature = "serve")]
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use centrical_report::{
@@ -70,7 +72,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let session = Session::read_before_rests(&arguments.session)?;
     #[cfg(feature = "serve")]
-    let server = arguments.serving.bind()?;
+    let mut server = arguments.serving.bind()?;
     #[cfg(feature = "serve")]
     let live = server.as_ref().map(|_| LiveRequest { targets: arguments.target.clone() });
     #[cfg(not(feature = "serve"))]
@@ -89,11 +91,22 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     let alarm = Alarm::new(arguments.on_alarm.as_deref(), &session.file);
     #[cfg(feature = "serve")]
-    let url = server.map(|server| serve(server, Watched::new(&arguments.out))).transpose()?;
+    let mut url = None;
     let mut shown = Ok(());
     let end = watch(&session, &request, asked_to_end(), &mut |event| {
         alarm.hear(&event);
         let outcome = show(&event, arguments);
+        // The page needs what a watch that has begun writes.
+        #[cfg(feature = "serve")]
+        if let Some(server) = server.take() {
+            match serve(server, Watched::new(&arguments.out)) {
+                Ok(served) => url = Some(served),
+                Err(error) => {
+                    asked_to_end().store(true, Ordering::Relaxed);
+                    shown = Err(error);
+                }
+            }
+        }
         if shown.is_ok() {
             shown = outcome;
         }

@@ -4,9 +4,7 @@ use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
-use super::effect::Effect;
 use super::experiment::{Experiment, History, SetPoint};
-use super::measurement::MeasurementModel;
 use super::nominal::nominal;
 
 /// The part of a plateau's force that is remembered on the next.
@@ -34,24 +32,14 @@ pub(super) fn fill(experiment: &mut Experiment) {
     mark_repeated_rests(&mut experiment.set_points);
 }
 
-impl MeasurementModel {
-    /// The first set point whose reading is the same function of the unknowns, for each set point: of the same mounting, speed and
-    /// angle. Each stands alone where an unknown or a stated uncertainty follows the order of the session.
-    pub(crate) fn alike(&self) -> Vec<usize> {
-        let unknown = self.parameters.effects().map(|(_, effect)| effect);
-        let mut effects = unknown.chain(self.influences().iter().map(|influence| influence.effect));
-        let set_points = &self.experiment.set_points;
-        if effects.any(Effect::is_of_history) {
-            return (0..set_points.len()).collect();
-        }
-        let mut first = HashMap::new();
-        let what = |s: &SetPoint| {
-            let angle = if s.is_rest() { s.angle.to_bits() } else { 0 };
-            (s.mounting, s.omega.to_bits(), angle, s.speed_uncertainty.map(f64::to_bits))
-        };
-        let first = set_points.iter().enumerate().map(|(n, set_point)| *first.entry(what(set_point)).or_insert(n));
-        first.collect()
-    }
+/// The first of the set points that are alike, for each: of the same mounting, speed and angle.
+pub(super) fn alike(set_points: &[SetPoint]) -> Vec<usize> {
+    let mut first = HashMap::new();
+    let what = |s: &SetPoint| {
+        let angle = if s.is_rest() { s.angle.to_bits() } else { 0 };
+        (s.mounting, s.omega.to_bits(), angle, s.speed_uncertainty.map(f64::to_bits))
+    };
+    set_points.iter().enumerate().map(|(n, set_point)| *first.entry(what(set_point)).or_insert(n)).collect()
 }
 
 fn mark_repeated_rests(set_points: &mut [SetPoint]) {

@@ -208,6 +208,15 @@ impl MeasurementModel {
         self.stated.own_rounding(set_point)
     }
 
+    /// The first set point whose reading is the same function of the unknowns, for each set point. Each stands alone where an unknown
+    /// or a stated uncertainty follows the order of the session.
+    pub(crate) fn alike(&self) -> Vec<usize> {
+        let unknown = self.parameters.effects().map(|(_, effect)| effect);
+        let mut effects = unknown.chain(self.influences.iter().map(|influence| influence.effect));
+        let set_points = &self.experiment.set_points;
+        if effects.any(Effect::is_of_history) { (0..set_points.len()).collect() } else { history::alike(set_points) }
+    }
+
     /// What is known of the unknowns beforehand.
     pub fn priors(&self) -> &[Prior] {
         &self.priors

@@ -153,9 +153,10 @@ fn contributions_are_what_a_refit_shows() {
     let budget = case.budget(&STATED);
     let of = |source: Source| budget.contributions().iter().find(|c| c.source == source).unwrap();
     let sources = sources(case.model.experiment());
-    // All that there are but noise and resolution (below), and priors, effects and changes of bias, which this model has none of.
+    // All that there are but noise and resolution (below), and priors, effects, changes of bias and slow rotation, which this model
+    // lacks.
     assert_eq!(sources.len() + 2, budget.contributions().len());
-    assert_eq!(sources.len() + 5, Source::ALL.len());
+    assert_eq!(sources.len() + 6, Source::ALL.len());
     for (source, influences) in sources {
         let shifts: Vec<Vec<f64>> = influences.iter().map(shift).collect();
         for j in 0..49 {
