@@ -37,6 +37,10 @@ impl Source {
         }
         let input = File::open(file).map_err(failed)?;
         let length = input.metadata().map_err(failed)?.len();
+        // A file of the kernel's has no length, whatever can be read from it.
+        if length == 0 && file_at(&input, &mut [0], 0).map_err(failed)? > 0 {
+            return Err(Error::content(file, Place::Whole, "a file without a length", expected));
+        }
         Ok(Self { name: file.into(), origin: Origin::File(Arc::new(input)), length })
     }
 
