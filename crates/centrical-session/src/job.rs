@@ -27,12 +27,10 @@ pub use self::compare::{ComparisonRequest, compare_results};
 pub use self::compensate::{Compensated, CompensationRequest, FirstOutside, compensate, compensate_record};
 pub use self::history::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
-    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, read_calibrations_watched,
-    read_limits, station_history, unit_history, unit_means, units_history,
+    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, read_limits, station_history,
+    unit_history, unit_means, units_history,
 };
-pub use self::history::{
-    add_result, add_results, check_store, collect_results, list_store, list_store_watched, spelling,
-};
+pub use self::history::{add_result, add_results, check_store, collect_results, list_store, spelling};
 pub use self::init::{Draft, FillIn, InitRequest, init};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};

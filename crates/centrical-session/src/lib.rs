@@ -83,14 +83,14 @@ pub use job::{
     Recorded, Series, SeriesRequest, SettingsForm, Tumble, TumbleRequest, USUAL_LEVELS, USUAL_TIMES, Watch, WatchEnd,
     WatchEvent, WatchProgress, WatchRequest, add_result, add_results, assess, calibrate, calibrate_reduced,
     calibrate_series, calibrate_without, check_store, collect_results, compare_results, compensate, compensate_record,
-    init, list_store, list_store_watched, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce,
-    reduce_recorded, reduce_without_inputs, select_model, settings_schema, simulate_session, spelling, subject,
-    subject_of, tumble, watch, write_reduced,
+    init, list_store, noise_of, noise_of_plateau, plan, read_plan, read_planning, reduce, reduce_recorded,
+    reduce_without_inputs, select_model, settings_schema, simulate_session, spelling, subject, subject_of, tumble,
+    watch, write_reduced,
 };
 pub use job::{
     Calibrated, CalibratedParameter, ChartLimits, ChartRequest, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
-    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, read_calibrations_watched,
-    read_limits, station_history, unit_history, unit_means, units_history,
+    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, read_limits, station_history,
+    unit_history, unit_means, units_history,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Decision, DecisionRule, Environment, Item, Laboratory,

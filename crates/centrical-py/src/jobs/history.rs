@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use centrical_session::{
     Date, Depth, Dimension, Error, Failure, Place, Row, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest,
-    add_results, by_unit, list_store_watched, read_calibrations_watched, station_history, unit_history, units_history,
+    add_results, by_unit, list_store, read_calibrations, station_history, unit_history, units_history,
 };
 use pyo3::prelude::*;
 
@@ -73,9 +73,9 @@ pub fn history(
     progress::run(py, &None, |work| {
         let progress = |done| work.advance(done);
         if of == "list" {
-            return list_store_watched(first, Selection { depth: Depth::Summary, ..selection }, &progress)?.to_json();
+            return list_store(first, Selection { depth: Depth::Summary, ..selection }, &progress)?.to_json();
         }
-        let calibrations = read_calibrations_watched(&results, &selection, &progress)?;
+        let calibrations = read_calibrations(&results, &selection, &progress)?;
         if of == "station" {
             let report = station_history(&calibrations);
             return report.ok_or_else(|| missing("calibrations of the station"))?.to_json();

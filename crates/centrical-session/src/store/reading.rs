@@ -56,19 +56,11 @@ impl Selection {
 
 impl Store {
     /// The rows that a selection picks, every key once. They are of the store as it is now, whatever is added or merged meanwhile.
-    /// Memory is bounded by a row group of 128 rows, and 32 bytes a key.
+    /// Memory is bounded by a row group of 128 rows, and 32 bytes a key. `progress` is asked at each row group, with none done.
     ///
     /// # Errors
-    /// [`Error`] if a part cannot be opened; later ones come with the rows.
-    pub fn rows(&self, selection: Selection) -> Result<Rows<'static>, Error> {
-        self.rows_watched(selection, &unwatched)
-    }
-
-    /// The same, asking `progress` at each row group, with none done.
-    ///
-    /// # Errors
-    /// As [`Store::rows`]; [`Error::Stopped`] in the place of a row.
-    pub fn rows_watched<'a>(&self, selection: Selection, progress: OnProgress<'a>) -> Result<Rows<'a>, Error> {
+    /// [`Error`] if a part cannot be opened; later ones, and [`Error::Stopped`], come in the place of a row.
+    pub fn rows<'a>(&self, selection: Selection, progress: OnProgress<'a>) -> Result<Rows<'a>, Error> {
         let parts = self.open_parts()?.into();
         Ok(Rows { selection, parts, group: 0, ready: Vec::new().into_iter(), seen: HashSet::new(), progress })
     }
@@ -79,7 +71,7 @@ impl Store {
     /// As [`Store::rows`].
     pub fn row(&self, key: &str) -> Result<Option<Row>, Error> {
         let keys = Some(BTreeSet::from([key.to_owned()]));
-        self.rows(Selection { depth: Depth::Whole, keys, ..Selection::default() })?.next().transpose()
+        self.rows(Selection { depth: Depth::Whole, keys, ..Selection::default() }, &unwatched)?.next().transpose()
     }
 
     /// The parts as they are now: a writer that merges removes a part only after the merged one is there.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use centrical_session::{Depth, Row, Selection, Store};
+use centrical_session::{Depth, Row, Selection, Store, unwatched};
 use tempfile::TempDir;
 
 /// The rows of a frozen part, read from a store that has it alone.
@@ -12,7 +12,7 @@ fn read(part: &str) -> Vec<Row> {
     let store = Store::create(folder.path()).unwrap();
     let frozen = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(part);
     fs::copy(frozen, folder.path().join("rows").join(part)).unwrap();
-    let rows = store.rows(Selection { depth: Depth::Whole, ..Selection::default() }).unwrap();
+    let rows = store.rows(Selection { depth: Depth::Whole, ..Selection::default() }, &unwatched).unwrap();
     let rows: Vec<Row> = rows.collect::<Result<_, _>>().unwrap();
     // A newer row beside it does not change it, nor does a merge of both.
     let newer = (0..31).map(|n| Row { key: format!("{n:064x}"), ..Row::default() });

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use centrical_session::{
     AssessmentRequest, ColumnName, CompensationRequest, Error, Estimator, Folder, InitRequest, Method, MonteCarloCase,
     MonteCarloRequest, NoiseRequest, PlanRequest, Selection, Session, TableFormat, Truth, add_results, assess,
-    calibrate, calibrate_reduced, compensate, init, list_store_watched, noise_of, plan, read_calibrations_watched,
-    reduce, select_model, simulate_session, subject, unwatched,
+    calibrate, calibrate_reduced, compensate, init, list_store, noise_of, plan, read_calibrations, reduce,
+    select_model, simulate_session, subject, unwatched,
 };
 use tempfile::TempDir;
 
@@ -124,11 +124,11 @@ fn histories() {
         result.write(files.last().unwrap()).unwrap();
     }
     let selection = Selection::default();
-    is_stopped(|caller| read_calibrations_watched(&files, &selection, &|n| caller.asked(n)));
+    is_stopped(|caller| read_calibrations(&files, &selection, &|n| caller.asked(n)));
     let store = folder.path().join("store");
     add_results(&store, &files, true, &unwatched).unwrap();
-    is_stopped(|caller| read_calibrations_watched(std::slice::from_ref(&store), &selection, &|n| caller.asked(n)));
-    is_stopped(|caller| list_store_watched(&store, selection.clone(), &|n| caller.asked(n)));
+    is_stopped(|caller| read_calibrations(std::slice::from_ref(&store), &selection, &|n| caller.asked(n)));
+    is_stopped(|caller| list_store(&store, selection.clone(), &|n| caller.asked(n)));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::sync::Barrier;
 use std::thread;
 use std::time::Instant;
 
-use centrical_session::{Depth, Row, RowPrior, RowTerm, Selection, SharedInfluence, Store};
+use centrical_session::{Depth, Row, RowPrior, RowTerm, Selection, SharedInfluence, Store, unwatched};
 use tempfile::TempDir;
 
 /// A row of `p` parameters with numbers of their own.
@@ -43,7 +43,7 @@ fn prior(k: usize, changes: Vec<f64>) -> RowPrior {
 }
 
 fn all(store: &Store, depth: Depth) -> Vec<Row> {
-    let rows = store.rows(Selection { depth, ..Selection::default() }).unwrap();
+    let rows = store.rows(Selection { depth, ..Selection::default() }, &unwatched).unwrap();
     let mut rows: Vec<Row> = rows.collect::<Result<_, _>>().unwrap();
     rows.sort_by(|a, b| a.key.cmp(&b.key));
     rows
@@ -66,7 +66,7 @@ fn rows_come_back_as_they_were() {
     let again = store.add(rows.clone()).unwrap();
     assert_eq!((again.new, again.known), (0, 300));
     let selection = Selection { unit_serial: Some("0042".to_owned()), ..Selection::default() };
-    let found: Vec<Row> = store.rows(selection).unwrap().collect::<Result<_, _>>().unwrap();
+    let found: Vec<Row> = store.rows(selection, &unwatched).unwrap().collect::<Result<_, _>>().unwrap();
     assert_eq!(found.iter().map(|row| row.key.as_str()).collect::<Vec<_>>(), [rows[42].key.as_str()]);
     assert!(found[0].values.is_empty(), "a summary has no values");
     assert_eq!(store.row(&rows[9].key).unwrap().as_ref(), Some(&rows[9]));
@@ -120,7 +120,7 @@ fn a_damaged_part_and_a_newer_one_are_errors_that_name_the_file() {
     let whole = fs::read(&part).unwrap();
     let message = |bytes: &[u8]| {
         fs::write(&part, bytes).unwrap();
-        let rows = store.rows(Selection { depth: Depth::Whole, ..Selection::default() });
+        let rows = store.rows(Selection { depth: Depth::Whole, ..Selection::default() }, &unwatched);
         rows.and_then(|mut rows| rows.find_map(Result::err).map_or(Ok(()), Err)).unwrap_err().to_string()
     };
     assert!(message(&whole[..whole.len() / 2]).contains(".parquet: found damaged Parquet"));
@@ -171,11 +171,11 @@ fn a_hundred_thousand_rows() {
     store.add(vec![row(100_000, 49)]).unwrap();
     time("one more", begun);
     let begun = Instant::now();
-    assert_eq!(store.rows(Selection::default()).unwrap().flatten().count(), 100_001);
+    assert_eq!(store.rows(Selection::default(), &unwatched).unwrap().flatten().count(), 100_001);
     time("all summaries", begun);
     let begun = Instant::now();
     let of_unit = Selection { depth: Depth::Whole, unit_serial: Some("0042".to_owned()), ..Selection::default() };
-    assert_eq!(store.rows(of_unit).unwrap().flatten().count(), 100);
+    assert_eq!(store.rows(of_unit, &unwatched).unwrap().flatten().count(), 100);
     time("one unit, whole", begun);
     let bytes: u64 = fs::read_dir(folder.join("rows")).unwrap().map(|e| e.unwrap().metadata().unwrap().len()).sum();
     println!("{} bytes a row in {} parts", bytes / 100_001, parts(&folder));

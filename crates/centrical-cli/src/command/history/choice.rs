@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use centrical_session::{Calibrated, Depth, Error, Place, Selection, read_calibrations, spelling};
+use centrical_session::{Calibrated, Depth, Error, Place, Selection, read_calibrations, spelling, unwatched};
 
 /// Results, and what they have to be of.
 #[derive(Debug, Clone, clap::Args)]
@@ -32,7 +32,7 @@ impl Choice {
             station: self.station.clone(),
             ..Selection::default()
         };
-        let calibrations = read_calibrations(&self.results, &selection)?;
+        let calibrations = read_calibrations(&self.results, &selection, &unwatched)?;
         if calibrations.is_empty() {
             let found = format!("no such calibration{}", self.alike());
             return Err(self.refuse(found, "results, as --model, --serial and --station ask for"));
@@ -43,7 +43,7 @@ impl Choice {
     /// Serial numbers that differ from the one asked for in spaces, hyphens, case or Cyrillic letters alone.
     fn alike(&self) -> String {
         let Some(wanted) = self.serial.as_deref().map(spelling) else { return String::new() };
-        let all = read_calibrations(&self.results, &Selection::default()).unwrap_or_default();
+        let all = read_calibrations(&self.results, &Selection::default(), &unwatched).unwrap_or_default();
         let alike = all.iter().map(|c| c.unit_serial.as_str()).filter(|serial| spelling(serial) == wanted);
         let alike: BTreeSet<String> = alike.map(|serial| format!("\"{serial}\"")).collect();
         let listed = alike.into_iter().collect::<Vec<_>>().join(", ");

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::SystemTime;
 
 use centrical_report::history_list_text;
-use centrical_session::{Error, Selection, check_store, list_store};
+use centrical_session::{Error, Selection, check_store, list_store, unwatched};
 
 use crate::outcome::Outcome;
 use crate::printing::Printing;
@@ -42,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let list = if arguments.check {
         check_store(&arguments.store, selection, today())?
     } else {
-        list_store(&arguments.store, selection)?
+        list_store(&arguments.store, selection, &unwatched)?
     };
     arguments.printing.show(|| history_list_text(&list), || list.to_json())?;
     Ok(Outcome::acceptable(list.doubts.is_none_or(|doubts| doubts.is_empty())))

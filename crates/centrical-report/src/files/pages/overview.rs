@@ -6,7 +6,7 @@ use std::path::Path;
 use centrical_session::{
     Calibrated, ChartLimits, ChartRequest, Depth, Error, HistoryList, ParameterLimits, RuleSet, Selection,
     UnitsHistoryReport, UnitsHistoryRequest, by_unit, chart, list_store, read_batches, read_calibrations, read_limits,
-    station_history, unit_means, units_history,
+    station_history, unit_means, units_history, unwatched,
 };
 use rayon::prelude::*;
 
@@ -40,9 +40,9 @@ impl Overview {
     /// # Errors
     /// [`Error`] when the store cannot be read, or a file of the request is wrong.
     pub fn read(folder: &Path, request: &PagesRequest) -> Result<Self, Error> {
-        let list = list_store(folder, Selection::default())?;
+        let list = list_store(folder, Selection::default(), &unwatched)?;
         let selection = Selection { depth: Depth::Values, ..Selection::default() };
-        let calibrations = read_calibrations(&[folder.to_owned()], &selection)?;
+        let calibrations = read_calibrations(&[folder.to_owned()], &selection, &unwatched)?;
         let limits = request.laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
         let batches = request.batches.as_deref().map(read_batches).transpose()?;
         let asked = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use centrical_session::{
     Calibrated, Depth, Error, ParameterLimits, Selection, UnitHistoryRequest, read_calibrations, sha256, unit_history,
+    unwatched,
 };
 
 use super::overview::{Overview, charts};
@@ -59,7 +60,7 @@ impl UnitPages {
     /// [`Error`] when the store cannot be read.
     pub fn read(&self, keys: BTreeSet<String>) -> Result<Vec<Calibrated>, Error> {
         let selection = Selection { depth: Depth::Whole, keys: Some(keys), ..Selection::default() };
-        read_calibrations(std::slice::from_ref(&self.folder), &selection)
+        read_calibrations(std::slice::from_ref(&self.folder), &selection, &unwatched)
     }
 
     /// The page of a unit by its calibrations, in the order of time.

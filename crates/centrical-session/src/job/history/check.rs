@@ -2,12 +2,15 @@
 //! missing or were changed.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
+
+use centrical::unwatched;
+use centrical_table::Source;
 
 use crate::document::{Doubt, DoubtKind, HistoryList};
 use crate::error::{Error, ErrorKind};
-use crate::store::{Row, Selection, Status, Store, sha256};
+use crate::record::Input;
+use crate::store::{Row, Selection, Status, Store};
 
 /// The calibrations that a selection picks, by unit and day, with the doubts about them. `today` in days from 1970-01-01.
 ///
@@ -15,7 +18,7 @@ use crate::store::{Row, Selection, Status, Store, sha256};
 /// [`Error`] if the folder is no store, a part is damaged, or a copy cannot be read.
 pub fn check_store(folder: &Path, selection: Selection, today: i64) -> Result<HistoryList, Error> {
     let store = Store::open(folder)?;
-    let rows = store.rows(selection)?.collect::<Result<Vec<_>, _>>()?;
+    let rows = store.rows(selection, &unwatched)?.collect::<Result<Vec<_>, _>>()?;
     let done: Vec<&Row> = rows.iter().filter(|row| row.status == Status::Done).collect();
     let mut doubts = two_spellings(&done);
     doubts.extend(twice(&done));
@@ -99,9 +102,9 @@ fn copies(store: &Store, rows: &[&Row]) -> Result<Vec<Doubt>, Error> {
         return Ok(doubts);
     }
     for row in rows {
-        let file = store.result_file(&row.key);
-        let kind = match fs::read(&file).map_err(|error| Error::reading(&file, error, "the copy of a result")) {
-            Ok(bytes) if sha256(&bytes) == row.key => continue,
+        let copy = Source::open(&store.result_file(&row.key), "the copy of a result").map_err(Error::from);
+        let kind = match copy.and_then(|copy| Input::of(Path::new(""), &copy, &unwatched)) {
+            Ok(copy) if copy.sha256 == row.key => continue,
             Ok(_) => DoubtKind::Changed,
             Err(error) if error.kind() == ErrorKind::Missing => DoubtKind::Missing,
             Err(error) => return Err(error),

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use centrical::unwatched;
+
 use super::calibrated::Calibrated;
 use super::read::read_calibrations;
 use super::unit::{UnitHistoryRequest, unit_history};
@@ -28,7 +30,7 @@ pub fn history_up_to(file: &Path, result: &CalibrationResult, paths: &[PathBuf])
     // The result is read first: where the paths hold it too, it counts as this file.
     let files: Vec<PathBuf> = std::iter::once(file.to_owned()).chain(paths.iter().cloned()).collect();
     let source = file.display().to_string();
-    let all = read_calibrations(&files, &selection)?;
+    let all = read_calibrations(&files, &selection, &unwatched)?;
     let (this, others): (Vec<Calibrated>, Vec<Calibrated>) = all.into_iter().partition(|c| c.source == source);
     let is_earlier = |other: &Calibrated| this.first().is_some_and(|this| other.date <= this.date);
     let calibrations: Vec<Calibrated> = others.into_iter().filter(is_earlier).chain(this.iter().cloned()).collect();

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use centrical::{OnProgress, advance, unwatched};
+use centrical::{OnProgress, advance};
 
 use super::calibrated::{Calibrated, Kinds};
 use super::results::collect_results;
@@ -13,19 +13,12 @@ use crate::settings::read_result;
 use crate::store::{Row, Selection, Status, Store};
 
 /// The calibrations in `paths` that `selection` picks, in the order of time: results; stores; other folders, in which each `result.json` at any
-/// depth is one. A result that is met twice counts once; sessions of a store without a result do not count.
+/// depth is one. A result that is met twice counts once; sessions of a store without a result do not count. `progress` is asked at each result and
+/// at each row group of a store, with none done.
 ///
 /// # Errors
-/// [`Error`] when a result or a store cannot be read, or a session has no day for a date.
-pub fn read_calibrations(paths: &[PathBuf], selection: &Selection) -> Result<Vec<Calibrated>, Error> {
-    read_calibrations_watched(paths, selection, &unwatched)
-}
-
-/// The same, asking `progress` at each result and at each row group of a store, with none done.
-///
-/// # Errors
-/// As [`read_calibrations`]; [`Error::Stopped`].
-pub fn read_calibrations_watched(
+/// [`Error`] when a result or a store cannot be read, or a session has no day for a date; [`Error::Stopped`].
+pub fn read_calibrations(
     paths: &[PathBuf],
     selection: &Selection,
     progress: OnProgress,
@@ -65,7 +58,7 @@ struct Found<'a> {
 
 impl Found<'_> {
     fn take_store(&mut self, store: &Store) -> Result<(), Error> {
-        for row in store.rows_watched(self.selection.clone(), self.progress)? {
+        for row in store.rows(self.selection.clone(), self.progress)? {
             let row = row?;
             self.take(store.folder(), row.key.clone(), row)?;
         }

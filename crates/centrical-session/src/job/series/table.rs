@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::Path;
 
+use centrical::unwatched;
 use centrical_table::write_whole;
 
 use super::ledger::Ledger;
@@ -30,7 +31,7 @@ pub(super) fn write_tables(
     for chunk in keyed.chunks(CHUNK) {
         let keys = Some(chunk.iter().map(|(_, key)| (*key).to_owned()).collect());
         let selection = Selection { depth: Depth::Values, keys, ..Selection::default() };
-        let rows = store.rows(selection)?.map(|row| row.map(|row| (row.key.clone(), row)));
+        let rows = store.rows(selection, &unwatched)?.map(|row| row.map(|row| (row.key.clone(), row)));
         let rows = rows.collect::<Result<BTreeMap<String, Row>, Error>>()?;
         let ordered: Vec<(&str, &Row)> =
             chunk.iter().filter_map(|(session, key)| Some((session.as_str(), rows.get(*key)?))).collect();
