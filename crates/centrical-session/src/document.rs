@@ -66,8 +66,7 @@ pub use self::result::{
     ConvergenceSummary, FitSummary, Follows, Method, ModelSummary, MountingPrediction, MountingSummary,
     NextAttitudeSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary, ParameterEstimate, PatternSummary,
     PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA,
-    SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary, TurningSummary,
-    ValiditySummary,
+    SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary, ValiditySummary,
 };
 pub use self::series::{SERIES_SCHEMA, SeriesSummary};
 pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};

@@ -10,7 +10,6 @@ mod next_attitude;
 mod rivals;
 mod schema;
 mod speeds;
-mod turning;
 mod verdict;
 
 pub(crate) use self::axes::Attitude;
@@ -27,5 +26,4 @@ pub use self::schema::{
     StabilityCurve, TermSummary,
 };
 pub use self::speeds::{SpeedDifference, SpeedFinding, SpeedsSummary};
-pub use self::turning::TurningSummary;
 pub use self::verdict::ResultObjection;

@@ -11,11 +11,12 @@ use centrical_table::Source;
 use nalgebra::Vector3;
 
 use super::folder::Folder;
-use super::form::{AttitudeList, RecordEntry, TumbleTable, TurningTable};
+use super::form::{AttitudeList, RecordEntry, TumbleTable};
 use super::plateaus::{PLATEAUS, PlateauMean, plateaus_of};
 use super::schedule;
 use super::stated_attitudes::{ATTITUDES, CUBE, MOST_UNCERTAIN, StatedAttitudes, directions, read_attitudes};
 use super::toml_path::TomlPath;
+use super::turning::Turning;
 use crate::error::{Error, Place};
 use crate::quantity::{Dimension, Quantity};
 
@@ -35,53 +36,6 @@ pub struct RestTable {
     /// Slow rotation among them.
     pub turning: Option<Turning>,
 }
-
-/// Arcs of slow rotation that count as rests.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turning {
-    /// Number of arcs.
-    pub arcs: usize,
-    /// Their part of all weight along the force, 0 to 1.
-    pub share: f64,
-    /// Fastest rotation of the force against the unit [rad/s].
-    pub rate: f64,
-    /// Largest distance of the proof masses from the axis of rotation [m].
-    pub radius: f64,
-    /// Standard uncertainty of an acceleration common to all rests, in each axis of the unit [m/s^2].
-    pub acceleration: f64,
-}
-
-impl Turning {
-    fn stated(at: &TomlPath, table: &TurningTable) -> Result<Self, Error> {
-        let zero_to =
-            |key, quantity, dimension, largest, meaning| at.bounded(key, quantity, dimension, (0.0, largest), meaning);
-        if !(0.0..=1.0).contains(&table.share) {
-            return Err(at.unexpected("turning.share", table.share.to_string(), "a part of the weight, 0 to 1"));
-        }
-        Ok(Self {
-            arcs: table.arcs,
-            share: table.share,
-            rate: zero_to("turning.rate", &table.rate, Dimension::Speed, 1.0, "a slow rate, up to 1 rad/s")?,
-            radius: zero_to(
-                "turning.radius",
-                &table.radius,
-                Dimension::Length,
-                MOST_DISTANT,
-                "a distance of 0 to 10 m",
-            )?,
-            acceleration: zero_to(
-                "turning.acceleration",
-                &table.acceleration,
-                Dimension::Acceleration,
-                10.0,
-                "a standard uncertainty from 0 to 10 m/s^2",
-            )?,
-        })
-    }
-}
-
-/// Largest distance from an axis of rotation [m]: beyond it a unit was mistaken.
-pub const MOST_DISTANT: f64 = 10.0;
 
 /// Where rests come from.
 #[derive(Debug, Clone, PartialEq)]

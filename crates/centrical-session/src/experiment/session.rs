@@ -16,6 +16,7 @@ use super::prior::{self, PriorEntry};
 use super::rests::{RecordedRests, RestTable};
 use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
+use super::turning::Turning;
 use super::unit::OutputUnit;
 use super::{attitude, columns, rests, schedule, speeds, terms, uncertainty, unit};
 use crate::error::{Error, quoted};
@@ -95,6 +96,11 @@ impl Session {
     pub(crate) fn noise_at_most(&self) -> Option<f64> {
         let most = self.rest_tables.iter().map(|table| table.noise_at_most).fold(1.0, f64::max);
         (most > 1.0 && !self.experiment.has_arm()).then_some(most)
+    }
+
+    /// Slow rotation among its rests.
+    pub(crate) fn turning(&self) -> Option<Turning> {
+        self.rest_tables.iter().filter_map(|table| table.turning).reduce(Turning::joined)
     }
 
     /// Reads the session in a folder, or of an experiment file. The records themselves are not touched.

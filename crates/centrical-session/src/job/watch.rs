@@ -26,8 +26,8 @@ const OUTPUTS: [&str; 5] = ["watch.json", "watch-history.jsonl", "watch-history.
 /// are there: the watch then begins anew with the model of them.
 ///
 /// # Errors
-/// [`Error`] when the request names an unknown group or plateau, a finished record is wrong, or the folder is in use, holds an input
-/// or the state of another session, or does not take the state.
+/// [`Error`] when the request names an unknown group or plateau, or a finished record is wrong. Likewise when the folder is in use,
+/// holds an input or the state of another session, or does not take the state.
 pub fn watch(
     session: &Session,
     request: &WatchRequest,

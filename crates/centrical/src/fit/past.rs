@@ -30,8 +30,7 @@ pub(super) struct Past<'m> {
     /// The first set point that reads as each.
     alike: Arc<[usize]>,
     reference: DVector<f64>,
-    /// Plateaus that are behind, and those that were when the reference was set.
-    plateaus: usize,
+    /// Plateaus that were behind when the reference was set.
     referenced: usize,
     groups: Vec<Arc<Linearised>>,
     /// The group of each set point that has come, by the first one that reads as it.
@@ -121,8 +120,7 @@ impl<'m> Past<'m> {
         let none = || Factor::new(reference.len());
         let (alike, groups, group_of) = (model.alike().into(), Vec::new(), HashMap::new());
         let (at_reference, at_zero) = (none(), none());
-        let (plateaus, referenced, rest) = (0, 0, 0.0);
-        Self { model, alike, reference, plateaus, referenced, groups, group_of, at_reference, rest, at_zero }
+        Self { model, alike, reference, referenced: 0, groups, group_of, at_reference, rest: 0.0, at_zero }
     }
 
     /// Where the plateaus are linearised.
@@ -155,7 +153,6 @@ impl<'m> Past<'m> {
             readings
         };
         self.at_reference.update(&at_reference.columns, &at_reference.misfit);
-        self.plateaus += 1;
         Ok(())
     }
 
@@ -165,7 +162,7 @@ impl<'m> Past<'m> {
     /// As [`Past::push`].
     pub fn linearise_at(&mut self, x: &DVector<f64>) -> Result<(), FitError> {
         (self.reference, self.at_reference) = (x.clone(), Factor::new(x.len()));
-        self.referenced = self.plateaus;
+        self.referenced = self.groups.iter().map(|group| group.observations.len()).sum();
         for group in &mut self.groups {
             let linearised = Linearised::together(self.model, &group.observations, x)?;
             let readings = linearised.readings();

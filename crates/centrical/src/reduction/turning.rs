@@ -39,8 +39,8 @@ const ROUNDS: usize = 4;
 /// What the polynomials leave, at most, over the standard uncertainty of the mean along the force: it is known to a third or better.
 const MOST_LEFT: f64 = 3.0;
 
-/// Of so many samples of an arc one is left out as a spike at most.
-const MOST_SPIKES: usize = 20;
+/// Samples of an arc for each one that may be left out as a spike.
+const PER_SPIKE: usize = 20;
 
 /// Longest stretch of rotation whose noise is looked at as a whole [s].
 const STRETCH: f64 = 60.0;
@@ -50,7 +50,7 @@ pub(super) fn is_smooth(fit: &PlateauFit, white: &Vector3<f64>) -> bool {
     let along = fit.mean.normalize();
     let uncertainty = along.component_mul(white).norm() / (fit.samples as f64).sqrt();
     // A bump takes some samples; where many are left out it is the motion that the polynomials miss.
-    let is_described = fit.left_out.spikes <= fit.samples / MOST_SPIKES;
+    let is_described = fit.left_out.spikes <= fit.samples / PER_SPIKE;
     !fit.turns() || is_described && left(fit, white) / (2.0 * fit.mean.norm()) <= MOST_LEFT * uncertainty
 }
 

@@ -71,9 +71,7 @@ pub const DOUBTFUL: Making = Making {
     white: Vector3::new(4e-3, 4e-3, 4e-3),
     slow: 5e-4,
     tremor: 1e-3,
-    bumps: 0.0,
-    first: 0.0,
-    warming: 0.0,
+    ..ON_A_TABLE
 };
 
 /// First-order Markov noise of unit variance.
@@ -327,6 +325,31 @@ pub fn judged_record(making: &Making, mut made: Made, radius: Option<f64>) -> Ju
     }
 }
 
+/// What many records show.
+pub struct Tally {
+    pub refused: usize,
+    pub drifting: usize,
+    /// Parameters of the accepted records, and their mean squared error over the covariance: as stated, and by the noise alone.
+    pub count: f64,
+    pub mean: f64,
+    pub of_noise: f64,
+}
+
+impl Tally {
+    pub fn of(records: &[Judged]) -> Self {
+        let accepted: Vec<&Judged> = records.iter().filter(|record| !record.is_refused).collect();
+        let count = (9 * accepted.len()) as f64;
+        let mean = |of: fn(&Judged) -> f64| accepted.iter().map(|record| of(record)).sum::<f64>() / count;
+        Self {
+            refused: records.len() - accepted.len(),
+            drifting: records.iter().filter(|record| record.is_drifting).count(),
+            count,
+            mean: mean(|record| record.squared),
+            of_noise: mean(|record| record.of_noise),
+        }
+    }
+}
+
 /// Noise that may pass unseen within rests refuses no sound record. Taken for known it refuses some.
 #[test]
 fn doubtful_noise_refuses_no_sound_record() {
@@ -366,12 +389,8 @@ fn ten_thousand_runs_of_tumbles() {
     for (kind, (name, making)) in kinds.into_iter().enumerate() {
         let mut random = Random::new(11 + kind as u64);
         let records: Vec<Judged> = (0..RUNS).map(|_| judged(&making, &mut random)).collect();
-        let accepted: Vec<&Judged> = records.iter().filter(|record| !record.is_refused).collect();
-        let (refused, drifting) = (RUNS - accepted.len(), records.iter().filter(|record| record.is_drifting).count());
+        let Tally { refused, drifting, count, mean, of_noise } = Tally::of(&records);
         let by_noise = records.iter().filter(|record| record.is_by_noise).count();
-        let count = (9 * accepted.len()) as f64;
-        let mean = |of: fn(&Judged) -> f64| accepted.iter().map(|record| of(record)).sum::<f64>() / count;
-        let (mean, of_noise) = (mean(|record| record.squared), mean(|record| record.of_noise));
         println!(
             "{name}: {mean:.3}, by the noise alone {of_noise:.3}; of {RUNS} refused {refused}, as drifting {drifting}, by noise taken for known {by_noise}"
         );

@@ -4,7 +4,7 @@ use centrical::reduction::{Record, reduce_rests};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::common::Random;
-use crate::rests::{BY_HAND, DOUBTFUL, GRAVITY, Judged, Made, Making, Markov, ON_A_TABLE, RATE, judged_record};
+use crate::rests::{BY_HAND, DOUBTFUL, GRAVITY, Judged, Made, Making, Markov, ON_A_TABLE, RATE, Tally, judged_record};
 
 /// A unit that turns slowly and never rests.
 #[derive(Clone, Copy)]
@@ -123,11 +123,7 @@ fn ten_thousand_runs_of_rotations() {
     for (kind, (name, making, rotation)) in kinds.into_iter().enumerate() {
         let mut random = Random::new(41 + kind as u64);
         let records: Vec<Judged> = (0..RUNS).map(|_| judged(&making, &rotation, &mut random)).collect();
-        let accepted: Vec<&Judged> = records.iter().filter(|record| !record.is_refused).collect();
-        let (refused, drifting) = (RUNS - accepted.len(), records.iter().filter(|record| record.is_drifting).count());
-        let count = (9 * accepted.len()) as f64;
-        let mean = |of: fn(&Judged) -> f64| accepted.iter().map(|record| of(record)).sum::<f64>() / count;
-        let (mean, of_noise) = (mean(|record| record.squared), mean(|record| record.of_noise));
+        let Tally { refused, drifting, count, mean, of_noise } = Tally::of(&records);
         println!(
             "{name}: {mean:.3}, by the noise alone {of_noise:.3}; of {RUNS} refused {refused}, as drifting {drifting}"
         );

@@ -170,8 +170,8 @@ impl BudgetSummary {
 }
 
 impl ValiditySummary {
-    /// The checks of a calibration.
-    pub(crate) fn of(calibration: &Calibration, rivals: &Rivals) -> Result<Self, FitError> {
+    /// The checks of a calibration, of rests whose noise may be stronger by `noise_at_most`.
+    pub(crate) fn of(calibration: &Calibration, rivals: &Rivals, noise_at_most: Option<f64>) -> Result<Self, FitError> {
         let experiment = calibration.data().model().experiment();
         let suspects = rivals.suspects(Level::Reported.probability());
         let patterns = match suspects.shown.first() {
@@ -179,7 +179,7 @@ impl ValiditySummary {
             None => calibration.patterns()?,
         };
         let checks = Self::new(experiment, &calibration.validity()?, &patterns);
-        Ok(Self { rivals_tested: suspects.tested, rivals: RivalSummary::all(&suspects), ..checks })
+        Ok(Self { noise_at_most, rivals_tested: suspects.tested, rivals: RivalSummary::all(&suspects), ..checks })
     }
 
     /// The checks of a fit in the form of the file.

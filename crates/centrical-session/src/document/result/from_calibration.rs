@@ -16,7 +16,6 @@ use super::schema::{
     TermSummary,
 };
 use super::speeds::SpeedsSummary;
-use super::turning::TurningSummary;
 use crate::document::steadiness::{DriftSummary, TiltSummary};
 use crate::experiment::{OutputUnit, Session};
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
@@ -43,8 +42,7 @@ impl CalibrationResult {
         } else {
             let rivals = Rivals::of(calibration)?;
             advance(progress, 0)?;
-            let mut checks = ValiditySummary::of(calibration, &rivals)?;
-            checks.noise_at_most = session.noise_at_most();
+            let checks = ValiditySummary::of(calibration, &rivals, session.noise_at_most())?;
             advance(progress, 0)?;
             (Some(checks), RestsOn::all(model, rivals.rests_on()?))
         };
@@ -64,7 +62,7 @@ impl CalibrationResult {
             observability: ObservabilitySummary::new(model, fit),
             next_attitude: NextAttitudeSummary::of(calibration)?,
             between_rests: None,
-            turning: TurningSummary::of(session),
+            turning: session.turning(),
             fit: FitSummary::new(calibration),
             mountings: mountings(model, reduced),
             plateaus: plateaus(calibration, session, reduced),

@@ -18,10 +18,10 @@ use super::budget_and_checks::{BudgetSummary, ValiditySummary};
 use super::next_attitude::NextAttitudeSummary;
 use super::rivals::RestsOn;
 use super::speeds::SpeedsSummary;
-use super::turning::TurningSummary;
 use crate::document::json;
 use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
 use crate::error::{Error, Place};
+use crate::experiment::Turning;
 use crate::record::{Input, RecordOverview};
 use crate::settings::{from_json, read_result};
 
@@ -62,7 +62,7 @@ pub struct CalibrationResult {
     pub between_rests: Option<BetweenRestsSummary>,
     /// Slow rotation among the rests, where it was asked for and found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub turning: Option<TurningSummary>,
+    pub turning: Option<Turning>,
     /// How the fit went.
     pub fit: FitSummary,
     /// The mountings, in the order of the session.

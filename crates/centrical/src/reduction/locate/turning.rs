@@ -1,7 +1,7 @@
 //! Arcs of a record in which the unit turns slowly.
 //!
-//! A block belongs to slow rotation if the readings change from the block before to the one after by no more than the rate [`FASTEST`]
-//! and four standard deviations of their noise, and if it is no part of a rest. Neighbouring blocks are gathered into arcs: an arc turns
+//! A block outside all rests belongs to slow rotation if the readings change slowly about it: from the block before to the one after
+//! by the rate [`FASTEST`] and four standard deviations of their noise at most. Neighbouring blocks are gathered into arcs. An arc turns
 //! by [`ANGLE`] at most, so that a polynomial of third degree describes it, and lasts [`LONGEST`] at most.
 
 use std::ops::Range;
@@ -60,7 +60,7 @@ pub(super) fn arcs(blocks: &Blocks, rests: &[Range<usize>]) -> Vec<Range<usize>>
 pub(super) fn is_still(blocks: &Blocks, rest: &Range<usize>) -> bool {
     let quarter = (rest.len() / 4).max(1);
     let [first, last] = [rest.start, rest.end - quarter].map(|n| level(blocks, n..n + quarter));
-    let noise = blocks.sample_noise.norm() * (2.0 * blocks.interval / (blocks.width * quarter as f64)).sqrt();
+    let noise = noise_of_difference(blocks, quarter);
     first.angle(&last) <= STILL + 4.0 * noise / first.norm()
 }
 
@@ -69,9 +69,12 @@ fn is_slow(blocks: &Blocks, block: usize) -> bool {
     let (before, after) = (block.saturating_sub(1), (block + 1).min(blocks.len() - 1));
     let time = blocks.t[after] - blocks.t[before];
     let change = (blocks.f_z[after] - blocks.f_z[before]).norm();
-    // Of a difference of two means, in any direction.
-    let noise = blocks.sample_noise.norm() * (2.0 * blocks.interval / blocks.width).sqrt();
-    change <= FASTEST * time * blocks.f_z[block].norm() + 4.0 * noise
+    change <= FASTEST * time * blocks.f_z[block].norm() + 4.0 * noise_of_difference(blocks, 1)
+}
+
+/// Noise of the difference of two means of `count` blocks, in any direction [m/s^2].
+fn noise_of_difference(blocks: &Blocks, count: usize) -> f64 {
+    blocks.sample_noise.norm() * (2.0 * blocks.interval / (blocks.width * count as f64)).sqrt()
 }
 
 /// Whether no blocks are missing between two.
