@@ -1,6 +1,6 @@
 //! The plateau means of a session, wherever they come from.
 
-use centrical::reduction::{ClockAgreement, ClockOffset, LeftOut, MeasuredSpeed, PlateauMean};
+use centrical::reduction::{Arc, ClockAgreement, ClockOffset, LeftOut, MeasuredSpeed, PlateauMean};
 use centrical::uncertainty::BetweenRests;
 use centrical::{MeasurementModel, Observation, SetPoint};
 use nalgebra::{Matrix3, Vector3};
@@ -60,6 +60,8 @@ pub struct ReducedPlateau {
     pub measured_speed: Option<f64>,
     /// What it shows beside its mean; none for a plateau that came already averaged.
     pub steadiness: Option<Steadiness>,
+    /// How the unit turns, of an arc of slow rotation.
+    pub arc: Option<Arc>,
 }
 
 /// What a plateau shows beside its mean.
@@ -102,6 +104,7 @@ impl Reduced {
             mean: plateau.mean,
             covariance: plateau.covariance,
             samples: plateau.samples,
+            bend_z: None,
         };
         let set_points = self.set_points(session);
         let plateaus = self.plateaus.iter().zip(&set_points);
@@ -192,6 +195,7 @@ pub(crate) fn rest_rows(rests: &[ReducedPlateau]) -> Vec<TabledPlateau> {
         mean: plateau.mean,
         covariance: plateau.covariance,
         samples: plateau.samples,
+        bend_z: plateau.arc.map(|arc| arc.bend_z),
     };
     rests.iter().enumerate().map(row).collect()
 }
@@ -207,7 +211,8 @@ impl From<PlateauMean> for ReducedPlateau {
             once_per_revolution: amplitude(&plateau.once_per_revolution),
             measured_speed: plateau.measured_speed,
             // The slope of an arc of slow rotation is its turn.
-            steadiness: (!plateau.turns).then(|| Steadiness::from(&plateau)),
+            arc: plateau.arc,
+            steadiness: plateau.arc.is_none().then(|| Steadiness::from(&plateau)),
         }
     }
 }
@@ -228,6 +233,7 @@ impl From<&TabledPlateau> for ReducedPlateau {
             once_per_revolution: None,
             measured_speed: None,
             steadiness: None,
+            arc: None,
         }
     }
 }

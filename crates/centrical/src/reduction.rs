@@ -49,13 +49,12 @@ pub use error::{ReductionError, Stretch};
 pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate, locate_rests};
 pub use mistake::Mistake;
 pub use packed_times::PackedTimes;
-pub use plateau::{LeftOut, PlateauMean, ScheduledPlateau};
+pub use plateau::{Arc, LeftOut, PlateauMean, ScheduledPlateau};
 pub use record::{Record, RecordSlice};
-pub use rests::{CoarseScale, Rests, coarse_scale, reduce_rests};
+pub use rests::{CoarseScale, RestRecord, Rests, coarse_scale, reduce_rests};
 pub use speed::{MeasuredSpeed, measured_speeds};
 pub use steady::{Staircase, SteadyStretch, staircase, steady_stretches};
 pub use survey::{Condensed, Extremes, Survey};
-pub use turning::Turning;
 
 /// Finds and averages the scheduled plateaus of one mounting.
 ///

@@ -139,7 +139,7 @@ fn slow_rotation_counts_as_rests_where_it_is_asked_for() {
     let found = run(&[&record[..], &["--turning-radius", "20 mm", "--out", "tumbled"]].concat());
     let text = String::from_utf8_lossy(&found.stdout).into_owned();
     assert_eq!(found.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&found.stderr));
-    assert!(text.contains("arcs of slow rotation") && text.contains("20 mm from its axis"), "{text}");
+    assert!(text.contains("arcs of slow rotation") && text.contains("20 mm from its axes"), "{text}");
     let (result, truth) =
         (json(&folder.path().join("tumbled/result.json")), json(&folder.path().join("made/truth.json")));
     assert!(
@@ -159,6 +159,27 @@ fn slow_rotation_counts_as_rests_where_it_is_asked_for() {
     for key in ["parameters", "turning", "budget", "validity", "between_rests"] {
         assert_eq!(again[key], result[key], "{key}");
     }
+    // A session that names the record finds the same arcs, and keeps them where it is reduced.
+    let session = fs::read_to_string(folder.path().join("tumbled/experiment.toml")).unwrap();
+    let lines = session.lines().filter(|line| !line.starts_with("noise_at_most") && !line.starts_with("turning"));
+    let of_record = "record = \"../made/records/tumble-1.csv\"\nturning_radius = \"20 mm\"";
+    let session = lines.collect::<Vec<_>>().join("\n").replace("rests = \"rests.csv\"", of_record);
+    fs::create_dir(folder.path().join("session")).unwrap();
+    fs::write(folder.path().join("session/experiment.toml"), session).unwrap();
+    done(&run(&["reduce", "session", "--out", "reduced"]));
+    for session in ["session", "reduced"] {
+        done(&run(&["calibrate", session, "--out", "of-record"]));
+        let of_record = json(&folder.path().join("of-record/result.json"));
+        for key in ["parameters", "turning", "budget", "validity", "between_rests"] {
+            assert_eq!(of_record[key], result[key], "{session}: {key}");
+        }
+    }
+    // A centrifuge session that begins from the tumble knows of the arcs too.
+    let begun = run(&["init", "made", "--tumble", "tumbled"]);
+    let text = String::from_utf8_lossy(&begun.stdout).into_owned();
+    let stated = fs::read_to_string(folder.path().join("tumbled/experiment.toml")).unwrap();
+    let turning = stated.lines().find(|line| line.starts_with("turning")).unwrap();
+    assert!(text.contains(turning), "{text}{}", String::from_utf8_lossy(&begun.stderr));
 }
 
 /// An arm with rests after a switch-off: the arm's records are those of the plan without rests, and the calibration knows of the change

@@ -75,7 +75,7 @@ pub(super) fn source(source: Source) -> &'static str {
         Source::ProofMasses => "Proof masses",
         Source::Attitude => "Attitudes",
         Source::BiasChange => "Change of bias at a switch-off",
-        Source::Turning => "Acceleration about the axis of a slow rotation",
+        Source::Turning => "Acceleration about the axes of a slow rotation",
         Source::Resolution => "Resolution",
         Source::Effects => "Effects left out",
     }
@@ -181,7 +181,7 @@ pub(super) fn between_rests(scatter: &str, drift: &str) -> String {
 /// Arcs of slow rotation that count as rests.
 pub(super) fn turning(arcs: usize, share: &str, [rate, radius, acceleration]: [&str; 3]) -> String {
     format!(
-        "Of the rests {arcs} are arcs of slow rotation, at {rate} and less; they have {share} % of the weight. At {radius} from the axis of rotation they leave an acceleration that is uncertain by {acceleration} in each bias; rotation about the vertical does not show, and is not in it."
+        "Of the rests {arcs} are arcs of slow rotation, at {rate} and less; they have {share} % of the weight. At {radius} from the axes of rotation the proof masses accelerate along the vertical, uncertain by {acceleration} at most in an arc."
     )
 }
 

@@ -73,7 +73,7 @@ pub(super) fn source(source: Source) -> &'static str {
         Source::ProofMasses => "Чувствительные массы",
         Source::Attitude => "Ориентация",
         Source::BiasChange => "Изменение смещения при выключении",
-        Source::Turning => "Ускорение относительно оси медленного вращения",
+        Source::Turning => "Ускорение относительно осей медленного вращения",
         Source::Resolution => "Разрешение",
         Source::Effects => "Неучтённые эффекты",
     }
@@ -177,7 +177,7 @@ pub(super) fn between_rests(scatter: &str, drift: &str) -> String {
 /// Arcs of slow rotation that count as rests.
 pub(super) fn turning(arcs: usize, share: &str, [rate, radius, acceleration]: [&str; 3]) -> String {
     format!(
-        "Из положений покоя {arcs} — отрезки медленного вращения со скоростью не более {rate}; на них приходится {share} % веса. На расстоянии {radius} от оси вращения они оставляют ускорение, неопределённость которого в каждом смещении нуля {acceleration}; вращение вокруг вертикали не видно и в неё не входит."
+        "Из положений покоя {arcs} — отрезки медленного вращения со скоростью не более {rate}; на них приходится {share} % веса. На расстоянии {radius} от осей вращения чувствительные массы ускоряются вдоль вертикали; неопределённость этого ускорения на отрезке не более {acceleration}."
     )
 }
 

@@ -43,7 +43,7 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
     screen.say(2, &of_size);
     if let Some(turning) = &result.turning {
         let text = format!(
-            "{} of slow rotation among them, at {} deg/s and less, with {:.0} % of the weight; {} mm from its axis: {} ug in each bias, without rotation about the vertical, which does not show",
+            "{} of slow rotation among them, at {} deg/s and less, with {:.0} % of the weight; {} mm from its axes, where the acceleration along the vertical is uncertain by {} ug at most in an arc",
             counted(turning.arcs, "arc"),
             two_digits(turning.rate.to_degrees()),
             100.0 * turning.share,

@@ -9,6 +9,7 @@
 //! | `cov_11`, `cov_12`, `cov_13`, `cov_22`, `cov_23`, `cov_33` | covariance of the means [m^2/s^4] |
 //! | `samples` | how many samples were averaged |
 //! | `speed_uncertainty` | relative standard uncertainty of `speed`, in a session whose plateaus state measured speeds |
+//! | `bend_1` .. `bend_3` | second derivative of the vertical in instrument axes [1/s^2], in a table of rests with arcs of slow rotation |
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -39,6 +40,8 @@ pub struct PlateauMean {
     pub covariance: Matrix3<f64>,
     /// How many samples were averaged.
     pub samples: u64,
+    /// Mean second derivative of the vertical, instrument axes [1/s^2], of an arc of slow rotation among rests; zero of a rest among them.
+    pub bend_z: Option<Vector3<f64>>,
 }
 
 /// Plateaus already averaged.
@@ -55,8 +58,8 @@ impl PlateauTable {
     pub(crate) fn read(folder: &Folder, name: &str, mountings: usize, has_speeds: bool) -> Result<Self, Error> {
         let file = folder.join(name);
         let table = folder.open(&file, PLATEAUS)?;
-        let mut rows =
-            if has_speeds { measured_plateaus_of(&table, mountings) } else { plateaus_of(&table, mountings) }?;
+        let further = if has_speeds { Further::Speeds } else { Further::Nothing };
+        let mut rows = plateaus_of(&table, mountings, further)?;
         rows.sort_by_key(|row| row.mounting);
         Ok(Self { file: Some(file), rows })
     }
@@ -75,9 +78,8 @@ impl PlateauTable {
                 expected,
             ));
         }
-        let uncertainty = |row: usize| columns.get(COLUMNS.len()).map_or(f64::NAN, |column| column[row]);
-        let row = |row: usize| (std::array::from_fn(|k| columns[k][row]), uncertainty(row));
-        let mut rows = checked(file, &(0..length).map(row).collect::<Vec<_>>(), mountings)?;
+        let rows: Vec<Row> = (0..length).map(|row| row_of(columns, row)).collect();
+        let mut rows = checked(file, &rows, mountings, Further::Speeds)?;
         rows.sort_by_key(|row| row.mounting);
         Ok(Self { file: None, rows })
     }
@@ -119,6 +121,33 @@ const COLUMNS: [(&str, &str); 13] = [
 /// The further column of a table whose speeds are measured.
 const SPEED_UNCERTAINTY: (&str, &str) = ("speed_uncertainty", "a relative standard uncertainty");
 
+/// The further columns of a table of rests with arcs of slow rotation.
+const BEND: [(&str, &str); 3] = [
+    ("bend_1", "a second derivative of the vertical"),
+    ("bend_2", "a second derivative of the vertical"),
+    ("bend_3", "a second derivative of the vertical"),
+];
+
+/// What a table has beside the columns of all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Further {
+    Nothing,
+    /// The uncertainty of each speed.
+    Speeds,
+    /// The bend of the way in each arc of slow rotation.
+    Bends,
+}
+
+impl Further {
+    fn columns(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Nothing => &[],
+            Self::Speeds => &[SPEED_UNCERTAINTY],
+            Self::Bends => &BEND,
+        }
+    }
+}
+
 /// Place of `angle` among the columns.
 const ANGLE: usize = 2;
 
@@ -128,28 +157,19 @@ const ANGLE: usize = 2;
 /// If the file can not be read or lacks a column; if a row names no mounting, rests without an angle, or has a
 /// covariance that is not positive definite.
 pub fn read_plateaus(file: &Path, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
-    plateaus_of(&Source::open(file, PLATEAUS)?, mountings)
-}
-
-/// The same of a source.
-pub(super) fn plateaus_of(table: &Source, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
-    read_columns(table, mountings, &COLUMNS)
-}
-
-/// The same with the uncertainty of each speed.
-fn measured_plateaus_of(table: &Source, mountings: usize) -> Result<Vec<PlateauMean>, Error> {
-    let columns: Vec<_> = COLUMNS.into_iter().chain([SPEED_UNCERTAINTY]).collect();
-    read_columns(table, mountings, &columns)
+    plateaus_of(&Source::open(file, PLATEAUS)?, mountings, Further::Nothing)
 }
 
 /// What a table of plateaus is expected to be.
 pub(super) const PLATEAUS: &str = "a table of plateaus";
 
-fn read_columns(source: &Source, mountings: usize, columns: &[(&str, &str)]) -> Result<Vec<PlateauMean>, Error> {
-    let field = |(k, (name, expected)): (usize, &(&str, &str))| Field {
+/// The same of a source, with further columns.
+pub(super) fn plateaus_of(source: &Source, mountings: usize, further: Further) -> Result<Vec<PlateauMean>, Error> {
+    let columns: Vec<_> = COLUMNS.iter().chain(further.columns()).collect();
+    let field = |(k, (name, expected)): (usize, &&(&str, &str))| Field {
         name: ColumnName::Name((*name).to_owned()),
         expected: (*expected).to_owned(),
-        rule: if k == ANGLE || k == COLUMNS.len() { Rule::OrMissing } else { Rule::Any },
+        rule: if k == ANGLE || k == COLUMNS.len() && further == Further::Speeds { Rule::OrMissing } else { Rule::Any },
     };
     let fields: Vec<Field> = columns.iter().enumerate().map(field).collect();
     let mut rows: Vec<Row> = Vec::new();
@@ -159,20 +179,30 @@ fn read_columns(source: &Source, mountings: usize, columns: &[(&str, &str)]) -> 
     while table.next_batch()?.is_some() {
         units.check(source.name(), &table)?;
         for columns in table.batch() {
-            let uncertainty = |row: usize| columns.get(COLUMNS.len()).map_or(f64::NAN, |column| column[row]);
-            rows.extend((0..columns[0].len()).map(|row| (std::array::from_fn(|k| columns[k][row]), uncertainty(row))));
+            rows.extend((0..columns[0].len()).map(|row| row_of(columns, row)));
         }
     }
-    checked(source.name(), &rows, mountings)
+    checked(source.name(), &rows, mountings, further)
 }
 
-/// The numbers of a row, and the uncertainty of its speed.
-type Row = ([f64; COLUMNS.len()], f64);
+/// The numbers of a row, and those in its further columns; NaN where there are none.
+type Row = ([f64; COLUMNS.len()], [f64; 3]);
 
-fn checked(file: &Path, rows: &[Row], mountings: usize) -> Result<Vec<PlateauMean>, Error> {
-    let checked = |(number, (row, uncertainty)): (u64, &Row)| {
-        let speed_uncertainty = speed_uncertainty(file, number, *uncertainty)?;
-        Ok(PlateauMean { speed_uncertainty, ..plateau(file, number, row, mountings)? })
+fn row_of(columns: &[Vec<f64>], row: usize) -> Row {
+    let at = |k: usize| columns.get(k).map_or(f64::NAN, |column| column[row]);
+    (std::array::from_fn(at), std::array::from_fn(|k| at(COLUMNS.len() + k)))
+}
+
+fn checked(file: &Path, rows: &[Row], mountings: usize, further: Further) -> Result<Vec<PlateauMean>, Error> {
+    let checked = |(number, (row, numbers)): (u64, &Row)| {
+        let plateau = plateau(file, number, row, mountings)?;
+        Ok(match further {
+            Further::Nothing => plateau,
+            Further::Speeds => {
+                PlateauMean { speed_uncertainty: speed_uncertainty(file, number, numbers[0])?, ..plateau }
+            }
+            Further::Bends => PlateauMean { bend_z: Some(bend(file, number, numbers)?), ..plateau },
+        })
     };
     (1..).zip(rows).map(checked).collect()
 }
@@ -190,6 +220,20 @@ fn speed_uncertainty(file: &Path, number: u64, uncertainty: f64) -> Result<Optio
     let place = Place::Row { row: number, column: SPEED_UNCERTAINTY.0.to_owned() };
     let expected = "a relative standard uncertainty, zero or more and below 1";
     Err(Error::content(file, place, uncertainty.to_string(), expected))
+}
+
+/// The bend of the way in an arc of slow rotation.
+fn bend(file: &Path, number: u64, bend_z: &[f64; 3]) -> Result<Vector3<f64>, Error> {
+    /// Rotation that is not slow has this square of its rate [1/s^2].
+    const MOST: f64 = 1.0;
+    match bend_z.iter().position(|value| value.is_nan() || value.abs() > MOST) {
+        None => Ok(Vector3::from(*bend_z)),
+        Some(axis) => {
+            let place = Place::Row { row: number, column: BEND[axis].0.to_owned() };
+            let expected = "a second derivative of the vertical in 1/s^2, -1 to 1";
+            Err(Error::content(file, place, bend_z[axis].to_string(), expected))
+        }
+    }
 }
 
 /// One row, checked.
@@ -232,6 +276,7 @@ fn plateau(file: &Path, number: u64, row: &[f64; COLUMNS.len()], mountings: usiz
         mean: Vector3::new(m1, m2, m3),
         covariance,
         samples,
+        bend_z: None,
     })
 }
 
@@ -240,9 +285,15 @@ fn plateau(file: &Path, number: u64, row: &[f64; COLUMNS.len()], mountings: usiz
 /// # Errors
 /// If the file can not be written.
 pub fn write_plateaus(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error> {
-    let is_measured = is_measured(plateaus);
+    let (is_measured, turns) = (is_measured(plateaus), turns(plateaus));
     let mut text = COLUMNS.map(|(name, _)| name).join(",");
-    text.push_str(if is_measured { ",speed_uncertainty\n" } else { "\n" });
+    if is_measured {
+        let _ = write!(text, ",{}", SPEED_UNCERTAINTY.0);
+    }
+    if turns {
+        let _ = write!(text, ",{}", BEND.map(|(name, _)| name).join(","));
+    }
+    text.push('\n');
     for p in plateaus {
         let angle = if p.speed == 0.0 { p.angle.to_string() } else { String::new() };
         let c = &p.covariance;
@@ -252,6 +303,10 @@ pub fn write_plateaus(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error
         let _ = write!(text, "{},{},{angle},{m1},{m2},{m3},{upper},{}", p.mounting + 1, p.speed, p.samples);
         if is_measured {
             let _ = write!(text, ",{}", p.speed_uncertainty.map_or_else(String::new, |u| format!("{u:e}")));
+        }
+        if turns {
+            let [b1, b2, b3] = p.bend_z.unwrap_or_default().into();
+            let _ = write!(text, ",{b1:e},{b2:e},{b3:e}");
         }
         text.push('\n');
     }
@@ -263,7 +318,12 @@ fn is_measured(plateaus: &[PlateauMean]) -> bool {
     plateaus.iter().any(|p| p.speed_uncertainty.is_some())
 }
 
-/// As [`write_plateaus`], in Parquet.
+/// Whether there are arcs of slow rotation, so that the table has columns for their bend.
+fn turns(plateaus: &[PlateauMean]) -> bool {
+    plateaus.iter().any(|p| p.bend_z.is_some())
+}
+
+/// As [`write_plateaus`], of plateaus on an arm in Parquet.
 pub(crate) fn write_plateaus_parquet(file: &Path, plateaus: &[PlateauMean]) -> Result<(), Error> {
     let row = |p: &PlateauMean| {
         let angle = if p.speed == 0.0 { p.angle } else { f64::NAN };
@@ -300,6 +360,7 @@ mod tests {
             mean,
             covariance,
             samples: 1020,
+            bend_z: None,
         };
         let spin = PlateauMean { mounting: 0, speed: 14.0 / 3.0, angle: 0.0, ..rest };
         write_plateaus(&file, &[rest, spin]).unwrap();
@@ -307,7 +368,11 @@ mod tests {
         let measured = PlateauMean { speed: -14.0 / 3.0, speed_uncertainty: Some(1e-6 / 3.0), ..spin };
         write_plateaus(&file, &[rest, measured]).unwrap();
         let table = Source::open(&file, PLATEAUS).unwrap();
-        assert_eq!(measured_plateaus_of(&table, 2).unwrap(), [rest, measured]);
+        assert_eq!(plateaus_of(&table, 2, Further::Speeds).unwrap(), [rest, measured]);
+        let arc = PlateauMean { bend_z: Some(Vector3::new(-1.0 / 3.0, 2e-3, 0.0)), ..rest };
+        write_plateaus(&file, &[arc]).unwrap();
+        let table = Source::open(&file, PLATEAUS).unwrap();
+        assert_eq!(plateaus_of(&table, 2, Further::Bends).unwrap(), [arc]);
         let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
         assert_eq!(left.len(), 1, "nothing is left beside the table");
     }

@@ -6,17 +6,18 @@
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
+use centrical::reduction::PlateauMean as Found;
 use centrical::{Experiment, Mounting, Position, SetPoint, SwitchOn};
 use centrical_table::Source;
 use nalgebra::Vector3;
 
 use super::folder::Folder;
 use super::form::{AttitudeList, RecordEntry, TumbleTable};
-use super::plateaus::{PLATEAUS, PlateauMean, plateaus_of};
+use super::plateaus::{Further, PLATEAUS, PlateauMean, plateaus_of};
 use super::schedule;
 use super::stated_attitudes::{ATTITUDES, CUBE, MOST_UNCERTAIN, StatedAttitudes, directions, read_attitudes};
 use super::toml_path::TomlPath;
-use super::turning::Turning;
+use super::turning::{DISTANCE, MOST_DISTANT, Turning};
 use crate::error::{Error, Place};
 use crate::quantity::{Dimension, Quantity};
 
@@ -62,6 +63,8 @@ pub struct RecordedRests {
     pub files: Vec<PathBuf>,
     /// Attitudes in which the unit was laid down, in any order, where they are known.
     pub attitudes: Option<StatedAttitudes>,
+    /// Largest distance of the proof masses from the axes of a slow rotation [m], where its arcs count as rests.
+    pub turning_radius: Option<f64>,
 }
 
 /// Rests that are planned.
@@ -131,15 +134,30 @@ impl RestTable {
                 let expected = "slow rotation beside a table of rests";
                 return Err(at.unexpected("turning", "slow rotation without one", expected));
             }
-            let switch_on = SwitchOn { turning: turning.map_or(0.0, |turning| turning.acceleration), ..switch_on };
-            Ok(Self { switch_on, noise_at_most, turning, ..rests? })
+            if table.turning_radius.is_some() && table.record.is_none() {
+                let expected = "no such key without a record of slow rotation";
+                return Err(at.unexpected("turning_radius", "a distance", expected));
+            }
+            Ok(Self { switch_on, noise_at_most, ..rests? }.with_turning(turning))
         });
         named.collect()
     }
 
+    /// With slow rotation among the rests.
+    fn with_turning(self, turning: Option<Turning>) -> Self {
+        let from_axes = turning.map_or(0.0, |turning| turning.place_uncertainty());
+        Self { turning, switch_on: SwitchOn { from_axes, ..self.switch_on }, ..self }
+    }
+
+    /// Takes slow rotation among the rests that were found in its record.
+    pub(crate) fn turned(&mut self, found: &[Found]) {
+        let turning = self.record().and_then(|recorded| Turning::of(found, recorded.turning_radius?));
+        *self = self.clone().with_turning(turning);
+    }
+
     /// Rests in the first switch-on, without means.
     fn of(source: RestSource, attitudes: Option<KnownAttitudes>) -> Self {
-        let switch_on = SwitchOn { number: 1, bias_change: None, turning: 0.0 };
+        let switch_on = SwitchOn { number: 1, bias_change: None, from_axes: 0.0 };
         Self { source, means: Vec::new(), attitudes, switch_on, noise_at_most: 1.0, turning: None }
     }
 
@@ -160,7 +178,9 @@ impl RestTable {
         refuse_duration(at, table)?;
         let attitudes = known(at, table)?.map(|(entry, u)| stated(at, folder, entry, u)).transpose()?;
         let files = record.paths().map(|name| folder.join(name)).collect();
-        Ok(Self::of(RestSource::Record(RecordedRests { files, attitudes }), None))
+        let radius = |q| at.bounded("turning_radius", q, Dimension::Length, (0.0, MOST_DISTANT), DISTANCE);
+        let turning_radius = table.turning_radius.as_ref().map(radius).transpose()?;
+        Ok(Self::of(RestSource::Record(RecordedRests { files, attitudes, turning_radius }), None))
     }
 
     /// Rests that are planned in these attitudes, known to `uncertain` if it is stated; paths start from `folder`.
@@ -205,7 +225,8 @@ impl RestTable {
     /// If a table can not be read, a rest has a speed, the tables differ in length, or the attitude of a row is not that of its rest.
     pub(crate) fn read(&mut self, folder: &Folder) -> Result<(), Error> {
         let RestSource::Table(file) = &self.source else { return Ok(()) };
-        self.means = read_rests(&folder.open(file, PLATEAUS)?)?;
+        let further = if self.turning.is_some() { Further::Bends } else { Further::Nothing };
+        self.means = read_rests(&folder.open(file, PLATEAUS)?, further)?;
         let Some(attitudes) = &mut self.attitudes else { return Ok(()) };
         if let Some(file) = attitudes.file.as_ref() {
             attitudes.up_b = read_attitudes(&folder.open(file, ATTITUDES)?)?;
@@ -256,7 +277,8 @@ impl RestTable {
                 Some((up_b, uncertainty)) => Position::known(id, &up_b, uncertainty),
                 None => Position::free(id, up),
             };
-            position.in_switch_on(self.switch_on)
+            let bend_z = self.means.get(n).and_then(|rest| rest.bend_z).unwrap_or_default();
+            position.on_arc(bend_z).in_switch_on(self.switch_on)
         })
     }
 
@@ -351,7 +373,7 @@ fn switch_on(file: &Path, tables: &[TumbleTable], n: usize) -> Result<SwitchOn, 
             return Err(at.unexpected("bias_change", quantity.to_string(), expected));
         }
     }
-    Ok(SwitchOn { number, bias_change, turning: 0.0 })
+    Ok(SwitchOn { number, bias_change, from_axes: 0.0 })
 }
 
 /// What has been measured lasted as long as it did.
@@ -398,8 +420,8 @@ fn uncertainty(at: &TomlPath, stated: Option<&Quantity>) -> Result<Option<f64>, 
 const FARTHEST: f64 = PI / 6.0;
 
 /// The rests of a table: each row is one, and none has a speed.
-fn read_rests(table: &Source) -> Result<Vec<PlateauMean>, Error> {
-    let rests = plateaus_of(table, usize::MAX)?;
+fn read_rests(table: &Source, further: Further) -> Result<Vec<PlateauMean>, Error> {
+    let rests = plateaus_of(table, usize::MAX, further)?;
     match (1..).zip(&rests).find(|(_, rest)| rest.speed != 0.0) {
         Some((row, rest)) => {
             let place = Place::Row { row, column: "speed".to_owned() };

@@ -1,5 +1,6 @@
 //! Slow rotation among rests, as a session and its result state it.
 
+use centrical::reduction::{Arc, PlateauMean};
 use serde::{Deserialize, Serialize};
 
 use super::form::TurningTable;
@@ -16,13 +17,36 @@ pub struct Turning {
     pub share: f64,
     /// Fastest rotation of the force against the unit [rad/s].
     pub rate: f64,
-    /// Largest distance of the proof masses from the axis of rotation [m].
+    /// Largest distance of the proof masses from the axes of rotation [m].
     pub radius: f64,
-    /// Standard uncertainty of an acceleration common to all rests, in each axis of the unit [m/s^2].
+    /// Standard uncertainty of the acceleration along the vertical in the arc where it is largest [m/s^2].
     pub acceleration: f64,
 }
 
 impl Turning {
+    /// That of rests of which some are arcs, with proof masses up to `radius` from the axes [m]; `None` if there are no arcs.
+    pub(crate) fn of<'r>(rests: impl IntoIterator<Item = &'r PlateauMean>, radius: f64) -> Option<Self> {
+        let (mut all, mut of_arcs) = (0.0, 0.0);
+        let mut turning = Self { arcs: 0, share: 0.0, rate: 0.0, radius, acceleration: 0.0 };
+        for rest in rests {
+            let along = rest.mean.normalize();
+            let weight = 1.0 / along.dot(&(rest.covariance * along));
+            all += weight;
+            let Some(Arc { rate, bend_z }) = rest.arc else { continue };
+            of_arcs += weight;
+            turning.arcs += 1;
+            turning.rate = turning.rate.max(rate);
+            turning.acceleration = turning.acceleration.max(bend_z.norm() * turning.place_uncertainty());
+        }
+        (turning.arcs > 0).then_some(Self { share: of_arcs / all, ..turning })
+    }
+
+    /// Standard uncertainty of each coordinate of the place of the proof masses from the axes [m]: of a rectangular distribution up to the
+    /// largest distance (GUM, 4.3.7).
+    pub(crate) fn place_uncertainty(&self) -> f64 {
+        self.radius / 3_f64.sqrt()
+    }
+
     /// That of two tables of rests: the number of all arcs, and the larger of all else.
     pub(crate) fn joined(self, other: Self) -> Self {
         Self {
@@ -32,6 +56,14 @@ impl Turning {
             radius: self.radius.max(other.radius),
             acceleration: self.acceleration.max(other.acceleration),
         }
+    }
+
+    /// As an experiment file states it, every number to its last digit.
+    pub(crate) fn inline_table(&self) -> String {
+        let Self { arcs, share, rate, radius, acceleration } = self;
+        format!(
+            "{{ arcs = {arcs}, share = {share:?}, rate = \"{rate:?} rad/s\", radius = \"{radius:?} m\", acceleration = \"{acceleration:?} m/s^2\" }}"
+        )
     }
 
     /// As a table states it.
@@ -45,13 +77,7 @@ impl Turning {
             arcs: table.arcs,
             share: table.share,
             rate: zero_to("turning.rate", &table.rate, Dimension::Speed, 1.0, "a slow rate, up to 1 rad/s")?,
-            radius: zero_to(
-                "turning.radius",
-                &table.radius,
-                Dimension::Length,
-                MOST_DISTANT,
-                "a distance of 0 to 10 m",
-            )?,
+            radius: zero_to("turning.radius", &table.radius, Dimension::Length, MOST_DISTANT, DISTANCE)?,
             acceleration: zero_to(
                 "turning.acceleration",
                 &table.acceleration,
@@ -65,3 +91,6 @@ impl Turning {
 
 /// Largest distance from an axis of rotation [m]: beyond it a unit was mistaken.
 pub const MOST_DISTANT: f64 = 10.0;
+
+/// What a distance from an axis of rotation is expected to be.
+pub(super) const DISTANCE: &str = "a distance of 0 to 10 m";

@@ -7,7 +7,8 @@ use toml_edit::{InlineTable, Item, TableLike, Value, value};
 
 use crate::error::{Error, Place};
 use crate::experiment::{
-    EXPERIMENT_FILE, PlateauMean, Session, SpeedSource, write_attitudes, write_plateaus, write_plateaus_parquet,
+    EXPERIMENT_FILE, PlateauMean, RestTable, Session, SpeedSource, write_attitudes, write_plateaus,
+    write_plateaus_parquet,
 };
 use crate::reduced::Reduced;
 use crate::settings::editable;
@@ -84,11 +85,12 @@ fn experiment(session: &Session, table: Option<&str>, uncertainty: Option<f64>) 
     if let Some(table) = table {
         document.insert("plateaus", value(table));
     }
+    let tables = session.rest_tables.iter().enumerate();
     if let Some(Item::ArrayOfTables(tumbles)) = document.get_mut("tumble") {
-        tumbles.iter_mut().enumerate().for_each(|(n, tumble)| rename_rests(n, tumble));
+        tumbles.iter_mut().zip(tables).for_each(|(tumble, (n, rests))| rename_rests(n, tumble, rests));
     } else if let Some(Item::Value(Value::Array(tumbles))) = document.get_mut("tumble") {
-        let tables = tumbles.iter_mut().filter_map(Value::as_inline_table_mut);
-        tables.enumerate().for_each(|(n, tumble)| rename_rests(n, tumble));
+        let inline = tumbles.iter_mut().filter_map(Value::as_inline_table_mut);
+        inline.zip(tables).for_each(|(tumble, (n, rests))| rename_rests(n, tumble, rests));
     }
     Ok(document.to_string())
 }
@@ -98,10 +100,18 @@ fn rest_files(n: usize) -> [String; 2] {
     RESTS.map(|name| if n == 0 { name.to_owned() } else { name.replace('.', &format!("-{}.", n + 1)) })
 }
 
-fn rename_rests(n: usize, tumble: &mut dyn TableLike) {
+/// Names the tables of `[[tumble]]` number `n` from 0, and what was found with the rests.
+fn rename_rests(n: usize, tumble: &mut dyn TableLike, table: &RestTable) {
     let [rests, attitudes] = rest_files(n);
     tumble.remove("record");
+    tumble.remove("turning_radius");
     tumble.insert("rests", value(rests));
+    if table.noise_at_most > 1.0 {
+        tumble.insert("noise_at_most", value(table.noise_at_most));
+    }
+    if let Some(turning) = table.turning.and_then(|turning| turning.inline_table().parse::<Value>().ok()) {
+        tumble.insert("turning", value(turning));
+    }
     if tumble.contains_key("attitudes") {
         tumble.insert("attitudes", value(attitudes));
     }

@@ -117,7 +117,7 @@ fn planned_rests() {
             (
                 "attitudes =",
                 "atitudes =",
-                "line 76, column 1: found an unknown key `atitudes`, expected one of `rests`, `record`, `attitudes`, `duration`, `durations`, `attitude_uncertainty`, `bias_change`, `switch_on`, `noise_at_most`, `turning`",
+                "line 76, column 1: found an unknown key `atitudes`, expected one of `rests`, `record`, `turning_radius`, `attitudes`, `duration`, `durations`, `attitude_uncertainty`, `bias_change`, `switch_on`, `noise_at_most`, `turning`",
             ),
             (
                 "attitudes = [[0, 0, 1], [1, 0, 0]]\n",

@@ -180,6 +180,7 @@ fn plateaus_instead_of_records() {
         mounting,
         speed,
         speed_uncertainty: None,
+        bend_z: None,
         angle,
         mean,
         covariance: Matrix3::identity() * 1e-9,

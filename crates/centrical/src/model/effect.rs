@@ -118,6 +118,13 @@ pub enum Effect {
         /// Number of the other switch-on.
         switch_on: usize,
     },
+    /// Coordinate of the proof masses from the axes of a slow rotation [m].
+    Turning {
+        /// Instrument axis of the coordinate.
+        axis: usize,
+        /// Number of the switch-on.
+        switch_on: usize,
+    },
     /// An error of rounding common to repeated rests of one mounting at one angle [m/s^2].
     Rounding {
         /// Newtonometer.
@@ -181,6 +188,7 @@ impl Effect {
             | Self::Monomial { .. }
             | Self::Disturbance { .. }
             | Self::BiasChange { .. }
+            | Self::Turning { .. }
             | Self::Rounding { .. } => false,
             Self::ElasticTurn { .. }
             | Self::ArmTurn { .. }
@@ -220,6 +228,7 @@ impl Effect {
             | Self::Monomial { .. }
             | Self::Disturbance { .. }
             | Self::BiasChange { .. }
+            | Self::Turning { .. }
             | Self::Rounding { .. } => false,
         }
     }

@@ -226,12 +226,14 @@ impl Experiment {
         others
     }
 
-    /// The switch-ons in which the unit turned slowly, each once.
+    /// The switch-ons in which the unit turned slowly, each once, with its largest distance from the axes.
     pub fn turned_switch_ons(&self) -> Vec<SwitchOn> {
         let mut turned: Vec<SwitchOn> = Vec::new();
-        for switch_on in self.positions.iter().map(|position| position.switch_on) {
-            if switch_on.turning > 0.0 && turned.iter().all(|other| other.number != switch_on.number) {
-                turned.push(switch_on);
+        let switch_ons = self.positions.iter().map(|position| position.switch_on);
+        for switch_on in switch_ons.filter(|switch_on| switch_on.from_axes > 0.0) {
+            match turned.iter_mut().find(|other| other.number == switch_on.number) {
+                Some(same) => same.from_axes = same.from_axes.max(switch_on.from_axes),
+                None => turned.push(switch_on),
             }
         }
         turned

@@ -18,6 +18,9 @@ pub struct Position {
     /// Standard uncertainty of a free attitude that is known, about each horizontal axis [rad]: `p_zy` takes the vertical to axes of
     /// the case, against which the instrument is turned by `case_turn`. `None` where only gravity shows the attitude, and on the arm.
     pub attitude_uncertainty: Option<f64>,
+    /// Second derivative of the vertical in axes of the instrument, its mean over an arc of slow rotation [1/s^2]; zero in a rest. A proof
+    /// mass in the place `r` from the axes of rotation is at the height `r . u`, and accelerates upwards by `r . d^2u/dt^2`.
+    pub bend_z: Vector3<f64>,
     /// From when to when the unit was on without a break.
     pub switch_on: SwitchOn,
 }
@@ -30,16 +33,16 @@ pub struct SwitchOn {
     /// Standard uncertainty of the change of each bias against the reference, the switch-on of the arm or else of the first rest
     /// [m/s^2]; `None`: the one stated for all, [`TypeB::bias_change`](super::TypeB::bias_change).
     pub bias_change: Option<f64>,
-    /// Standard uncertainty of an acceleration in axes of the unit, common to all its rests [m/s^2]: that about the axis of a slow
-    /// rotation, zero without one.
-    pub turning: f64,
+    /// Standard uncertainty of each coordinate of the place of the proof masses from the axes of a slow rotation [m]; zero without one.
+    pub from_axes: f64,
 }
 
 impl Position {
     /// A position on the arm.
     pub fn on_arm(id: impl Into<String>, p_zy: Matrix3<f64>, pair: impl Into<String>) -> Self {
         let (id, pair) = (id.into(), pair.into());
-        Self { id, p_zy, pair, is_free: false, attitude_uncertainty: None, switch_on: SwitchOn::default() }
+        let bend_z = Vector3::zeros();
+        Self { id, p_zy, pair, is_free: false, attitude_uncertainty: None, bend_z, switch_on: SwitchOn::default() }
     }
 
     /// A rest in an attitude of its own, where the specific force points about along `f_z` (instrument axes, of any length
@@ -50,14 +53,20 @@ impl Position {
         // Opposite vectors have no shortest rotation between them; half a turn about axis 1 is one of many.
         let half_turn = || Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
         let p_zy = Rotation3::rotation_between(&Vector3::z(), f_z).unwrap_or_else(half_turn).into_inner();
-        let switch_on = SwitchOn { number: 1, bias_change: None, turning: 0.0 };
-        Self { pair: id.clone(), id, p_zy, is_free: true, attitude_uncertainty: None, switch_on }
+        let switch_on = SwitchOn { number: 1, bias_change: None, from_axes: 0.0 };
+        Self { is_free: true, switch_on, ..Self::on_arm(id.clone(), p_zy, id) }
     }
 
     /// A rest in an attitude that is known to `standard_uncertainty` about each horizontal axis [rad]: the vertical points along
     /// `up_b`, axes of the case.
     pub fn known(id: impl Into<String>, up_b: &Vector3<f64>, standard_uncertainty: f64) -> Self {
         Self { attitude_uncertainty: Some(standard_uncertainty), ..Self::free(id, up_b) }
+    }
+
+    /// An arc of slow rotation, in which the mean second derivative of the vertical is `bend_z` [1/s^2].
+    #[must_use]
+    pub fn on_arc(self, bend_z: Vector3<f64>) -> Self {
+        Self { bend_z, ..self }
     }
 
     /// The position in a switch-on.

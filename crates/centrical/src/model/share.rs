@@ -79,6 +79,12 @@ impl MeasurementModel {
             Effect::BiasChange { axis, switch_on } => {
                 only(experiment.positions[position].switch_on.number == switch_on, Share::Reading(along(axis)))
             }
+            Effect::Turning { axis, switch_on } => {
+                let position = &experiment.positions[position];
+                // Only the acceleration along the vertical counts: that across it turns the specific force.
+                let up_z = position.p_zy.column(2) * position.bend_z[axis];
+                only(position.switch_on.number == switch_on, Share::Reading(up_z))
+            }
             Effect::Rounding { axis, first } => {
                 only(set_point.history.repeats == Some(first), Share::Reading(along(axis)))
             }

@@ -70,7 +70,7 @@ pub enum Source {
     Attitude,
     /// Change of the bias from one switch-on to another, of the arm and of rests in free attitudes.
     BiasChange,
-    /// Acceleration about the axis of a slow rotation.
+    /// Acceleration about the axes of a slow rotation.
     Turning,
     /// Resolution of the reading.
     Resolution,
@@ -178,9 +178,9 @@ impl TypeB {
                 add(Source::BiasChange, Effect::BiasChange { axis, switch_on }, u);
             }
         }
-        for SwitchOn { number: switch_on, turning, .. } in experiment.turned_switch_ons() {
+        for SwitchOn { number: switch_on, from_axes, .. } in experiment.turned_switch_ons() {
             for axis in 0..3 {
-                add(Source::Turning, Effect::BiasChange { axis, switch_on }, turning);
+                add(Source::Turning, Effect::Turning { axis, switch_on }, from_axes);
             }
         }
         for first in repeated_rests(experiment) {

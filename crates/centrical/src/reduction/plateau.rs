@@ -30,8 +30,8 @@ pub struct PlateauMean {
     pub covariance: Matrix3<f64>,
     /// Once-per-revolution term: column 0 in phase with the start of the window, column 1 a quarter turn later [m/s^2].
     pub once_per_revolution: [Vector3<f64>; 2],
-    /// Whether the unit turns slowly: the mean is that of a rest in the attitude of the arc.
-    pub turns: bool,
+    /// How the unit turns, where it does so slowly: the mean reading is then that of a rest in the attitude of the arc.
+    pub arc: Option<Arc>,
     /// Slope of the reading over the window [m/s^3]; zero where the unit turns. It does not enter the mean.
     pub drift: Vector3<f64>,
     /// Standard uncertainty of the slope [m/s^3].
@@ -42,6 +42,15 @@ pub struct PlateauMean {
     pub measured_speed: Option<f64>,
     /// Remaining settling at the start of the window [m/s^2].
     pub settling: Vector3<f64>,
+}
+
+/// An arc of slow rotation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arc {
+    /// Rate of the specific force against the unit in the middle [rad/s]; rotation about the vertical does not show.
+    pub rate: f64,
+    /// Second derivative of the vertical in axes of the instrument, its mean over the window [1/s^2].
+    pub bend_z: Vector3<f64>,
 }
 
 /// Rejected samples of a plateau's window, by kind.

@@ -10,7 +10,7 @@ use super::locate::{Located, locate_rests};
 use super::plateau::PlateauMean;
 use super::record::RecordSlice;
 use super::survey::Survey;
-use super::turning::{Turning, draw_out, is_smooth, noise_along};
+use super::turning::{draw_out, is_smooth, noise_along};
 use crate::linalg::least_squares::LeastSquares;
 
 /// The rests of some records.
@@ -23,20 +23,36 @@ pub struct Rests {
     ///
     /// [`EXCLUDED`]: super::EXCLUDED
     pub noise_at_most: f64,
-    /// Slow rotation, if it is among them.
-    pub turning: Option<Turning>,
+}
+
+/// A record of a unit that is turned.
+#[derive(Debug, Clone, Copy)]
+pub struct RestRecord<'a> {
+    /// Its readings.
+    pub samples: RecordSlice<'a>,
+    /// Largest distance of the proof masses from the axes of a slow rotation [m], whose arcs then count as rests; `None` if they do not.
+    pub turning_radius: Option<f64>,
+}
+
+impl<'a> From<RecordSlice<'a>> for RestRecord<'a> {
+    /// A record of which rests alone count.
+    fn from(samples: RecordSlice<'a>) -> Self {
+        Self { samples, turning_radius: None }
+    }
 }
 
 /// The means of the rests of some records. The colour of the noise is pooled over all of them. A rest whose samples are not steady
-/// is left out. With `turning`, arcs of slow rotation are rests too, if the attitudes of all show an ellipsoid.
+/// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid.
 ///
 /// # Errors
 /// [`ReductionError`] if a record is invalid (lengths, times) or too short.
-pub fn reduce_rests(records: &[RecordSlice], turning: bool) -> Result<Rests, ReductionError> {
-    let located = records.iter().map(|record| {
-        let located = locate_rests(&Survey::of(*record)?, turning)?;
-        let fits = (0..located.windows().len()).filter_map(|rest| average(&located, rest, *record, 0).ok());
-        let fits: Vec<PlateauFit> = fits.filter(|fit| is_smooth(fit, located.sample_noise())).collect();
+pub fn reduce_rests(records: &[RestRecord]) -> Result<Rests, ReductionError> {
+    let located = records.iter().map(|RestRecord { samples, turning_radius }| {
+        let located = locate_rests(&Survey::of(*samples)?, turning_radius.is_some())?;
+        let fits = (0..located.windows().len()).filter_map(|rest| average(&located, rest, *samples, 0).ok());
+        let is_smooth =
+            |fit: &PlateauFit| turning_radius.is_none_or(|radius| is_smooth(fit, located.sample_noise(), radius));
+        let fits: Vec<PlateauFit> = fits.filter(is_smooth).collect();
         Ok((located, fits))
     });
     let mut located: Vec<(Located, Vec<PlateauFit>)> = located.collect::<Result<_, _>>()?;
@@ -48,7 +64,7 @@ pub fn reduce_rests(records: &[RecordSlice], turning: bool) -> Result<Rests, Red
     let mut along = Vec::new();
     for (record, (located, fits)) in records.iter().zip(&mut located) {
         match &turned {
-            Some((ellipsoid, _)) => along.extend(noise_along(*record, fits, ellipsoid, located.sample_noise())?),
+            Some(ellipsoid) => along.extend(noise_along(record.samples, fits, ellipsoid, located.sample_noise())?),
             None => fits.retain(|fit| !fit.turns()),
         }
     }
@@ -59,7 +75,7 @@ pub fn reduce_rests(records: &[RecordSlice], turning: bool) -> Result<Rests, Red
     let reduced: Vec<ReducedMounting> = reduced.collect();
     let noise = NoiseModel::pool_rests(&reduced, &along);
     let means = reduced.iter().map(|record| plateau_means(record, &noise)).collect();
-    Ok(Rests { means, noise_at_most: noise.at_most(&reduced), turning: turned.map(|(_, turning)| turning) })
+    Ok(Rests { means, noise_at_most: noise.at_most(&reduced) })
 }
 
 /// Coarse scale and bias of three newtonometers: `reading = scale f + bias`.

@@ -6,7 +6,8 @@
 //! `|f_0|^2 + |c_1|^2 / 3 + |c_2|^2 / 5 + |c_3|^2 / 7 = g^2`.
 //!
 //! What the polynomials leave beside the white noise, a tremor or a turn that is not smooth, belongs to that sum with its mean square. An arc
-//! in which it counts for more than [`MOST_LEFT`] standard uncertainties is left out.
+//! in which it counts for more than [`MOST_LEFT`] standard uncertainties is left out, and so is one in which it may hide a kink of the way
+//! whose acceleration, at the distance of the proof masses, counts for as much.
 //!
 //! So the mean reading, drawn out from the bias by the ratio of `g` to `|f_0|`, is that of a rest in the attitude of `f_0`, whatever bias, scale and
 //! misalignment are. For that ratio an ellipsoid through all means is enough: of second order in the angle, it takes bias and scale coarsely.
@@ -20,18 +21,7 @@ use super::error::ReductionError;
 use super::locate::{Interval, TURNING, locate_spans};
 use super::record::{Record, RecordSlice};
 use super::survey::Survey;
-
-/// What slow rotation brings.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Turning {
-    /// Number of its arcs.
-    pub arcs: usize,
-    /// Fastest rotation of the force [rad/s]; rotation about the vertical does not show.
-    pub rate: f64,
-    /// Largest sum of the square of the rate and its change with time [1/s^2]: times the distance from the axis of rotation it is the most
-    /// that the acceleration of a proof mass is.
-    pub spin: f64,
-}
+use crate::model::STANDARD_GRAVITY;
 
 /// Rounds in which ellipsoid and means follow from each other: each gains two digits or more.
 const ROUNDS: usize = 4;
@@ -39,19 +29,30 @@ const ROUNDS: usize = 4;
 /// What the polynomials leave, at most, over the standard uncertainty of the mean along the force: it is known to a third or better.
 const MOST_LEFT: f64 = 3.0;
 
+/// Second derivative, on average over an arc of half length 1, that the polynomials miss of a kink in its middle, over the root mean square
+/// of what they leave. Of the kink `|t|` they see `1/2 + 5/8 P_2`: they leave `1/3 - 1/4 - 5/64 = 1/192` in mean square, and of the mean second
+/// derivative, 1, they make `3 . 5/8`.
+const OF_KINK: f64 = 0.875 * 13.856_406_460_551_018;
+
 /// Samples of an arc for each one that may be left out as a spike.
 const PER_SPIKE: usize = 20;
 
 /// Longest stretch of rotation whose noise is looked at as a whole [s].
 const STRETCH: f64 = 60.0;
 
-/// Whether a fit is that of a rest, or of an arc which the polynomials describe, of readings whose white noise is `white` [m/s^2].
-pub(super) fn is_smooth(fit: &PlateauFit, white: &Vector3<f64>) -> bool {
+/// Whether a fit is that of a rest, or of an arc which the polynomials describe, of readings whose white noise is `white` [m/s^2], with proof
+/// masses up to `radius` from the axes of rotation [m].
+pub(super) fn is_smooth(fit: &PlateauFit, white: &Vector3<f64>, radius: f64) -> bool {
+    let Some(Interval { half, .. }) = fit.shape.turning else { return true };
+    let size = fit.mean.norm();
     let along = fit.mean.normalize();
     let uncertainty = along.component_mul(white).norm() / (fit.samples as f64).sqrt();
     // A bump takes some samples; where many are left out it is the motion that the polynomials miss.
     let is_described = fit.left_out.spikes <= fit.samples / PER_SPIKE;
-    !fit.turns() || is_described && left(fit, white) / (2.0 * fit.mean.norm()) <= MOST_LEFT * uncertainty
+    let left = left(fit, white);
+    // Readings may be in counts: in units of gravity.
+    let of_kink = size * radius / STANDARD_GRAVITY * OF_KINK * left.sqrt() / (size * half * half);
+    is_described && (left / (2.0 * size)).max(of_kink) <= MOST_LEFT * uncertainty
 }
 
 /// Mean square of what the polynomials of an arc leave beside the white noise [m^2/s^4].
@@ -61,9 +62,7 @@ fn left(fit: &PlateauFit, white: &Vector3<f64>) -> f64 {
 
 /// Draws out the means of the arcs among the `fits` of all records, each with the white noise of its readings [m/s^2]. `None` if there
 /// are no arcs, or the attitudes show no ellipsoid.
-pub(super) fn draw_out<'a>(
-    fits: impl IntoIterator<Item = (&'a mut PlateauFit, Vector3<f64>)>,
-) -> Option<(Ellipsoid, Turning)> {
+pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, Vector3<f64>)>) -> Option<Ellipsoid> {
     let mut fits: Vec<(&mut PlateauFit, Vector3<f64>)> = fits.into_iter().collect();
     let mean: Vec<Vector3<f64>> = fits.iter().map(|(fit, _)| fit.mean).collect();
     let mut ellipsoid = Ellipsoid::through(&mean)?;
@@ -76,19 +75,7 @@ pub(super) fn draw_out<'a>(
         }
         ellipsoid = Ellipsoid::through(&fits.iter().map(|(fit, _)| fit.mean).collect::<Vec<_>>())?;
     }
-    let mut turning = Turning::default();
-    for (fit, _) in fits {
-        let Some(Interval { half, .. }) = fit.shape.turning else { continue };
-        let along = fit.mean - ellipsoid.centre;
-        let rate = ellipsoid.size(&((fit.turning[0] - fit.turning[2] * 1.5) / half));
-        let bend = fit.turning[1] * (3.0 / (half * half));
-        let across =
-            ellipsoid.size(&(bend - along * (ellipsoid.product(&bend, &along) / ellipsoid.product(&along, &along))));
-        turning.arcs += 1;
-        turning.rate = turning.rate.max(rate);
-        turning.spin = turning.spin.max(rate * rate + across);
-    }
-    (turning.arcs > 0).then_some((ellipsoid, turning))
+    fits.iter().any(|(fit, _)| fit.turns()).then_some(ellipsoid)
 }
 
 /// The noise of a record along the force, in units of `white` [m/s^2], over the stretches of its arcs: their fits as those of rests.

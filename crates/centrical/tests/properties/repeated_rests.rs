@@ -30,7 +30,7 @@ fn with_cube(has_arm: bool, uncertainty: Option<f64>, switch_ons: usize) -> Expe
         };
         let number = 1 + n % switch_ons;
         let bias_change = (number == 2).then_some(5e-4);
-        experiment.positions.push(position.in_switch_on(SwitchOn { number, bias_change, turning: 0.0 }));
+        experiment.positions.push(position.in_switch_on(SwitchOn { number, bias_change, from_axes: 0.0 }));
     }
     experiment
 }

@@ -1,6 +1,6 @@
 //! Records of a unit that is turned by hand or on a table: the rests that are found, and the calibration by them.
 
-use centrical::reduction::{PlateauMean, Record, coarse_scale, reduce_rests};
+use centrical::reduction::{PlateauMean, Record, RestRecord, coarse_scale, reduce_rests};
 use centrical::uncertainty::{Level, Rivals, chance_of_residuals};
 use centrical::{
     Calibration, Centrifuge, Data, ErrorModel, Experiment, Fit, MeasurementModel, Mounting, Observation, PairRelation,
@@ -171,20 +171,23 @@ fn problem(positions: Vec<Position>, means: &[(Vector3<f64>, Matrix3<f64>)]) -> 
 
 /// The rests of a made record and the model of them.
 fn problem_of(made: &Made) -> (MeasurementModel, Vec<Observation>) {
-    problem_of_rests(&reduce_rests(&[made.record.as_slice()], false).unwrap().means.concat())
+    problem_of_rests(&reduce_rests(&[made.record.as_slice().into()]).unwrap().means.concat())
 }
 
 fn problem_of_rests(rests: &[PlateauMean]) -> (MeasurementModel, Vec<Observation>) {
     problem_of_turned(rests, 0.0)
 }
 
-/// The same with an acceleration about the axis of rotation of this standard uncertainty [m/s^2].
-fn problem_of_turned(rests: &[PlateauMean], turning: f64) -> (MeasurementModel, Vec<Observation>) {
+/// The same with proof masses in a place from the axes of rotation whose coordinates have this standard uncertainty [m].
+fn problem_of_turned(rests: &[PlateauMean], from_axes: f64) -> (MeasurementModel, Vec<Observation>) {
     let means: Vec<_> = rests.iter().map(|rest| (rest.mean, rest.covariance)).collect();
-    let switch_on = SwitchOn { number: 1, bias_change: None, turning };
-    let position = |(n, mean): (usize, &Vector3<f64>)| Position::free(n.to_string(), mean).in_switch_on(switch_on);
-    let positions = means.iter().map(|(mean, _)| mean).enumerate().map(position).collect();
-    problem(positions, &means)
+    let switch_on = SwitchOn { number: 1, bias_change: None, from_axes };
+    let position = |(n, rest): (usize, &PlateauMean)| {
+        let bend_z = rest.arc.map_or_else(Vector3::zeros, |arc| arc.bend_z);
+        Position::free(n.to_string(), &rest.mean).on_arc(bend_z).in_switch_on(switch_on)
+    };
+    let (model, observations) = problem(rests.iter().enumerate().map(position).collect(), &means);
+    (model.with_stated(TypeB::default()), observations)
 }
 
 /// Squared errors of the nine coefficients over their covariance, in all.
@@ -203,7 +206,7 @@ fn rests_are_found_as_they_were_made() {
     for making in [BY_HAND, ON_A_TABLE, Making { bumps: 0.0, lasting: [1.2, 2.0], ..BY_HAND }] {
         for _ in 0..10 {
             let made = made(&making, &mut random);
-            let found = reduce_rests(&[made.record.as_slice()], false).unwrap().means.concat();
+            let found = reduce_rests(&[made.record.as_slice().into()]).unwrap().means.concat();
             // A bump may part one rest in two.
             let bumped = if making.bumps > 0.0 { making.rests / 4 } else { 0 };
             assert!((making.rests..=making.rests + bumped).contains(&found.len()), "{}", found.len());
@@ -220,13 +223,13 @@ fn rests_are_found_as_they_were_made() {
 fn neither_rests_nor_motion_are_invented() {
     let mut random = Random::new(6);
     let still = made(&Making { rests: 1, lasting: [60.0, 60.0], bumps: 0.0, ..BY_HAND }, &mut random);
-    assert_eq!(reduce_rests(&[still.record.as_slice()], false).unwrap().means.concat().len(), 1);
+    assert_eq!(reduce_rests(&[still.record.as_slice().into()]).unwrap().means.concat().len(), 1);
     let count = 6000;
     let t: Vec<f64> = (0..count).map(|i| f64::from(i) / RATE).collect();
     let turned = |phase: f64| t.iter().map(|t| GRAVITY * (1.7 * t + phase).sin() + 0.01 * random.normal()).collect();
     let mut turned = turned;
     let moving = Record { f_z: [turned(0.0), turned(1.6), turned(0.3)], t: t.clone() };
-    assert!(reduce_rests(&[moving.as_slice()], false).unwrap().means.concat().is_empty());
+    assert!(reduce_rests(&[moving.as_slice().into()]).unwrap().means.concat().is_empty());
 }
 
 /// Readings in counts: scale and bias to what misalignment leaves, from the rests alone.
@@ -241,7 +244,7 @@ fn counts_become_accelerations() {
         }
     }
     let means: Vec<_> =
-        reduce_rests(&[made.record.as_slice()], false).unwrap().means.concat().iter().map(|rest| rest.mean).collect();
+        reduce_rests(&[made.record.as_slice().into()]).unwrap().means.concat().iter().map(|rest| rest.mean).collect();
     assert_eq!(means.len(), ON_A_TABLE.rests);
     let coarse = coarse_scale(&means, GRAVITY).unwrap();
     for axis in 0..3 {
@@ -289,16 +292,16 @@ fn judged(making: &Making, random: &mut Random) -> Judged {
 
 /// A record of slow rotation where the distance from its axis is stated [m].
 pub fn judged_record(making: &Making, mut made: Made, radius: Option<f64>) -> Judged {
-    let found = reduce_rests(&[made.record.as_slice()], radius.is_some()).unwrap();
-    // A rectangular distribution up to the most that the acceleration is.
-    let turning = radius.zip(found.turning).map_or(0.0, |(radius, found)| found.spin * radius / 3_f64.sqrt());
+    let found = reduce_rests(&[RestRecord { samples: made.record.as_slice(), turning_radius: radius }]).unwrap();
+    // A rectangular distribution of each coordinate up to the largest distance.
+    let from_axes = radius.map_or(0.0, |radius| radius / 3_f64.sqrt());
     let rests = found.means.concat();
     // The bias of a unit that warms up is its mean over the rests.
     let third = made.record.t.len() as f64 / RATE / 3.0;
     let warmed = rests.iter().map(|rest| 1.0 - (-(rest.window[0] + rest.window[1]) / (2.0 * third)).exp());
     let warmed = making.warming * warmed.sum::<f64>() / rests.len() as f64;
     made.truth[..3].iter_mut().for_each(|bias| *bias += warmed);
-    let (model, observations) = problem_of_turned(&rests, turning);
+    let (model, observations) = problem_of_turned(&rests, from_axes);
     let data = Data::new(&model, observations.clone()).unwrap();
     let calibration = Calibration::exact(&data).unwrap();
     let level = Level::Objection;

@@ -104,7 +104,7 @@ fn the_means_of_simulated_rests_are_as_uncertain_as_stated() {
         let simulation = Simulation::new(&model, &truth, &equipment, seed).unwrap();
         let tumble = tumble(&simulation, &model);
         let (made, samples) = (tumble.rests(), record(&tumble));
-        let found = reduce_rests(&[samples.as_slice()], false).unwrap().means.concat();
+        let found = reduce_rests(&[samples.as_slice().into()]).unwrap().means.concat();
         // A bump may part one rest in two.
         assert!((22..=26).contains(&found.len()), "{seed}: {}", found.len());
         for rest in &found {

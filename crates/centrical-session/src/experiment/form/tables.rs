@@ -388,6 +388,8 @@ pub(crate) struct TumbleTable {
     /// File of the readings while the unit is turned and left alone again and again, or three files, one for each newtonometer. The
     /// rests are found in it.
     pub record: Option<RecordEntry>,
+    /// Largest distance of the proof masses from the axes of a slow rotation, whose arcs count as rests of the record.
+    pub turning_radius: Option<Quantity>,
     /// Attitudes of the rests, up in axes of the case: "cube", a list of directions, or the path of a table. Those of a plan, or those
     /// that are known of measured rests.
     pub attitudes: Option<AttitudeList>,
@@ -419,9 +421,10 @@ pub(crate) struct TurningTable {
     pub share: f64,
     /// Fastest rotation of the force against the unit.
     pub rate: Quantity,
-    /// Largest distance of the proof masses from the axis of rotation.
+    /// Largest distance of the proof masses from the axes of rotation.
     pub radius: Quantity,
-    /// Standard uncertainty of an acceleration common to all rests, in each axis of the unit.
+    /// Standard uncertainty of the acceleration along the vertical in the arc where it is largest: it follows from the distance and the
+    /// columns `bend_1` to `bend_3` of the table of rests.
     pub acceleration: Quantity,
 }
 

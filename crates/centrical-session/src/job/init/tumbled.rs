@@ -1,12 +1,12 @@
 //! What a tumble of the unit adds to the draft: scale and bias of a raw output, gravity, and the rests.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::draft::Draft;
 use super::path_text::{quoted, relative};
 use super::raw::Raw;
 use crate::error::{Error, Place};
-use crate::experiment::{OutputUnit, RestTable, Session};
+use crate::experiment::{KnownAttitudes, OutputUnit, RestTable, Session};
 
 /// A unit that was calibrated by gravity alone.
 pub(super) struct Tumbled {
@@ -21,8 +21,7 @@ pub(super) struct Tumbled {
     gravity: f64,
     /// Standard uncertainty of gravity [m/s^2].
     gravity_uncertainty: f64,
-    /// Names of the files of each table of rests, and the uncertainty of attitudes in the second of them [rad].
-    rests: Vec<(Vec<PathBuf>, Option<f64>)>,
+    rests: Vec<RestTable>,
 }
 
 impl Tumbled {
@@ -47,7 +46,7 @@ impl Tumbled {
             raw: Raw { scale: [0, 1, 2].map(|j| 1.0 / scale(j).factor), bias: [0, 1, 2].map(|j| scale(j).offset) },
             gravity: session.experiment.site.gravity,
             gravity_uncertainty: session.type_b.gravity,
-            rests: session.rest_tables.iter().map(of_table).collect(),
+            rests: session.rest_tables,
         })
     }
 
@@ -73,19 +72,18 @@ impl Tumbled {
             draft.found(&format!("gravity = \"{:?} m/s^2\"", self.gravity_uncertainty), &self.how());
             draft.line("");
         }
-        for (files, uncertainty) in &self.rests {
+        for table in &self.rests {
             draft.line("[[tumble]]");
-            for (key, file) in ["rests", "attitudes"].into_iter().zip(files) {
+            for (key, file) in ["rests", "attitudes"].into_iter().zip(table.files()) {
                 draft.found(&format!("{key} = {}", quoted(&relative(file, folder))), &self.how());
             }
-            if let Some(uncertainty) = uncertainty {
+            if let Some(KnownAttitudes { uncertainty, .. }) = table.attitudes {
                 draft.found(&format!("attitude_uncertainty = \"{uncertainty:?} rad\""), &self.how());
+            }
+            if let Some(turning) = table.turning {
+                draft.found(&format!("turning = {}", turning.inline_table()), &self.how());
             }
             draft.line("");
         }
     }
-}
-
-fn of_table(table: &RestTable) -> (Vec<PathBuf>, Option<f64>) {
-    (table.files().cloned().collect(), table.attitudes.as_ref().map(|known| known.uncertainty))
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use centrical::reduction::{Record, Rests, reduce_rests};
+use centrical::reduction::{Record, RestRecord, Rests, reduce_rests};
 use centrical::{OnProgress, advance};
 use centrical_table::{Extent, Source};
 use nalgebra::Vector3;
@@ -13,23 +13,22 @@ use crate::experiment::{KnownAttitudes, RecordedRests, RestTable, Session};
 use crate::record::read_records;
 use crate::reduced::{ReducedPlateau, rest_rows};
 
-/// The rests of all records: one search for a tumble and for a session; with `turning`, arcs of slow rotation too. The colour of the noise is pooled over all of them. Messages
+/// The rests of all records: one search for a tumble and for a session. The colour of the noise is pooled over all of them. Messages
 /// name `file`.
 ///
 /// # Errors
 /// If a record is invalid, or there are fewer than two rests: a single one shows nothing.
-pub(crate) fn find_rests(records: &[Record], turning: bool, file: &Path) -> Result<Rests, Error> {
-    let slices: Vec<_> = records.iter().map(Record::as_slice).collect();
+pub(crate) fn find_rests(records: &[RestRecord], file: &Path) -> Result<Rests, Error> {
     let refused = |source| Error::Reduction { file: file.to_owned(), mounting: 1, source: Box::new(source) };
-    let rests = reduce_rests(&slices, turning).map_err(refused)?;
+    let rests = reduce_rests(records).map_err(refused)?;
     let count: usize = rests.means.iter().map(Vec::len).sum();
     if count < 2 {
         let stretches = if count == 1 { "stretch" } else { "stretches" };
         let found = format!("{count} {stretches} in which the unit rests");
-        let expected = if turning {
+        let expected = if records.iter().any(|record| record.turning_radius.is_some()) {
             "a unit that is turned, left alone for a second or more, and turned again; or slow rotation through attitudes that show all coefficients"
         } else {
-            "a unit that is turned, left alone for a second or more, and turned again; slow rotation counts with --turning-radius"
+            "a unit that is turned, left alone for a second or more, and turned again; slow rotation counts with --turning-radius, or turning_radius in [[tumble]]"
         };
         return Err(Error::content(file, Place::Whole, found, expected));
     }
@@ -57,15 +56,18 @@ pub(crate) fn with_all_rests<'s>(
     session: &'s Session,
     progress: OnProgress,
 ) -> Result<(Cow<'s, Session>, Vec<ReducedPlateau>), Error> {
-    let mut records = Vec::new();
+    let mut read = Vec::new();
     for (_, recorded) in session.rest_records() {
-        records.push(record(session, recorded, progress)?);
+        read.push((record(session, recorded, progress)?, recorded.turning_radius));
     }
     let Some(file) = session.rest_records().find_map(|(_, recorded)| recorded.files.first()) else {
         let averaged = session.rests().map(ReducedPlateau::from).collect();
         return Ok((Cow::Borrowed(session), averaged));
     };
-    let Rests { means, noise_at_most, .. } = find_rests(&records, false, file)?;
+    let records: Vec<RestRecord> = (read.iter())
+        .map(|(record, turning_radius)| RestRecord { samples: record.as_slice(), turning_radius: *turning_radius })
+        .collect();
+    let Rests { means, noise_at_most } = find_rests(&records, file)?;
     let mut found = means.into_iter();
     let mut rests = Vec::new();
     let mut tables = session.rest_tables.clone();
@@ -73,7 +75,9 @@ pub(crate) fn with_all_rests<'s>(
         let of_table: Vec<ReducedPlateau> = match table.record() {
             Some(_) => {
                 table.noise_at_most = noise_at_most;
-                found.next().unwrap_or_default().into_iter().map(ReducedPlateau::from).collect()
+                let means = found.next().unwrap_or_default();
+                table.turned(&means);
+                means.into_iter().map(ReducedPlateau::from).collect()
             }
             None => table.means.iter().map(ReducedPlateau::from).collect(),
         };

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use centrical::reduction::{CoarseScale, Record, Rests, coarse_scale};
+use centrical::reduction::{CoarseScale, Record, RestRecord, Rests, coarse_scale};
 use centrical::{OnProgress, advance};
 use centrical_table::{TableLines, refuse_inputs, write_whole};
 use nalgebra::Vector3;
@@ -45,7 +45,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         answers(request, &record, file)?;
         records.push(record);
     }
-    let mut rests = find_rests(&records, request.turning_radius.is_some(), &first(request))?;
+    let mut rests = found(request, &records)?;
     advance(progress, 0)?;
     let coarse = if Dimension::Acceleration.factor(&request.unit).is_some() {
         None
@@ -54,7 +54,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         for record in &mut records {
             in_si(record, &coarse);
         }
-        rests = find_rests(&records, request.turning_radius.is_some(), &first(request))?;
+        rests = found(request, &records)?;
         Some(coarse)
     };
     let means = means(&rests);
@@ -117,6 +117,14 @@ fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<
     )?;
     let mut columns = series.columns.into_iter().map(|(_, _, values)| values);
     Ok(Record { t: series.t, f_z: std::array::from_fn(|_| columns.next().unwrap_or_default()) })
+}
+
+/// The rests of the records, and the arcs if they count.
+fn found(request: &TumbleRequest, records: &[Record]) -> Result<Rests, Error> {
+    let turning_radius = request.turning_radius;
+    let records: Vec<RestRecord> =
+        records.iter().map(|record| RestRecord { samples: record.as_slice(), turning_radius }).collect();
+    find_rests(&records, &first(request))
 }
 
 /// The mean readings of the rests of all records.

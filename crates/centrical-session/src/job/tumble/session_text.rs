@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use centrical::reduction::{CoarseScale, PlateauMean, Rests};
+use centrical::reduction::{CoarseScale, Rests};
 
 use super::request::TumbleRequest;
 use crate::experiment::Turning;
@@ -39,34 +39,13 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
     if rests.noise_at_most > 1.0 {
         line(format!("noise_at_most = {:?}", rests.noise_at_most));
     }
-    if let Some(Turning { arcs, share, rate, radius, acceleration }) = turning(request, rests) {
-        line(format!(
-            "turning = {{ arcs = {arcs}, share = {share:?}, rate = \"{rate:?} rad/s\", radius = \"{radius:?} m\", acceleration = \"{acceleration:?} m/s^2\" }}"
-        ));
+    let turning = request.turning_radius.and_then(|radius| Turning::of(rests.means.iter().flatten(), radius));
+    if let Some(turning) = turning {
+        line(format!("turning = {}", turning.inline_table()));
     }
     if let Some(attitudes) = &request.attitudes {
         let uncertainty = attitudes.uncertainty;
         line(format!("attitudes = {ATTITUDES:?}\nattitude_uncertainty = \"{uncertainty:?} rad\""));
     }
     text
-}
-
-/// Slow rotation among the rests. The acceleration of a proof mass at the distance `r` from the axis is `(omega^2 + d omega/dt) r` at most, and
-/// its direction stays in axes of the unit: a rectangular distribution in each.
-fn turning(request: &TumbleRequest, rests: &Rests) -> Option<Turning> {
-    let (found, radius) = (rests.turning?, request.turning_radius?);
-    let weight = |rest: &&PlateauMean| {
-        let along = rest.mean.normalize();
-        1.0 / along.dot(&(rest.covariance * along))
-    };
-    let all = || rests.means.iter().flatten();
-    let share = all().filter(|rest| rest.turns).map(|rest| weight(&rest)).sum::<f64>()
-        / all().map(|rest| weight(&rest)).sum::<f64>();
-    Some(Turning {
-        arcs: found.arcs,
-        share,
-        rate: found.rate,
-        radius,
-        acceleration: radius * found.spin / 3_f64.sqrt(),
-    })
 }

@@ -148,6 +148,7 @@ fn acts_on(experiment: &Experiment, effect: Effect, here: usize) -> bool {
         | Effect::Latitude
         | Effect::Monomial { mounting: None, .. }
         | Effect::BiasChange { .. }
+        | Effect::Turning { .. }
         | Effect::Disturbance { .. } => true,
     }
 }

@@ -6,7 +6,7 @@ use super::cells::Cells;
 use super::samples::CELLS;
 use crate::model::Position;
 use crate::reduction::locate::{Shape, TURNING};
-use crate::reduction::plateau::LeftOut;
+use crate::reduction::plateau::{Arc, LeftOut};
 
 /// The fit of one plateau; the cells hold what its covariance needs.
 #[derive(Debug, Clone)]
@@ -48,6 +48,14 @@ impl PlateauFit {
     /// Whether the unit turns slowly.
     pub(in crate::reduction) fn turns(&self) -> bool {
         self.shape.turning.is_some()
+    }
+
+    /// How the unit turns: derivatives of the reading by those of the polynomials, over the size of the reading. With the half length `h`, in
+    /// the middle `P_1' = 1/h`, `P_3' = -3/2h`; on average `P_2'' = 3/h^2`, `P_3'' = 0`.
+    pub(in crate::reduction) fn arc(&self) -> Option<Arc> {
+        let half = self.shape.turning?.half;
+        let ([p1, p2, p3], size) = (self.turning, self.mean.norm());
+        Some(Arc { rate: (p1 - p3 * 1.5).norm() / (half * size), bend_z: p2 * (3.0 / (half * half * size)) })
     }
 
     /// A covariance in the axes of the noise, as one of readings.

@@ -35,7 +35,7 @@ pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) ->
         measured_speed: None,
         drift_uncertainty: (of_slope + rounding * largest_gain(&weights).powi(2)).map(f64::sqrt),
         settling: plateau.settling,
-        turns: plateau.turns(),
+        arc: plateau.arc(),
     }
 }
 
