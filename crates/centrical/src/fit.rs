@@ -25,6 +25,7 @@ mod estimates;
 pub mod filter;
 mod follower;
 mod gain;
+mod linearised;
 mod past;
 mod structure;
 
@@ -33,6 +34,6 @@ pub use convergence::Checkpoint;
 pub use data::Data;
 pub use estimates::{Fit, Termination};
 pub use filter::Innovation;
-pub use follower::{Follower, Progress};
+pub use follower::{Arrival, Follower, Progress};
 pub use gain::Gain;
 pub use structure::Structure;

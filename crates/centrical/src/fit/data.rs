@@ -39,9 +39,14 @@ impl<'m> Data<'m> {
 
     /// Adds a plateau.
     pub(super) fn push(&mut self, observation: Observation) -> Result<(), FitError> {
-        check(self.model, &observation)?;
+        self.check(&observation)?;
         self.observations.push(observation);
         Ok(())
+    }
+
+    /// Whether an observation can be one of the model.
+    pub(super) fn check(&self, observation: &Observation) -> Result<(), FitError> {
+        check(self.model, observation)
     }
 
     /// The data without observation `n`, unless it is the only one.

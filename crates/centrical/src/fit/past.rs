@@ -1,4 +1,4 @@
-//! Plateaus that are behind, linearised once and rotated into triangles.
+//! Plateaus that have come, linearised once and rotated into triangles.
 //!
 //! A point of the unknowns that moves makes all linearisations anew, which costs as much as all plateaus so far. But what a
 //! plateau adds to them is small. Let `r` be the whitened residuals of the exact model and `A` their derivatives at the
@@ -7,21 +7,19 @@
 //! reference. As the unknowns become known they move less, and references become rare.
 //!
 //! Plateaus of one mounting at one speed read alike ([`MeasurementModel::alike`]): they are linearised together, so that a reference
-//! costs as much as the different plateaus, however often a campaign repeats them.
+//! costs as much as the different plateaus, however often a campaign repeats them. The remainder is asked for at every
+//! plateau, so it may not cost more as they become more: see [`Kin`].
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use nalgebra::{DVector, Matrix3, Vector3};
+use nalgebra::{DVector, Vector3};
 
 use super::design::Design;
 use super::filter::Readings;
+use super::linearised::Linearised;
 use crate::linalg::factor::Factor;
-use crate::model::whitening::Whitener;
-use crate::model::{FitError, Linearisation, MeasurementModel, Observation};
-
-/// The largest remainder, in standard uncertainties of all unknowns together.
-pub(super) const REMAINDER: f64 = 1e-2;
+use crate::model::{FitError, MeasurementModel, Observation, linear};
 
 /// Plateaus linearised at a reference, and at zero.
 #[derive(Debug, Clone)]
@@ -30,97 +28,48 @@ pub(super) struct Past<'m> {
     /// The first set point that reads as each.
     alike: Arc<[usize]>,
     reference: DVector<f64>,
-    /// Plateaus that were behind when the reference was set.
+    /// Plateaus that had come when the reference was set.
     referenced: usize,
-    groups: Vec<Arc<Linearised>>,
+    groups: Vec<Linearised>,
     /// The group of each set point that has come, by the first one that reads as it.
     group_of: HashMap<usize, usize>,
+    kin: Vec<Kin>,
+    /// Where the kin of a group are: by the unknowns that change its reading, and the power of two in its nominal force.
+    kin_of: HashMap<(Vec<usize>, u64), usize>,
     at_reference: Factor,
-    /// What no reading takes up of the plateaus that were behind when the reference was set.
+    /// What no reading takes up of the plateaus that had come when the reference was set.
     rest: f64,
     at_zero: Factor,
 }
 
-/// Plateaus that read alike, linearised at a point of all unknowns.
+/// Plateaus that the same unknowns change, under forces within a factor of two: their readings bend alike. The remainder of all
+/// is taken to be that of the group under the largest force, weighted as all of them.
 #[derive(Debug, Clone)]
-pub(super) struct Linearised {
-    observations: Vec<Observation>,
-    at: Linearisation,
-    /// The triangle `T` of the three readings, and the misfit that it takes up: `sum |W_n (y_n - f)|^2 = |T (f - f_0) - t|^2 + rest`,
-    /// where `W_n` whitens plateau `n` and `f_0` is the reading at the point.
+struct Kin {
+    /// The group that stands for them, and its nominal force [m/s^2].
+    largest: usize,
+    force: f64,
+    /// The triangle of their readings.
     sum: Factor,
-}
-
-impl Linearised {
-    /// By the exact model.
-    pub fn new(model: &MeasurementModel, observation: &Observation, x: &DVector<f64>) -> Result<Self, FitError> {
-        Self::together(model, std::slice::from_ref(observation), x)
-    }
-
-    /// Plateaus that read alike, at least one, by the exact model.
-    fn together(model: &MeasurementModel, alike: &[Observation], x: &DVector<f64>) -> Result<Self, FitError> {
-        let set_point = &model.experiment().set_points[alike[0].set_point];
-        let at = model.linearise(set_point, &x.as_slice()[..model.parameters().len()]);
-        let at = at.with_influences(x.as_slice());
-        let mut linearised = Self { observations: Vec::new(), at, sum: Factor::new(3) };
-        alike.iter().try_for_each(|observation| linearised.push(observation))?;
-        Ok(linearised)
-    }
-
-    fn push(&mut self, observation: &Observation) -> Result<(), FitError> {
-        let whitener = Whitener::new(&observation.into(), &self.at)?;
-        let columns = [0, 1, 2].map(|axis| (axis, whitener.apply(&Vector3::ith(axis, 1.0))));
-        self.sum.update(&columns, &whitener.apply(&(observation.mean - self.at.reading)));
-        self.observations.push(observation.clone());
-        Ok(())
-    }
-
-    /// The whitened equations of the plateaus, three for all of them.
-    pub fn readings(&self) -> Readings {
-        let (triangle, misfit) = self.triangle();
-        Readings {
-            columns: self.at.by_unknowns().map(|(unknown, change)| (unknown, triangle * change)).collect(),
-            magnitude: (triangle * self.at.reading).norm(),
-            misfit,
-        }
-    }
-
-    /// Sum of squares that no reading takes up: of the plateaus about their weighted mean.
-    fn rest(&self) -> f64 {
-        self.sum.rest()
-    }
-
-    /// Norm of the whitened residual at `x` less that of the linearisation, from which `x` is `dx` away.
-    pub fn remainder(&self, model: &MeasurementModel, dx: &DVector<f64>, x: &DVector<f64>) -> f64 {
-        let linear: Vector3<f64> = self.at.by_unknowns().map(|(unknown, change)| change * dx[unknown]).sum();
-        (self.triangle().0 * (self.reading(model, x) - self.at.reading - linear)).norm()
-    }
-
-    /// Sum of squares of the whitened residuals of the exact model at `x`.
-    pub fn squared(&self, model: &MeasurementModel, x: &DVector<f64>) -> f64 {
-        let (triangle, misfit) = self.triangle();
-        (misfit - triangle * (self.reading(model, x) - self.at.reading)).norm_squared() + self.rest()
-    }
-
-    fn reading(&self, model: &MeasurementModel, x: &DVector<f64>) -> Vector3<f64> {
-        let set_point = &model.experiment().set_points[self.observations[0].set_point];
-        model.reading_with_influences(set_point, x.as_slice())
-    }
-
-    fn triangle(&self) -> (Matrix3<f64>, Vector3<f64>) {
-        let row = |axis: usize| self.sum.row(axis);
-        let element = |i: usize, j: usize| if j < i { 0.0 } else { row(i)[j - i] };
-        (Matrix3::from_fn(element), Vector3::from_fn(|i, _| element(i, 3)))
-    }
 }
 
 impl<'m> Past<'m> {
     /// No plateau yet; the next ones will be linearised at the `reference`.
     pub fn new(model: &'m MeasurementModel, reference: DVector<f64>) -> Self {
         let none = || Factor::new(reference.len());
-        let (alike, groups, group_of) = (model.alike().into(), Vec::new(), HashMap::new());
-        let (at_reference, at_zero) = (none(), none());
-        Self { model, alike, reference, referenced: 0, groups, group_of, at_reference, rest: 0.0, at_zero }
+        Self {
+            model,
+            alike: model.alike().into(),
+            at_reference: none(),
+            at_zero: none(),
+            reference,
+            referenced: 0,
+            groups: Vec::new(),
+            group_of: HashMap::new(),
+            kin: Vec::new(),
+            kin_of: HashMap::new(),
+            rest: 0.0,
+        }
     }
 
     /// Where the plateaus are linearised.
@@ -128,7 +77,7 @@ impl<'m> Past<'m> {
         &self.reference
     }
 
-    /// Plateaus that were behind when the reference was set.
+    /// Plateaus that had come when the reference was set.
     pub fn referenced(&self) -> usize {
         self.referenced
     }
@@ -140,37 +89,69 @@ impl<'m> Past<'m> {
     pub fn push(&mut self, observation: &Observation) -> Result<(), FitError> {
         let at_zero = readings_at_zero(self.model, observation)?;
         self.at_zero.update(&at_zero.columns, &at_zero.misfit);
-        let first = self.alike[observation.set_point];
-        let at_reference = if let Some(&group) = self.group_of.get(&first) {
-            let group = Arc::make_mut(&mut self.groups[group]);
-            group.push(observation)?;
-            Readings::new(observation, &group.at)?
-        } else {
-            let group = Linearised::new(self.model, observation, &self.reference)?;
-            let readings = group.readings();
-            self.group_of.insert(first, self.groups.len());
-            self.groups.push(Arc::new(group));
-            readings
-        };
-        self.at_reference.update(&at_reference.columns, &at_reference.misfit);
-        Ok(())
+        let linearised = self.linearised(observation)?;
+        let readings = linearised.readings();
+        self.at_reference.update(&readings.columns, &readings.misfit);
+        match self.group_of.get(&self.alike[observation.set_point]) {
+            Some(&group) => {
+                self.join(group, &linearised);
+                self.groups[group].push(observation)
+            }
+            None => Ok(self.found(linearised)),
+        }
     }
 
-    /// Makes `x` the reference.
+    /// A plateau at the reference.
     ///
     /// # Errors
     /// As [`Past::push`].
-    pub fn linearise_at(&mut self, x: &DVector<f64>) -> Result<(), FitError> {
-        (self.reference, self.at_reference) = (x.clone(), Factor::new(x.len()));
-        self.referenced = self.groups.iter().map(|group| group.observations.len()).sum();
-        for group in &mut self.groups {
-            let linearised = Linearised::together(self.model, &group.observations, x)?;
+    pub fn linearised(&self, observation: &Observation) -> Result<Linearised, FitError> {
+        Linearised::new(self.model, observation, &self.reference)
+    }
+
+    /// The same plateaus with `x` for the reference.
+    ///
+    /// # Errors
+    /// As [`Past::push`].
+    pub fn linearised_at(&self, x: &DVector<f64>) -> Result<Self, FitError> {
+        let mut past =
+            Self { alike: self.alike.clone(), at_zero: self.at_zero.clone(), ..Self::new(self.model, x.clone()) };
+        for group in &self.groups {
+            let linearised = Linearised::together(self.model, group.observations(), x)?;
             let readings = linearised.readings();
-            self.at_reference.update(&readings.columns, &readings.misfit);
-            *group = Arc::new(linearised);
+            past.at_reference.update(&readings.columns, &readings.misfit);
+            past.referenced += group.observations().len();
+            past.found(linearised);
         }
-        self.rest = self.groups.iter().map(|group| group.rest()).sum();
-        Ok(())
+        past.rest = past.groups.iter().map(Linearised::rest).sum();
+        Ok(past)
+    }
+
+    /// Begins a group.
+    fn found(&mut self, linearised: Linearised) {
+        let group = self.groups.len();
+        self.group_of.insert(self.alike[linearised.set_point()], group);
+        self.join(group, &linearised);
+        self.groups.push(linearised);
+    }
+
+    /// Adds plateaus of a group to its kin.
+    fn join(&mut self, group: usize, linearised: &Linearised) {
+        let experiment = self.model.experiment();
+        let force = linear::nominal(experiment, &experiment.set_points[linearised.set_point()]).norm();
+        let unknowns = linearised.at().by_unknowns().map(|(unknown, _)| unknown).collect();
+        // The bits of a positive number above those of its fraction are the power of two.
+        let power = force.to_bits() >> (f64::MANTISSA_DIGITS - 1);
+        let new = self.kin.len();
+        let place = *self.kin_of.entry((unknowns, power)).or_insert(new);
+        if place == new {
+            self.kin.push(Kin { largest: group, force, sum: Factor::new(3) });
+        }
+        let kin = &mut self.kin[place];
+        kin.sum.update(&linearised.whitening(), &Vector3::zeros());
+        if force > kin.force {
+            (kin.largest, kin.force) = (group, force);
+        }
     }
 
     /// Sum of squares of the whitened residuals of the exact model at `x`.
@@ -178,23 +159,29 @@ impl<'m> Past<'m> {
         self.groups.iter().map(|group| group.squared(self.model, x)).sum()
     }
 
-    /// Norm of the remainder at `x`.
-    pub fn remainder(&self, x: &DVector<f64>) -> f64 {
+    /// Norm of the remainder at `x`, and of that of `newcomer`, a plateau at the reference.
+    pub fn remainder(&self, newcomer: &Linearised, x: &DVector<f64>) -> f64 {
         let dx = x - &self.reference;
-        self.groups.iter().map(|group| group.remainder(self.model, &dx, x).powi(2)).sum::<f64>().sqrt()
+        let of_kin = |kin: &Kin| self.groups[kin.largest].remainder(&kin.sum, self.model, &dx, x);
+        let own = newcomer.remainder(newcomer.sum(), self.model, &dx, x);
+        self.kin.iter().map(|kin| of_kin(kin).powi(2)).sum::<f64>().sqrt().hypot(own)
     }
 
-    /// The equations of the reference as equations at `x`.
-    pub fn design(&self, x: &DVector<f64>) -> Design {
-        let mut design = design_of(&self.at_reference);
+    /// The equations of the reference as equations at `x`, perhaps with those of a plateau more.
+    pub fn design(&self, newcomer: Option<&Linearised>, x: &DVector<f64>) -> Design {
+        let mut design = with_readings(design_of(&self.at_reference), newcomer.map(Linearised::readings).as_ref());
         design.rest = design.rest.hypot(self.rest.sqrt());
         design.misfit -= &design.rows * (x - &self.reference);
         design
     }
 
-    /// The equations at zero, on which the rank is decided.
-    pub fn design_at_zero(&self) -> Design {
-        design_of(&self.at_zero)
+    /// The equations at zero, on which the rank is decided, perhaps with those of a plateau more.
+    ///
+    /// # Errors
+    /// As [`Past::push`].
+    pub fn design_at_zero(&self, newcomer: Option<&Observation>) -> Result<Design, FitError> {
+        let readings = newcomer.map(|newcomer| readings_at_zero(self.model, newcomer)).transpose()?;
+        Ok(with_readings(design_of(&self.at_zero), readings.as_ref()))
     }
 }
 
@@ -204,8 +191,9 @@ fn design_of(factor: &Factor) -> Design {
     Design { rows, misfit, rest: factor.rest().sqrt(), magnitude: 0.0 }
 }
 
-/// The equations with those of one plateau more.
-pub(super) fn with_readings(mut design: Design, readings: &Readings) -> Design {
+/// The equations, perhaps with those of one plateau more.
+fn with_readings(mut design: Design, readings: Option<&Readings>) -> Design {
+    let Some(readings) = readings else { return design };
     let n = design.rows.nrows();
     design.rows = design.rows.resize_vertically(n + 3, 0.0);
     design.misfit = design.misfit.resize_vertically(n + 3, 0.0);
@@ -217,6 +205,6 @@ pub(super) fn with_readings(mut design: Design, readings: &Readings) -> Design {
 }
 
 /// A plateau by the linear model.
-pub(super) fn readings_at_zero(model: &MeasurementModel, observation: &Observation) -> Result<Readings, FitError> {
+fn readings_at_zero(model: &MeasurementModel, observation: &Observation) -> Result<Readings, FitError> {
     Readings::new(observation, &model.linearise_at_zero(&model.experiment().set_points[observation.set_point]))
 }

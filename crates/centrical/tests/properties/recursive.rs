@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use centrical::fit::Follower;
 use centrical::fit::filter::{Filter, Lifetimes, Readings};
+use centrical::fit::{Follower, Innovation};
 use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::{
     Calibration, Data, ErrorModel, Experiment, Extension, Extra, Fit, FitError, Group, Law, MeasurementModel,
@@ -468,8 +468,8 @@ fn follow<'m>(model: &'m MeasurementModel, data: &mut Vec<Observation>) -> Follo
     let mut probabilities = Vec::new();
     let mut degrees_of_freedom = 0;
     for (place, observation) in data.iter().enumerate() {
-        let with = follower.with(observation).unwrap();
-        let innovation = with.innovation().unwrap();
+        let arrival = follower.test(observation).unwrap();
+        let innovation = arrival.innovation;
         assert_eq!(innovation.is_alarm(0.001, data.len()), place == BAD, "place {place}: {innovation:?}");
         if place == BAD {
             continue;
@@ -478,12 +478,20 @@ fn follow<'m>(model: &'m MeasurementModel, data: &mut Vec<Observation>) -> Follo
         if innovation.degrees_of_freedom > 0 {
             probabilities.push(innovation.probability());
         }
-        follower = with;
+        follower.take(arrival).unwrap();
     }
     assert_uniform(&mut probabilities);
     data.remove(BAD);
     assert_eq!(degrees_of_freedom, crate::common::exact(model, data).unwrap().degrees_of_freedom);
     follower
+}
+
+/// Tests a plateau and takes it up whatever the test says.
+fn take(follower: &mut Follower, observation: &Observation) -> Innovation {
+    let arrival = follower.test(observation).unwrap();
+    let innovation = arrival.innovation;
+    follower.take(arrival).unwrap();
+    innovation
 }
 
 fn reference<'f>(follower: &'f Follower) -> (&'f [f64], usize) {
@@ -499,12 +507,13 @@ fn expectation_and_resumption_of_a_followed_session() {
     let mut follower = Follower::new(&model);
     assert_eq!(follower.progress(), Err(FitError::Empty));
     for observation in &data[..95] {
-        follower = follower.with(observation).unwrap();
+        take(&mut follower, observation);
     }
     let expected = follower.expected(95, data[95].covariance).unwrap();
     let resumed = Follower::resume(&model, follower.taken().to_vec(), follower.point(), reference(&follower));
-    let resumed = resumed.unwrap().with(&data[95]).unwrap();
-    follower = follower.with(&data[95]).unwrap();
+    let mut resumed = resumed.unwrap();
+    take(&mut resumed, &data[95]);
+    take(&mut follower, &data[95]);
     assert_eq!(follower.point(), resumed.point());
     let came = follower.progress().unwrap();
     assert_eq!(came, resumed.progress().unwrap());
@@ -545,14 +554,14 @@ fn a_gross_plateau_anywhere_is_alarmed_and_survived() {
             let telling = perfect.innovation(place, &reading(blow)).unwrap().squared > TELLING;
             perfect.update(place, &reading(Vector3::zeros())).unwrap();
 
-            let taken = follower.with(&bad).unwrap();
-            let innovation = taken.innovation().unwrap();
+            let mut taken = follower.clone();
+            let innovation = take(&mut taken, &bad);
             let what = format!("{relation:?}, place {place}, {size} m/s^2: {innovation:?}");
             assert!(!telling || innovation.is_alarm(0.01, data.len()), "{what}");
             told += usize::from(telling);
             assert!(taken.point().iter().all(|x| x.is_finite()), "{what}");
             assert!(taken.progress().unwrap().estimates.iter().flatten().all(|(x, u)| x.is_finite() && u.is_finite()));
-            follower = follower.with(observation).unwrap();
+            take(&mut follower, observation);
         }
         assert!(told > 90, "{relation:?}: only {told} of 108 could be told");
     }
@@ -567,9 +576,7 @@ fn a_follower_resumed_anywhere_is_the_same() {
     let mut through = Follower::new(&model);
     let mut stopped = through.clone();
     for observation in &data {
-        through = through.with(observation).unwrap();
-        stopped = stopped.with(observation).unwrap();
-        assert_eq!(through.innovation().unwrap(), stopped.innovation().unwrap());
+        assert_eq!(take(&mut through, observation), take(&mut stopped, observation));
         let taken = stopped.taken().to_vec();
         stopped = Follower::resume(&model, taken, stopped.point(), reference(&stopped)).unwrap();
         assert_eq!(through.point(), stopped.point());

@@ -201,12 +201,13 @@ impl<'a> Following<'a> {
         if self.has(set_point) {
             return Ok(None);
         }
-        let with = self.fitted(self.follower.with(observation))?;
-        let innovation = self.fitted(with.innovation())?;
+        let arrival = self.fitted(self.follower.test(observation))?;
+        let innovation = arrival.innovation;
         let alarm = innovation.is_alarm(self.request.false_alarm, self.session.experiment.set_points.len());
         let held_out = self.held_out.contains(&set_point) || alarm && self.request.hold_out_alarms;
         if !held_out {
-            self.follower = with;
+            let taken = self.follower.take(arrival);
+            self.fitted(taken)?;
             let taken = self.next.take(&[Weight::from(observation)]);
             self.planned(taken)?;
         }
