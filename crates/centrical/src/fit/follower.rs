@@ -26,6 +26,13 @@ const CLOSE: f64 = 1e-3;
 /// The largest remainder of the linearisation, in standard uncertainties of all unknowns together.
 const REMAINDER: f64 = 1e-2;
 
+/// What is put up with of a reference that is fresh: one that was set when the plateaus were fewer by less than [`GROWTH`]. A
+/// direction that is hardly determined yet moves at every plateau; references at each would cost the square of the plateaus.
+const FRESH_REMAINDER: f64 = 0.1;
+
+/// Relative growth of the plateaus; below 50 of them every new one exceeds it.
+const GROWTH: f64 = 0.02;
+
 /// How the point is held about zero, in typical magnitudes: as units are. What is determined is not held by it.
 const HOLD: f64 = 1.0;
 
@@ -191,7 +198,8 @@ impl<'m> Follower<'m> {
             let (equations, misfit) = held(&self.whole(past.design(Some(&newcomer), &point), &point), &point, &typical);
             let step = equations.solve(misfit);
             let x = &point + &step.x;
-            if step.whitened_length < CLOSE || past.remainder(&newcomer, &x) < REMAINDER {
+            let limit = if moved.is_none() && self.is_fresh() { FRESH_REMAINDER } else { REMAINDER };
+            if step.whitened_length < CLOSE || past.remainder(&newcomer, &x) < limit {
                 return Ok((x, moved));
             }
             let Some(next) = self.descend(past, &newcomer, &point, &step.x, &typical) else { break };
@@ -199,6 +207,12 @@ impl<'m> Follower<'m> {
             point = next;
         }
         Ok((point, moved))
+    }
+
+    /// Whether hardly a plateau has come since the reference was set.
+    fn is_fresh(&self) -> bool {
+        let come = self.taken().len();
+        ((come - self.referenced()) as f64) < GROWTH * come as f64
     }
 
     /// The point one step on, halved until the sum of squares falls; none if it does not: the point stays where it is.
