@@ -92,13 +92,12 @@ impl<'m> Past<'m> {
         let linearised = self.linearised(observation)?;
         let readings = linearised.readings();
         self.at_reference.update(&readings.columns, &readings.misfit);
-        match self.group_of.get(&self.alike[observation.set_point]) {
-            Some(&group) => {
-                self.join(group, &linearised);
-                self.groups[group].push(observation)
-            }
-            None => Ok(self.found(linearised)),
-        }
+        let Some(&group) = self.group_of.get(&self.alike[observation.set_point]) else {
+            self.found(linearised);
+            return Ok(());
+        };
+        self.join(group, &linearised);
+        self.groups[group].push(observation)
     }
 
     /// A plateau at the reference.

@@ -25,12 +25,12 @@ pub struct WatchState {
     schema: String,
     /// The experiment file that the state belongs to.
     experiment: Input,
-    /// Point of linearisation reached, SI, in the order of the unknowns; empty where it is not known.
+    /// Point reached, SI, in the order of the unknowns; empty where it is not known.
     pub point: Vec<f64>,
-    /// Point of linearisation of the plateaus before the last, where it is another.
+    /// Point of linearisation of the plateaus, where it is another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     reference: Option<Vec<f64>>,
-    /// Plateaus that were behind when they were linearised there.
+    /// Plateaus that had come when they were linearised there.
     #[serde(default, skip_serializing_if = "is_zero")]
     referenced: usize,
     /// Plateaus that have come, in their order.
@@ -136,7 +136,7 @@ impl WatchState {
         Ok(write_stream(file, |output| output.write_all(text.as_bytes()))?)
     }
 
-    /// Notes the points of linearisation: that of the last plateau, and that of the plateaus before it.
+    /// Notes the point, and where the plateaus are linearised.
     pub fn move_to(&mut self, follower: &Follower) {
         let (point, reference) = (follower.point(), follower.reference());
         self.point = point.to_vec();
@@ -144,7 +144,7 @@ impl WatchState {
         self.referenced = follower.referenced();
     }
 
-    /// Point of linearisation of the plateaus before the last, and how many there were when it was set.
+    /// Point of linearisation of the plateaus, and how many there were when it was set.
     pub fn reference(&self) -> (&[f64], usize) {
         (self.reference.as_ref().unwrap_or(&self.point), self.referenced)
     }

@@ -276,8 +276,8 @@ impl<'s> Watch<'s> {
             return;
         }
         self.note_speeds(mounting, reduced);
-        let so_far: Vec<ReducedMounting> = self.finished.iter().chain([reduced]).cloned().collect();
-        let means = plateau_means(reduced, &NoiseModel::pool(&so_far));
+        let noise = NoiseModel::pool(self.finished.iter().chain([reduced]));
+        let means = plateau_means(reduced, &noise);
         let set_points = self.session.experiment.set_points.iter().enumerate();
         let there = set_points.filter(|(_, set_point)| set_point.mounting == mounting).map(|(index, _)| index);
         let fresh = there.zip(means).take(complete).skip(self.come);

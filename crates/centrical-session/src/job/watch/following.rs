@@ -147,6 +147,8 @@ impl<'a> Following<'a> {
                 board.write(&watch, LiveStatus::Following, watch.note())?;
             }
             if watch.is_complete() {
+                // The calibration reads the records anew, and needs the room of what was kept of them.
+                drop(watch);
                 return self.finish().map(Some);
             }
             if watch.note() != note.as_deref() {
