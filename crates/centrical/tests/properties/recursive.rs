@@ -583,3 +583,27 @@ fn a_follower_resumed_anywhere_is_the_same() {
         assert_eq!(through.progress().unwrap(), stopped.progress().unwrap());
     }
 }
+
+/// On its way, once everything is determined, a follower stands where a fit of the same plateaus stands.
+#[test]
+fn a_follower_stands_on_its_way_where_a_fit_stands() {
+    let mut random = Random::new(60);
+    let model = kozlov(twice(&twice(&experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]))));
+    let data = noisy(&model, &mut random);
+    let mut follower = Follower::new(&model);
+    let mut compared = 0;
+    for n in 0..data.len() {
+        take(&mut follower, &data[n]);
+        let progress = follower.progress().unwrap();
+        if n % 8 != 7 || progress.rank < model.parameters().len() {
+            continue;
+        }
+        let fit = crate::common::exact(&model, &data[..=n]).unwrap();
+        for (j, estimate) in progress.estimates.iter().enumerate() {
+            let ((value, sigma), expected) = (estimate.unwrap(), fit.value(j).unwrap());
+            assert!((value - expected).abs() < 0.1 * sigma, "{n}, {}", model.parameters()[j].name);
+        }
+        compared += 1;
+    }
+    assert!(compared > 5, "{compared}");
+}
