@@ -21,8 +21,9 @@ pub fn main() -> Result<(), Box<dyn Error>> {
 
     while !watch.is_complete() {
         for observation in watch.look()? {
-            follower = follower.with(&observation)?;
-            let test = follower.innovation()?;
+            let arrival = follower.test(&observation)?;
+            let test = arrival.innovation;
+            follower.take(arrival)?;
             let now = follower.progress()?;
             let u = now.estimates[column].map_or("not determined".to_owned(), |(_, u)| format!("{u:.2e} s^2/m"));
             println!("rank {}, G1_11: {u}, probability of the plateau {:.2}", now.rank, test.probability());

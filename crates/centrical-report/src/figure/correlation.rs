@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use centrical::Group;
 use centrical_session::CalibrationResult;
 
 use super::drawing::Figure;
@@ -24,10 +25,16 @@ const STYLE: &str = "\
 @media(prefers-color-scheme:dark){.map text{fill:#e8e8e8}.map .ground{fill:#161616}\
 .map .p{fill:#56b4e9}.map .n{fill:#ff8a3c}.map .frame{stroke:#e8e8e8}}";
 
-/// The lower triangle of the correlation matrix of the estimable parameters; `None` if there are fewer than two.
+/// The lower triangle of the correlation matrix of the estimable parameters, without the two of each rest in an attitude of its own; `None`
+/// if there are fewer than two.
 pub(super) fn figure(result: &CalibrationResult, language: Language) -> Option<Figure> {
     let messages = language.messages();
-    let shown: Vec<usize> = (0..result.parameters.len()).filter(|&j| result.parameters[j].estimable).collect();
+    let shown: Vec<usize> = (0..result.parameters.len())
+        .filter(|&j| {
+            let parameter = &result.parameters[j];
+            parameter.estimable && parameter.group != Group::Attitude
+        })
+        .collect();
     (shown.len() > 1).then(|| {
         let drawings = vec![draw(result, &shown, language)];
         Figure::new("correlation", messages.correlation_title, messages.correlation_caption, drawings)

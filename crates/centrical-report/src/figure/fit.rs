@@ -137,7 +137,8 @@ pub(super) fn convergence(result: &CalibrationResult, language: Language) -> Opt
     let axes = (Axis::linear(messages.plateaus_used_axis), Axis::log(messages.convergence_axis));
     let mut plot = Plot::new(messages.convergence_title, axes.0, axes.1);
     let mut groups: Vec<Group> = Vec::new();
-    for parameter in result.parameters.iter().filter(|p| p.estimable) {
+    // The attitude of a rest is determined with it, or not at all.
+    for parameter in result.parameters.iter().filter(|p| p.estimable && p.group != Group::Attitude) {
         if !groups.contains(&parameter.group) {
             groups.push(parameter.group);
         }
@@ -146,10 +147,10 @@ pub(super) fn convergence(result: &CalibrationResult, language: Language) -> Opt
         let members: Vec<usize> = (0..last.len())
             .filter(|&j| result.parameters.get(j).is_some_and(|p| p.estimable && p.group == group))
             .collect();
-        let points =
-            history.plateaus.iter().zip(&history.standard_uncertainty).map(|(n, sigma)| {
-                Point::new(*n as f64, members.iter().map(|&j| sigma[j] / last[j]).fold(0.0, f64::max))
-            });
+        let points = history.plateaus.iter().zip(&history.standard_uncertainty).map(|(n, sigma)| {
+            let ratio = |j: usize| Some(sigma[j]? / last[j]?);
+            Point::new(*n as f64, members.iter().filter_map(|&j| ratio(j)).fold(0.0, f64::max))
+        });
         plot = plot.with(Series::line((messages.words.group)(group), points.collect()));
     }
     Some(of_plot("convergence", messages.convergence_caption, plot, language))

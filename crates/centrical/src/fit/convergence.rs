@@ -2,33 +2,36 @@
 //!
 //! Square-root information form: the triangular factor `R` of the whitened design starts from a standard deviation of
 //! [`NULL_HOLD`] typical magnitudes for every unknown, and the plateaus of each stage add their whitened rows by a
-//! QR factorisation. The uncertainties are the lengths of the rows of `R^-1`.
+//! QR factorisation. The uncertainties are the lengths of the rows of `R^-1`. The attitude of a rest is an unknown of that rest alone: it is
+//! eliminated with it, so that the time is linear in rests.
 
 use nalgebra::{DMatrix, DVector, Matrix3};
 
 use super::calibration::Calibration;
-use crate::linalg::least_squares::LeastSquares;
-use crate::model::{Linearisation, NULL_HOLD};
+use crate::linalg::least_squares::{LeastSquares, marginal};
+use crate::model::{Kind, Linearisation, NULL_HOLD};
 
 /// The uncertainties at some stage of the session.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Checkpoint {
     /// Plateaus used so far.
     pub plateaus: usize,
-    /// Standard uncertainty of every unknown, SI, in the order of the model's parameters.
-    pub standard_uncertainty: Vec<f64>,
+    /// Standard uncertainty of every unknown, SI, in the order of the model's parameters; `None` of attitudes of single rests.
+    pub standard_uncertainty: Vec<Option<f64>>,
 }
 
 impl Calibration<'_> {
     /// Standard uncertainties at no more than `most` evenly spread stages of the session; the last stage has all plateaus.
     pub fn convergence(&self, most: usize) -> Vec<Checkpoint> {
-        let (model, observations, fit) = (self.data().model(), self.data().observations(), self.fit());
-        let (parameters, typical) = (model.parameters().len(), self.data().typical());
-        let p = typical.len();
+        let (observations, fit) = (self.data().observations(), self.fit());
+        let parameters = self.data().model().parameters().len();
+        let (typical, slots) = (self.data().typical(), self.slots());
+        let kept: Vec<usize> = (0..typical.len()).filter(|&j| slots[j].is_some()).collect();
+        let sizes = DVector::from_iterator(kept.len(), kept.iter().map(|&j| typical[j]));
+        let p = kept.len();
         let every = observations.len().div_ceil(most.max(1)).max(1);
-        let mut triangle = DMatrix::zeros(p, p);
-        triangle.fill_diagonal(1.0 / NULL_HOLD);
-        (parameters..p).for_each(|influence| triangle[(influence, influence)] = 1.0);
+        let start = kept.iter().map(|&j| if j < parameters { 1.0 / NULL_HOLD } else { 1.0 });
+        let mut triangle = DMatrix::from_diagonal(&DVector::from_iterator(p, start));
         let mut checkpoints = Vec::new();
         let mut plateaus = 0;
         let linearisations = self.data().linearised(&fit.unknowns());
@@ -36,29 +39,55 @@ impl Calibration<'_> {
         {
             let mut stack = triangle.resize_vertically(p + 3 * linearisations.len(), 0.0);
             for (n, (linearisation, covariance)) in linearisations.iter().zip(covariances).enumerate() {
-                let rows = whitened_rows(linearisation, covariance, &typical);
-                stack.rows_mut(p + 3 * n, 3).copy_from(&rows);
+                let rows = whitened_rows(linearisation, covariance, &typical, (&slots, p));
+                stack.view_mut((p + 3 * n, 0), rows.shape()).copy_from(&rows);
             }
-            let equations = LeastSquares::new(stack, typical.clone());
+            let equations = LeastSquares::new(stack, sizes.clone());
             triangle = equations.triangle().clone();
             plateaus += linearisations.len();
-            let mut standard_uncertainty = equations.standard_uncertainties();
-            standard_uncertainty.truncate(parameters);
+            let of_kept = equations.standard_uncertainties();
+            let standard_uncertainty = slots[..parameters].iter().map(|slot| slot.map(|slot| of_kept[slot])).collect();
             checkpoints.push(Checkpoint { plateaus, standard_uncertainty });
         }
         checkpoints
     }
+
+    /// The place of each unknown among those that are kept from plateau to plateau; `None` of attitudes of single rests.
+    fn slots(&self) -> Vec<Option<usize>> {
+        let model = self.data().model();
+        let mut rests = vec![0; model.experiment().positions.len()];
+        for observation in self.data().observations() {
+            let mounting = model.experiment().set_points[observation.set_point].mounting;
+            rests[model.experiment().mountings[mounting].position] += 1;
+        }
+        let is_kept = |kind: Kind| !matches!(kind, Kind::Attitude { position, .. } if rests[position] <= 1);
+        let of_influences = model.influences().iter().map(|_| true);
+        let is_kept = model.parameters().iter().map(|parameter| is_kept(parameter.kind)).chain(of_influences);
+        let mut next = 0..;
+        is_kept.map(|is_kept| if is_kept { next.next() } else { None }).collect()
+    }
 }
 
-/// The rows of one plateau at the fit, whitened, in typical units.
-fn whitened_rows(linearisation: &Linearisation, covariance: &Matrix3<f64>, typical: &DVector<f64>) -> DMatrix<f64> {
-    let mut rows = DMatrix::zeros(3, typical.len());
+/// The rows of one plateau at the fit, whitened, in typical units, of the `count` unknowns that have slots; the others are eliminated.
+fn whitened_rows(
+    linearisation: &Linearisation,
+    covariance: &Matrix3<f64>,
+    typical: &DVector<f64>,
+    (slots, count): (&[Option<usize>], usize),
+) -> DMatrix<f64> {
+    let own = linearisation.by_unknowns().filter(|(column, _)| slots[*column].is_none()).count();
+    let mut rows = DMatrix::zeros(3, count + own);
     // A fit accepts positive definite covariances only.
-    let Some(factor) = covariance.cholesky() else { return rows };
+    let Some(factor) = covariance.cholesky() else { return rows.resize_horizontally(count, 0.0) };
+    let mut next = count..;
     for (column, derivative) in linearisation.by_unknowns() {
-        if let Some(whitened) = factor.l_dirty().solve_lower_triangular(derivative) {
-            rows.column_mut(column).copy_from(&(whitened * typical[column]));
+        let (place, size) = match slots[column] {
+            Some(slot) => (Some(slot), typical[column]),
+            None => (next.next(), typical[column] * NULL_HOLD),
+        };
+        if let (Some(place), Some(whitened)) = (place, factor.l_dirty().solve_lower_triangular(derivative)) {
+            rows.column_mut(place).copy_from(&(whitened * size));
         }
     }
-    rows
+    marginal(rows, count)
 }

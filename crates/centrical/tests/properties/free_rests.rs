@@ -177,6 +177,24 @@ fn errors_are_as_large_as_stated() {
     assert!((ratio - 1.0).abs() < 4.0 * (2.0 / count as f64).sqrt(), "{ratio}");
 }
 
+/// Eliminated attitudes leave the uncertainties after the last rest as those of the fit.
+#[test]
+fn uncertainties_by_rests_converge_to_those_of_the_fit() {
+    let mut random = Random::new(62);
+    let model = rests_alone(&cube(), 2);
+    let truth = vec![0.0; model.parameters().len()];
+    let data = Data::new(&model, observed(&model, &truth, &mut random)).unwrap();
+    let calibration = Calibration::exact(&data).unwrap();
+    let stages = calibration.convergence(60);
+    assert_eq!(stages.len(), 26);
+    for (j, sigma) in stages.last().unwrap().standard_uncertainty.iter().enumerate() {
+        let is_attitude = matches!(model.parameters()[j].kind, Kind::Attitude { .. });
+        assert_eq!(sigma.is_none(), is_attitude, "{j}");
+        let of_fit = calibration.fit().standard_uncertainty(j).unwrap();
+        assert!(sigma.is_none_or(|sigma| (sigma / of_fit - 1.0).abs() < 1e-4), "{j}: {sigma:?} {of_fit}");
+    }
+}
+
 /// Known attitudes show on six faces what gravity alone does not: the misalignments, and the turn against the case, no better than the
 /// attitudes are known.
 #[test]

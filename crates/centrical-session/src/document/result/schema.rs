@@ -371,8 +371,8 @@ pub struct PlateauSummary {
 pub struct ConvergenceSummary {
     /// Numbers of plateaus at which it was looked, rising.
     pub plateaus: Vec<usize>,
-    /// Standard uncertainty, SI: one row for each of these numbers, in the order of the parameters.
-    pub standard_uncertainty: Vec<Vec<f64>>,
+    /// Standard uncertainty, SI: one row for each of these numbers, in the order of the parameters; none of attitudes of single rests.
+    pub standard_uncertainty: Vec<Vec<Option<f64>>>,
 }
 
 /// Deviation of one axis against averaging time.
