@@ -4,6 +4,7 @@ mod attitudes;
 mod comparison;
 mod correlation;
 mod drawing;
+mod estimates;
 mod fit;
 mod frontier;
 mod history;

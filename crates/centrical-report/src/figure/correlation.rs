@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use centrical::Group;
 use centrical_session::CalibrationResult;
 
 use super::drawing::Figure;
+use super::estimates::is_charted;
 use crate::evaluation::symbol;
 use crate::language::Language;
 use crate::plot::{Escaped, Px};
@@ -29,12 +29,7 @@ const STYLE: &str = "\
 /// if there are fewer than two.
 pub(super) fn figure(result: &CalibrationResult, language: Language) -> Option<Figure> {
     let messages = language.messages();
-    let shown: Vec<usize> = (0..result.parameters.len())
-        .filter(|&j| {
-            let parameter = &result.parameters[j];
-            parameter.estimable && parameter.group != Group::Attitude
-        })
-        .collect();
+    let shown: Vec<usize> = (0..result.parameters.len()).filter(|&j| is_charted(&result.parameters[j])).collect();
     (shown.len() > 1).then(|| {
         let drawings = vec![draw(result, &shown, language)];
         Figure::new("correlation", messages.correlation_title, messages.correlation_caption, drawings)

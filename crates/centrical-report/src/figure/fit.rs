@@ -5,6 +5,7 @@ use centrical_session::{CalibrationResult, MICRO_G, PlateauSummary};
 use nalgebra::{Matrix3, Vector3};
 
 use super::drawing::{Figure, drawn, of_plot};
+use super::estimates::is_charted;
 use crate::evaluation::{ReadingError, expanded_of_normal, printed_combination, reading_errors};
 use crate::language::Language;
 use crate::plot::{Axis, Plot, Point, Series};
@@ -137,8 +138,7 @@ pub(super) fn convergence(result: &CalibrationResult, language: Language) -> Opt
     let axes = (Axis::linear(messages.plateaus_used_axis), Axis::log(messages.convergence_axis));
     let mut plot = Plot::new(messages.convergence_title, axes.0, axes.1);
     let mut groups: Vec<Group> = Vec::new();
-    // The attitude of a rest is determined with it, or not at all.
-    for parameter in result.parameters.iter().filter(|p| p.estimable && p.group != Group::Attitude) {
+    for parameter in result.parameters.iter().filter(|p| is_charted(p)) {
         if !groups.contains(&parameter.group) {
             groups.push(parameter.group);
         }

@@ -185,7 +185,7 @@ pub(super) fn plateaus_of(source: &Source, mountings: usize, further: Further) -
     checked(source.name(), &rows, mountings, further)
 }
 
-/// The numbers of a row, and those in its further columns; NaN where there are none.
+/// The numbers of a row, and those in its further columns, NaN for a column that the table lacks.
 type Row = ([f64; COLUMNS.len()], [f64; 3]);
 
 fn row_of(columns: &[Vec<f64>], row: usize) -> Row {

@@ -138,21 +138,22 @@ impl RestTable {
                 let expected = "no such key without a record of slow rotation";
                 return Err(at.unexpected("turning_radius", "a distance", expected));
             }
-            Ok(Self { switch_on, noise_at_most, ..rests? }.with_turning(turning))
+            let mut rests = Self { switch_on, noise_at_most, ..rests? };
+            rests.set_turning(turning);
+            Ok(rests)
         });
         named.collect()
     }
 
-    /// With slow rotation among the rests.
-    fn with_turning(self, turning: Option<Turning>) -> Self {
-        let from_axes = turning.map_or(0.0, |turning| turning.place_uncertainty());
-        Self { turning, switch_on: SwitchOn { from_axes, ..self.switch_on }, ..self }
+    /// States slow rotation among the rests.
+    fn set_turning(&mut self, turning: Option<Turning>) {
+        self.switch_on.from_axes = turning.map_or(0.0, |turning| turning.place_uncertainty());
+        self.turning = turning;
     }
 
     /// Takes slow rotation among the rests that were found in its record.
     pub(crate) fn turned(&mut self, found: &[Found]) {
-        let turning = self.record().and_then(|recorded| Turning::of(found, recorded.turning_radius?));
-        *self = self.clone().with_turning(turning);
+        self.set_turning(self.record().and_then(|recorded| Turning::of(found, recorded.turning_radius?)));
     }
 
     /// Rests in the first switch-on, without means.

@@ -24,7 +24,7 @@ pub struct Turning {
 }
 
 impl Turning {
-    /// That of rests of which some are arcs, with proof masses up to `radius` from the axes [m]; `None` if there are no arcs.
+    /// Slow rotation among `rests`, with proof masses up to `radius` from the axes [m]; `None` without an arc.
     pub(crate) fn of<'r>(rests: impl IntoIterator<Item = &'r PlateauMean>, radius: f64) -> Option<Self> {
         let (mut all, mut of_arcs) = (0.0, 0.0);
         let mut turning = Self { arcs: 0, share: 0.0, rate: 0.0, radius, acceleration: 0.0 };

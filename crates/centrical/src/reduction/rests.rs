@@ -35,7 +35,7 @@ pub struct RestRecord<'a> {
 }
 
 impl<'a> From<RecordSlice<'a>> for RestRecord<'a> {
-    /// A record of which rests alone count.
+    /// A record whose slow rotation does not count.
     fn from(samples: RecordSlice<'a>) -> Self {
         Self { samples, turning_radius: None }
     }

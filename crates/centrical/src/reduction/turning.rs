@@ -6,8 +6,8 @@
 //! `|f_0|^2 + |c_1|^2 / 3 + |c_2|^2 / 5 + |c_3|^2 / 7 = g^2`.
 //!
 //! What the polynomials leave beside the white noise, a tremor or a turn that is not smooth, belongs to that sum with its mean square. An arc
-//! in which it counts for more than [`MOST_LEFT`] standard uncertainties is left out, and so is one in which it may hide a kink of the way
-//! whose acceleration, at the distance of the proof masses, counts for as much.
+//! in which it counts for more than [`MOST_LEFT`] standard uncertainties is left out. So is one in which a kink of the way may hide that would
+//! count for as much: it accelerates the proof masses at their distance from the axes.
 //!
 //! So the mean reading, drawn out from the bias by the ratio of `g` to `|f_0|`, is that of a rest in the attitude of `f_0`, whatever bias, scale and
 //! misalignment are. For that ratio an ellipsoid through all means is enough: of second order in the angle, it takes bias and scale coarsely.
@@ -31,8 +31,8 @@ const MOST_LEFT: f64 = 3.0;
 
 /// Second derivative, on average over an arc of half length 1, that the polynomials miss of a kink in its middle, over the root mean square
 /// of what they leave. Of the kink `|t|` they see `1/2 + 5/8 P_2`: they leave `1/3 - 1/4 - 5/64 = 1/192` in mean square, and of the mean second
-/// derivative, 1, they make `3 . 5/8`.
-const OF_KINK: f64 = 0.875 * 13.856_406_460_551_018;
+/// derivative, 1, they make `3 . 5/8`. The ratio is `7/8 . sqrt(192) = 7 sqrt(3)`.
+const OF_KINK: f64 = 7.0 * 1.732_050_807_568_877_2;
 
 /// Samples of an arc for each one that may be left out as a spike.
 const PER_SPIKE: usize = 20;
@@ -40,8 +40,8 @@ const PER_SPIKE: usize = 20;
 /// Longest stretch of rotation whose noise is looked at as a whole [s].
 const STRETCH: f64 = 60.0;
 
-/// Whether a fit is that of a rest, or of an arc which the polynomials describe, of readings whose white noise is `white` [m/s^2], with proof
-/// masses up to `radius` from the axes of rotation [m].
+/// Whether a fit is that of a rest, or of an arc which the polynomials describe. `white` is the white noise of its readings [m/s^2], `radius`
+/// the largest distance of the proof masses from the axes of rotation [m].
 pub(super) fn is_smooth(fit: &PlateauFit, white: &Vector3<f64>, radius: f64) -> bool {
     let Some(Interval { half, .. }) = fit.shape.turning else { return true };
     let size = fit.mean.norm();
@@ -50,8 +50,8 @@ pub(super) fn is_smooth(fit: &PlateauFit, white: &Vector3<f64>, radius: f64) -> 
     // A bump takes some samples; where many are left out it is the motion that the polynomials miss.
     let is_described = fit.left_out.spikes <= fit.samples / PER_SPIKE;
     let left = left(fit, white);
-    // Readings may be in counts: in units of gravity.
-    let of_kink = size * radius / STANDARD_GRAVITY * OF_KINK * left.sqrt() / (size * half * half);
+    // The way is `sqrt(left) / size`, and readings may be in counts, `size / g` of them for an acceleration: the size drops out.
+    let of_kink = radius / STANDARD_GRAVITY * OF_KINK * left.sqrt() / (half * half);
     is_described && (left / (2.0 * size)).max(of_kink) <= MOST_LEFT * uncertainty
 }
 

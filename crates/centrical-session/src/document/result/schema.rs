@@ -371,7 +371,7 @@ pub struct PlateauSummary {
 pub struct ConvergenceSummary {
     /// Numbers of plateaus at which it was looked, rising.
     pub plateaus: Vec<usize>,
-    /// Standard uncertainty, SI: one row for each of these numbers, in the order of the parameters; none of attitudes of single rests.
+    /// Standard uncertainty, SI: one row for each of these numbers, in the order of the parameters; `null` for the attitude of a single rest.
     pub standard_uncertainty: Vec<Vec<Option<f64>>>,
 }
 
