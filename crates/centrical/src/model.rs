@@ -29,6 +29,7 @@ pub mod position;
 pub(crate) mod prior;
 mod rival;
 mod share;
+mod single_rest;
 mod stated;
 pub(crate) mod whitening;
 

@@ -3,7 +3,8 @@
 use super::data::Data;
 use super::design::Design;
 use super::filter;
-use crate::model::{FitError, Linearisation};
+use crate::linalg::elimination::Own;
+use crate::model::{FitError, Linearisation, Prior};
 
 /// How the whitened equations of all plateaus, linearised at a point, are brought together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,5 +23,14 @@ impl Assembly {
             Self::Filter => filter::smoothed(data, linearisations)?,
         };
         Ok(design.with_priors(data.model().priors(), data.model().influences().len(), x))
+    }
+
+    /// Unknowns that few of the equations with `priors` contain: attitudes of single rests, as long as the equations stand as they are.
+    pub fn own(self, data: &Data, priors: &[Prior]) -> Vec<Own> {
+        let set_points: Vec<usize> = data.observations().iter().map(|observation| observation.set_point).collect();
+        match self {
+            Self::Batch => data.model().attitudes_of_single_rests(&set_points, priors),
+            Self::Filter => Vec::new(),
+        }
     }
 }

@@ -7,8 +7,9 @@ use nalgebra::{DMatrix, DVector};
 use super::assembly::Assembly;
 use super::data::Data;
 use super::design::Design;
+use crate::linalg::elimination::Own;
 use crate::linalg::least_squares::LeastSquares;
-use crate::model::{FitError, Linearisation};
+use crate::model::{FitError, Linearisation, Prior};
 use crate::observability::Observability;
 
 /// What a design determines and what it loses, decided on `H` at `X = 0`. It depends on the plateaus and their weights,
@@ -17,6 +18,8 @@ use crate::observability::Observability;
 pub struct Structure {
     /// How the equations are brought together, at zero and at every later point.
     pub(super) assembly: Assembly,
+    /// Unknowns that few equations contain.
+    own: Vec<Own>,
     pub(super) observability: Observability,
     /// What the data determine without the priors, if there are any.
     pub(super) of_data: Option<Observability>,
@@ -55,15 +58,22 @@ impl Structure {
         let model = data.model();
         let (columns, influences) = (model.parameters().len(), model.influences().len());
         // The influences have proper distributions of their own: they take part in no null direction.
-        let rows_with_priors = design.rows.nrows() - influences;
-        let of_rows = |count: usize| Observability::of(&design.rows.view((0, 0), (count, columns)).into_owned());
-        let of_data = (!model.priors().is_empty()).then(|| of_rows(rows_with_priors - model.priors().len()));
-        let observability = of_rows(rows_with_priors);
+        let plateaus = design.rows.nrows() - influences - model.priors().len();
+        let with = |priors: &[Prior]| {
+            let rows = design.rows.view((0, 0), (plateaus + priors.len(), columns)).into_owned();
+            Observability::of(rows, &assembly.own(data, priors), 0)
+        };
+        let of_data = (!model.priors().is_empty()).then(|| with(&[]));
+        let (observability, own) = (with(model.priors()), assembly.own(data, model.priors()));
         let typical = data.typical();
         let mut null_basis = observability.null_basis().clone().resize_vertically(data.unknowns(), 0.0);
         null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);
+        // What is eliminated is determined where all else is held.
+        for &j in own.iter().flat_map(|own| &own.columns) {
+            null_basis.row_mut(j).fill(0.0);
+        }
         let (null_basis, start) = (orthonormal(null_basis), OnceLock::new());
-        Self { assembly, observability, of_data, null_basis, typical, linearisations, start }
+        Self { assembly, own, observability, of_data, null_basis, typical, linearisations, start }
     }
 
     /// What the design determines.
@@ -93,7 +103,7 @@ impl Structure {
         misfit.rows_mut(0, n).copy_from(&design.misfit);
         misfit.rows_mut(n, lost).copy_from(&(-&held * x.component_div(&self.typical)));
         rows.rows_mut(n, lost).copy_from(&held);
-        (LeastSquares::new(rows, self.typical.clone()), misfit)
+        (LeastSquares::eliminating(&self.own, rows, self.typical.clone()), misfit)
     }
 }
 

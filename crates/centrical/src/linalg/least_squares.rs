@@ -2,15 +2,21 @@
 //!
 //! The unknowns are counted in sizes of theirs, `x = S y` with a diagonal `S`, which takes their units out of the
 //! condition number. With `A S = Q R` the solution is `S R^-1 Q^T b`, its covariance for errors of `b` of unit variance
-//! `S R^-1 R^-T S`.
+//! `S R^-1 R^-T S`. Unknowns that few equations contain are eliminated with these first.
 
 use nalgebra::{DMatrix, DVector, Dyn, QR};
+
+use super::elimination::{Elimination, Own};
 
 /// Equations of full rank, at least as many as unknowns, factored.
 #[derive(Debug, Clone)]
 pub struct LeastSquares {
+    elimination: Elimination,
+    /// Of the equations left by the elimination.
     qr: QR<f64, Dyn, Dyn>,
     r: DMatrix<f64>,
+    /// Numbers of equations left, and of all.
+    left: usize,
     rows: usize,
     sizes: DVector<f64>,
 }
@@ -27,50 +33,50 @@ pub struct Solution {
 impl LeastSquares {
     /// Factors `A S`, the equations in units of the `sizes` of the unknowns.
     pub fn new(scaled: DMatrix<f64>, sizes: DVector<f64>) -> Self {
+        Self::eliminating(&[], scaled, sizes)
+    }
+
+    /// The same, and the unknowns of some groups are eliminated first.
+    pub(crate) fn eliminating(groups: &[Own], scaled: DMatrix<f64>, sizes: DVector<f64>) -> Self {
         let rows = scaled.nrows();
-        let qr = scaled.qr();
-        Self { r: qr.r(), qr, rows, sizes }
+        let (elimination, left) = Elimination::of(scaled, groups);
+        let (left, qr) = (left.nrows(), left.qr());
+        Self { elimination, r: qr.r(), qr, left, rows, sizes }
     }
 
     /// The solution for `b`; rows that it lacks at its end are zeros.
     pub fn solve(&self, b: DVector<f64>) -> Solution {
-        let mut rotated = b.resize_vertically(self.rows, 0.0);
-        self.qr.q_tr_mul(&mut rotated);
-        let mut x = rotated.rows_range(..self.columns()).into_owned();
-        let whitened_length = x.norm();
-        let solved = self.r.solve_upper_triangular_mut(&mut x);
-        debug_assert!(solved, "the equations are of full rank");
-        x.component_mul_assign(&self.sizes);
-        Solution { x, whitened_length }
+        let rotated = self.rotated(DMatrix::from_columns(&[b]));
+        let whitened_length = rotated.rows_range(..self.columns()).norm();
+        Solution { x: self.unknowns(&rotated).column(0).into_owned(), whitened_length }
     }
 
     /// `Q^T B`: the first rows, one per unknown, are what the unknowns follow; the others are what none of them can. Rows
     /// that `B` lacks at its end are zeros.
     pub fn rotated(&self, b: DMatrix<f64>) -> DMatrix<f64> {
-        let mut rotated = b.resize_vertically(self.rows, 0.0);
-        self.qr.q_tr_mul(&mut rotated);
+        let mut rotated = self.elimination.rotated(b.resize_vertically(self.rows, 0.0));
+        self.qr.q_tr_mul(&mut rotated.rows_mut(self.elimination.columns(), self.left));
         rotated
     }
 
     /// The solutions, column by column, for the first rows of a matrix [`LeastSquares::rotated`].
     pub fn unknowns(&self, rotated: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut unknowns = rotated.rows_range(..self.columns()).into_owned();
-        let solved = self.r.solve_upper_triangular_mut(&mut unknowns);
-        debug_assert!(solved, "the equations are of full rank");
-        self.in_units(unknowns)
+        self.in_units(self.in_sizes(rotated))
     }
 
     /// The part of `b`, rotated, that no unknown can follow: its squares are those of the residuals. Rows that it lacks at
     /// its end are zeros.
     pub fn redundant(&self, b: &DVector<f64>) -> DVector<f64> {
-        let mut rotated = b.clone().resize_vertically(self.rows, 0.0);
-        self.qr.q_tr_mul(&mut rotated);
-        rotated.rows_range(self.columns()..).into_owned()
+        let rotated = self.rotated(DMatrix::from_columns(std::slice::from_ref(b)));
+        rotated.column(0).rows_range(self.columns()..).into_owned()
     }
 
     /// The first `rows` rows of `Q`, an orthonormal basis of the columns.
     pub fn basis(&self, rows: usize) -> DMatrix<f64> {
-        self.qr.q().rows(0, rows).into_owned()
+        let (eliminated, left) = (self.elimination.columns(), self.qr.q());
+        let mut basis = DMatrix::identity(self.rows, self.columns());
+        basis.view_mut((eliminated, eliminated), left.shape()).copy_from(&left);
+        self.elimination.turned_back(basis).rows(0, rows).into_owned()
     }
 
     /// Number of unknowns.
@@ -78,17 +84,14 @@ impl LeastSquares {
         self.sizes.len()
     }
 
-    /// `R`, in units of the sizes.
+    /// `R` of the unknowns that are not eliminated, in units of the sizes.
     pub fn triangle(&self) -> &DMatrix<f64> {
         &self.r
     }
 
     /// `R^-1`, in units of the sizes.
     pub fn inverse(&self) -> DMatrix<f64> {
-        let mut inverse = DMatrix::identity(self.columns(), self.columns());
-        let solved = self.r.solve_upper_triangular_mut(&mut inverse);
-        debug_assert!(solved, "the equations are of full rank");
-        inverse
+        self.in_sizes(&DMatrix::identity(self.columns(), self.columns()))
     }
 
     /// Covariance of the solution for errors of `b` of unit variance.
@@ -102,25 +105,17 @@ impl LeastSquares {
         self.inverse().row_iter().zip(self.sizes.iter()).map(|(row, size)| row.norm() * size).collect()
     }
 
+    /// [`LeastSquares::unknowns`] in units of the sizes.
+    fn in_sizes(&self, rotated: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut left = rotated.rows_range(self.elimination.columns()..self.columns()).into_owned();
+        let solved = self.r.solve_upper_triangular_mut(&mut left);
+        debug_assert!(solved, "the equations are of full rank");
+        self.elimination.completed(rotated, left)
+    }
+
     /// From units of the sizes to those of the unknowns, row by row.
     fn in_units(&self, mut rows: DMatrix<f64>) -> DMatrix<f64> {
         rows.row_iter_mut().zip(self.sizes.iter()).for_each(|(mut row, size)| row *= *size);
         rows
     }
-}
-
-/// The equations of the first `columns` unknowns alone, where the others are zero with a standard uncertainty of 1 and are
-/// eliminated: with `[B J; E 0] = Q [R_b R_bj; 0 R_j]`, the rows `R_j`. The equations themselves where there are no others.
-pub(crate) fn marginal(rows: DMatrix<f64>, columns: usize) -> DMatrix<f64> {
-    let (count, others) = (rows.nrows(), rows.ncols() - columns);
-    if others == 0 {
-        return rows;
-    }
-    let mut stacked = DMatrix::zeros(count + others, columns + others);
-    stacked.view_mut((0, 0), (count, others)).copy_from(&rows.columns(columns, others));
-    stacked.view_mut((0, others), (count, columns)).copy_from(&rows.columns(0, columns));
-    stacked.view_mut((count, 0), (others, others)).fill_with_identity();
-    let triangle = stacked.qr().r();
-    let left = triangle.nrows().saturating_sub(others);
-    triangle.view((others, others), (left, columns)).into_owned()
 }

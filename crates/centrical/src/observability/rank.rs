@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector, RowDVector, SVD};
 use super::combination::Combination;
 use super::correlation::{self, CorrelatedGroup};
 use super::direction::{self, NullDirection, TAKES_PART};
+use crate::linalg::elimination::{Elimination, Own};
 
 /// Singular values below this part of the largest count as zero.
 ///
@@ -23,11 +24,16 @@ const DOUBTFUL: f64 = 100.0;
 const NULL_ROUNDING: f64 = 1e3 * f64::EPSILON;
 
 /// Observability of a design with `n` rows and `p` unknowns.
+///
+/// The attitude of a single rest is determined where all else is: it is eliminated, and the singular values are those of the other
+/// unknowns.
 #[derive(Debug, Clone)]
 pub struct Observability {
     singular_values: Vec<f64>,
-    rank: usize,
-    /// Right singular vectors of the scaled design as columns, in the order of the singular values.
+    /// Number of singular values that count.
+    seen: usize,
+    /// Right singular vectors of the scaled design as columns, in the order of the singular values, with the part of the eliminated
+    /// unknowns that follows them. Then columns of a root of the covariance: what else the eliminated unknowns are uncertain by.
     vectors: DMatrix<f64>,
     /// Lengths of the columns of the design; 1 for a column of zeros.
     norms: DVector<f64>,
@@ -45,39 +51,70 @@ impl PartialEq for Observability {
 }
 
 impl Observability {
-    /// Analyses a weighted design matrix (`n x p`, any `n`, all entries finite).
-    pub(crate) fn of(rows: &DMatrix<f64>) -> Self {
-        let norms = column_norms(rows);
-        let mut scaled = rows.clone();
+    /// Analyses a weighted design matrix (`n x (p + q)`, any `n`, all entries finite) of `p` unknowns and `influences`, whose own equations
+    /// stand last; `own` are unknowns of few equations.
+    pub(crate) fn of(rows: DMatrix<f64>, own: &[Own], influences: usize) -> Self {
+        let lengths = column_norms(&rows);
+        let (own, rows) = Elimination::of(rows, own);
+        let (unknowns, equations) = (rows.ncols() - influences, rows.nrows());
+        let of_all = Own { columns: (unknowns..unknowns + influences).collect(), rows: (0..equations).collect() };
+        let (stated, mut scaled) = Elimination::of(rows, &[of_all]);
+        // What an elimination leaves of a column may be rounding, which the length of the whole column tells from a reading.
+        let norms =
+            if own.columns() > 0 { lengths.select_rows(&own.left()[..unknowns]) } else { column_norms(&scaled) };
         for (mut column, norm) in scaled.column_iter_mut().zip(norms.iter()) {
             column /= *norm;
         }
         let (singular_values, vectors) = decompose(scaled);
         let tolerance = RANK_TOLERANCE * singular_values.first().copied().unwrap_or(0.0);
-        let rank = singular_values.iter().filter(|&&s| s > tolerance).count();
-        let gap = if rank > 0 { singular_values[rank - 1] / singular_values[0] } else { 1.0 };
+        let seen = singular_values.iter().filter(|&&s| s > tolerance).count();
+        let gap = if seen > 0 { singular_values[seen - 1] / singular_values[0] } else { 1.0 };
         let rounding = (NULL_ROUNDING / gap).min(TAKES_PART);
-        Self { singular_values, rank, vectors, norms, null_directions: OnceLock::new(), rounding }
+        let mut all = Self { singular_values, seen, vectors, norms, null_directions: OnceLock::new(), rounding };
+        if own.columns() > 0 {
+            all.complete(&own, &stated, &lengths);
+        }
+        all
     }
 
-    /// Singular values of the column-scaled design, falling; as many as there are unknowns.
+    /// Takes up the eliminated unknowns, whose columns have these `lengths`.
+    fn complete(&mut self, own: &Elimination, stated: &Elimination, lengths: &DVector<f64>) {
+        let (c, q, m) = (self.singular_values.len(), stated.columns(), own.columns());
+        let mut vectors = self.vectors.clone().resize_horizontally(c + q + m, 0.0);
+        vectors.row_iter_mut().zip(self.norms.iter()).for_each(|(mut row, norm)| row /= *norm);
+        let unit = |count: usize, first: usize| {
+            let mut u = DMatrix::zeros(count, c + q + m);
+            u.columns_mut(first, count).fill_with_identity();
+            u
+        };
+        let vectors = own.completed(&unit(m, c + q), stated.completed(&unit(q, c), vectors));
+        self.vectors = vectors.rows(0, c + m).into_owned();
+        self.norms = lengths.rows(0, c + m).into_owned();
+        self.vectors.row_iter_mut().zip(self.norms.iter()).for_each(|(mut row, norm)| row *= *norm);
+        let null = self.vectors.columns(self.seen, self.lost()).into_owned();
+        if self.lost() > 0 {
+            self.vectors.columns_mut(self.seen, self.lost()).copy_from(&null.qr().q());
+        }
+    }
+
+    /// Singular values of the column-scaled design, falling; as many as there are unknowns that are not eliminated.
     pub fn singular_values(&self) -> &[f64] {
         &self.singular_values
     }
 
-    /// Number of singular values above [`RANK_TOLERANCE`] times the largest.
+    /// Number of singular values above [`RANK_TOLERANCE`] times the largest, and of unknowns that are eliminated.
     pub fn rank(&self) -> usize {
-        self.rank
+        self.columns() - self.lost()
     }
 
     /// Number of unknowns.
     pub fn columns(&self) -> usize {
-        self.singular_values.len()
+        self.norms.len()
     }
 
     /// Number of lost combinations, `p - rank`.
     pub fn lost(&self) -> usize {
-        self.columns() - self.rank
+        self.singular_values.len() - self.seen
     }
 
     /// Whether a singular value lies within two decades of the tolerance, on either side: the rank is then a
@@ -89,7 +126,7 @@ impl Observability {
 
     /// Smallest singular value that counts over the largest; `None` when nothing is seen.
     pub fn smallest_relative(&self) -> Option<f64> {
-        Some(self.singular_values.get(self.rank.checked_sub(1)?)? / self.singular_values[0])
+        Some(self.singular_values.get(self.seen.checked_sub(1)?)? / self.singular_values[0])
     }
 
     /// Condition number of the part of the scaled design that is seen: the largest singular value over the
@@ -101,7 +138,7 @@ impl Observability {
     /// The lost combinations in their simplest form, `p - rank` of them.
     pub fn null_directions(&self) -> &[NullDirection] {
         self.null_directions.get_or_init(|| {
-            let basis = self.vectors.columns(self.rank, self.lost()).into_owned();
+            let basis = self.vectors.columns(self.seen, self.lost()).into_owned();
             direction::simplest(&basis, &self.norms, self.rounding)
         })
     }
@@ -142,17 +179,17 @@ impl Observability {
 
     /// A basis of the null space in physical units, `p x (p - rank)`; its scale is arbitrary.
     pub(crate) fn null_basis(&self) -> DMatrix<f64> {
-        let mut basis = self.vectors.columns(self.rank, self.lost()).into_owned();
+        let mut basis = self.vectors.columns(self.seen, self.lost()).into_owned();
         basis.row_iter_mut().zip(self.norms.iter()).for_each(|(mut row, norm)| row /= *norm);
         basis
     }
 
     /// Covariance of the unknowns `i` and `j` by the weights of the design; of meaning for estimable ones.
     pub(crate) fn covariance(&self, i: usize, j: usize) -> f64 {
-        let squares = self.singular_values[..self.rank].iter().map(|s| s * s);
-        let products = self.vectors.row(i).component_mul(&self.vectors.row(j));
-        products.iter().zip(squares).map(|(product, square)| product / square).sum::<f64>()
-            / (self.norms[i] * self.norms[j])
+        let product = |k: usize| self.vectors[(i, k)] * self.vectors[(j, k)];
+        let squares = self.singular_values[..self.seen].iter().map(|s| s * s).enumerate();
+        let others = (self.singular_values.len()..self.vectors.ncols()).map(|k| (k, 1.0));
+        squares.chain(others).map(|(k, square)| product(k) / square).sum::<f64>() / (self.norms[i] * self.norms[j])
     }
 
     /// Covariance in scaled columns.
@@ -161,16 +198,16 @@ impl Observability {
         &root * root.transpose()
     }
 
-    /// A root `V S^-1` of the covariance in scaled columns, `p x rank`.
+    /// A root of the covariance in scaled columns: `V S^-1`, and what else the eliminated unknowns are uncertain by.
     fn root(&self) -> DMatrix<f64> {
-        let mut root = self.vectors.columns(0, self.rank).into_owned();
-        root.column_iter_mut().zip(&self.singular_values).for_each(|(mut column, s)| column /= *s);
+        let mut root = self.vectors.clone().remove_columns(self.seen, self.lost());
+        root.column_iter_mut().zip(&self.singular_values[..self.seen]).for_each(|(mut column, s)| column /= *s);
         root
     }
 
     /// Components of unknown `j` in the null space, scaled columns.
     fn null_row(&self, j: usize) -> RowDVector<f64> {
-        self.vectors.row(j).columns(self.rank, self.lost()).into_owned()
+        self.vectors.row(j).columns(self.seen, self.lost()).into_owned()
     }
 }
 

@@ -1,9 +1,10 @@
 //! A design under study: a session, a plan or the normalised experiment, with the weights of its plateaus.
 
-use crate::linalg::least_squares::marginal;
+use nalgebra::DMatrix;
+
 use crate::model::prior;
 use crate::model::whitening::whitened_rows;
-use crate::model::{FitError, Linearisation, MeasurementModel, PriorUse, Weight};
+use crate::model::{FitError, Linearisation, MeasurementModel, Prior, PriorUse, Weight};
 
 use super::combination::Combination;
 use super::rank::Observability;
@@ -43,19 +44,13 @@ impl Study {
     }
 
     fn of(model: MeasurementModel, weights: Vec<Weight>, linearisations: Vec<Linearisation>) -> Result<Self, FitError> {
-        let (columns, influences) = (model.parameters().len(), model.influences().len());
-        let mut rows = marginal(whitened_rows(&weights, &linearisations, columns + influences)?, columns);
+        let rows = whitened_rows(&weights, &linearisations, model.parameters().len() + model.influences().len())?;
         if rows.iter().any(|entry| !entry.is_finite()) {
             return Err(FitError::Overflow);
         }
         let priors = model.priors();
-        let of_data = (!priors.is_empty()).then(|| Observability::of(&rows));
-        if !priors.is_empty() {
-            let n = rows.nrows();
-            rows = rows.resize_vertically(n + priors.len(), 0.0);
-            rows.rows_mut(n, priors.len()).copy_from(&prior::rows(priors, columns));
-        }
-        let observability = Observability::of(&rows);
+        let of_data = (!priors.is_empty()).then(|| observability(&model, &weights, rows.clone(), &[]));
+        let observability = observability(&model, &weights, rows, priors);
         Ok(Self { model, weights, linearisations, observability, of_data })
     }
 
@@ -111,6 +106,16 @@ impl Study {
         let lost = parameters.filter(|(j, p)| p.is_of_instrument() && !self.observability.is_estimable(*j));
         lost.map(|(j, _)| j).collect()
     }
+}
+
+/// What plateaus with the whitened `rows` determine, with `priors`.
+fn observability(model: &MeasurementModel, weights: &[Weight], rows: DMatrix<f64>, priors: &[Prior]) -> Observability {
+    let ((n, unknowns), m, influences) = (rows.shape(), priors.len(), model.influences().len());
+    let mut rows = rows.resize_vertically(n + m + influences, 0.0);
+    rows.rows_mut(n, m).copy_from(&prior::rows(priors, unknowns));
+    rows.view_mut((n + m, unknowns - influences), (influences, influences)).fill_with_identity();
+    let set_points: Vec<usize> = weights.iter().map(|weight| weight.set_point).collect();
+    Observability::of(rows, &model.attitudes_of_single_rests(&set_points, priors), influences)
 }
 
 fn check(model: &MeasurementModel, weights: &[Weight]) -> Result<(), FitError> {

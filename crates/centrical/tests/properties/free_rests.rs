@@ -195,6 +195,43 @@ fn uncertainties_by_rests_converge_to_those_of_the_fit() {
     }
 }
 
+/// Eliminated attitudes leave a fit as it is: the filter holds them as unknowns like all others.
+#[test]
+fn elimination_of_attitudes_changes_no_estimate() {
+    let mut random = Random::new(7);
+    let arm = experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]);
+    let gravity = TypeB { gravity: 1e-3, ..TypeB::default() };
+    let known_alone = |directions: &[Vector3<f64>]| {
+        let model = rests_alone(directions, 2);
+        model.in_experiment(known(model.experiment().clone(), 1e-3))
+    };
+    let models = [
+        rests_alone(&cube(), 2).with_stated(gravity),
+        rests_alone(&faces(), 2),
+        known_alone(&cube()).with_stated(gravity),
+        known_alone(&faces()),
+        kozlov(with_rests(arm.clone(), &faces())).with_stated(gravity),
+        kozlov(known(with_rests(arm, &cube()), 1e-3)),
+    ];
+    for (n, model) in models.iter().enumerate() {
+        let truth = truth(model, 1.0, &mut random);
+        let data = Data::new(model, observed(model, &truth, &mut random)).unwrap();
+        let (eliminated, held) = (Calibration::exact(&data).unwrap(), Calibration::recursive(&data).unwrap());
+        assert_eq!(eliminated.fit().observability().rank(), held.fit().observability().rank(), "{n}");
+        let determined = eliminated.fit().observability().lost() == 0;
+        for (j, parameter) in model.parameters().iter().enumerate() {
+            let [a, b] = [&eliminated, &held].map(|c| c.fit().standard_uncertainty(j));
+            assert_eq!(a.is_some(), b.is_some(), "{n}: {}", parameter.name);
+            // What is lost is held; the doubt that it leaves in the others is only as large as the hold.
+            let (Some(a), Some(b), true) = (a, b, determined) else { continue };
+            let off = (eliminated.fit().value(j).unwrap() - held.fit().value(j).unwrap()) / a;
+            assert!((a / b - 1.0).abs() < 1e-6 && off.abs() < 1e-4, "{n}, {}: {a} {b} {off}", parameter.name);
+        }
+        let [a, b] = [&eliminated, &held].map(|c| c.fit().chi_squared);
+        assert!((a - b).abs() < 1e-6 * (1.0 + b) || !determined, "{n}: {a} {b}");
+    }
+}
+
 /// Known attitudes show on six faces what gravity alone does not: the misalignments, and the turn against the case, no better than the
 /// attitudes are known.
 #[test]

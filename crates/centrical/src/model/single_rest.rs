@@ -1,0 +1,34 @@
+//! Attitudes of single rests: unknowns that the equations of one plateau alone contain.
+
+use super::measurement::MeasurementModel;
+use super::parameters::OfPosition;
+use super::prior::Prior;
+use crate::linalg::elimination::Own;
+
+impl MeasurementModel {
+    /// The attitudes of rests in free positions that one of the plateaus `set_points` is in. Equations are three per plateau, then those of
+    /// `priors`.
+    pub(crate) fn attitudes_of_single_rests(&self, set_points: &[usize], priors: &[Prior]) -> Vec<Own> {
+        let position = |set_point: usize| {
+            let mounting = self.experiment.set_points[set_point].mounting;
+            self.experiment.mountings[mounting].position
+        };
+        let mut plateaus = vec![0; self.experiment.positions.len()];
+        for &set_point in set_points {
+            plateaus[position(set_point)] += 1;
+        }
+        let mut of_parameter = vec![Vec::new(); self.parameters.len()];
+        for (row, prior) in priors.iter().enumerate() {
+            of_parameter[prior.parameter].push(3 * set_points.len() + row);
+        }
+        let own = |(n, &set_point): (usize, &usize)| {
+            let position = position(set_point);
+            let OfPosition::Free { attitude, .. } = self.parameters.of_position(position) else { return None };
+            let columns = vec![attitude, attitude + 1];
+            let rows =
+                (3 * n..3 * n + 3).chain(columns.iter().flat_map(|&j| of_parameter[j].iter().copied())).collect();
+            (plateaus[position] == 1).then_some(Own { columns, rows })
+        };
+        set_points.iter().enumerate().filter_map(own).collect()
+    }
+}
