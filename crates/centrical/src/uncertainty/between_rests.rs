@@ -68,7 +68,8 @@ impl Calibration<'_> {
         let (rests, gain) = (self.data().observations(), self.gain()?);
         let along = |n: usize, c: usize| if n == c { rests[n].mean.normalize() } else { Vector3::zeros() };
         let scatter = Columns::new(gain, (0..rests.len()).collect(), rests.len(), along);
-        if scatter.redundancy().trace() <= FEWEST {
+        let redundancy = scatter.redundancy();
+        if redundancy.trace() <= FEWEST {
             return Ok(None);
         }
         // Of a whitened column along the force the length is the inverse of the standard deviation.
@@ -76,7 +77,7 @@ impl Calibration<'_> {
         let unit = (variances.sum::<f64>() / rests.len() as f64).sqrt();
         let rivals = Rivals::of(self)?;
         let drift = rivals.get(DRIFT).map(|drift| &drift.columns);
-        let residuals = Residuals::of(&scatter, drift, unit);
+        let residuals = Residuals::of(&scatter, &redundancy, drift, unit);
         let (scatter, drift) = residuals.posterior_mean();
         Ok(Some(BetweenRests { scatter: unit * scatter.sqrt(), drift: unit * drift.sqrt() }))
     }
@@ -94,11 +95,11 @@ struct Residuals {
 }
 
 impl Residuals {
-    /// Of effects of the size `unit`.
-    fn of(scatter: &Columns, drift: Option<&Columns>, unit: f64) -> Self {
+    /// Of effects of the size `unit`; `redundancy` is that of the scatter.
+    fn of(scatter: &Columns, redundancy: &DMatrix<f64>, drift: Option<&Columns>, unit: f64) -> Self {
         let sizes = |columns: &Columns| DMatrix::from_diagonal(&DVector::from_column_slice(&columns.lengths)) * unit;
         let of_scatter = sizes(scatter);
-        let eigen = SymmetricEigen::new(&of_scatter * scatter.redundancy() * &of_scatter);
+        let eigen = SymmetricEigen::new(&of_scatter * redundancy * &of_scatter);
         let turned = eigen.eigenvectors.transpose() * of_scatter;
         let count = scatter.lengths.len();
         let (across, of_drift) = match drift {
