@@ -192,8 +192,23 @@ def test_noise_of_an_array():
 
 
 def test_tumble(root):
-    # The fit of hundreds of rests, a matter of seconds, does not ask.
     assert_in_time_throughout(lambda: ct.tumble(root / "examples/tumble/record.csv", gravity=9.81523))
+
+
+def test_tumble_of_hundreds_of_rests(tmp_path):
+    random = np.random.default_rng(24)
+    rests, samples, turning = 480, 100, 30
+    up = random.normal(size=(rests, 3))
+    up /= np.linalg.norm(up, axis=1)[:, None]
+    there = np.minimum(np.arange(samples + turning) / turning, 1.0)[None, :, None]
+    way = (1.0 - there) * np.roll(up, 1, axis=0)[:, None] + there * up[:, None]
+    force = (9.81523 * way / np.linalg.norm(way, axis=2)[:, :, None]).reshape(-1, 3)
+    readings = 1.001 * force + 0.02 + 2e-3 * random.normal(size=force.shape)
+    record = np.column_stack([np.arange(len(readings)) / 50.0, readings])
+    file = tmp_path / "record.csv"
+    np.savetxt(file, record, delimiter=",", header="t,f1,f2,f3", comments="", fmt="%.6f")
+    assert len(ct.tumble(file, gravity=9.81523).names) > 800
+    assert_in_time_throughout(lambda: ct.tumble(file, gravity=9.81523))
 
 
 def test_series(example, long_session, tmp_path):

@@ -3,11 +3,15 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use centrical_session::{Record, Session, Watch, reduce_without_inputs, unwatched};
 use nalgebra::Vector3;
 use tempfile::TempDir;
+
+/// Nobody stops the watch.
+static GOES_ON: AtomicBool = AtomicBool::new(false);
 
 const EXAMPLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/ta-200");
 
@@ -109,7 +113,13 @@ fn other_stamps_are_interpolated() {
 fn growing_files_are_taken_up_plateau_by_plateau() {
     let (folder, session) = split(|j, _, t| Some(if j == 1 { t + 0.0037 } else { t }));
     let seen = |watch: &mut Watch| -> Vec<(usize, Vector3<f64>)> {
-        watch.look().unwrap().iter().map(|o| (o.set_point, o.mean)).filter(|(set_point, _)| *set_point < 9).collect()
+        watch
+            .look(&GOES_ON)
+            .unwrap()
+            .iter()
+            .map(|o| (o.set_point, o.mean))
+            .filter(|(set_point, _)| *set_point < 9)
+            .collect()
     };
     let whole = seen(&mut Watch::new(&session, Duration::ZERO));
     let names = ["x.csv", "y.csv", "z.csv"].map(|name| folder.path().join(name));

@@ -3,11 +3,15 @@
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use centrical::Observation;
 use centrical_session::{RecordWriter, Session, Watch, read_record};
 use tempfile::TempDir;
+
+/// Nobody stops the watch.
+static GOES_ON: AtomicBool = AtomicBool::new(false);
 
 /// Longer than any test: a record is finished when one of a later mounting is there, not by being left alone.
 const NEVER: Duration = Duration::from_secs(1 << 20);
@@ -30,7 +34,7 @@ fn folder(ending: &str) -> (TempDir, Session) {
 fn at_once() -> Vec<Observation> {
     let (folder, session) = folder(".csv");
     fs::copy(example("records/m01.csv"), folder.path().join("records/m01.csv")).unwrap();
-    Watch::new(&session, Duration::ZERO).look().unwrap()
+    Watch::new(&session, Duration::ZERO).look(&GOES_ON).unwrap()
 }
 
 /// The same plateaus as from the whole record: means of the same windows, weighed by what was known of the noise then.
@@ -60,12 +64,12 @@ fn a_growing_text_is_taken_up_plateau_by_plateau() {
     // No whole number of lines.
     for piece in text.chunks(text.len() / 60 + 7) {
         OpenOptions::new().create(true).append(true).open(&file).unwrap().write_all(piece).unwrap();
-        came.extend(watch.look().unwrap());
+        came.extend(watch.look(&GOES_ON).unwrap());
         looks += 1;
     }
     assert!(looks >= 59 && came.len() == 8, "{looks} looks, {} plateaus: the last one has no end yet", came.len());
     fs::copy(example("records/m02.csv"), folder.path().join("records/m02.csv")).unwrap();
-    came.extend(watch.look().unwrap());
+    came.extend(watch.look(&GOES_ON).unwrap());
     let (first, later): (Vec<_>, Vec<_>) = came.into_iter().partition(|o| o.set_point < 9);
     assert_same(&first, &at_once());
     assert_eq!(later.len(), 8, "of the second mounting all but the last, which has no end yet");
@@ -87,24 +91,24 @@ fn a_parquet_record_replaced_by_rename_is_taken_up_plateau_by_plateau() {
     let all = record.t.len();
     for part in 1..=20 {
         write(all * part / 20);
-        came.extend(watch.look().unwrap());
+        came.extend(watch.look(&GOES_ON).unwrap());
         if part % 4 == 0 {
             let whole = fs::read(&file).unwrap();
             fs::write(&file, &whole[..whole.len() * 2 / 3]).unwrap();
-            assert_eq!(watch.look().unwrap(), [], "a file in part gives nothing");
+            assert_eq!(watch.look(&GOES_ON).unwrap(), [], "a file in part gives nothing");
             assert!(watch.note().unwrap().starts_with("not yet: "), "{:?}", watch.note());
             fs::write(&file, &whole).unwrap();
         }
     }
-    came.extend(watch.look().unwrap());
+    came.extend(watch.look(&GOES_ON).unwrap());
     assert_eq!(came.len(), 8);
     // The second mounting begins while the end of the first is on its way: nothing is refused, nothing taken up.
     let whole = fs::read(&file).unwrap();
     fs::write(&file, &whole[..whole.len() - 5]).unwrap();
     fs::write(folder.path().join("records/m02.parquet"), b"PAR1").unwrap();
-    assert_eq!(watch.look().unwrap(), []);
+    assert_eq!(watch.look(&GOES_ON).unwrap(), []);
     write(all);
-    came.extend(watch.look().unwrap());
+    came.extend(watch.look(&GOES_ON).unwrap());
     assert_same(&came, &at_once());
 }
 
@@ -119,11 +123,11 @@ fn a_record_that_another_follows_is_not_cut() {
     fs::write(folder.path().join("records/m02.csv"), "t,f1,f2,f3\n").unwrap();
     // In the midst of the fifth plateau.
     fs::write(&file, &text[..text.len() / 2]).unwrap();
-    assert_eq!(watch.look().unwrap(), []);
+    assert_eq!(watch.look(&GOES_ON).unwrap(), []);
     assert!(watch.note().unwrap().starts_with("not yet: "), "{:?}", watch.note());
     // "9.81523" in part would be 9 or 9.8: a blow of g or of 15 mm/s^2 on one sample.
     fs::write(&file, &text[..text.len() - 6]).unwrap();
-    assert_same(&watch.look().unwrap(), &at_once());
+    assert_same(&watch.look(&GOES_ON).unwrap(), &at_once());
 }
 
 /// A record that has been left alone and does not show its schedule is wrong.
@@ -132,6 +136,16 @@ fn a_record_left_alone_in_part_is_refused() {
     let text = fs::read(example("records/m01.csv")).unwrap();
     let (folder, session) = folder(".csv");
     fs::write(folder.path().join("records/m01.csv"), &text[..text.len() / 2]).unwrap();
-    let error = Watch::new(&session, Duration::ZERO).look().unwrap_err().to_string();
+    let error = Watch::new(&session, Duration::ZERO).look(&GOES_ON).unwrap_err().to_string();
     assert!(error.contains("m01.csv"), "{error}");
+}
+
+/// A watch that is stopped reads no further record: the next one finds what is left.
+#[test]
+fn a_stopped_look_leaves_the_other_records() {
+    let session = Session::read(&example("")).unwrap();
+    let mut watch = Watch::new(&session, Duration::ZERO);
+    assert_eq!(watch.look(&AtomicBool::new(true)).unwrap(), []);
+    let all = watch.look(&GOES_ON).unwrap();
+    assert_eq!(all.len(), session.experiment.set_points.len());
 }

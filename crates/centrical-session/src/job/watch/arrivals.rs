@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
 
 use centrical::reduction::{
@@ -85,10 +86,10 @@ impl<'s> Watch<'s> {
     }
 
     /// What a look would find if a record that has just changed counted as finished, for who looks only once.
-    pub fn without_quiet(&self) -> Option<String> {
+    pub fn without_quiet(&self, stop: &AtomicBool) -> Option<String> {
         let mut hasty = Self { quiet: Duration::ZERO, seen: None, note: None, ..self.clone() };
         let changed = format!("records changed within the last {} s; with --quiet 0", self.quiet.as_secs_f64());
-        match hasty.look() {
+        match hasty.look(stop) {
             Ok(more) if more.is_empty() => None,
             Ok(more) => {
                 let end = if hasty.is_complete() { ", and the schedule would be complete" } else { "" };
@@ -117,11 +118,12 @@ impl<'s> Watch<'s> {
     /// those on the arm in the order of the schedule, each with the noise of its own and the
     /// earlier mountings as far as it was known.
     ///
-    /// A record that cannot be made out and has not been left alone yet is waited for, with a [`Watch::note`].
+    /// A record that cannot be made out and has not been left alone yet is waited for, with a [`Watch::note`]. Where `stop` is raised, the
+    /// records after the one that is read wait for another look.
     ///
     /// # Errors
     /// [`Error`] when a record that has been left alone is wrong.
-    pub fn look(&mut self) -> Result<Vec<Observation>, Error> {
+    pub fn look(&mut self, stop: &AtomicBool) -> Result<Vec<Observation>, Error> {
         let mut arrivals = if self.has_rests { Vec::new() } else { rests::observations(self.session) };
         self.has_rests = true;
         if let Some(table) = &self.session.plateaus {
@@ -134,7 +136,8 @@ impl<'s> Watch<'s> {
             arrivals.extend(fresh.map(observation));
             self.come = table.rows.len();
         } else {
-            while self.finished.len() < self.session.mountings.len() && self.look_at_current(&mut arrivals)? {}
+            let is_wanted = |finished: usize| finished < self.session.mountings.len() && !stop.load(Ordering::Relaxed);
+            while is_wanted(self.finished.len()) && self.look_at_current(&mut arrivals)? {}
         }
         if let Some(file) = rests::awaited(self.session).filter(|_| self.has_arm()) {
             self.note = Some(format!("waiting for {}", file.display()));

@@ -1,6 +1,7 @@
 //! A session that is watched: every plateau is tested, taken up or held out, and kept; the calibration when all have arrived.
 
 use std::collections::HashSet;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -8,7 +9,7 @@ use std::time::{Duration, Instant};
 use centrical::fit::{Follower, Progress};
 use centrical::plan::{Benefit, Criterion, NextPlateau, PlanError, ReadingRange};
 use centrical::reduction::MeasuredSpeed;
-use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linear, unwatched};
+use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linear};
 
 use nalgebra::Vector3;
 
@@ -122,7 +123,7 @@ impl<'a> Following<'a> {
         let mut watch = Watch::new(self.session, self.request.quiet);
         let (mut note, mut is_frozen) = (None, false);
         loop {
-            let arrivals = watch.look()?;
+            let arrivals = watch.look(stop)?;
             let count = arrivals.len();
             for (k, observation) in arrivals.into_iter().enumerate() {
                 if stop.load(Ordering::Relaxed) {
@@ -149,7 +150,7 @@ impl<'a> Following<'a> {
             if watch.is_complete() {
                 // The calibration reads the records anew, and needs the room of what was kept of them.
                 drop(watch);
-                return self.finish().map(Some);
+                return self.finish(stop).map(Some);
             }
             if watch.note() != note.as_deref() {
                 note = watch.note().map(str::to_owned);
@@ -161,7 +162,7 @@ impl<'a> Following<'a> {
             }
             is_frozen = frozen.is_some();
             if self.request.once {
-                watch.without_quiet().iter().for_each(|note| report(WatchEvent::Waiting(note)));
+                watch.without_quiet(stop).iter().for_each(|note| report(WatchEvent::Waiting(note)));
                 return Ok(Some(self.stopped()));
             }
             if rests::have_come(self.session, self.request.quiet) {
@@ -281,10 +282,15 @@ impl<'a> Following<'a> {
         WatchEnd::Stopped { plateaus: self.state.plateaus.len() }
     }
 
-    fn finish(&self) -> Result<WatchEnd, Error> {
+    /// The calibration, unless `stop` is raised before its end.
+    fn finish(&self, stop: &AtomicBool) -> Result<WatchEnd, Error> {
         let held_out = self.state.plateaus.iter().filter(|plateau| plateau.held_out);
         let held_out: Vec<_> = held_out.map(|plateau| PlateauName::of(self.session, plateau.set_point)).collect();
-        let result = calibrate_without(self.session, &held_out, Method::Recursive, &unwatched)?;
+        let goes_on = |_| if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        let result = match calibrate_without(self.session, &held_out, Method::Recursive, &goes_on) {
+            Err(Error::Stopped(_)) => return Ok(self.stopped()),
+            result => result?,
+        };
         result.write(&self.request.out.join("result.json"))?;
         Ok(WatchEnd::Complete(Box::new(result)))
     }
