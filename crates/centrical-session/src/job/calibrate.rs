@@ -93,6 +93,7 @@ fn by_noise(
     advance(progress, 0)?;
     let calibration = calibration.map_err(failed)?;
     let result = CalibrationResult::from(&calibration, session, reduced, progress).map_err(failed)?;
+    advance(progress, 0)?;
     let is_judged = result.validity.is_some() && result.objections().is_empty();
     let between = if is_judged { calibration.between_rests().map_err(failed)? } else { None };
     Ok((result, between))

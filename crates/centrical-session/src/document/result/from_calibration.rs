@@ -47,6 +47,10 @@ impl CalibrationResult {
             (Some(checks), RestsOn::all(model, rivals.rests_on()?))
         };
         advance(progress, 0)?;
+        let next_attitude = NextAttitudeSummary::of(calibration)?;
+        advance(progress, 0)?;
+        let convergence = ConvergenceSummary::new(calibration);
+        advance(progress, 0)?;
         Ok(Self {
             schema: SCHEMA.to_owned(),
             program: Program { name: "centrical".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
@@ -60,13 +64,13 @@ impl CalibrationResult {
                 .collect(),
             covariance: (0..count).map(|i| (0..count).map(|j| covariance(i, j)).collect()).collect(),
             observability: ObservabilitySummary::new(model, fit),
-            next_attitude: NextAttitudeSummary::of(calibration)?,
+            next_attitude,
             between_rests: None,
             turning: session.turning(),
             fit: FitSummary::new(calibration),
             mountings: mountings(model, reduced),
             plateaus: plateaus(calibration, session, reduced),
-            convergence: Some(ConvergenceSummary::new(calibration)),
+            convergence: Some(convergence),
             budget: Some(BudgetSummary::new(&budget, count, model.priors())),
             validity,
             rests_on,
