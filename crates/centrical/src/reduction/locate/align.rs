@@ -5,10 +5,9 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::band::Band;
 use super::evidence::{Candidate, Evidence};
 use super::path::Trellis;
-use super::{hypothesis, rotation};
+use super::{band, hypothesis, rotation};
 use crate::reduction::error::{ReductionError, Stretch};
 use crate::reduction::plateau::ScheduledPlateau;
 use crate::reduction::survey::Blocks;
@@ -42,7 +41,7 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
     let mut candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
     let between = evidence.in_transition();
     let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(evidence.noise(), from, density);
-    let mut cores = first_path(&evidence.steady_stretches(), schedule.len(), &between, on);
+    let mut cores = band::best_path(&evidence.steady_stretches(), schedule.len(), &between, on);
     if let Some(index) = missing(&cores) {
         let ScheduledPlateau { omega, nominal_z } = schedule[index];
         let stretches = evidence.steady_stretches().into_iter();
@@ -74,23 +73,6 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
         cores = next;
     }
     Ok(cores)
-}
-
-/// The best path of a record with these steady stretches through a schedule of `count` plateaus.
-fn first_path(
-    stretches: &[Range<usize>],
-    count: usize,
-    between: &[f64],
-    on: impl Fn(usize, usize, &mut [f64]),
-) -> Vec<Range<usize>> {
-    let mut band = Band::new(stretches, between.len(), count);
-    loop {
-        let path = Trellis::new(&band.within(), between.len()).best_path(between, &on);
-        if band.holds(&path) {
-            return path;
-        }
-        band = band.widened();
-    }
 }
 
 /// From the begin of the plateau before to the end of the plateau after, of each.
