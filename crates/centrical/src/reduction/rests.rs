@@ -60,16 +60,23 @@ pub fn reduce_rests(records: &[RestRecord]) -> Result<Rests, ReductionError> {
         let white = *located.sample_noise();
         fits.iter_mut().map(move |fit| (fit, white))
     });
-    let turned = draw_out(with_noise);
+    let ellipsoid = draw_out(with_noise);
     let mut along = Vec::new();
     for (record, (located, fits)) in records.iter().zip(&mut located) {
-        match &turned {
+        match &ellipsoid {
             Some(ellipsoid) => along.extend(noise_along(record.samples, fits, ellipsoid, located.sample_noise())?),
             None => fits.retain(|fit| !fit.turns()),
         }
     }
+    // Too few attitudes show no ellipsoid: the reading points about as the force does.
+    let direction =
+        |mean: &Vector3<f64>| ellipsoid.as_ref().map_or(mean.normalize(), |ellipsoid| ellipsoid.normal(mean));
     let reduced = located.into_iter().map(|(located, fits)| {
-        let rests = fits.into_iter().map(|fit| fit.of_rest(located.sample_noise())).collect();
+        let of_rest = |fit: PlateauFit| {
+            let along = direction(&fit.mean);
+            fit.of_rest(&along, located.sample_noise())
+        };
+        let rests = fits.into_iter().map(of_rest).collect();
         ReducedMounting::of_rests(located, rests)
     });
     let reduced: Vec<ReducedMounting> = reduced.collect();

@@ -12,7 +12,9 @@
 //! So the mean reading, drawn out from the bias by the ratio of `g` to `|f_0|`, is that of a rest in the attitude of `f_0`, whatever bias, scale and
 //! misalignment are. For that ratio an ellipsoid through all means is enough: of second order in the angle, it takes bias and scale coarsely.
 //!
-//! What is noise along the force shows in the size of the readings by that ellipsoid, over whole stretches of rotation.
+//! What is noise along the force shows in the size of the readings by that ellipsoid, over whole stretches of rotation. Noise that changes the
+//! size is that along the normal of the ellipsoid: a reading itself points elsewhere by as much as its bias, and what trembles across the
+//! force, a thousand times stronger in a hand, would be taken for noise along it.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -60,14 +62,14 @@ fn left(fit: &PlateauFit, white: &Vector3<f64>) -> f64 {
     if fit.turns() { (fit.variance.sum() - white.norm_squared()).max(0.0) } else { 0.0 }
 }
 
-/// Draws out the means of the arcs among the `fits` of all records, each with the white noise of its readings [m/s^2]. `None` if there
-/// are no arcs, or the attitudes show no ellipsoid.
+/// Draws out the means of the arcs among the `fits` of all records, each with the white noise of its readings [m/s^2]; the ellipsoid of
+/// all means, `None` if the attitudes show none.
 pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, Vector3<f64>)>) -> Option<Ellipsoid> {
     let mut fits: Vec<(&mut PlateauFit, Vector3<f64>)> = fits.into_iter().collect();
     let mean: Vec<Vector3<f64>> = fits.iter().map(|(fit, _)| fit.mean).collect();
     let mut ellipsoid = Ellipsoid::through(&mean)?;
     for _ in 0..ROUNDS {
-        for ((fit, white), mean) in fits.iter_mut().zip(&mean) {
+        for ((fit, white), mean) in fits.iter_mut().zip(&mean).filter(|((fit, _), _)| fit.turns()) {
             let part = |k: usize| ellipsoid.size(&fit.turning[k]).powi(2) / (2 * k + 3) as f64;
             let left = left(fit, white) / (mean - ellipsoid.centre).norm_squared();
             let size = (1.0 - (0..TURNING).map(part).sum::<f64>() - left).sqrt();
@@ -75,7 +77,7 @@ pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, V
         }
         ellipsoid = Ellipsoid::through(&fits.iter().map(|(fit, _)| fit.mean).collect::<Vec<_>>())?;
     }
-    fits.iter().any(|(fit, _)| fit.turns()).then_some(ellipsoid)
+    Some(ellipsoid)
 }
 
 /// The noise of a record along the force, in units of `white` [m/s^2], over the stretches of its arcs: their fits as those of rests.
@@ -100,9 +102,9 @@ pub(super) fn noise_along(
         return Ok(Vec::new());
     }
     let noise = |n: usize| {
-        let from_centre = Vector3::from_fn(|axis, _| record.f_z[axis][n]) - ellipsoid.centre;
-        let size = ellipsoid.size(&from_centre);
-        (1.0 - 1.0 / size) * from_centre.norm_squared() / from_centre.component_mul(white).norm()
+        let reading = Vector3::from_fn(|axis, _| record.f_z[axis][n]);
+        let gradient = ellipsoid.gradient(&reading);
+        0.5 * (gradient.dot(&(reading - ellipsoid.centre)) - 1.0) / gradient.component_mul(white).norm()
     };
     let noise: Vec<f64> = (0..record.t.len()).map(noise).collect();
     let noise = Record { t: record.t.to_vec(), f_z: [noise.clone(), noise.clone(), noise] };
@@ -146,6 +148,16 @@ impl Ellipsoid {
 
     fn product(&self, one: &Vector3<f64>, other: &Vector3<f64>) -> f64 {
         one.dot(&(self.a * other))
+    }
+
+    /// Direction of the noise that changes the size of a reading.
+    pub(super) fn normal(&self, reading: &Vector3<f64>) -> Vector3<f64> {
+        self.gradient(reading).normalize()
+    }
+
+    /// Half the gradient of `(y - c)^T A (y - c)`.
+    fn gradient(&self, reading: &Vector3<f64>) -> Vector3<f64> {
+        self.a * (reading - self.centre)
     }
 
     /// Size of a difference of readings in units of gravity.

@@ -257,6 +257,42 @@ fn counts_become_accelerations() {
     assert!(coarse_scale(&means[..5], GRAVITY).is_none());
 }
 
+/// Mean variance of rests, or arcs, along the force times their number of samples: in the direction in which the size of a reading changes.
+fn noise_along_force(made: &Made, radius: Option<f64>) -> f64 {
+    let rests = reduce_rests(&[RestRecord { samples: made.record.as_slice(), turning_radius: radius }]).unwrap();
+    let [b1, b2, b3, k11, k21, k22, k31, k32, k33] = made.truth;
+    let gain = Matrix3::identity() + Matrix3::new(k11, 0.0, 0.0, k21, k22, 0.0, k31, k32, k33);
+    let back = gain.try_inverse().unwrap();
+    let of = |rest: &PlateauMean| {
+        let normal = back.tr_mul(&(back * (rest.mean - Vector3::new(b1, b2, b3)))).normalize();
+        normal.dot(&(rest.covariance * normal)) * rest.samples as f64
+    };
+    let rests = rests.means.concat();
+    assert!(rests.len() > 20, "{}", rests.len());
+    rests.iter().map(of).sum::<f64>() / rests.len() as f64
+}
+
+/// However large the bias is, what trembles across the force is no noise along it: a bias turns readings by 10 deg here, and across the noise is
+/// forty times as large and more.
+pub fn assert_a_bias_leaves_the_noise(mut made: Made, radius: Option<f64>) {
+    let before = noise_along_force(&made, radius);
+    for (axis, values) in made.record.f_z.iter_mut().enumerate() {
+        for value in values {
+            *value += 1.0;
+        }
+        made.truth[axis] += 1.0;
+    }
+    let after = noise_along_force(&made, radius);
+    // Arcs are divided by the angles of readings, and 300 contrasts of other windows show a density to a tenth.
+    assert!((after / before - 1.0).abs() < 0.1, "{before} {after}");
+}
+
+#[test]
+fn a_bias_leaves_the_noise_of_rests() {
+    let trembling = Making { tremor: 5e-3, ..BY_HAND };
+    assert_a_bias_leaves_the_noise(made(&trembling, &mut Random::new(17)), None);
+}
+
 /// Errors are as large as stated, by hand and on a table.
 #[test]
 fn errors_are_as_large_as_stated() {

@@ -4,7 +4,10 @@ use centrical::reduction::{Arc, Record, RestRecord, reduce_rests};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::common::Random;
-use crate::rests::{BY_HAND, DOUBTFUL, GRAVITY, Judged, Made, Making, Markov, ON_A_TABLE, RATE, Tally, judged_record};
+use crate::rests::{
+    BY_HAND, DOUBTFUL, GRAVITY, Judged, Made, Making, Markov, ON_A_TABLE, RATE, Tally, assert_a_bias_leaves_the_noise,
+    judged_record,
+};
 
 /// A unit that turns slowly and never rests.
 #[derive(Clone, Copy)]
@@ -121,6 +124,13 @@ fn slow_rotation_shows_what_rests_show() {
     let mean = squared / (9 * RUNS) as f64;
     // Four standard deviations of the mean; below, what drift and scatter that are not there add.
     assert!((0.4..1.0 + 4.0 * (2.0 / (9 * RUNS) as f64).sqrt()).contains(&mean), "{mean}");
+}
+
+#[test]
+fn a_bias_leaves_the_noise_of_arcs() {
+    let rotation = Rotation { rate: 2.5_f64.to_radians(), hand: Some(3.0), duration: 600.0, radius: 0.0 };
+    let trembling = Making { tremor: 5e-3, ..BY_HAND };
+    assert_a_bias_leaves_the_noise(turned(&trembling, &rotation, &mut Random::new(18)), Some(0.0));
 }
 
 /// Many records of units that turn slowly and never rest, on a table and in a hand, with white and slow noise, bumps and warming up.

@@ -33,14 +33,13 @@ pub struct PlateauFit {
 }
 
 impl PlateauFit {
-    /// The fit of a rest in a hand or on a soft table, of readings whose white noise is `sample_noise` [m/s^2]. What trembles is
-    /// the attitude: it moves the reading across the specific force and leaves its size, and across it is in other axes of the
-    /// instrument in every attitude. So the noise is alike in axes along the force and across, and along it in units of that
+    /// The fit of a rest in a hand or on a soft table, of readings whose white noise is `sample_noise` [m/s^2]: noise in the direction `along`
+    /// of the readings changes the size of the force. What trembles is the attitude: it moves the reading across that direction, and is in
+    /// other axes of the instrument in every attitude. So the noise is alike in axes along and across, and along in units of that
     /// white noise which falls there, `sum u_i^2 sigma_i^2` for the direction `u`.
-    pub(in crate::reduction) fn of_rest(self, sample_noise: &Vector3<f64>) -> Self {
-        let along = self.mean.normalize();
+    pub(in crate::reduction) fn of_rest(self, along: &Vector3<f64>, sample_noise: &Vector3<f64>) -> Self {
         let noise = along.component_mul(sample_noise).norm();
-        let upright = Position::free("", &along).p_zy.transpose();
+        let upright = Position::free("", along).p_zy.transpose();
         let noise_axes = if noise > 0.0 { upright / noise } else { upright };
         Self { noise_axes, ..self }
     }
