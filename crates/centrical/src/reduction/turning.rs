@@ -14,7 +14,8 @@
 //!
 //! What is noise along the force shows in the size of the readings by that ellipsoid, over whole stretches of rotation. Noise that changes the
 //! size is that along the normal of the ellipsoid: a reading itself points elsewhere by as much as its bias, and what trembles across the
-//! force, a thousand times stronger in a hand, would be taken for noise along it.
+//! force, a thousand times stronger in a hand, would be taken for noise along it. Proof masses beside the axes are accelerated by their place
+//! times the second derivative of the vertical. That is no noise either, and is taken out.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -38,6 +39,9 @@ const OF_KINK: f64 = 7.0 * 1.732_050_807_568_877_2;
 
 /// Samples of an arc for each one that may be left out as a spike.
 const PER_SPIKE: usize = 20;
+
+/// Least singular value that is not rounding or noise, over the largest.
+const LEAST: f64 = 1e-4;
 
 /// Longest stretch of rotation whose noise is looked at as a whole [s].
 const STRETCH: f64 = 60.0;
@@ -86,12 +90,13 @@ pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, V
 /// [`ReductionError`] if the record is too short.
 pub(super) fn noise_along(
     record: RecordSlice,
-    arcs: &[PlateauFit],
+    fits: &[PlateauFit],
     ellipsoid: &Ellipsoid,
     white: &Vector3<f64>,
 ) -> Result<Vec<PlateauFit>, ReductionError> {
     let mut spans: Vec<[f64; 2]> = Vec::new();
-    for arc in arcs.iter().filter(|arc| arc.shape.turning.is_some()) {
+    let arcs: Vec<&PlateauFit> = fits.iter().filter(|fit| fit.turns()).collect();
+    for arc in &arcs {
         let [from, to] = arc.window;
         match spans.last_mut() {
             Some(span) if from - span[1] < 1e-6 * (to - from) && to - span[0] <= STRETCH => span[1] = to,
@@ -101,15 +106,66 @@ pub(super) fn noise_along(
     if spans.is_empty() {
         return Ok(Vec::new());
     }
+    let accelerated = Accelerated::of(&arcs, ellipsoid);
     let noise = |n: usize| {
         let reading = Vector3::from_fn(|axis, _| record.f_z[axis][n]);
-        let gradient = ellipsoid.gradient(&reading);
-        0.5 * (gradient.dot(&(reading - ellipsoid.centre)) - 1.0) / gradient.component_mul(white).norm()
+        let excess = ellipsoid.excess(&reading) - accelerated.excess(ellipsoid, &reading, record.t[n]);
+        excess / ellipsoid.gradient(&reading).component_mul(white).norm()
     };
     let noise: Vec<f64> = (0..record.t.len()).map(noise).collect();
     let noise = Record { t: record.t.to_vec(), f_z: [noise.clone(), noise.clone(), noise] };
     let located = locate_spans(&Survey::of(noise.as_slice())?, &spans)?;
     Ok((0..spans.len()).filter_map(|span| average(&located, span, noise.as_slice(), 0).ok()).collect())
+}
+
+/// Mean second derivative of the vertical over an arc [1/s^2].
+fn bend(arc: &PlateauFit) -> Vector3<f64> {
+    arc.arc().map_or_else(Vector3::zeros, |arc| arc.bend_z)
+}
+
+/// What an ellipsoid leaves of the sizes of arcs that a place beside the axes explains, with another ellipsoid that is not drawn towards it.
+struct Accelerated {
+    /// Of the terms of [`row`].
+    coefficients: DVector<f64>,
+    /// Middle of each arc [s], and its bend over the largest of all.
+    bends: Vec<(f64, Vector3<f64>)>,
+}
+
+impl Accelerated {
+    /// By least squares; nothing where the arcs are no more than the coefficients. What the arcs hardly show stays zero: only the sum is asked for.
+    fn of(arcs: &[&PlateauFit], ellipsoid: &Ellipsoid) -> Self {
+        const TERMS: usize = 12;
+        let most = arcs.iter().map(|arc| bend(arc).norm()).fold(f64::MIN_POSITIVE, f64::max);
+        let middle = |arc: &PlateauFit| 0.5 * (arc.window[0] + arc.window[1]);
+        let bends: Vec<(f64, Vector3<f64>)> = arcs.iter().map(|arc| (middle(arc), bend(arc) / most)).collect();
+        let rows = arcs.iter().zip(&bends).flat_map(|(arc, (_, bend))| row(ellipsoid, &arc.mean, bend));
+        let rows = DMatrix::from_row_iterator(arcs.len(), TERMS, rows);
+        let excess = DVector::from_iterator(arcs.len(), arcs.iter().map(|arc| ellipsoid.excess(&arc.mean)));
+        let solved = (arcs.len() > TERMS).then(|| rows.svd(true, true));
+        let coefficients = solved.and_then(|svd| svd.solve(&excess, LEAST * svd.singular_values.max()).ok());
+        Self { coefficients: coefficients.unwrap_or_else(|| DVector::zeros(TERMS)), bends }
+    }
+
+    /// That of a reading at the time `t` [s].
+    fn excess(&self, ellipsoid: &Ellipsoid, reading: &Vector3<f64>, t: f64) -> f64 {
+        self.coefficients.iter().zip(row(ellipsoid, reading, &self.bend_at(t))).map(|(x, term)| x * term).sum()
+    }
+
+    /// Between the middles of two arcs on a straight line: within an arc the bend turns as the vertical does.
+    fn bend_at(&self, t: f64) -> Vector3<f64> {
+        let next = self.bends.partition_point(|(middle, _)| *middle < t);
+        match (next.checked_sub(1).and_then(|before| self.bends.get(before)), self.bends.get(next)) {
+            (Some((from, before)), Some((to, after))) => before + (after - before) * ((t - from) / (to - from)),
+            (Some((_, bend)), None) | (None, Some((_, bend))) => *bend,
+            (None, None) => Vector3::zeros(),
+        }
+    }
+}
+
+/// Squares, products and components of the direction of a reading, and the coordinates of a bend.
+fn row(ellipsoid: &Ellipsoid, reading: &Vector3<f64>, bend: &Vector3<f64>) -> [f64; 12] {
+    let (y, b) = ((reading - ellipsoid.centre).normalize(), bend);
+    [y.x * y.x, y.y * y.y, y.z * y.z, y.x * y.y, y.x * y.z, y.y * y.z, y.x, y.y, y.z, b.x, b.y, b.z]
 }
 
 /// The ellipsoid `(y - c)^T A (y - c) = 1` of readings at the size of gravity.
@@ -122,8 +178,6 @@ pub(super) struct Ellipsoid {
 impl Ellipsoid {
     /// Through these readings, by linear least squares; `None` if they determine none.
     fn through(means: &[Vector3<f64>]) -> Option<Self> {
-        /// Least singular value that is not rounding or noise, over the largest.
-        const LEAST: f64 = 1e-4;
         let first = *means.first()?;
         let (low, high) = means.iter().fold((first, first), |(low, high), mean| (low.inf(mean), high.sup(mean)));
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max());
@@ -153,6 +207,11 @@ impl Ellipsoid {
     /// Direction of the noise that changes the size of a reading.
     pub(super) fn normal(&self, reading: &Vector3<f64>) -> Vector3<f64> {
         self.gradient(reading).normalize()
+    }
+
+    /// Half of what the square of the size of a reading exceeds that of gravity by, over the latter: about the excess of the size.
+    fn excess(&self, reading: &Vector3<f64>) -> f64 {
+        0.5 * (self.gradient(reading).dot(&(reading - self.centre)) - 1.0)
     }
 
     /// Half the gradient of `(y - c)^T A (y - c)`.

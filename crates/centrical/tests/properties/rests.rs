@@ -258,7 +258,7 @@ fn counts_become_accelerations() {
 }
 
 /// Mean variance of rests, or arcs, along the force times their number of samples: in the direction in which the size of a reading changes.
-fn noise_along_force(made: &Made, radius: Option<f64>) -> f64 {
+pub fn noise_along_force(made: &Made, radius: Option<f64>) -> f64 {
     let rests = reduce_rests(&[RestRecord { samples: made.record.as_slice(), turning_radius: radius }]).unwrap();
     let [b1, b2, b3, k11, k21, k22, k31, k32, k33] = made.truth;
     let gain = Matrix3::identity() + Matrix3::new(k11, 0.0, 0.0, k21, k22, 0.0, k31, k32, k33);

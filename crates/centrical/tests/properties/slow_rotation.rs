@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use crate::common::Random;
 use crate::rests::{
     BY_HAND, DOUBTFUL, GRAVITY, Judged, Made, Making, Markov, ON_A_TABLE, RATE, Tally, assert_a_bias_leaves_the_noise,
-    judged_record,
+    judged_record, noise_along_force,
 };
 
 /// A unit that turns slowly and never rests.
@@ -131,6 +131,19 @@ fn a_bias_leaves_the_noise_of_arcs() {
     let rotation = Rotation { rate: 2.5_f64.to_radians(), hand: Some(3.0), duration: 600.0, radius: 0.0 };
     let trembling = Making { tremor: 5e-3, ..BY_HAND };
     assert_a_bias_leaves_the_noise(turned(&trembling, &rotation, &mut Random::new(18)), Some(0.0));
+}
+
+/// The acceleration of proof masses beside the axis is no noise of theirs: 200 mm from it three times the noise of an arc and more.
+#[test]
+fn a_place_beside_the_axis_leaves_the_noise() {
+    let noise = |radius: f64| {
+        let rotation = Rotation { rate: 2.5_f64.to_radians(), hand: None, duration: 600.0, radius };
+        let white = Making { slow: 0.0, ..ON_A_TABLE };
+        noise_along_force(&turned(&white, &rotation, &mut Random::new(19)), Some(radius))
+    };
+    let (on, beside) = (noise(0.0), noise(0.2));
+    // The same noise: the place has three coefficients, and 300 contrasts show the density to a tenth.
+    assert!((beside / on - 1.0).abs() < 0.1, "{on} {beside}");
 }
 
 /// Many records of units that turn slowly and never rest, on a table and in a hand, with white and slow noise, bumps and warming up.
