@@ -64,7 +64,11 @@ pub fn history(
         return Err(refused("results", "found none, expected a store, results or folders of them"));
     };
     let (unit_model, unit_serial, station) = chosen;
-    let depth = if of == "unit" { Depth::Whole } else { Depth::Values };
+    let depth = match of {
+        "unit" => Depth::Whole,
+        "units" => Depth::Errors,
+        _ => Depth::Values,
+    };
     let selection = Selection { depth, unit_model, unit_serial, station, keys: None };
     let missing = |expected: &str| Error::content(first, Place::Whole, "no such calibrations", expected);
     if !["list", "unit", "units", "station"].contains(&of) {

@@ -21,7 +21,9 @@ pub enum Depth {
     Summary,
     /// The parameters with their uncertainties and the error model too.
     Values,
-    /// Covariances and shared influences too.
+    /// Covariances and shared influences too, which a calibration keeps for the parameters of its unit alone, in a kB.
+    Errors,
+    /// Everything.
     Whole,
 }
 
@@ -76,9 +78,9 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry { column: TypedColumn { name: "term_axes", kind: Kind::Integers }, depth: Depth::Values, get: |r| Cell::Integers(r.terms.iter().map(|t| whole(t.axis)).collect()), set: |r, c| set_axes(r, &c.integers()) },
     Entry { column: TypedColumn { name: "term_powers", kind: Kind::Integers }, depth: Depth::Values, get: |r| Cell::Integers(r.terms.iter().flat_map(|t| t.powers.map(i64::from)).collect()), set: |r, c| set_powers(r, &c.integers()) },
     Entry { column: TypedColumn { name: "term_signs", kind: Kind::Integers }, depth: Depth::Values, get: |r| Cell::Integers(r.terms.iter().map(|t| t.sign_of.map_or(0, whole)).collect()), set: |r, c| set_signs(r, &c.integers()) },
-    Entry { column: TypedColumn { name: "covariance", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.covariance.clone()), set: |r, c| r.covariance = c.numbers() },
-    Entry { column: TypedColumn { name: "shared_sources", kind: Kind::Texts }, depth: Depth::Whole, get: |r| Cell::Texts(r.shared.iter().map(|s| s.source.clone()).collect()), set: |r, c| r.shared = c.texts().into_iter().map(influence).collect() },
-    Entry { column: TypedColumn { name: "shared_changes", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.shared.iter().flat_map(|s| s.changes.clone()).collect()), set: |r, c| share_out(r.shared.iter_mut().map(|s| &mut s.changes), &c.numbers()) },
+    Entry { column: TypedColumn { name: "covariance", kind: Kind::Numbers }, depth: Depth::Errors, get: |r| Cell::Numbers(r.covariance.clone()), set: |r, c| r.covariance = c.numbers() },
+    Entry { column: TypedColumn { name: "shared_sources", kind: Kind::Texts }, depth: Depth::Errors, get: |r| Cell::Texts(r.shared.iter().map(|s| s.source.clone()).collect()), set: |r, c| r.shared = c.texts().into_iter().map(influence).collect() },
+    Entry { column: TypedColumn { name: "shared_changes", kind: Kind::Numbers }, depth: Depth::Errors, get: |r| Cell::Numbers(r.shared.iter().flat_map(|s| s.changes.clone()).collect()), set: |r, c| share_out(r.shared.iter_mut().map(|s| &mut s.changes), &c.numbers()) },
     Entry { column: TypedColumn { name: "prior_parameters", kind: Kind::Texts }, depth: Depth::Whole, get: |r| Cell::Texts(r.priors.iter().map(|p| p.parameter.clone()).collect()), set: |r, c| r.priors = c.texts().into_iter().map(prior).collect() },
     Entry { column: TypedColumn { name: "prior_means", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.priors.iter().map(|p| p.mean).collect()), set: |r, c| r.priors.iter_mut().zip(c.numbers()).for_each(|(p, mean)| p.mean = mean) },
     Entry { column: TypedColumn { name: "prior_uncertainties", kind: Kind::Numbers }, depth: Depth::Whole, get: |r| Cell::Numbers(r.priors.iter().map(|p| p.standard_uncertainty).collect()), set: |r, c| r.priors.iter_mut().zip(c.numbers()).for_each(|(p, u)| p.standard_uncertainty = u) },

@@ -2,7 +2,7 @@
 //!
 //! 1. Each parameter is counted from its median in standard deviations, `z_ij`. A unit of one session, or of poor ones, has a larger deviation
 //!    than others.
-//! 2. The correlations `R_i` have a part of the errors of sessions and a part of the units, and are shrunk.
+//! 2. The correlations `R_i` have a part of the errors of sessions, by what they state and show, and a part of the units.
 //! 3. The distance is `d_i^2 = z_i^T R_i^-1 z_i`.
 //!
 //! The law of the largest distance follows no table. It is drawn: normal units with these deviations and correlations, treated in the same way.
@@ -36,14 +36,17 @@ pub struct UnitDistance {
 /// Fewer units give no law.
 pub const FEWEST_UNITS: usize = 10;
 
-/// The distances of units by the means of each of their parameters; `None` below [`FEWEST_UNITS`], where a parameter does not vary, or where
-/// parameters have different units. The same `seed` gives the same probabilities on any number of threads.
-pub fn distances(parameters: &[UnitMeans], seed: u64) -> Option<Vec<UnitDistance>> {
-    let n = parameters.first()?.values.len();
-    if n < FEWEST_UNITS || parameters.iter().any(|means| means.values.len() != n) {
+/// The distances of units by the means of each of their `p` parameters, and by the correlations of the errors of each unit as its sessions
+/// `stated` them, `p x p`; `None` below [`FEWEST_UNITS`], where a parameter does not vary, or where parameters or correlations have
+/// different units. The same `seed` gives the same probabilities on any number of threads.
+pub fn distances(parameters: &[UnitMeans], stated: &[DMatrix<f64>], seed: u64) -> Option<Vec<UnitDistance>> {
+    let (n, p) = (parameters.first()?.values.len(), parameters.len());
+    let are_of_all = parameters.iter().all(|means| means.values.len() == n) && stated.len() == n;
+    if n < FEWEST_UNITS || !are_of_all || stated.iter().any(|of_unit| of_unit.shape() != (p, p)) {
         return None;
     }
-    let known = Known { normal_scores: normal_scores(n), sessions: sessions(parameters) };
+    let errors = of_sessions(stated, differences(parameters).as_ref());
+    let known = Known { normal_scores: normal_scores(n), errors };
     let values = columns(parameters.iter().map(|means| &means.values));
     let variances = columns(parameters.iter().map(|means| &means.variances));
     let units = Described::of(&values, &variances, &known)?;
@@ -61,11 +64,11 @@ fn columns<'a>(columns: impl Iterator<Item = &'a Vec<f64>>) -> DMatrix<f64> {
     DMatrix::from_columns(&columns.map(|column| DVector::from_column_slice(column)).collect::<Vec<_>>())
 }
 
-/// Correlations of the errors of sessions, if all parameters have differences of sessions.
-fn sessions(parameters: &[UnitMeans]) -> Option<DMatrix<f64>> {
+/// Differences of neighbouring sessions, if all parameters have them.
+fn differences(parameters: &[UnitMeans]) -> Option<DMatrix<f64>> {
     let m = parameters[0].differences.len();
     let have_all = m > 0 && parameters.iter().all(|means| means.differences.len() == m);
-    have_all.then(|| of_sessions(&columns(parameters.iter().map(|means| &means.differences))))
+    have_all.then(|| columns(parameters.iter().map(|means| &means.differences)))
 }
 
 /// The probability that the largest squared distance of sound units is as large.

@@ -197,7 +197,8 @@ fn plant(units: usize, factor: &DMatrix<f64>, random: &mut Random) -> DMatrix<f6
 fn alike(values: &DMatrix<f64>, seed: u64) -> Vec<UnitDistance> {
     let of_unit = |value: &f64| Series::independent(&[Point { time: 0.0, value: *value, variance: 1e-4 }]).unwrap();
     let means = values.column_iter().map(|column| UnitMeans::of(&column.iter().map(of_unit).collect::<Vec<_>>()));
-    distances(&means.collect::<Vec<_>>(), seed).unwrap()
+    let stated = vec![DMatrix::identity(values.ncols(), values.ncols()); values.nrows()];
+    distances(&means.collect::<Vec<_>>(), &stated, seed).unwrap()
 }
 
 /// Of 80 sound plants of fifty units, four have a unit that stands out; more than twelve, in one case of ten thousand. A unit
@@ -294,20 +295,22 @@ fn few_units_are_not_called_outlying_more_often() {
     assert!(false_findings <= 20, "{false_findings}");
 }
 
-/// Units of 1, 2, 3 or 8 sessions, each unequally well known, whose errors go together and whose own scatter does not; the first `planted` of
-/// them are off by ten deviations in one parameter each. The numbers of those that are called outlying.
-fn found_among_unequal(units: usize, scatter: f64, planted: usize, seed: u64) -> Vec<usize> {
+/// Units of these numbers of sessions in turn, each unequally well known, whose errors go together, as they state, and whose own scatter does not;
+/// the first `planted` of them are off by ten deviations in one parameter each. The numbers of those that are called outlying.
+fn found_among_unequal(units: usize, counts: &[u32], scatter: f64, planted: usize, seed: u64) -> Vec<usize> {
     const PARAMETERS: usize = 12;
+    // Errors of sessions differ twofold, those of units with one session each threefold.
+    let largest = if counts.len() > 1 { 2.0 } else { 3.0 };
     let mut random = Random::new(1000 + seed);
     let mut points: Vec<Vec<Vec<Point>>> = vec![vec![Vec::new(); units]; PARAMETERS];
     for unit in 0..units {
-        let count = [1, 2, 3, 8][unit % 4];
+        let count = counts[unit % counts.len()];
         let own: Vec<f64> = (0..PARAMETERS).map(|_| scatter * random.normal()).collect();
         for time in 0..count {
-            let size = if random.uniform() < 0.5 { 1.0 } else { 2.0 };
+            let size = if random.uniform() < 0.5 { 1.0 } else { largest };
             let common = random.normal();
             for (j, units) in points.iter_mut().enumerate() {
-                let off = if unit < planted && j == unit { 10.0 * (scatter + 2.0) } else { 0.0 };
+                let off = if unit < planted && j == unit { 10.0 * (scatter + largest) } else { 0.0 };
                 let error = size * (0.95 * common + 0.3 * random.normal());
                 let variance = size * size * (0.95_f64.powi(2) + 0.3_f64.powi(2));
                 units[unit].push(Point { time: f64::from(time), value: own[j] + error + off, variance });
@@ -318,7 +321,9 @@ fn found_among_unequal(units: usize, scatter: f64, planted: usize, seed: u64) ->
         units.iter().map(|points| Series::independent(points).unwrap()).collect()
     };
     let means: Vec<UnitMeans> = points.iter().map(|units| UnitMeans::of(&series(units))).collect();
-    let distances = distances(&means, seed).unwrap();
+    let stated =
+        DMatrix::from_fn(PARAMETERS, PARAMETERS, |j, k| if j == k { 1.0 } else { 0.95 * 0.95 / (0.95 * 0.95 + 0.09) });
+    let distances = distances(&means, &vec![stated; units], seed).unwrap();
     (0..).zip(distances).filter(|(_, unit)| unit.probability < 0.05).map(|(n, _)| n).collect()
 }
 
@@ -327,10 +332,20 @@ fn found_among_unequal(units: usize, scatter: f64, planted: usize, seed: u64) ->
 /// finding come in one case of a thousand.
 #[test]
 fn units_with_few_or_poor_sessions_are_not_called_outlying() {
-    for (units, scatter, planted) in [(20, 1.0, 0), (40, 1.0, 3), (40, 0.0, 0), (40, 10.0, 0)] {
-        let plants: Vec<Vec<usize>> = (0..40).map(|seed| found_among_unequal(units, scatter, planted, seed)).collect();
+    let several = [1, 2, 3, 8].as_slice();
+    let kinds = [
+        (20, several, 1.0, 0),
+        (40, several, 1.0, 3),
+        (40, several, 0.0, 0),
+        (40, several, 10.0, 0),
+        (150, &[1], 2.0, 0),
+        (40, &[1], 2.0, 3),
+    ];
+    for (units, counts, scatter, planted) in kinds {
+        let found = |seed| found_among_unequal(units, counts, scatter, planted, seed);
+        let plants: Vec<Vec<usize>> = (0..40).map(found).collect();
         let false_findings = plants.iter().filter(|found| found.iter().any(|unit| *unit >= planted)).count();
-        assert!(false_findings <= 7, "{units} units, {scatter}, {planted}: {false_findings}");
+        assert!(false_findings <= 7, "{units} units of {counts:?}, {scatter}, {planted}: {false_findings}");
         let found: usize = plants.iter().flatten().filter(|unit| **unit < planted).count();
         assert!(found * 10 >= planted * 40 * 9, "{units} units, {scatter}: {found} of {}", 40 * planted);
     }

@@ -31,7 +31,7 @@ pub struct Arguments {
 /// Runs the command. Exit code 1 when a unit is outlying, drifts or scatters, or batches differ.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let choice = &arguments.choice;
-    let calibrations = choice.read(Depth::Values)?;
+    let calibrations = choice.read(Depth::Errors)?;
     choice.only(&calibrations, |c| c.unit_model.as_str(), "--model")?;
     let limits = arguments.laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
     let batches = arguments.batches.as_deref().map(read_batches).transpose()?;

@@ -41,7 +41,7 @@ impl Overview {
     /// [`Error`] when the store cannot be read, or a file of the request is wrong.
     pub fn read(folder: &Path, request: &PagesRequest) -> Result<Self, Error> {
         let list = list_store(folder, Selection::default(), &unwatched)?;
-        let selection = Selection { depth: Depth::Values, ..Selection::default() };
+        let selection = Selection { depth: Depth::Errors, ..Selection::default() };
         let calibrations = read_calibrations(&[folder.to_owned()], &selection, &unwatched)?;
         let limits = request.laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
         let batches = request.batches.as_deref().map(read_batches).transpose()?;

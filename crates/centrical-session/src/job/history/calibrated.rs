@@ -1,5 +1,7 @@
 //! A calibration as its history needs it: what was determined, and which of its errors other sessions share.
 
+mod errors;
+
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
@@ -8,6 +10,7 @@ use centrical::history::{Point, Series};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, DVector};
 
+use self::errors::OwnErrors;
 use super::of_data::{OfData, PRIORS};
 use crate::document::TermSummary;
 use crate::quantity::Date;
@@ -38,6 +41,8 @@ pub struct Calibrated {
     covariance: Vec<f64>,
     /// What errors leave that sessions of one station share.
     shared: Vec<SharedInfluence>,
+    /// Errors of this session alone in the parameters of its unit, in place of `covariance` and `shared`.
+    errors: Option<OwnErrors>,
     /// What the data alone say, if parameters of the unit had priors.
     of_data: Option<OfData>,
     /// The error model with the names of its coefficients, if all of them are determined and covariances were read.
@@ -101,6 +106,7 @@ impl Calibrated {
         });
         let of_data = OfData::of(&row);
         Some(Self {
+            errors: None,
             of_data,
             source,
             date,
@@ -117,6 +123,34 @@ impl Calibrated {
             covariance: row.covariance,
             shared: row.shared,
         })
+    }
+
+    /// The same with the errors of its unit's parameters alone in place of all covariances, and as its result states it.
+    #[must_use]
+    pub fn condensed(self) -> Self {
+        let errors = if self.covariance.is_empty() { None } else { Some(self.own_errors()) };
+        Self { errors, covariance: Vec::new(), shared: Vec::new(), of_data: None, terms: None, ..self }
+    }
+
+    fn own_errors(&self) -> OwnErrors {
+        let places: Vec<usize> = (0..self.parameters.len()).filter(|&j| self.parameters[j].is_of_unit).collect();
+        let seen = self.seen(Basis::Stated);
+        OwnErrors::of(places.len(), |a, b| seen.own_covariance(places[a], places[b]))
+    }
+
+    /// Covariance of the errors of this session alone in parameters of the unit, as the result states it; `None` if one of `names` is not
+    /// determined, or covariances were not read.
+    pub fn error_covariance(&self, names: &[String]) -> Option<DMatrix<f64>> {
+        let places: Vec<usize> = names.iter().map(|name| self.place(name)).collect::<Option<_>>()?;
+        let seen = self.seen(Basis::Stated);
+        let covariance = DMatrix::from_fn(places.len(), places.len(), |a, b| seen.own_covariance(places[a], places[b]));
+        covariance.iter().all(|value| value.is_finite()).then_some(covariance)
+    }
+
+    /// The number of a parameter among those of the unit.
+    fn number_in_unit(&self, place: usize) -> Option<usize> {
+        let is_of_unit = |place: usize| self.parameters[place].is_of_unit;
+        is_of_unit(place).then(|| (0..place).filter(|&j| is_of_unit(j)).count())
     }
 
     /// The place of a parameter, if it is determined.
@@ -158,8 +192,7 @@ impl Calibrated {
     pub fn own_estimates(&self, names: &[String]) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let places: Vec<usize> = names.iter().map(|name| self.place(name)).collect::<Option<_>>()?;
         let seen = self.seen(Basis::Data);
-        let shared = |i: usize, j: usize| -> f64 { seen.shared.iter().map(|of| of.changes[i] * of.changes[j]).sum() };
-        let own = |a: usize, b: usize| seen.covariance(places[a], places[b]) - shared(places[a], places[b]);
+        let own = |a: usize, b: usize| seen.own_covariance(places[a], places[b]);
         let values = DVector::from_iterator(places.len(), places.iter().map(|&j| seen.values[j]));
         Some((values, DMatrix::from_fn(places.len(), places.len(), own)))
     }
@@ -195,6 +228,16 @@ impl Seen<'_> {
         self.covariance.map_or_else(|| self.of.covariance(i, j), |packed| packed[high * (high + 1) / 2 + low])
     }
 
+    /// Covariance of the errors of this session alone.
+    fn own_covariance(&self, i: usize, j: usize) -> f64 {
+        let by_unit =
+            |errors: &OwnErrors| Some(errors.covariance(self.of.number_in_unit(i)?, self.of.number_in_unit(j)?));
+        self.of.errors.as_ref().and_then(by_unit).unwrap_or_else(|| {
+            let shared: f64 = self.shared.iter().map(|of| of.changes[i] * of.changes[j]).sum();
+            self.covariance(i, j) - shared
+        })
+    }
+
     /// `sum_n c_n x_n`, its variance by errors of this session alone, and its change by each shared error.
     fn combined(&self, combination: &[(usize, f64)]) -> (f64, f64, Vec<f64>) {
         let value = combination.iter().map(|(j, c)| c * self.values[*j]).sum();
@@ -202,7 +245,7 @@ impl Seen<'_> {
         let shared: Vec<f64> = self.shared.iter().map(change).collect();
         let all = variance(combination, |i, j| self.covariance(i, j));
         // What rounding leaves of a session whose every error is shared is still no certainty.
-        let own = (all - shared.iter().map(|s| s * s).sum::<f64>()).max(1e-12 * all);
+        let own = variance(combination, |i, j| self.own_covariance(i, j)).max(1e-12 * all);
         (value, own, shared)
     }
 }

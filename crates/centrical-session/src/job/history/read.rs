@@ -10,7 +10,7 @@ use super::results::collect_results;
 use crate::document::CalibrationResult;
 use crate::error::{Error, Place, quoted};
 use crate::settings::read_result;
-use crate::store::{Row, Selection, Status, Store};
+use crate::store::{Depth, Row, Selection, Status, Store};
 
 /// The calibrations in `paths` that `selection` picks, in the order of time: results; stores; other folders, in which each `result.json` at any
 /// depth is one. A result that is met twice counts once; sessions of a store without a result do not count. `progress` is asked at each result and
@@ -87,7 +87,8 @@ impl Found<'_> {
             let place = Place::Key { table: "session".to_owned(), key: "date".to_owned() };
             Error::content(file, place, quoted(date.as_bytes()), "a day such as 2026-10-05")
         })?;
-        self.calibrations.push(calibrated);
+        let is_condensed = self.selection.depth <= Depth::Errors;
+        self.calibrations.push(if is_condensed { calibrated.condensed() } else { calibrated });
         Ok(())
     }
 }

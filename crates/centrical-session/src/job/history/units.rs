@@ -6,6 +6,7 @@ use centrical::history::{
     Between, Curve, FEWEST_UNITS, Series, UnitMeans, batch_test, capability, distances, unit_trends,
 };
 use centrical::uncertainty::family_wise;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::calibrated::{Basis, Calibrated, Finder, series, single};
@@ -48,7 +49,7 @@ pub fn units_history(units: &[Vec<Calibrated>], request: &UnitsHistoryRequest) -
         parameter.batches_differ = chance < FAMILY;
     }
     let by_parameter = by_parameter(units, &lasts, &names, &all);
-    let outlying = outlying(&lasts, &by_parameter);
+    let outlying = outlying(units, &lasts, &by_parameter);
     let findings = over_time(by_parameter);
     Some(UnitsHistoryReport {
         schema: UNITS_HISTORY_SCHEMA,
@@ -145,10 +146,11 @@ fn by_parameter(
 }
 
 /// Units whose robust distance no sound unit would have.
-fn outlying(lasts: &[&Calibrated], by_parameter: &[OfParameter]) -> Vec<OutlyingUnit> {
+fn outlying(units: &[Vec<Calibrated>], lasts: &[&Calibrated], by_parameter: &[OfParameter]) -> Vec<OutlyingUnit> {
     let with_means = by_parameter.iter().filter_map(|of| Some((of.name.clone(), of.means.clone()?)));
     let (names, means): (Vec<String>, Vec<UnitMeans>) = with_means.unzip();
-    let Some(distances) = distances(&means, SEED) else { return Vec::new() };
+    let stated: Vec<DMatrix<f64>> = units.par_iter().map(|unit| error_correlations(unit, &names)).collect();
+    let Some(distances) = distances(&means, &stated, SEED) else { return Vec::new() };
     let found = lasts.iter().zip(distances).filter(|(_, distance)| distance.probability < FAMILY);
     let mut found: Vec<OutlyingUnit> = found
         .map(|(unit, distance)| {
@@ -165,6 +167,16 @@ fn outlying(lasts: &[&Calibrated], by_parameter: &[OfParameter]) -> Vec<Outlying
         .collect();
     found.sort_by(|a, b| b.distance.total_cmp(&a.distance));
     found
+}
+
+/// Correlations of the errors of a unit's means as its sessions state them; none where a session states no covariance.
+fn error_correlations(unit: &[Calibrated], names: &[String]) -> DMatrix<f64> {
+    let n = names.len();
+    let sum = unit.iter().try_fold(DMatrix::zeros(n, n), |sum, c| Some(sum + c.error_covariance(names)?));
+    sum.map_or_else(
+        || DMatrix::identity(n, n),
+        |sum| DMatrix::from_fn(n, n, |i, j| sum[(i, j)] / (sum[(i, i)] * sum[(j, j)]).sqrt()),
+    )
 }
 
 /// The drift and the scatter of the units by their `numbers` in one parameter.

@@ -11,8 +11,8 @@ use crate::statistics::Random;
 pub struct Known {
     /// Normal scores of as many units.
     pub normal_scores: Vec<f64>,
-    /// Correlations of the errors of sessions, `p x p`, if there are differences of sessions.
-    pub sessions: Option<DMatrix<f64>>,
+    /// Correlations `W_i` of the errors of each unit, `p x p`.
+    pub errors: Vec<DMatrix<f64>>,
 }
 
 /// Units as they are beside each other.
@@ -24,7 +24,7 @@ pub struct Described {
     pub variances: DMatrix<f64>,
     /// `D_ij`, `n x p`.
     deviations: DMatrix<f64>,
-    /// Cholesky factors of `R_i`: of each unit, or one of all.
+    /// Cholesky factors of `R_i`.
     factors: Vec<Cholesky<f64, Dyn>>,
 }
 
@@ -43,22 +43,16 @@ impl Described {
             described.deviations.column_mut(j).copy_from_slice(&counted.deviations);
             described.variances.column_mut(j).scale_mut(counted.factor);
         }
-        let parts = || {
-            let part = |variance: f64, deviation: f64| (variance.sqrt() / deviation).min(1.0);
-            described.variances.zip_map(&described.deviations, part)
-        };
-        described.factors = factors(
-            &described.scores,
-            &known.normal_scores,
-            known.sessions.as_ref().map(|sessions| (sessions, parts())),
-        )?;
+        let part = |variance: f64, deviation: f64| (variance.sqrt() / deviation).min(1.0);
+        let parts = described.variances.zip_map(&described.deviations, part);
+        described.factors = factors(&described.scores, &known.normal_scores, &known.errors, &parts)?;
         Some(described)
     }
 
     /// `d_i^2`.
     pub fn squared_distances(&self) -> Option<Vec<f64>> {
         let by_unit = self.scores.transpose();
-        let whitened = |(unit, scores)| self.factor(unit).l_dirty().solve_lower_triangular(&scores);
+        let whitened = |(unit, scores): (usize, _)| self.factors[unit].l_dirty().solve_lower_triangular(&scores);
         by_unit.column_iter().enumerate().map(|unit| Some(whitened(unit)?.norm_squared())).collect()
     }
 
@@ -69,16 +63,12 @@ impl Described {
         for (unit, mut drawn) in drawn.column_iter_mut().enumerate() {
             let mut normal = DVector::from_fn(p, |_, _| random.normal());
             // Row by row from the last: `L x` in the place of `x`.
-            let lower = self.factor(unit).l_dirty();
+            let lower = self.factors[unit].l_dirty();
             for j in (0..p).rev() {
                 normal[j] = (0..=j).map(|k| lower[(j, k)] * normal[k]).sum();
             }
             drawn.copy_from(&normal);
         }
         drawn.transpose().component_mul(&self.deviations)
-    }
-
-    fn factor(&self, unit: usize) -> &Cholesky<f64, Dyn> {
-        self.factors.get(unit).unwrap_or(&self.factors[0])
     }
 }

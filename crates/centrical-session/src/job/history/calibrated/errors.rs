@@ -1,0 +1,28 @@
+//! The errors of one session in the parameters of its unit, in a kB: a hundred thousand calibrations of a store fit in memory.
+
+/// Standard deviations and correlations of errors that belong to one session alone.
+#[derive(Debug, Clone)]
+pub struct OwnErrors {
+    /// Standard deviations, SI; NaN where the data do not determine a parameter.
+    pub deviations: Vec<f64>,
+    /// The lower triangle by rows without the diagonal. Single precision is far beyond what a correlation is known to.
+    correlations: Vec<f32>,
+}
+
+impl OwnErrors {
+    /// Those of `n` parameters with these covariances of errors.
+    pub fn of(n: usize, covariance: impl Fn(usize, usize) -> f64) -> Self {
+        let deviations: Vec<f64> = (0..n).map(|i| covariance(i, i).sqrt()).collect();
+        let correlation = |i: usize, j: usize| covariance(i, j) / (deviations[i] * deviations[j]);
+        #[expect(clippy::cast_possible_truncation)]
+        let correlations = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| correlation(i, j) as f32);
+        Self { correlations: correlations.collect(), deviations }
+    }
+
+    /// Covariance of the errors of parameters `i` and `j`.
+    pub fn covariance(&self, i: usize, j: usize) -> f64 {
+        let (low, high) = (i.min(j), i.max(j));
+        let correlation = if low == high { 1.0 } else { f64::from(self.correlations[high * (high - 1) / 2 + low]) };
+        correlation * self.deviations[i] * self.deviations[j]
+    }
+}
