@@ -30,7 +30,7 @@ pub use chart::{Control, Cusum, Ewma, Rule, cusum, ewma, moving_ranges, signals}
 pub use evolution::{Estimated, Evolution};
 pub use law::Law;
 pub use line::Curve;
-pub use outlying::{FEWEST_UNITS, UnitDistance, UnitMeans, distances};
+pub use outlying::{FEWEST_UNITS, UnitDistance, UnitSessions, distances};
 pub use quantiles::Quantiles;
 pub use series::{Point, Series};
 pub use station::{FEWEST_READINGS, Reading, StationTest, station_test};

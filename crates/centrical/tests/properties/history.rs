@@ -1,7 +1,7 @@
 //! Histories against drawn ones: intervals cover as they say, and what was planted is found, nothing else.
 
 use centrical::history::{
-    Between, Curve, Likely, Point, Quantiles, Reading, Series, SessionEstimates, UnitDistance, UnitMeans, distances,
+    Between, Curve, Likely, Point, Quantiles, Reading, Series, SessionEstimates, UnitDistance, UnitSessions, distances,
     sameness, station_test, unit_trends,
 };
 use nalgebra::{DMatrix, DVector};
@@ -195,10 +195,10 @@ fn plant(units: usize, factor: &DMatrix<f64>, random: &mut Random) -> DMatrix<f6
 
 /// The distances of units of one session each, all equally well known.
 fn alike(values: &DMatrix<f64>, seed: u64) -> Vec<UnitDistance> {
-    let of_unit = |value: &f64| Series::independent(&[Point { time: 0.0, value: *value, variance: 1e-4 }]).unwrap();
-    let means = values.column_iter().map(|column| UnitMeans::of(&column.iter().map(of_unit).collect::<Vec<_>>()));
-    let stated = vec![DMatrix::identity(values.ncols(), values.ncols()); values.nrows()];
-    distances(&means.collect::<Vec<_>>(), &stated, seed).unwrap()
+    let (n, p) = values.shape();
+    let session =
+        |unit, _| SessionEstimates { values: values.row(unit).transpose(), covariance: DMatrix::identity(p, p) * 1e-4 };
+    distances(&UnitSessions { counts: &vec![1; n], session: &session }, seed).unwrap()
 }
 
 /// Of 80 sound plants of fifty units, four have a unit that stands out; more than twelve, in one case of ten thousand. A unit
@@ -296,36 +296,36 @@ fn few_units_are_not_called_outlying_more_often() {
 }
 
 /// Units of these numbers of sessions in turn, each unequally well known, whose errors go together, as they state, and whose own scatter does not;
-/// the first `planted` of them are off by ten deviations in one parameter each. The numbers of those that are called outlying.
-fn found_among_unequal(units: usize, counts: &[u32], scatter: f64, planted: usize, seed: u64) -> Vec<usize> {
+/// the first `planted` of them are off by eight deviations of a poor session in one parameter each. The numbers of those that are called outlying.
+fn found_among_unequal(units: usize, counts: &[usize], scatter: f64, planted: usize, seed: u64) -> Vec<usize> {
     const PARAMETERS: usize = 12;
-    // Errors of sessions differ twofold, those of units with one session each threefold.
-    let largest = if counts.len() > 1 { 2.0 } else { 3.0 };
+    const TOGETHER: [f64; 2] = [0.95, 0.3];
     let mut random = Random::new(1000 + seed);
-    let mut points: Vec<Vec<Vec<Point>>> = vec![vec![Vec::new(); units]; PARAMETERS];
-    for unit in 0..units {
-        let count = counts[unit % counts.len()];
-        let own: Vec<f64> = (0..PARAMETERS).map(|_| scatter * random.normal()).collect();
-        for time in 0..count {
-            let size = if random.uniform() < 0.5 { 1.0 } else { largest };
+    let counts: Vec<usize> = (0..units).map(|unit| counts[unit % counts.len()]).collect();
+    let together = DMatrix::repeat(PARAMETERS, PARAMETERS, TOGETHER[0].powi(2))
+        + DMatrix::identity(PARAMETERS, PARAMETERS) * TOGETHER[1].powi(2);
+    let mut unit = |unit: usize| -> Vec<SessionEstimates> {
+        let own = DVector::from_fn(PARAMETERS, |_, _| scatter * random.normal());
+        let mut session = || {
+            let size = if random.uniform() < 0.5 { 1.0 } else { LARGEST };
             let common = random.normal();
-            for (j, units) in points.iter_mut().enumerate() {
-                let off = if unit < planted && j == unit { 10.0 * (scatter + largest) } else { 0.0 };
-                let error = size * (0.95 * common + 0.3 * random.normal());
-                let variance = size * size * (0.95_f64.powi(2) + 0.3_f64.powi(2));
-                units[unit].push(Point { time: f64::from(time), value: own[j] + error + off, variance });
+            let mut error = || size * (TOGETHER[0] * common + TOGETHER[1] * random.normal());
+            let mut values = &own + DVector::from_fn(PARAMETERS, |_, _| error());
+            if unit < planted {
+                values[unit] += 8.0 * scatter.hypot(LARGEST);
             }
-        }
-    }
-    let series = |units: &Vec<Vec<Point>>| -> Vec<Series> {
-        units.iter().map(|points| Series::independent(points).unwrap()).collect()
+            SessionEstimates { values, covariance: &together * (size * size) }
+        };
+        (0..counts[unit]).map(|_| session()).collect()
     };
-    let means: Vec<UnitMeans> = points.iter().map(|units| UnitMeans::of(&series(units))).collect();
-    let stated =
-        DMatrix::from_fn(PARAMETERS, PARAMETERS, |j, k| if j == k { 1.0 } else { 0.95 * 0.95 / (0.95 * 0.95 + 0.09) });
-    let distances = distances(&means, &vec![stated; units], seed).unwrap();
+    let sessions: Vec<Vec<SessionEstimates>> = (0..units).map(&mut unit).collect();
+    let session = |unit: usize, t: usize| sessions[unit][t].clone();
+    let distances = distances(&UnitSessions { counts: &counts, session: &session }, seed).unwrap();
     (0..).zip(distances).filter(|(_, unit)| unit.probability < 0.05).map(|(n, _)| n).collect()
 }
+
+/// Errors of poor sessions over those of good ones.
+const LARGEST: f64 = 3.0;
 
 /// Whether the scatter of units is nothing beside the errors of a session, as large, or much larger: units of one session are not called
 /// outlying for their larger errors, nor others in the presence of three that are; those are found. More than 7 of 40 plants with a false

@@ -1,16 +1,17 @@
 //! A calibration as its history needs it: what was determined, and which of its errors other sessions share.
 
 mod errors;
+mod kinds;
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use centrical::Group;
-use centrical::history::{Point, Series};
+use centrical::history::{Point, Series, SessionEstimates};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, DVector};
 
 use self::errors::OwnErrors;
+pub use self::kinds::{CalibratedParameter, Kinds, Places};
 use super::of_data::{OfData, PRIORS};
 use crate::document::TermSummary;
 use crate::quantity::Date;
@@ -51,19 +52,6 @@ pub struct Calibrated {
     pub range: f64,
 }
 
-/// A parameter.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct CalibratedParameter {
-    /// Name.
-    pub name: String,
-    /// Unit of SI.
-    pub unit: String,
-    /// bias, scale, misalignment, ...
-    pub group: Group,
-    /// Whether it belongs to the unit, and not to the machine or how the unit was mounted.
-    pub is_of_unit: bool,
-}
-
 /// Finds one parameter in many calibrations. Most share their list of parameters, which is searched once.
 pub struct Finder<'a> {
     name: &'a str,
@@ -89,10 +77,6 @@ impl<'a> Finder<'a> {
         place.filter(|&j| calibrated.values[j].is_finite())
     }
 }
-
-/// The lists of parameters that were met: there are a few among thousands of calibrations.
-#[derive(Debug, Default)]
-pub struct Kinds(HashSet<Arc<Vec<CalibratedParameter>>>);
 
 impl Calibrated {
     /// The calibration in a row of a store, or of a result that is called `source`; `None` if its session has no day for a date.
@@ -138,13 +122,23 @@ impl Calibrated {
         OwnErrors::of(places.len(), |a, b| seen.own_covariance(places[a], places[b]))
     }
 
-    /// Covariance of the errors of this session alone in parameters of the unit, as the result states it; `None` if one of `names` is not
-    /// determined, or covariances were not read.
-    pub fn error_covariance(&self, names: &[String]) -> Option<DMatrix<f64>> {
-        let places: Vec<usize> = names.iter().map(|name| self.place(name)).collect::<Option<_>>()?;
+    /// Estimates at `places` as the result states them, with the covariance of the errors that belong to this session alone; where covariances
+    /// were not read, with their variances.
+    pub fn stated_estimates(&self, places: &[usize]) -> SessionEstimates {
         let seen = self.seen(Basis::Stated);
-        let covariance = DMatrix::from_fn(places.len(), places.len(), |a, b| seen.own_covariance(places[a], places[b]));
-        covariance.iter().all(|value| value.is_finite()).then_some(covariance)
+        let variance = |j: usize| seen.own_covariance(j, j).max(CERTAIN * self.standard_uncertainties[j].powi(2));
+        let numbers: Option<Vec<usize>> = places.iter().map(|&place| self.number_in_unit(place)).collect();
+        let own = |a: usize, b: usize| match (&self.errors, &numbers) {
+            (Some(errors), Some(numbers)) => errors.covariance(numbers[a], numbers[b]),
+            _ => seen.own_covariance(places[a], places[b]),
+        };
+        let n = places.len();
+        let mut covariance = DMatrix::from_fn(n, n, own);
+        if !covariance.iter().all(|value| value.is_finite()) {
+            covariance.fill(0.0);
+        }
+        covariance.set_diagonal(&DVector::from_fn(n, |a, _| variance(places[a])));
+        SessionEstimates { values: DVector::from_fn(n, |a, _| self.values[places[a]]), covariance }
     }
 
     /// The number of a parameter among those of the unit.
@@ -244,39 +238,18 @@ impl Seen<'_> {
         let change = |influence: &SharedInfluence| combination.iter().map(|(j, c)| c * influence.changes[*j]).sum();
         let shared: Vec<f64> = self.shared.iter().map(change).collect();
         let all = variance(combination, |i, j| self.covariance(i, j));
-        // What rounding leaves of a session whose every error is shared is still no certainty.
-        let own = variance(combination, |i, j| self.own_covariance(i, j)).max(1e-12 * all);
+        let own = variance(combination, |i, j| self.own_covariance(i, j)).max(CERTAIN * all);
         (value, own, shared)
     }
 }
+
+/// What rounding leaves of a variance where every error of a session is shared: it is still no certainty.
+const CERTAIN: f64 = 1e-12;
 
 /// Variance of `sum_n c_n x_n`.
 fn variance(combination: &[(usize, f64)], covariance: impl Fn(usize, usize) -> f64) -> f64 {
     let pairs = combination.iter().flat_map(|(i, a)| combination.iter().map(move |(j, b)| (*i, *j, a * b)));
     pairs.map(|(i, j, product)| product * covariance(i, j)).sum()
-}
-
-impl Kinds {
-    fn of(&mut self, row: &Row) -> Arc<Vec<CalibratedParameter>> {
-        let group =
-            |n: usize| Group::ALL.into_iter().find(|group| row.groups.get(n).is_some_and(|name| group.name() == name));
-        let parameter = |(n, name): (usize, &String)| {
-            let group = group(n).unwrap_or(Group::Bias);
-            let is_of_unit = group == Group::ProofMass || row.terms.iter().any(|term| term.name == *name);
-            CalibratedParameter {
-                name: name.clone(),
-                unit: row.units.get(n).cloned().unwrap_or_default(),
-                group,
-                is_of_unit,
-            }
-        };
-        let parameters = Arc::new(row.parameters.iter().enumerate().map(parameter).collect::<Vec<_>>());
-        if let Some(known) = self.0.get(&parameters) {
-            return Arc::clone(known);
-        }
-        self.0.insert(Arc::clone(&parameters));
-        parameters
-    }
 }
 
 /// The combination `sum_n c_n x_n` of named parameters in each of `calibrations`, in the order of time; `None` if one of them does not

@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 
 use centrical::history::{
-    Between, Curve, FEWEST_UNITS, Series, UnitMeans, batch_test, capability, distances, unit_trends,
+    Between, Curve, FEWEST_UNITS, Series, UnitSessions, batch_test, capability, distances, unit_trends,
 };
 use centrical::uncertainty::family_wise;
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::calibrated::{Basis, Calibrated, Finder, series, single};
+use super::calibrated::{Basis, Calibrated, Finder, Places, series, single};
 use super::limits::ParameterLimits;
 use super::unit::common_names;
 use crate::document::{
@@ -117,8 +116,8 @@ fn parameter(
 /// One parameter of all units over time.
 struct OfParameter {
     name: String,
-    /// `None` where a unit has no uncertainty.
-    means: Option<UnitMeans>,
+    /// Whether all units have an uncertainty.
+    is_known: bool,
     /// Drift and scatter of each unit, each with its own probability.
     findings: Vec<UnitFinding>,
 }
@@ -138,7 +137,7 @@ fn by_parameter(
         let (numbers, series): (Vec<usize>, Vec<Series>) = units.iter().enumerate().filter_map(of_unit).unzip();
         OfParameter {
             name: name.clone(),
-            means: (series.len() == units.len()).then(|| UnitMeans::of(&series)),
+            is_known: series.len() == units.len(),
             findings: findings(&numbers, &series, lasts, name),
         }
     };
@@ -147,14 +146,20 @@ fn by_parameter(
 
 /// Units whose robust distance no sound unit would have.
 fn outlying(units: &[Vec<Calibrated>], lasts: &[&Calibrated], by_parameter: &[OfParameter]) -> Vec<OutlyingUnit> {
-    let with_means = by_parameter.iter().filter_map(|of| Some((of.name.clone(), of.means.clone()?)));
-    let (names, means): (Vec<String>, Vec<UnitMeans>) = with_means.unzip();
-    let stated: Vec<DMatrix<f64>> = units.par_iter().map(|unit| error_correlations(unit, &names)).collect();
-    let Some(distances) = distances(&means, &stated, SEED) else { return Vec::new() };
+    let names: Vec<&str> = by_parameter.iter().filter(|of| of.is_known).map(|of| of.name.as_str()).collect();
+    if names.is_empty() {
+        return Vec::new();
+    }
+    let counts: Vec<usize> = units.iter().map(Vec::len).collect();
+    let places = Places::of(units.iter().flatten().map(|calibrated| &calibrated.parameters), &names);
+    let session = |unit: usize, t: usize| units[unit][t].stated_estimates(places.in_list(&units[unit][t].parameters));
+    let sessions = UnitSessions { counts: &counts, session: &session };
+    let Some(distances) = distances(&sessions, SEED) else { return Vec::new() };
     let found = lasts.iter().zip(distances).filter(|(_, distance)| distance.probability < FAMILY);
     let mut found: Vec<OutlyingUnit> = found
         .map(|(unit, distance)| {
-            let mut scores: Vec<(String, f64)> = names.iter().cloned().zip(distance.scores).collect();
+            let mut scores: Vec<(String, f64)> =
+                names.iter().map(|&name| name.to_owned()).zip(distance.scores).collect();
             scores.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
             scores.truncate(3);
             OutlyingUnit {
@@ -167,16 +172,6 @@ fn outlying(units: &[Vec<Calibrated>], lasts: &[&Calibrated], by_parameter: &[Of
         .collect();
     found.sort_by(|a, b| b.distance.total_cmp(&a.distance));
     found
-}
-
-/// Correlations of the errors of a unit's means as its sessions state them; none where a session states no covariance.
-fn error_correlations(unit: &[Calibrated], names: &[String]) -> DMatrix<f64> {
-    let n = names.len();
-    let sum = unit.iter().try_fold(DMatrix::zeros(n, n), |sum, c| Some(sum + c.error_covariance(names)?));
-    sum.map_or_else(
-        || DMatrix::identity(n, n),
-        |sum| DMatrix::from_fn(n, n, |i, j| sum[(i, j)] / (sum[(i, i)] * sum[(j, j)]).sqrt()),
-    )
 }
 
 /// The drift and the scatter of the units by their `numbers` in one parameter.

@@ -10,29 +10,27 @@ use crate::statistics::{MAD, median};
 /// Values counted from their centre.
 #[derive(Debug, Clone)]
 pub struct Counted {
+    /// `m`.
+    pub centre: f64,
     /// `(x_i - m) / D_i`.
     pub scores: Vec<f64>,
     /// `D_i`.
     pub deviations: Vec<f64>,
-    /// `sigma^2`.
-    pub common: f64,
-    /// `c^2`, 1 where `sigma` is not zero.
-    pub factor: f64,
 }
 
 impl Counted {
     /// `values` with the `variances` of their errors; `None` where they do not vary.
     pub fn of(values: &[f64], variances: &[f64]) -> Option<Self> {
-        let (mut deviations, mut common, mut factor) = (vec![1.0; values.len()], 0.0, 1.0);
-        let mut scores = Vec::new();
+        let mut deviations = vec![1.0; values.len()];
+        let (mut centre, mut scores) = (0.0, Vec::new());
         for _ in 0..ROUNDS {
-            let centre = weighted_median(values, &deviations);
+            centre = weighted_median(values, &deviations);
             scores = values.iter().map(|value| value - centre).collect();
-            (common, factor) = components(&scores, variances)?;
+            let (common, factor) = components(&scores, variances)?;
             deviations = variances.iter().map(|v| (factor * (common + v)).sqrt()).collect();
         }
         scores.iter_mut().zip(&deviations).for_each(|(score, deviation)| *score /= deviation);
-        Some(Self { scores, deviations, common, factor })
+        Some(Self { centre, scores, deviations })
     }
 }
 

@@ -1,0 +1,71 @@
+//! The lists of parameters that calibrations share.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+
+use centrical::Group;
+
+use crate::store::Row;
+
+/// A parameter.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct CalibratedParameter {
+    /// Name.
+    pub name: String,
+    /// Unit of SI.
+    pub unit: String,
+    /// bias, scale, misalignment, ...
+    pub group: Group,
+    /// Whether it belongs to the unit, and not to the machine or how the unit was mounted.
+    pub is_of_unit: bool,
+}
+
+/// The lists of parameters that were met: there are a few among thousands of calibrations.
+#[derive(Debug, Default)]
+pub struct Kinds(HashSet<Arc<Vec<CalibratedParameter>>>);
+
+impl Kinds {
+    /// The list of a row.
+    pub fn of(&mut self, row: &Row) -> Arc<Vec<CalibratedParameter>> {
+        let group =
+            |n: usize| Group::ALL.into_iter().find(|group| row.groups.get(n).is_some_and(|name| group.name() == name));
+        let parameter = |(n, name): (usize, &String)| {
+            let group = group(n).unwrap_or(Group::Bias);
+            let is_of_unit = group == Group::ProofMass || row.terms.iter().any(|term| term.name == *name);
+            CalibratedParameter {
+                name: name.clone(),
+                unit: row.units.get(n).cloned().unwrap_or_default(),
+                group,
+                is_of_unit,
+            }
+        };
+        let parameters = Arc::new(row.parameters.iter().enumerate().map(parameter).collect::<Vec<_>>());
+        if let Some(known) = self.0.get(&parameters) {
+            return Arc::clone(known);
+        }
+        self.0.insert(Arc::clone(&parameters));
+        parameters
+    }
+}
+
+/// Places of the same parameters in each of a few lists.
+pub struct Places(Vec<(Arc<Vec<CalibratedParameter>>, Vec<usize>)>);
+
+impl Places {
+    /// Those of `names` in all `lists` that have them.
+    pub fn of<'a>(lists: impl Iterator<Item = &'a Arc<Vec<CalibratedParameter>>>, names: &[&str]) -> Self {
+        let mut of_lists: Vec<(Arc<Vec<CalibratedParameter>>, Vec<usize>)> = Vec::new();
+        for list in lists {
+            if !of_lists.iter().any(|(known, _)| Arc::ptr_eq(known, list)) {
+                let places = names.iter().filter_map(|name| list.iter().position(|p| p.name == *name));
+                of_lists.push((Arc::clone(list), places.collect()));
+            }
+        }
+        Self(of_lists)
+    }
+
+    /// In one of them.
+    pub fn in_list(&self, list: &Arc<Vec<CalibratedParameter>>) -> &[usize] {
+        self.0.iter().find(|(known, _)| Arc::ptr_eq(known, list)).map_or(&[], |(_, places)| places)
+    }
+}

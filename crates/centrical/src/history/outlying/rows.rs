@@ -1,0 +1,43 @@
+//! Rows of values with the covariances of their errors, which are made one after the other where they are needed.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// `n` rows of `p` values.
+pub struct Rows<'a> {
+    /// Values, `n x p`.
+    pub values: DMatrix<f64>,
+    /// Variances of their errors, `n x p`.
+    pub variances: DMatrix<f64>,
+    /// Adds the covariance `V_i` of the errors of a row, times a weight, to a sum, `p x p`; on and below the diagonal at least.
+    pub add_errors: &'a (dyn Fn(usize, f64, &mut DMatrix<f64>) + Sync),
+}
+
+impl Rows<'_> {
+    /// The weighted mean of `V_i`.
+    pub fn mean_errors(&self, weights: &[f64]) -> DMatrix<f64> {
+        let p = self.values.ncols();
+        let mut sum = DMatrix::zeros(p, p);
+        for (row, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
+            (self.add_errors)(row, *weight, &mut sum);
+        }
+        sum.fill_upper_triangle_with_lower_triangle();
+        sum / weights.iter().sum::<f64>()
+    }
+
+    /// `(x_i - m)^T (B + f V_i)^-1 (x_i - m)`; `None` where a covariance is not positive definite.
+    pub fn squared_distances(&self, centre: &DVector<f64>, between: &DMatrix<f64>, factor: f64) -> Option<Vec<f64>> {
+        let of_row = |row: usize| {
+            let mut covariance = between.clone();
+            (self.add_errors)(row, factor, &mut covariance);
+            let mut residual = self.values.row(row).transpose() - centre;
+            Cholesky::new(covariance)?.l_dirty().solve_lower_triangular_mut(&mut residual);
+            Some(residual.norm_squared())
+        };
+        (0..self.values.nrows()).map(of_row).collect()
+    }
+}
+
+/// Adds `matrix`, times a weight, to `sum`.
+pub fn add_scaled(matrix: &DMatrix<f64>, weight: f64, sum: &mut DMatrix<f64>) {
+    sum.zip_apply(matrix, |sum, value| *sum += weight * value);
+}
