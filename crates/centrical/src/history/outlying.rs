@@ -3,24 +3,26 @@
 //! The mean `x_i` of a unit over its sessions has errors of covariance `V_i`, which its sessions state and their differences correct. Beside
 //! them units scatter by a covariance `B` that all have in common:
 //!
-//! `x_i ~ N(m, S_i)`,  `S_i = B + f V_i`,  `d_i^2 = (x_i - m)^T S_i^-1 (x_i - m)`.
+//! `x_i ~ N(m, S_i)`,  `S_i = B + V_i`,  `d_i^2 = (x_i - m)^T S_i^-1 (x_i - m)`.
 //!
 //! So a unit of one session, or of poor ones, may lie farther off than others. The law of the largest distance follows no table. It is
 //! drawn: normal units of these covariances, treated in the same way. A probability is then that of *any* sound unit as far off (family-wise).
 
 mod between;
 mod component;
+mod corrected;
 mod means;
 mod rows;
 mod scale;
+mod sessions;
 
 use nalgebra::{Cholesky, DMatrix};
 use rayon::prelude::*;
 
 use self::component::{Component, Known};
 use self::means::UnitMeans;
-pub use self::means::UnitSessions;
 use self::rows::Rows;
+pub use self::sessions::UnitSessions;
 use crate::statistics::Random;
 use crate::uncertainty::chi_squared_tail;
 
@@ -81,17 +83,16 @@ fn drawn_largest(units: &Rows, found: &Component, known: &Known, seed: u64) -> O
     let errors: Vec<DMatrix<f64>> = (0..units.values.nrows())
         .map(|unit| {
             let mut errors = DMatrix::zeros(p, p);
-            (units.add_errors)(unit, found.factor, &mut errors);
+            (units.add_errors)(unit, 1.0, &mut errors);
             errors
         })
         .collect();
     let factors = errors.iter().map(|errors| (errors + &found.between).cholesky().map(Cholesky::unpack));
     let factors: Vec<DMatrix<f64>> = factors.collect::<Option<_>>()?;
     let add_errors = |unit: usize, weight: f64, sum: &mut DMatrix<f64>| rows::add_scaled(&errors[unit], weight, sum);
-    let variances = &units.variances * found.factor;
     let largest_of = |draw| {
         let values = drawn(&factors, &mut Random::stream(seed, draw));
-        let units = Rows { values, variances: variances.clone(), add_errors: &add_errors };
+        let units = Rows { values, variances: units.variances.clone(), add_errors: &add_errors };
         let squares = Component::of(&units, known)?.squared_distances(&units)?;
         squares.into_iter().max_by(f64::total_cmp)
     };

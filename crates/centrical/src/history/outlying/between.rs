@@ -12,24 +12,15 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// `B`, and the factor `f <= 1` of `V`: the mean ratio of the scatter to the errors, where it is below 1. `None` where `T_0` is not positive definite.
-pub fn between(scatter: &DMatrix<f64>, errors: &DMatrix<f64>, rows: usize) -> Option<(DMatrix<f64>, f64)> {
-    let factor = mean_ratio(scatter, errors).map_or(1.0, |ratio| ratio.min(1.0));
-    let errors = errors * factor;
-    let independent = independent(scatter, &errors)?;
-    let target = &errors + DMatrix::from_diagonal(&independent);
+/// `B` by the scatter `T` of as many `rows`, and the mean `V` of their errors. `None` where `T_0` is not positive definite.
+pub fn between(scatter: &DMatrix<f64>, errors: &DMatrix<f64>, rows: usize) -> Option<DMatrix<f64>> {
+    let independent = independent(scatter, errors)?;
+    let target = errors + DMatrix::from_diagonal(&independent);
     let lower = shrunk(scatter, &target, rows)?.cholesky()?.unpack();
-    let mut rest = (DMatrix::identity(lower.nrows(), lower.nrows()) - whitened(&lower, &errors)?).symmetric_eigen();
+    let mut rest = (DMatrix::identity(lower.nrows(), lower.nrows()) - whitened(&lower, errors)?).symmetric_eigen();
     rest.eigenvalues.apply(|value| *value = value.max(0.0));
     let root = &lower * rest.eigenvectors * DMatrix::from_diagonal(&rest.eigenvalues.map(f64::sqrt));
-    Some((&root * root.transpose(), factor))
-}
-
-/// `tr(V^-1 T) / p`; `None` where some combination has no error.
-fn mean_ratio(scatter: &DMatrix<f64>, errors: &DMatrix<f64>) -> Option<f64> {
-    let lower = errors.clone().cholesky()?.unpack();
-    let ratio = whitened(&lower, scatter)?.trace() / scatter.nrows() as f64;
-    ratio.is_finite().then_some(ratio)
+    Some(&root * root.transpose())
 }
 
 /// `s`, not below zero.

@@ -17,18 +17,16 @@ pub struct Known {
     /// Blom's normal scores, of unit mean square.
     normal_scores: Vec<f64>,
     /// The squared distance of the farthest of as many normal rows, at 5 %.
-    farthest: f64,
+    pub farthest: f64,
 }
 
-/// What rows `x_i ~ N(m, B + f V_i)` have in common.
+/// What rows `x_i ~ N(m, B + V_i)` have in common.
 #[derive(Debug, Clone)]
 pub struct Component {
     /// `m`.
     pub centre: DVector<f64>,
     /// `B`.
     pub between: DMatrix<f64>,
-    /// `f`, below 1 where the errors are stated larger than the rows scatter.
-    pub factor: f64,
 }
 
 /// Probability of leaving out any of sound rows.
@@ -84,13 +82,13 @@ impl Component {
     fn by_residuals(rows: &Rows, centre: DVector<f64>, mut residuals: DMatrix<f64>, weights: &[f64]) -> Option<Self> {
         residuals.row_iter_mut().zip(weights).for_each(|(mut row, weight)| row *= weight.sqrt());
         let scatter = residuals.tr_mul(&residuals) / weights.iter().sum::<f64>();
-        let (between, factor) = between(&scatter, &rows.mean_errors(weights), rows.values.nrows())?;
-        Some(Self { centre, between, factor })
+        let between = between(&scatter, &rows.mean_errors(weights), rows.values.nrows())?;
+        Some(Self { centre, between })
     }
 
     /// `d_i^2` of `rows`; `None` where a covariance is not positive definite.
     pub fn squared_distances(&self, rows: &Rows) -> Option<Vec<f64>> {
-        rows.squared_distances(&self.centre, &self.between, self.factor)
+        rows.squared_distances(&self.centre, &self.between)
     }
 
     /// `(x_ij - m_j) / S_ijj^(1/2)`, `n x p`.
@@ -102,7 +100,7 @@ impl Component {
 
     /// `S_ijj`, `n x p`.
     fn variances(&self, rows: &Rows) -> DMatrix<f64> {
-        let mut variances = &rows.variances * self.factor;
+        let mut variances = rows.variances.clone();
         variances.row_iter_mut().for_each(|mut row| row += self.between.diagonal().transpose());
         variances
     }

@@ -1,6 +1,6 @@
 //! Rows of values with the covariances of their errors, which are made one after the other where they are needed.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// `n` rows of `p` values.
 pub struct Rows<'a> {
@@ -24,16 +24,33 @@ impl Rows<'_> {
         sum / weights.iter().sum::<f64>()
     }
 
-    /// `(x_i - m)^T (B + f V_i)^-1 (x_i - m)`; `None` where a covariance is not positive definite.
-    pub fn squared_distances(&self, centre: &DVector<f64>, between: &DMatrix<f64>, factor: f64) -> Option<Vec<f64>> {
+    /// `(x_i - m)^T (B + V_i)^-1 (x_i - m)`; `None` where a covariance is not positive definite.
+    pub fn squared_distances(&self, centre: &DVector<f64>, between: &DMatrix<f64>) -> Option<Vec<f64>> {
+        let of_row = |row: usize| Some(self.whitened(row, centre, between)?.0.norm_squared());
+        (0..self.values.nrows()).map(of_row).collect()
+    }
+
+    /// Squared distances, and `ln det (B + V_i)`; `None` as before.
+    pub fn likelihoods(&self, centre: &DVector<f64>, between: &DMatrix<f64>) -> Option<Vec<(f64, f64)>> {
         let of_row = |row: usize| {
-            let mut covariance = between.clone();
-            (self.add_errors)(row, factor, &mut covariance);
-            let mut residual = self.values.row(row).transpose() - centre;
-            Cholesky::new(covariance)?.l_dirty().solve_lower_triangular_mut(&mut residual);
-            Some(residual.norm_squared())
+            let (residual, factor) = self.whitened(row, centre, between)?;
+            Some((residual.norm_squared(), 2.0 * factor.l_dirty().diagonal().iter().map(|l| l.ln()).sum::<f64>()))
         };
         (0..self.values.nrows()).map(of_row).collect()
+    }
+
+    fn whitened(
+        &self,
+        row: usize,
+        centre: &DVector<f64>,
+        between: &DMatrix<f64>,
+    ) -> Option<(DVector<f64>, Cholesky<f64, Dyn>)> {
+        let mut covariance = between.clone();
+        (self.add_errors)(row, 1.0, &mut covariance);
+        let mut residual = self.values.row(row).transpose() - centre;
+        let factor = Cholesky::new(covariance)?;
+        factor.l_dirty().solve_lower_triangular_mut(&mut residual);
+        Some((residual, factor))
     }
 }
 
