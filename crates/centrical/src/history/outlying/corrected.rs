@@ -16,6 +16,9 @@ use crate::statistics::median;
 /// Fewer differences say nothing.
 const FEWEST_DIFFERENCES: usize = 10;
 
+/// As many differences, evenly taken, know a variance to 2 %.
+const MOST_DIFFERENCES: usize = 5000;
+
 /// What differences of sessions correct.
 #[derive(Debug, Clone)]
 pub struct Corrected {
@@ -31,7 +34,9 @@ impl Corrected {
     /// By the `sessions` of units, of `p` values; as stated where there are too few, or they do not differ.
     pub fn of(sessions: &UnitSessions, p: usize) -> Self {
         let pairs_of = |(unit, count): (usize, &usize)| (1..*count).map(move |t| (unit, t));
-        let pairs: Vec<(usize, usize)> = sessions.counts.iter().enumerate().flat_map(pairs_of).collect();
+        let all: Vec<(usize, usize)> = sessions.counts.iter().enumerate().flat_map(pairs_of).collect();
+        let pairs: Vec<(usize, usize)> =
+            all.iter().step_by(all.len().div_ceil(MOST_DIFFERENCES).max(1)).copied().collect();
         let as_stated = Self { factor: 1.0, beside: DMatrix::zeros(p, p), mean_variances: None };
         if pairs.len() < FEWEST_DIFFERENCES {
             return as_stated;
