@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use centrical::fit::Follower;
@@ -18,9 +19,11 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let mut follower = Follower::new(&model);
     // A record that has not changed for this time is complete.
     let mut watch = Watch::new(&session, Duration::ZERO);
+    // Whoever raises it ends a look after the record that is read.
+    let stop = AtomicBool::new(false);
 
     while !watch.is_complete() {
-        for observation in watch.look()? {
+        for observation in watch.look(&stop)? {
             let arrival = follower.test(&observation)?;
             let test = arrival.innovation;
             follower.take(arrival)?;
