@@ -88,11 +88,13 @@ impl MeasurementModel {
             gravity: by_gravity,
             gain: gain_mean,
         };
+        let columns = self.columns(set_point, &partials, &monomials);
         Linearisation {
             reading: reading + self.disturbance(set_point, x),
             setting_error: self.setting_error(set_point, x, &geometry, &partials),
             rounding: self.own_rounding(set_point),
-            columns: self.columns(set_point, &partials, &monomials),
+            normal: self.normal(set_point, &columns),
+            columns,
             stated: self.stated_columns(set_point, &partials),
         }
     }

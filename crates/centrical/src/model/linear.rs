@@ -28,7 +28,7 @@ impl MeasurementModel {
         let columns = (0..self.parameters.len())
             .map(|column| (column, self.column_of_gh(column, set_point, &n, &f0)))
             .filter(|(_, derivative)| *derivative != Vector3::zeros())
-            .collect();
+            .collect::<Vec<_>>();
         let omega = set_point.omega;
         // A tilt turns gravity over the carousel angle; without one, the angle at rest changes nothing.
         let by_log_speed = n.by_rate() * (omega * (2.0 * omega + experiment.site.coriolis()));
@@ -41,7 +41,8 @@ impl MeasurementModel {
             )
         });
         let stated = stated.filter(|(_, derivative)| *derivative != Vector3::zeros()).collect();
-        Linearisation { reading: f0, setting_error, rounding: self.own_rounding(set_point), columns, stated }
+        let (rounding, normal) = (self.own_rounding(set_point), self.normal(set_point, &columns));
+        Linearisation { reading: f0, setting_error, rounding, normal, columns, stated }
     }
 
     /// Column of `g H`, by what the parameter is.

@@ -1,5 +1,8 @@
-//! Attitudes of single rests: unknowns that the equations of one plateau alone contain.
+//! Attitudes of rests that gravity alone shows: unknowns that the equations of one plateau alone contain.
 
+use nalgebra::Vector3;
+
+use super::experiment::SetPoint;
 use super::measurement::MeasurementModel;
 use super::parameters::OfPosition;
 use super::prior::Prior;
@@ -30,5 +33,14 @@ impl MeasurementModel {
             (plateaus[position] == 1).then_some(Own { columns, rows })
         };
         set_points.iter().enumerate().filter_map(own).collect()
+    }
+
+    /// [`Linearisation::normal`] of a plateau with these derivatives by its unknowns.
+    pub(super) fn normal(&self, set_point: &SetPoint, columns: &[(usize, Vector3<f64>)]) -> Option<Vector3<f64>> {
+        let position = self.experiment.mountings[set_point.mounting].position;
+        let OfPosition::Free { attitude, case_turn: None } = self.parameters.of_position(position) else { return None };
+        let by =
+            |unknown: usize| columns.iter().find(|(column, _)| *column == unknown).map(|(_, derivative)| derivative);
+        by(attitude)?.cross(by(attitude + 1)?).try_normalize(0.0)
     }
 }

@@ -55,7 +55,12 @@ impl Whitener {
 }
 
 /// `C + d d^T + r^2 E` [m^2/s^4]: the covariance of the mean with the errors of what was set and of the plateau's rounding.
+///
+/// Where only gravity shows the attitude, `C` is `(n^T C n) E`, with the normal `n`. The two unknowns of the attitude follow the mean across
+/// `n`, whatever its variance there. A hand trembles across: taken for an error, that would let the fit turn the attitude by as much, to where
+/// the sphere of readings bends towards the mean.
 pub(crate) fn total_covariance(mean: &Matrix3<f64>, at: &Linearisation) -> Matrix3<f64> {
-    let set = mean + at.setting_error * at.setting_error.transpose();
+    let own = at.normal.map_or(*mean, |n| Matrix3::from_diagonal_element(n.dot(&(mean * n))));
+    let set = own + at.setting_error * at.setting_error.transpose();
     if at.rounding > 0.0 { set + Matrix3::from_diagonal_element(at.rounding * at.rounding) } else { set }
 }
