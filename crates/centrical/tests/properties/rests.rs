@@ -293,6 +293,21 @@ fn a_bias_leaves_the_noise_of_rests() {
     assert_a_bias_leaves_the_noise(made(&trembling, &mut Random::new(17)), None);
 }
 
+/// What trembles by 10 mrad makes the mean of a rest shorter by 1e-4, sixty times the noise of its size.
+#[test]
+fn a_tremor_shortens_no_rest() {
+    const RUNS: usize = 30;
+    let trembling = Making { tremor: 1e-2, white: Vector3::repeat(1e-3), slow: 0.0, bumps: 0.0, ..BY_HAND };
+    let mut random = Random::new(29);
+    let squared = |random: &mut Random| {
+        let made = made(&trembling, random);
+        let (model, observations) = problem_of(&made);
+        squared_error(&model, &exact(&model, &observations).unwrap(), made.truth)
+    };
+    let mean: f64 = (0..RUNS).map(|_| squared(&mut random)).sum::<f64>() / (9 * RUNS) as f64;
+    assert!(mean < 1.0 + 4.0 * (2.0 / (9 * RUNS) as f64).sqrt(), "{mean}");
+}
+
 /// Errors are as large as stated, by hand and on a table.
 #[test]
 fn errors_are_as_large_as_stated() {
@@ -470,7 +485,9 @@ fn what_differs_between_rests_is_what_the_restricted_likelihood_says() {
         let mut variance = 0.0;
         for (k, rest) in observations.iter().enumerate() {
             let at = model.linearise(&model.experiment().set_points[rest.set_point], x);
-            noise.fixed_view_mut::<3, 3>(3 * k, 3 * k).copy_from(&rest.covariance);
+            // As the fit takes it: alike in all directions, as large as along the normal.
+            let covariance = calibration.fit().observation_covariances[k];
+            noise.fixed_view_mut::<3, 3>(3 * k, 3 * k).copy_from(&covariance);
             residuals.fixed_rows_mut::<3>(3 * k).copy_from(&(rest.mean - at.reading));
             for (j, column) in at.columns {
                 let mut rows = design.fixed_view_mut::<3, 1>(3 * k, j);
@@ -480,7 +497,7 @@ fn what_differs_between_rests_is_what_the_restricted_likelihood_says() {
             along.fixed_view_mut::<3, 1>(3 * k, k).copy_from(&up);
             let order = k as f64 / (n - 1) as f64 - 0.5;
             drift.fixed_view_mut::<3, 3>(3 * k, 0).copy_from(&(Matrix3::identity() * order));
-            variance += 1.0 / up.dot(&(rest.covariance.try_inverse().unwrap() * up)) / n as f64;
+            variance += 1.0 / up.dot(&(covariance.try_inverse().unwrap() * up)) / n as f64;
         }
         let logarithm = |v: f64, w: f64| {
             let covariance = &noise + &along * along.transpose() * v + &drift * drift.transpose() * w;
