@@ -205,7 +205,7 @@ def test_tumble_of_hundreds_of_rests(tmp_path):
     file = tmp_path / "record.csv"
     np.savetxt(file, record, delimiter=",", header="t,f1,f2,f3", comments="", fmt="%.6f")
     assert len(ct.tumble(file, gravity=9.81523).names) > 800
-    # Nothing is asked within the parts of a result, of which the longest took 0.54 s.
+    # A part of the result cannot be stopped until it is complete; the longest part took 0.54 s.
     assert_in_time_throughout(lambda: ct.tumble(file, gravity=9.81523), times=5.0)
 
 

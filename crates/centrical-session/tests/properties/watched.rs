@@ -140,7 +140,7 @@ fn a_record_left_alone_in_part_is_refused() {
     assert!(error.contains("m01.csv"), "{error}");
 }
 
-/// A watch that is stopped reads no further record: the next one finds what is left.
+/// A look that is stopped reads no further record; the next look reads the others.
 #[test]
 fn a_stopped_look_leaves_the_other_records() {
     let session = Session::read(&example("")).unwrap();

@@ -61,10 +61,11 @@ impl Structure {
         let plateaus = design.rows.nrows() - influences - model.priors().len();
         let with = |priors: &[Prior]| {
             let rows = design.rows.view((0, 0), (plateaus + priors.len(), columns)).into_owned();
-            Observability::of(rows, &assembly.own(data, priors), 0)
+            let own = assembly.own(data, priors);
+            (Observability::of(rows, &own, 0), own)
         };
-        let of_data = (!model.priors().is_empty()).then(|| with(&[]));
-        let (observability, own) = (with(model.priors()), assembly.own(data, model.priors()));
+        let of_data = (!model.priors().is_empty()).then(|| with(&[]).0);
+        let (observability, own) = with(model.priors());
         let typical = data.typical();
         let mut null_basis = observability.null_basis().clone().resize_vertically(data.unknowns(), 0.0);
         null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);

@@ -9,6 +9,8 @@
 //! in which it counts for more than [`MOST_LEFT`] standard uncertainties is left out. So is one in which a kink of the way may hide that would
 //! count for as much: it accelerates the proof masses at their distance from the axes.
 //!
+//! A rest is an arc that does not turn: its tremor shortens its mean in the same way.
+//!
 //! So the mean reading, drawn out from the bias by the ratio of `g` to `|f_0|`, is that of a rest in the attitude of `f_0`, whatever bias, scale and
 //! misalignment are. For that ratio an ellipsoid through all means is enough: of second order in the angle, it takes bias and scale coarsely.
 //!

@@ -33,7 +33,7 @@ pub struct Component {
 const LEVEL: f64 = 0.05;
 
 impl Known {
-    /// Of `n` rows of `p` values; `None` where there are none.
+    /// Of `n` rows of `p` values; `None` if `p` is zero.
     pub fn of(n: usize, p: usize) -> Option<Self> {
         let normal = Normal::standard();
         let score = |rank: usize| normal.inverse_cdf((rank as f64 + 0.625) / (n as f64 + 0.25));
@@ -108,9 +108,7 @@ impl Component {
 
 /// `g_i`: the variances of each row over their means, averaged.
 fn sizes(variances: &DMatrix<f64>) -> Vec<f64> {
-    let (n, p) = variances.shape();
+    let p = variances.ncols();
     let inverse_means = DVector::from_iterator(p, variances.column_iter().map(|column| 1.0 / column.mean()));
-    let sizes = variances * inverse_means / p as f64;
-    debug_assert_eq!(sizes.len(), n);
-    sizes.as_slice().to_vec()
+    (variances * inverse_means / p as f64).as_slice().to_vec()
 }
