@@ -53,6 +53,33 @@ fn the_example_is_calibrated_to_its_truth() {
     assert_eq!(copy.run(&compensated).status.code(), Some(0));
 }
 
+/// The rests of a session give what their record gave, also beside an arm; what the session states is not stated again.
+#[test]
+fn rests_of_a_session_are_taken_alone() {
+    let copy = Copy::new();
+    let of_record = ["tumble", &example("record.csv"), "--gravity", "9.81523 m/s^2", "--out", "tumbled"];
+    assert_eq!(copy.run(&of_record).status.code(), Some(0));
+    assert_eq!(copy.run(&["tumble", "tumbled", "--out", "again"]).status.code(), Some(0));
+    let parameters = |folder: &str| json(&copy.out().join(folder).join("result.json"))["parameters"].clone();
+    assert_eq!(parameters("again"), parameters("tumbled"));
+    let refused = |arguments: &[&str], message: &str| {
+        let output = copy.run(arguments);
+        assert!(output.status.code() == Some(2) && said(&output).contains(message), "{}", said(&output));
+    };
+    refused(&["tumble", "tumbled", "--gravity", "9.8"], "tumbled: found --gravity beside a session");
+    refused(&["tumble", "tumbled", "--terms", "G9"], "[model], error_model: found \"G9\"");
+    refused(&["tumble", "../session"], "[[tumble]] 1, rests: found no such table");
+    copy.edit("experiment.toml", |text| text + "\n[[tumble]]\nrests = \"../out/tumbled/rests.csv\"\n");
+    let output = copy.run(&["tumble", "../session", "--out", "beside"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let (own, beside) = ("tumbled", "beside");
+    for name in ["df_1", "df_2", "df_3", "G0_11", "G0_21", "G0_22", "G0_31", "G0_32", "G0_33"] {
+        let [own, beside] = [own, beside].map(|out| estimate(&json(&copy.out().join(out).join("result.json")), name));
+        // What the session states besides moves the uncertainty, not the estimate.
+        assert!((own.0 - beside.0).abs() < 0.01 * own.1, "{name}: {own:?} {beside:?}");
+    }
+}
+
 /// Stated attitudes, in any order, show the case besides; the folder keeps them with their rests.
 #[test]
 fn known_attitudes_show_the_case() {
