@@ -1,4 +1,4 @@
-//! Values of options that more than one command takes.
+//! Values of options, as commands take them.
 
 use centrical_session::{ColumnName, Dimension, NotThatQuantity, Quantity};
 
@@ -25,4 +25,25 @@ pub fn time(text: &str) -> Result<f64, NotThatQuantity> {
 /// A quantity in SI.
 pub fn quantity(text: &str, dimension: Dimension) -> Result<f64, NotThatQuantity> {
     Quantity::Text(text.to_owned()).si(dimension)
+}
+
+/// A chance above 0 and below 1.
+pub fn chance(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|value| (0.0..1.0).contains(value) && *value > 0.0);
+    value.ok_or_else(|| format!("found {text:?}, expected a chance above 0 and below 1"))
+}
+
+/// A duration in seconds, up to a day.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    // A day: longer is no waiting.
+    let value = text.parse().ok().filter(|value| (0.0..=86400.0).contains(value));
+    value.ok_or_else(|| format!("found {text:?}, expected seconds from 0 to 86400"))
+}
+
+/// A group of parameters and its target standard uncertainty in the unit of the table.
+pub fn target(text: &str) -> Result<(String, f64), String> {
+    let wrong = || format!("found {text:?}, expected GROUP=VALUE such as bias=0.01");
+    let (group, value) = text.split_once('=').ok_or_else(wrong)?;
+    let value: f64 = value.trim().parse().map_err(|_| wrong())?;
+    if value > 0.0 { Ok((group.trim().to_owned(), value)) } else { Err(wrong()) }
 }

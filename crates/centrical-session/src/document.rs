@@ -63,10 +63,11 @@ pub use self::reduction::{REDUCTION_SCHEMA, ReducedPlateauSummary, ReductionRepo
 pub(crate) use self::result::Attitude;
 pub use self::result::{
     AxesName, AxesParameter, AxesSummary, BetweenRestsSummary, BudgetSource, BudgetSummary, CalibrationResult,
-    ConvergenceSummary, FitSummary, Follows, Method, ModelSummary, MountingPrediction, MountingSummary,
-    NextAttitudeSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary, ParameterEstimate, PatternSummary,
-    PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA,
-    SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, TermSummary, ValiditySummary,
+    ConvergenceSummary, DifferenceExtent, FitSummary, FollowedSpeeds, Follows, Method, ModelSummary,
+    MountingPrediction, MountingSummary, NextAttitudeSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary,
+    ParameterEstimate, PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn,
+    ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary,
+    StabilityCurve, TermSummary, ValiditySummary,
 };
 pub use self::series::{SERIES_SCHEMA, SeriesSummary};
 pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};

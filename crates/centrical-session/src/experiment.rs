@@ -12,6 +12,8 @@ mod prior;
 mod rests;
 mod schedule;
 mod session;
+mod session_files;
+mod session_rests;
 mod speeds;
 mod stated_attitudes;
 mod terms;

@@ -50,16 +50,16 @@ pub use document::{
 };
 pub use document::{
     AxesName, AxesParameter, AxesSummary, BetweenRestsSummary, BudgetSource, BudgetSummary, CalibrationResult,
-    ChosenRest, ChosenRests, CombinationReport, ConditionReport, ConvergenceSummary, CriterionName, DriftSummary,
-    FitSummary, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry, HistoryEstimate, InnovationSummary,
-    LeftOutSummary, LostCombination, Method, ModelSummary, MountingPrediction, MountingSummary, NOISE_SCHEMA,
-    NextAttitudeSummary, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport, ObservabilitySummary,
-    ObservedParameter, OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate, PatternSummary, PlanReport,
-    PlannedMounting, PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter, PredictionReport,
-    PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn, ResultObjection,
-    RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport, SpeedDifference,
-    SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary, TiltVerdict,
-    ValiditySummary, WatchState, WatchedPlateau, read_history,
+    ChosenRest, ChosenRests, CombinationReport, ConditionReport, ConvergenceSummary, CriterionName, DifferenceExtent,
+    DriftSummary, FitSummary, FollowedSpeeds, Follows, FrontierRow, GoalReport, GroupReport, HistoryEntry,
+    HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method, ModelSummary, MountingPrediction,
+    MountingSummary, NOISE_SCHEMA, NextAttitudeSummary, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport,
+    ObservabilitySummary, ObservedParameter, OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate,
+    PatternSummary, PlanReport, PlannedMounting, PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter,
+    PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn,
+    ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport,
+    SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary,
+    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history,
 };
 pub use document::{
     BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession,

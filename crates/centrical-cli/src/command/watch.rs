@@ -17,6 +17,7 @@ use centrical_live::Watched;
 use centrical_session::LiveRequest;
 
 use crate::alarm::Alarm;
+use crate::given::{chance, seconds, target};
 use crate::interruption::asked_to_end;
 use crate::outcome::Outcome;
 use crate::output::{print, print_as_it_is, remark, say, show as show_screen};
@@ -168,22 +169,4 @@ fn show(event: &WatchEvent, arguments: &Arguments) -> Result<(), Error> {
         }
     }
     Ok(())
-}
-
-fn target(text: &str) -> Result<(String, f64), String> {
-    let wrong = || format!("found {text:?}, expected GROUP=VALUE such as bias=0.01");
-    let (group, value) = text.split_once('=').ok_or_else(wrong)?;
-    let value: f64 = value.trim().parse().map_err(|_| wrong())?;
-    if value > 0.0 { Ok((group.trim().to_owned(), value)) } else { Err(wrong()) }
-}
-
-fn chance(text: &str) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|value| (0.0..1.0).contains(value) && *value > 0.0);
-    value.ok_or_else(|| format!("found {text:?}, expected a chance above 0 and below 1"))
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    // A day: longer is no waiting.
-    let value = text.parse().ok().filter(|value| (0.0..=86400.0).contains(value));
-    value.ok_or_else(|| format!("found {text:?}, expected seconds from 0 to 86400"))
 }

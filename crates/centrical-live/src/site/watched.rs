@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::SystemTime;
 
 use centrical_report::{LIVE_SCRIPT, LIVE_STYLE, Language, live_page, live_panel};
-use centrical_session::{Error, HistoryEntry, LiveReport, LiveStatus, read_history, seconds_since_1970};
+use centrical_session::{Error, GroupProgress, HistoryEntry, LiveReport, LiveStatus, read_history, seconds_since_1970};
 use serde_json::{Map, Value};
 
 use super::answer::{Answer, Query, Site};
@@ -153,18 +153,15 @@ fn metrics(live: &LiveReport, now: f64) -> String {
         "Whether the calibration is acceptable.",
         live.acceptable.map(|good| f64::from(u8::from(good))),
     );
-    for (name, help) in [
-        ("largest_uncertainty", "Largest standard uncertainty of a group, in its customary unit."),
-        ("target_uncertainty", "Target of a group, in its customary unit."),
-    ] {
+    let mut of_groups = |name: &str, help: &str, value: fn(&GroupProgress) -> Option<f64>| {
         let _ = writeln!(text, "# HELP centrical_{name} {help}\n# TYPE centrical_{name} gauge");
-        for group in &live.groups {
-            let value = if name == "largest_uncertainty" { group.largest } else { group.target };
-            if let Some(value) = value {
-                let (group, unit) = (group.group.name(), &group.unit);
-                let _ = writeln!(text, "centrical_{name}{{group=\"{group}\",unit=\"{unit}\"}} {value}");
-            }
+        for (group, value) in live.groups.iter().filter_map(|group| Some((group, value(group)?))) {
+            let (group, unit) = (group.group.name(), &group.unit);
+            let _ = writeln!(text, "centrical_{name}{{group=\"{group}\",unit=\"{unit}\"}} {value}");
         }
-    }
+    };
+    let help = "Largest standard uncertainty of a group, in its customary unit.";
+    of_groups("largest_uncertainty", help, |group| group.largest);
+    of_groups("target_uncertainty", "Target of a group, in its customary unit.", |group| group.target);
     text
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use centrical_compensate::Monomial;
 use centrical_session::{CalibrationResult, TermSummary};
 
 use super::symbol::{newtonometer, symbol};
@@ -29,7 +30,7 @@ fn written(
         let mut text = format!("{f}\u{2032} = {f}");
         for term in result.model.error_model.iter().filter(|term| term.axis == axis) {
             let (name, monomial) = (name(&term.name), monomial(term));
-            let _ = if monomial == "1" {
+            let _ = if term.monomial().is_ok_and(|monomial| monomial == Monomial::ONE) {
                 write!(text, " + {name}")
             } else {
                 write!(text, " + {name}·{}", product(monomial))

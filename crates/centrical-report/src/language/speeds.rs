@@ -1,6 +1,6 @@
 //! Sentences about the speeds of plateaus, in each language.
 
-use centrical_session::{SpeedDifference, SpeedFinding, SpeedsSummary};
+use centrical_session::{DifferenceExtent, FollowedSpeeds, SpeedDifference, SpeedFinding, SpeedSource, SpeedsSummary};
 
 /// Plateaus and mountings that a sentence names; of more it says how many.
 const NAMED: usize = 5;
@@ -11,19 +11,19 @@ pub(super) fn in_english(finding: &SpeedFinding) -> String {
         SpeedFinding::Difference(found) => difference_in_english(found),
         SpeedFinding::Clock { shown_by, mountings, rate: Some(rate), .. } => format!(
             "the clock of the {} runs {} times as fast as that of the record in {}: a wrong sampling rate or unit of time",
-            english_witness(shown_by),
+            english_witness(*shown_by),
             three(1.0 / rate),
             mountings_in_english(mountings)
         ),
         SpeedFinding::Clock { shown_by, mountings, ramps, agreeing, rate: None } => {
-            let (witness, of) = (english_witness(shown_by), mountings_in_english(mountings));
+            let (witness, of) = (english_witness(*shown_by), mountings_in_english(mountings));
             format!(
                 "{witness} of {of} has {agreeing} of the {ramps} ramps of the record at their times: that of another \
                  mounting, or a wrong clock"
             )
         }
         SpeedFinding::Missing { shown_by, mounting, plateaus, span: [from, to] } => {
-            let witness = english_witness(shown_by);
+            let witness = english_witness(*shown_by);
             format!(
                 "{witness} of mounting {mounting} covers {from:.1} s to {to:.1} s of the record: {plateaus} plateaus without a speed"
             )
@@ -37,12 +37,12 @@ pub(super) fn in_russian(finding: &SpeedFinding) -> String {
         SpeedFinding::Difference(found) => difference_in_russian(found),
         SpeedFinding::Clock { shown_by, mountings, rate: Some(rate), .. } => format!(
             "часы {} идут в {} раз быстрее часов записи (установки {}): неверная частота отсчётов или единица времени",
-            russian_witness(shown_by)[1],
+            russian_witness(*shown_by)[1],
             comma(&three(1.0 / rate)),
             list(mountings.iter(), "и др.")
         ),
         SpeedFinding::Clock { shown_by, mountings, ramps, agreeing, rate: None } => {
-            let witness = russian_witness(shown_by)[1];
+            let witness = russian_witness(*shown_by)[1];
             let of = list(mountings.iter(), "и др.");
             format!(
                 "по данным {witness} совпадают по времени с записью разгоны: {agreeing} из {ramps} (установки {of}): данные другой \
@@ -50,7 +50,7 @@ pub(super) fn in_russian(finding: &SpeedFinding) -> String {
             )
         }
         SpeedFinding::Missing { shown_by, mounting, plateaus, span: [from, to] } => {
-            let witness = russian_witness(shown_by)[0];
+            let witness = russian_witness(*shown_by)[0];
             let [from, to] = [from, to].map(|t| comma(&format!("{t:.1}")));
             format!(
                 "{witness} установки {mounting} охватывает запись от {from} с до {to} с; площадок без скорости: {plateaus}"
@@ -61,10 +61,10 @@ pub(super) fn in_russian(finding: &SpeedFinding) -> String {
 
 /// How the speeds are known.
 pub(super) fn measured_in_english(speeds: &SpeedsSummary) -> String {
-    let by = match speeds.measured_by.as_deref() {
-        Some("pulses") => "by a counter of revolutions",
-        Some("plateaus") => "as the plateaus state",
-        _ => "by the telemetry",
+    let by = match speeds.measured_by {
+        Some(SpeedSource::Pulses) => "by a counter of revolutions",
+        Some(SpeedSource::Plateaus) => "as the plateaus state",
+        Some(SpeedSource::Telemetry) | None => "by the telemetry",
     };
     let SpeedsSummary { measured, spinning, scale_uncertainty, .. } = speeds;
     format!("measured {by} on {measured} of {spinning} plateaus that spin; common scale {}", ppm(*scale_uncertainty))
@@ -72,23 +72,23 @@ pub(super) fn measured_in_english(speeds: &SpeedsSummary) -> String {
 
 /// As [`measured_in_english`].
 pub(super) fn measured_in_russian(speeds: &SpeedsSummary) -> String {
-    let by = match speeds.measured_by.as_deref() {
-        Some("pulses") => "счётчиком оборотов",
-        Some("plateaus") => "как указано для площадок",
-        _ => "по телеметрии",
+    let by = match speeds.measured_by {
+        Some(SpeedSource::Pulses) => "счётчиком оборотов",
+        Some(SpeedSource::Plateaus) => "как указано для площадок",
+        Some(SpeedSource::Telemetry) | None => "по телеметрии",
     };
     let SpeedsSummary { measured, spinning, scale_uncertainty, .. } = speeds;
     let scale = comma(&ppm(*scale_uncertainty)).replace("ppm", "млн⁻¹");
     format!("измерены {by} на площадках с вращением: {measured} из {spinning}; общий масштаб {scale}")
 }
 
-fn english_witness(shown_by: &str) -> &'static str {
-    if shown_by == "pulses" { "counter of revolutions" } else { "telemetry" }
+fn english_witness(shown_by: SpeedSource) -> &'static str {
+    if shown_by == SpeedSource::Pulses { "counter of revolutions" } else { "telemetry" }
 }
 
 /// Nominative and genitive.
-fn russian_witness(shown_by: &str) -> [&'static str; 2] {
-    if shown_by == "pulses" {
+fn russian_witness(shown_by: SpeedSource) -> [&'static str; 2] {
+    if shown_by == SpeedSource::Pulses {
         ["счётчик оборотов", "счётчика оборотов"]
     } else {
         ["телеметрия", "телеметрии"]
@@ -97,29 +97,31 @@ fn russian_witness(shown_by: &str) -> [&'static str; 2] {
 
 fn difference_in_english(found: &SpeedDifference) -> String {
     let count = found.plateaus.len();
-    let place = match found.extent.as_str() {
-        "all" if count == found.of => format!("in all {count} plateaus"),
-        "all" => format!("in {count} of {} plateaus", found.of),
-        "mountings" => format!("in all {count} plateaus of {}", mountings_in_english(&found.mountings)),
-        "speeds" if found.speeds.len() == 1 => format!("in all {count} plateaus of this speed"),
-        "speeds" => format!("in all {count} plateaus of {} speeds", found.speeds.len()),
-        _ => format!("in {count} of {} plateaus ({})", found.of, list(found.plateaus.iter(), "and others")),
+    let place = match found.extent {
+        DifferenceExtent::All if count == found.of => format!("in all {count} plateaus"),
+        DifferenceExtent::All => format!("in {count} of {} plateaus", found.of),
+        DifferenceExtent::Mountings => format!("in all {count} plateaus of {}", mountings_in_english(&found.mountings)),
+        DifferenceExtent::Speeds if found.speeds.len() == 1 => format!("in all {count} plateaus of this speed"),
+        DifferenceExtent::Speeds => format!("in all {count} plateaus of {} speeds", found.speeds.len()),
+        DifferenceExtent::Plateaus => {
+            format!("in {count} of {} plateaus ({})", found.of, list(found.plateaus.iter(), "and others"))
+        }
     };
     let cause = match &found.units {
         Some([own, read]) => format!("speeds in {own} are read in {read}"),
-        None if found.extent == "plateaus" || found.extent == "speeds" => {
+        None if matches!(found.extent, DifferenceExtent::Plateaus | DifferenceExtent::Speeds) => {
             "a wrong set-point, or the tachometer".to_owned()
         }
         None => "a wrong unit, a wrong set-point, or a tachometer's scale".to_owned(),
     };
-    let record = match found.record_follows.as_deref() {
-        Some("telemetry") => "; the record follows the telemetry",
-        Some("schedule") => "; the record follows the schedule",
-        _ => "",
+    let record = match found.record_follows {
+        Some(FollowedSpeeds::Telemetry) => "; the record follows the telemetry",
+        Some(FollowedSpeeds::Schedule) => "; the record follows the schedule",
+        None => "",
     };
     format!(
         "{} says {:.2} rpm, the schedule {:.2} ({}, {} times the stated uncertainty) {place}: {cause}{record}",
-        english_witness(&found.shown_by),
+        english_witness(found.shown_by),
         rpm(found.shown),
         rpm(found.set),
         percent(found.difference),
@@ -129,23 +131,27 @@ fn difference_in_english(found: &SpeedDifference) -> String {
 
 fn difference_in_russian(found: &SpeedDifference) -> String {
     let count = found.plateaus.len();
-    let place = match found.extent.as_str() {
-        "all" => format!("на площадках: {count} из {}", found.of),
-        "mountings" => format!("на всех площадках установок {}", list(found.mountings.iter(), "и др.")),
-        "speeds" => format!("на всех площадках с такими скоростями: {count}"),
-        _ => format!("на площадках {} ({count} из {})", list(found.plateaus.iter(), "и др."), found.of),
+    let place = match found.extent {
+        DifferenceExtent::All => format!("на площадках: {count} из {}", found.of),
+        DifferenceExtent::Mountings => format!("на всех площадках установок {}", list(found.mountings.iter(), "и др.")),
+        DifferenceExtent::Speeds => format!("на всех площадках с такими скоростями: {count}"),
+        DifferenceExtent::Plateaus => {
+            format!("на площадках {} ({count} из {})", list(found.plateaus.iter(), "и др."), found.of)
+        }
     };
     let cause = match &found.units {
         Some([own, read]) => format!("скорости в {} прочитаны в {}", russian_unit(own), russian_unit(read)),
-        None if found.extent == "plateaus" || found.extent == "speeds" => "неверная уставка или тахометр".to_owned(),
+        None if matches!(found.extent, DifferenceExtent::Plateaus | DifferenceExtent::Speeds) => {
+            "неверная уставка или тахометр".to_owned()
+        }
         None => "неверная единица, неверная уставка или масштаб тахометра".to_owned(),
     };
-    let record = match found.record_follows.as_deref() {
-        Some("telemetry") => "; запись согласуется с телеметрией",
-        Some("schedule") => "; запись согласуется с программой",
-        _ => "",
+    let record = match found.record_follows {
+        Some(FollowedSpeeds::Telemetry) => "; запись согласуется с телеметрией",
+        Some(FollowedSpeeds::Schedule) => "; запись согласуется с программой",
+        None => "",
     };
-    let witness = russian_witness(&found.shown_by)[0];
+    let witness = russian_witness(found.shown_by)[0];
     let numbers = format!("{witness} показывает {:.2} об/мин, программа {:.2}", rpm(found.shown), rpm(found.set));
     let off = format!("{}, в {} раз больше заявленной неопределённости", percent(found.difference), times(found));
     format!("{} ({}) {place}: {cause}{record}", comma(&numbers), comma(&off))

@@ -25,5 +25,5 @@ pub use self::schema::{
     OutputSummary, ParameterEstimate, PlateauSummary, PositionSummary, PriorSummary, Program, SCHEMA, SessionSummary,
     StabilityCurve, TermSummary,
 };
-pub use self::speeds::{SpeedDifference, SpeedFinding, SpeedsSummary};
+pub use self::speeds::{DifferenceExtent, FollowedSpeeds, SpeedDifference, SpeedFinding, SpeedsSummary};
 pub use self::verdict::ResultObjection;

@@ -3,26 +3,23 @@
 use std::path::{Path, PathBuf};
 
 use centrical::TypeB;
-use centrical::reduction::{PulseTrain, Record, SpeedTrace};
 use centrical::{
     Centrifuge, ErrorModel, Experiment, Extension, MeasurementModel, PairRelation, Rotation, SetPoint, Site,
 };
-use centrical_table::{Extent, Source};
 
 use super::folder::Folder;
-use super::form::{Form, ModelTable, RecordEntry, SiteTable, TermEntry, TermList};
-use super::plateaus::{PlateauMean, PlateauTable};
+use super::form::{Form, ModelTable, RecordEntry, SiteTable};
+use super::plateaus::PlateauTable;
 use super::prior::{self, PriorEntry};
-use super::rests::{RecordedRests, RestTable};
+use super::rests::RestTable;
 use super::speeds::{SpeedSource, Speeds};
 use super::toml_path::TomlPath;
-use super::turning::Turning;
 use super::unit::OutputUnit;
-use super::{attitude, columns, rests, schedule, speeds, terms, uncertainty, unit};
+use super::{attitude, columns, schedule, speeds, terms, uncertainty, unit};
 use crate::error::{Error, quoted};
 use crate::quantity::Dimension;
-use crate::record::{Columns, PULSES, TELEMETRY, pulses_of, read_records, telemetry_of};
-use crate::settings::{from_toml, read_settings, settings_of};
+use crate::record::Columns;
+use crate::settings::{from_toml, read_settings};
 
 /// Name of the experiment file in a session folder.
 pub(crate) const EXPERIMENT_FILE: &str = "experiment.toml";
@@ -66,7 +63,7 @@ pub struct Session {
     pub rest_tables: Vec<RestTable>,
     /// Duration that the schedule states for each set point, if it does [s].
     pub durations: Vec<Option<f64>>,
-    priors: Vec<PriorEntry>,
+    pub(super) priors: Vec<PriorEntry>,
     /// Where its files are.
     pub(crate) folder: Folder,
 }
@@ -92,17 +89,6 @@ impl MountingFiles {
 }
 
 impl Session {
-    /// Variance of the means of rests at most, over the one stated, where there are rests alone and it is not 1: on an arm plateaus judge.
-    pub(crate) fn noise_at_most(&self) -> Option<f64> {
-        let most = self.rest_tables.iter().map(|table| table.noise_at_most).fold(1.0, f64::max);
-        (most > 1.0 && !self.experiment.has_arm()).then_some(most)
-    }
-
-    /// Slow rotation among its rests.
-    pub(crate) fn turning(&self) -> Option<Turning> {
-        self.rest_tables.iter().filter_map(|table| table.turning).reduce(Turning::joined)
-    }
-
     /// Reads the session in a folder, or of an experiment file. The records themselves are not touched.
     ///
     /// # Errors
@@ -180,97 +166,6 @@ impl Session {
         self.refuse_rests_alone()?;
         self.add_rests();
         Ok(self)
-    }
-
-    /// Adds the rests of `[[tumble]]` to the experiment, behind all that is on the arm.
-    pub(crate) fn add_rests(&mut self) {
-        rests::add_rests(&mut self.experiment, &self.rest_tables);
-        if self.plateaus.is_none() {
-            self.durations.extend(self.rest_tables.iter().flat_map(RestTable::durations));
-        }
-    }
-
-    /// The `[[tumble]]` whose rests are to be found in a record, with their numbers from 0.
-    pub(crate) fn rest_records(&self) -> impl Iterator<Item = (usize, &RecordedRests)> {
-        self.rest_tables.iter().enumerate().filter_map(|(number, table)| Some((number, table.record()?)))
-    }
-
-    /// The session with other tables of rests, such as those that were found in records.
-    pub(crate) fn with_rest_tables(mut self, tables: Vec<RestTable>) -> Self {
-        self.forget_rests();
-        self.rest_tables = tables;
-        self.add_rests();
-        self
-    }
-
-    /// The means of the rests in free attitudes.
-    pub fn rests(&self) -> impl Iterator<Item = &PlateauMean> {
-        self.rest_tables.iter().flat_map(|table| &table.means)
-    }
-
-    /// Number from 1 of the rest in an attitude of its own that is a mounting; `None` on the arm.
-    pub fn rest_of(&self, mounting: usize) -> Option<usize> {
-        (mounting + 1).checked_sub(self.mountings.len()).filter(|rest| *rest > 0)
-    }
-
-    /// Takes away what [`Session::add_rests`] added.
-    fn forget_rests(&mut self) {
-        let on_arm = self.experiment.mountings_on_arm().count();
-        self.experiment.positions.retain(|position| !position.is_free);
-        self.experiment.set_points.retain(|set_point| set_point.mounting < on_arm);
-        self.experiment.mountings.truncate(on_arm);
-        self.durations.truncate(self.experiment.set_points.len());
-    }
-
-    /// Refuses rests of which nothing is measured yet.
-    pub(crate) fn refuse_planned_rests(&self) -> Result<(), Error> {
-        let Some(planned) = self.rest_tables.iter().position(RestTable::is_planned) else { return Ok(()) };
-        let expected = "a table of rests, in a session that is measured";
-        Err(TomlPath::entry(&self.file, "tumble", planned).unexpected("rests", "rests that are planned", expected))
-    }
-
-    /// The session without rests in free attitudes.
-    #[must_use]
-    pub fn on_arm(self) -> Self {
-        self.with_rest_tables(Vec::new())
-    }
-
-    /// The session without the arm: its rests in free attitudes, and these terms of the error model. What is said of the arm, extensions of
-    /// the model and priors go.
-    ///
-    /// # Errors
-    /// If it has no such rests that are measured, or a term is unknown.
-    pub fn off_arm(self, terms: &[String]) -> Result<Self, Error> {
-        self.refuse_planned_rests()?;
-        if self.rest_tables.is_empty() {
-            let expected = "a table of rests, or a record of a unit that is turned and rests again and again";
-            return Err(TomlPath::entry(&self.file, "tumble", 0).unexpected("rests", "no such table", expected));
-        }
-        let terms = TermList(terms.iter().cloned().map(TermEntry::Named).collect());
-        let error_model = terms::error_model(&self.file, &terms)?;
-        let Experiment { site, unit, .. } = self.experiment;
-        let experiment = Experiment {
-            site,
-            unit,
-            centrifuge: Centrifuge::default(),
-            positions: Vec::new(),
-            pair_relation: PairRelation::Free,
-            mountings: Vec::new(),
-            set_points: Vec::new(),
-        };
-        let nothing = Self {
-            experiment,
-            error_model,
-            extensions: Vec::new(),
-            speeds: Speeds::default(),
-            mountings: Vec::new(),
-            plateaus: None,
-            rest_tables: Vec::new(),
-            durations: Vec::new(),
-            priors: Vec::new(),
-            ..self
-        };
-        Ok(nothing.with_rest_tables(self.rest_tables))
     }
 
     /// On an arm plateaus at rest alone show nothing of a centrifuge.
@@ -362,99 +257,10 @@ impl Session {
             folder,
         })
     }
-
-    /// Reads the whole record of a mounting, by its index.
-    ///
-    /// # Errors
-    /// If the mounting has no record, or as [`read_record`].
-    pub fn record(&self, mounting: usize) -> Result<Record, Error> {
-        read_records(self.open_record(mounting)?, &self.columns, Extent::Whole)
-    }
-
-    /// Reads the telemetry of a mounting, if it has any.
-    ///
-    /// # Errors
-    /// As [`read_record`].
-    pub fn telemetry(&self, mounting: usize) -> Result<Option<SpeedTrace>, Error> {
-        self.telemetry_to(mounting, Extent::Whole)
-    }
-
-    /// The same of telemetry that may still be growing.
-    pub(crate) fn telemetry_to(&self, mounting: usize, extent: Extent) -> Result<Option<SpeedTrace>, Error> {
-        let file = self.mountings.get(mounting).and_then(|m| m.telemetry.as_ref());
-        file.map(|file| telemetry_of(self.folder.open(file, TELEMETRY)?, &self.columns, extent)).transpose()
-    }
-
-    /// Reads the pulses of a mounting, if it has any.
-    ///
-    /// # Errors
-    /// As [`read_record`].
-    pub fn pulses(&self, mounting: usize) -> Result<Option<PulseTrain>, Error> {
-        self.pulses_to(mounting, Extent::Whole)
-    }
-
-    /// The same of pulses that may still be coming.
-    pub(crate) fn pulses_to(&self, mounting: usize, extent: Extent) -> Result<Option<PulseTrain>, Error> {
-        let file = self.mountings.get(mounting).and_then(|m| m.pulses.as_ref());
-        let per_revolution = self.pulses_per_revolution();
-        let read = |file: &PathBuf| {
-            let t = pulses_of(self.folder.open(file, PULSES)?, &self.columns, extent)?;
-            Ok(PulseTrain { t, per_revolution })
-        };
-        file.map(read).transpose()
-    }
-
-    /// Pulses of a revolution, of an index mark unless the session says otherwise.
-    pub(crate) fn pulses_per_revolution(&self) -> f64 {
-        self.speeds.measured.map_or(1.0, |measured| measured.pulses_per_revolution)
-    }
-
-    /// Size of the records [bytes]; of a session that comes already averaged those of its rests alone. Records that are not there
-    /// have none.
-    pub fn record_bytes(&self) -> u64 {
-        let of_arm = self.mountings.iter().filter(|_| self.plateaus.is_none()).flat_map(MountingFiles::records);
-        let files = of_arm.chain(self.rest_records().flat_map(|(_, recorded)| &recorded.files));
-        files.map(|file| self.folder.length(file)).sum()
-    }
-
-    /// All files of the session in the order they are named: the experiment file first.
-    pub fn files(&self) -> Vec<&Path> {
-        let of_mountings = self.mountings.iter().flat_map(|m| m.records().chain(&m.telemetry).chain(&m.pulses));
-        let table = self
-            .plateaus
-            .iter()
-            .flat_map(|table| &table.file)
-            .chain(self.rest_tables.iter().flat_map(RestTable::files));
-        std::iter::once(&self.file).chain(table).chain(of_mountings).map(PathBuf::as_path).collect()
-    }
-
-    /// The file of a mounting's record, or the three of its newtonometers.
-    pub(crate) fn record_files(&self, mounting: usize) -> Result<Vec<&Path>, Error> {
-        self.record_file(mounting)?;
-        Ok(self.mountings[mounting].records().map(PathBuf::as_path).collect())
-    }
-
-    /// Opens the file of a mounting's record, or the three of its newtonometers.
-    pub(crate) fn open_record(&self, mounting: usize) -> Result<Vec<Source>, Error> {
-        self.folder.open_record(&self.record_files(mounting)?)
-    }
-
-    /// The text of the experiment file.
-    pub(crate) fn experiment_text(&self) -> Result<String, Error> {
-        settings_of(&self.folder.open(&self.file, EXPERIMENT)?, EXPERIMENT)
-    }
-
-    /// The file of a mounting's record, the first of several.
-    pub(crate) fn record_file(&self, mounting: usize) -> Result<&Path, Error> {
-        let record = self.mountings.get(mounting).and_then(|m| m.record.as_deref());
-        record.ok_or_else(|| {
-            TomlPath::entry(&self.file, "mounting", mounting).unexpected("record", "no record", "the path of one")
-        })
-    }
 }
 
 /// What an experiment file is expected to be.
-const EXPERIMENT: &str = "an experiment file, or the folder with its experiment.toml";
+pub(super) const EXPERIMENT: &str = "an experiment file, or the folder with its experiment.toml";
 
 /// Refuses a session with an arm that says nothing of what only an arm has.
 fn refuse_missing_keys(file: &Path, form: &Form) -> Result<(), Error> {

@@ -1,5 +1,6 @@
 //! What `[centrifuge]` says of speeds: how well they are set, and how they are measured if they are.
 
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 use super::form::{CentrifugeTable, MeasuredTable, PresetCentrifugeTable};
@@ -32,7 +33,8 @@ pub struct Measured {
 }
 
 /// By what speeds are measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum SpeedSource {
     /// The telemetry of each mounting.
     Telemetry,

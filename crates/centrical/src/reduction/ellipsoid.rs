@@ -76,16 +76,16 @@ impl Ellipsoid {
 
     /// Direction of the noise that changes the size of a reading.
     pub(super) fn normal(&self, reading: &Vector3<f64>) -> Vector3<f64> {
-        self.gradient(reading).normalize()
+        self.half_gradient(reading).normalize()
     }
 
     /// Half of what the square of the size of a reading exceeds that of gravity by, over the latter: about the excess of the size.
     pub(super) fn excess(&self, reading: &Vector3<f64>) -> f64 {
-        0.5 * (self.gradient(reading).dot(&(reading - self.centre)) - 1.0)
+        0.5 * (self.half_gradient(reading).dot(&(reading - self.centre)) - 1.0)
     }
 
     /// Half the gradient of `(y - c)^T A (y - c)`.
-    pub(super) fn gradient(&self, reading: &Vector3<f64>) -> Vector3<f64> {
+    pub(super) fn half_gradient(&self, reading: &Vector3<f64>) -> Vector3<f64> {
         self.a * (reading - self.centre)
     }
 

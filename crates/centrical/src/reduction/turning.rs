@@ -46,9 +46,6 @@ const PER_SPIKE: usize = 20;
 /// Least singular value of the terms of a place beside the axes that is not noise, over the largest.
 const LEAST: f64 = 1e-4;
 
-/// Longest stretch of rotation whose noise is looked at as a whole [s].
-const STRETCH: f64 = 60.0;
-
 /// Whether a fit is that of a rest, or of an arc which the polynomials describe. `white` is the white noise of its readings [m/s^2], `radius`
 /// the largest distance of the proof masses from the axes of rotation [m].
 pub(super) fn is_smooth(fit: &PlateauFit, white: &Vector3<f64>, radius: f64) -> bool {
@@ -87,7 +84,8 @@ pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, V
     ellipsoid
 }
 
-/// The noise of a record along the force, in units of `white` [m/s^2], over the stretches of its arcs: their fits as those of rests.
+/// The noise of a record along the force, in units of `white` [m/s^2], over stretches of arcs without a gap: their fits as those of rests. Errors of
+/// the coefficients follow the attitude: noise as slow as a turn weighs in them, and only whole stretches show it.
 ///
 /// # Errors
 /// [`ReductionError`] if the record is too short.
@@ -102,7 +100,7 @@ pub(super) fn noise_along(
     for arc in &arcs {
         let [from, to] = arc.window;
         match spans.last_mut() {
-            Some(span) if from - span[1] < 1e-6 * (to - from) && to - span[0] <= STRETCH => span[1] = to,
+            Some(span) if from - span[1] < 1e-6 * (to - from) => span[1] = to,
             _ => spans.push([from, to]),
         }
     }
@@ -113,7 +111,7 @@ pub(super) fn noise_along(
     let noise = |n: usize| {
         let reading = Vector3::from_fn(|axis, _| record.f_z[axis][n]);
         let excess = ellipsoid.excess(&reading) - accelerated.excess(ellipsoid, &reading, record.t[n]);
-        excess / ellipsoid.gradient(&reading).component_mul(white).norm()
+        excess / ellipsoid.half_gradient(&reading).component_mul(white).norm()
     };
     let noise: Vec<f64> = (0..record.t.len()).map(noise).collect();
     let noise = Record { t: record.t.to_vec(), f_z: [noise.clone(), noise.clone(), noise] };

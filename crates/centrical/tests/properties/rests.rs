@@ -375,6 +375,21 @@ fn errors_are_as_large_as_stated() {
     }
 }
 
+/// A rest of minutes beside rests of a second: their noise is compared over times that differ a thousandfold.
+#[test]
+fn a_long_rest_beside_short_ones_is_no_harm() {
+    const RUNS: usize = 6;
+    let making = Making { first: 300.0, lasting: [1.0, 1.6], slow: 0.0, ..DOUBTFUL };
+    let mut random = Random::new(37);
+    let squared = |random: &mut Random| {
+        let made = made(&making, random);
+        let (model, observations) = problem_of(&made);
+        squared_error(&model, &exact(&model, &observations).unwrap(), made.truth)
+    };
+    let mean: f64 = (0..RUNS).map(|_| squared(&mut random)).sum::<f64>() / (9 * RUNS) as f64;
+    assert!((mean - 1.0).abs() < 4.0 * (2.0 / (9 * RUNS) as f64).sqrt(), "{mean}");
+}
+
 /// A made record judged and calibrated as a session is.
 pub struct Judged {
     /// Squared errors over their covariance, with what differs between rests where the record is not refused.

@@ -11,9 +11,9 @@ use crate::reduced::{Reduced, ReducedPlateau};
 /// How the speeds are known; in a result only where they are measured or contradicted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpeedsSummary {
-    /// By what they are measured: "telemetry", "pulses" or "plateaus"; none if they are set.
+    /// By what they are measured; none if they are set.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub measured_by: Option<String>,
+    pub measured_by: Option<SpeedSource>,
     /// Plateaus with a measured speed.
     pub measured: usize,
     /// Plateaus that spin.
@@ -34,8 +34,8 @@ pub enum SpeedFinding {
     Difference(SpeedDifference),
     /// The ramps of the telemetry are not those of the record.
     Clock {
-        /// What shows the speeds: "telemetry" or "pulses".
-        shown_by: String,
+        /// What shows the speeds: telemetry or pulses.
+        shown_by: SpeedSource,
         /// Mountings, counted from 1.
         mountings: Vec<usize>,
         /// Ramps of their records in the time of the telemetry.
@@ -48,8 +48,8 @@ pub enum SpeedFinding {
     },
     /// The telemetry does not cover plateaus.
     Missing {
-        /// What shows the speeds: "telemetry" or "pulses".
-        shown_by: String,
+        /// What shows the speeds: telemetry or pulses.
+        shown_by: SpeedSource,
         /// Mounting, counted from 1.
         mounting: usize,
         /// Number of its plateaus that spin and are not in the telemetry.
@@ -62,10 +62,10 @@ pub enum SpeedFinding {
 /// Speeds that differ from those that were set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpeedDifference {
-    /// What shows the speeds: "telemetry" or "pulses".
-    pub shown_by: String,
-    /// What the plateaus have in common: "all", "mountings", "speeds" or "plateaus".
-    pub extent: String,
+    /// What shows the speeds: telemetry or pulses.
+    pub shown_by: SpeedSource,
+    /// What the plateaus have in common.
+    pub extent: DifferenceExtent,
     /// Mountings, counted from 1, where they have these in common.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mountings: Vec<usize>,
@@ -89,9 +89,33 @@ pub struct SpeedDifference {
     /// Unit of the telemetry that would explain it, and the one it is read in.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<[String; 2]>,
-    /// Which the record follows, "telemetry" or "schedule"; none if it does not decide.
+    /// Which the record follows; none if it does not decide.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub record_follows: Option<String>,
+    pub record_follows: Option<FollowedSpeeds>,
+}
+
+/// What plateaus with a difference have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DifferenceExtent {
+    /// They are all plateaus, or all that are off are off alike.
+    All,
+    /// They are all plateaus of some mountings.
+    Mountings,
+    /// They are all plateaus of some speeds.
+    Speeds,
+    /// None of these.
+    Plateaus,
+}
+
+/// Which of two contradicting speeds a record follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FollowedSpeeds {
+    /// Those that are measured.
+    Telemetry,
+    /// Those that were set.
+    Schedule,
 }
 
 /// chi^2 by which a fit is better before the record is said to follow its speeds: odds of 10,000.
@@ -124,8 +148,7 @@ impl SpeedsSummary {
         for contradiction in speed_contradictions(&shown, &stated(session)) {
             findings.push(SpeedFinding::Difference(SpeedDifference {
                 record_follows: record_follows(calibration, &shown, &contradiction, session.speeds.is_in_files())?,
-                shown_by: shown_by(session),
-                ..SpeedDifference::new(&session.experiment, &contradiction, shown.len())
+                ..SpeedDifference::new(session, &contradiction, shown.len())
             }));
         }
         let measured = session.speeds.measured;
@@ -137,7 +160,7 @@ impl SpeedsSummary {
         };
         let spinning = used.iter().enumerate().filter(|(_, s)| !s.is_rest());
         Ok(Some(Self {
-            measured_by: measured.map(|measured| measured.source.name().to_owned()),
+            measured_by: measured.map(|measured| measured.source),
             measured: measured.map_or(0, |_| spinning.clone().filter(is_measured).count()),
             spinning: spinning.count(),
             set_uncertainty: session.speeds.set_uncertainty,
@@ -148,21 +171,24 @@ impl SpeedsSummary {
 }
 
 impl SpeedDifference {
-    fn new(experiment: &Experiment, found: &SpeedContradiction, of: usize) -> Self {
+    fn new(session: &Session, found: &SpeedContradiction, of: usize) -> Self {
+        let set_points = &session.experiment.set_points;
         let name = |n: &usize| {
-            let mounting = experiment.set_points[*n].mounting;
-            let before = experiment.set_points[..*n].iter().filter(|other| other.mounting == mounting).count();
+            let mounting = set_points[*n].mounting;
+            let before = set_points[..*n].iter().filter(|other| other.mounting == mounting).count();
             format!("{}:{}", mounting + 1, before + 1)
         };
         let (extent, mountings, speeds) = match &found.extent {
-            Extent::All => ("all", Vec::new(), Vec::new()),
-            Extent::Mountings(mountings) => ("mountings", mountings.iter().map(|m| m + 1).collect(), Vec::new()),
-            Extent::Speeds(speeds) => ("speeds", Vec::new(), speeds.clone()),
-            Extent::Plateaus => ("plateaus", Vec::new(), Vec::new()),
+            Extent::All => (DifferenceExtent::All, Vec::new(), Vec::new()),
+            Extent::Mountings(mountings) => {
+                (DifferenceExtent::Mountings, mountings.iter().map(|m| m + 1).collect(), Vec::new())
+            }
+            Extent::Speeds(speeds) => (DifferenceExtent::Speeds, Vec::new(), speeds.clone()),
+            Extent::Plateaus => (DifferenceExtent::Plateaus, Vec::new(), Vec::new()),
         };
         Self {
-            shown_by: String::new(),
-            extent: extent.to_owned(),
+            shown_by: shown_by(session),
+            extent,
             mountings,
             speeds,
             plateaus: found.set_points.iter().map(name).collect(),
@@ -191,10 +217,9 @@ impl SpeedFinding {
 }
 
 /// What shows the speeds that are compared.
-fn shown_by(session: &Session) -> String {
+fn shown_by(session: &Session) -> SpeedSource {
     let source = session.speeds.measured.map(|measured| measured.source);
-    let shows = source.filter(|source| *source == SpeedSource::Pulses).unwrap_or(SpeedSource::Telemetry);
-    shows.name().to_owned()
+    source.filter(|source| *source == SpeedSource::Pulses).unwrap_or(SpeedSource::Telemetry)
 }
 
 /// What is stated of the speeds of the telemetry against those that were set. Without a stated uncertainty, the scale of a
@@ -254,7 +279,7 @@ fn share(window: [f64; 2], span: [f64; 2]) -> f64 {
 /// Adds the clock of a mounting to those that are off alike, the rates within a percent.
 fn add_clock(
     findings: &mut Vec<SpeedFinding>,
-    shown_by: String,
+    shown_by: SpeedSource,
     mounting: usize,
     agreement: &ClockAgreement,
     own: Option<f64>,
@@ -293,7 +318,7 @@ fn record_follows(
     shown: &[ShownSpeed],
     found: &SpeedContradiction,
     is_measured: bool,
-) -> Result<Option<String>, FitError> {
+) -> Result<Option<FollowedSpeeds>, FitError> {
     // Nor does a fit by speeds in another unit say anything.
     if found.extent == Extent::All
         || calibration.fit().termination == Termination::Linear
@@ -322,8 +347,8 @@ fn record_follows(
     }
     let [by_shown, by_set] = squares;
     Ok(match by_set - by_shown {
-        gain if gain > DECISIVE => Some("telemetry".to_owned()),
-        gain if gain < -DECISIVE => Some("schedule".to_owned()),
+        gain if gain > DECISIVE => Some(FollowedSpeeds::Telemetry),
+        gain if gain < -DECISIVE => Some(FollowedSpeeds::Schedule),
         _ => None,
     })
 }

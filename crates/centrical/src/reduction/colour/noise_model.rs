@@ -216,7 +216,7 @@ struct Markov {
     decay: Vec<f64>,
     /// Mean correlation inside a cell, over twice the correlation time.
     within: Vec<f64>,
-    /// Mean correlation between two cells over that of their middles, over the correlation time.
+    /// Mean correlation between neighbouring cells, over the correlation time.
     between: Vec<f64>,
 }
 
@@ -226,7 +226,8 @@ impl Markov {
         Self {
             decay: times.iter().map(|tau| (-width / tau).exp()).collect(),
             within: of(|x| (x - 1.0 + (-x).exp()) / (x * x)),
-            between: of(|x| ((0.5 * x).sinh() / (0.5 * x)).powi(2)),
+            // By its own exponential: the sinh of cells that are a thousand correlation times wide overflows.
+            between: of(|x| (-(-x).exp_m1() / x).powi(2)),
         }
     }
 }
@@ -248,9 +249,8 @@ impl WithSimd for Gains<'_> {
         let mut products = past.clone();
         for w in by_cell {
             for ((past, product), decay) in past.iter_mut().zip(&mut products).zip(decay) {
-                *past *= decay;
                 *product += w * *past;
-                *past += w;
+                *past = decay * *past + w;
             }
         }
         let squares = dot(simd, by_cell, by_cell);

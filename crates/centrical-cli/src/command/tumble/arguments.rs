@@ -1,0 +1,144 @@
+//! What is said to `centrical tumble`.
+
+use std::path::{Path, PathBuf};
+
+use centrical_session::{
+    ColumnName, Dimension, Error, Folder, MOST_DISTANT, NotThatQuantity, Place, STANDARD_GRAVITY, StatedAttitudes,
+    TumbleRequest,
+};
+
+use crate::command::report::Documents;
+use crate::given::{column_name, frequency, quantity};
+use crate::printing::Printing;
+
+/// Calibrate a unit by gravity alone, from records in which it is turned and rests again and again.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: centrical tumble examples/tumble/record.csv --gravity 9.81523 --out tumbled")]
+pub struct Arguments {
+    /// Records in any supported format, of one unit; or a session with [[tumble]], a folder or its experiment.toml, whose rests alone are taken
+    #[arg(required = true, value_name = "RECORDS|SESSION")]
+    pub records: Vec<PathBuf>,
+    /// Time column, in s: its name, or its number from 1 [default: t]
+    #[arg(long, value_name = "COLUMN", value_parser = column_name)]
+    time: Option<ColumnName>,
+    /// Sampling rate of records without a time column, such as "250 Hz"
+    #[arg(long, value_name = "QUANTITY", value_parser = frequency, conflicts_with = "time")]
+    rate: Option<f64>,
+    /// Columns of newtonometers 1, 2, 3: names, or numbers from 1 [default: f1,f2,f3]
+    #[arg(long, value_name = "COLUMNS", value_parser = three_columns)]
+    readings: Option<Columns>,
+    /// Unit of the readings: of acceleration, or "counts" or "V", whose scale and bias are found [default: m/s^2]
+    #[arg(long)]
+    unit: Option<String>,
+    /// Gravity at the place, such as "9.81523 m/s^2" [default: 9.80665 m/s^2, uncertain by 0.02 m/s^2]
+    #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
+    gravity: Option<f64>,
+    /// Standard uncertainty of gravity [default: 0.02 m/s^2, or 0 for a gravity that is given]
+    #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
+    gravity_uncertainty: Option<f64>,
+    /// Attitudes in which the unit was laid down: a table of up_1, up_2, up_3 in axes of the case, or "cube" for its faces,
+    /// edges and corners
+    #[arg(long, value_name = "FILE|cube", requires = "attitude_uncertainty")]
+    attitudes: Option<PathBuf>,
+    /// Standard uncertainty of these attitudes, such as "0.1 deg"
+    #[arg(long, value_name = "QUANTITY", value_parser = angle, requires = "attitudes")]
+    attitude_uncertainty: Option<f64>,
+    /// Take slow rotation too, up to 3 deg/s: largest distance of the proof masses from its axis, such as "50 mm"
+    #[arg(long, value_name = "QUANTITY", value_parser = distance)]
+    turning_radius: Option<f64>,
+    /// Terms of the error model, as in experiment.toml
+    #[arg(long, value_name = "TERMS", value_delimiter = ',', default_values_t = TumbleRequest::USUAL_TERMS.map(str::to_owned))]
+    pub terms: Vec<String>,
+    /// Serial number of the unit
+    #[arg(long)]
+    serial: Option<String>,
+    /// Date of the records, such as 2026-11-23
+    #[arg(long)]
+    date: Option<String>,
+    /// Folder for result.json, the rests as a session, the report and its plots, created if absent
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub printing: Printing,
+    #[command(flatten)]
+    pub documents: Documents,
+}
+
+/// Three columns.
+#[derive(Debug, Clone)]
+struct Columns([ColumnName; 3]);
+
+impl Arguments {
+    /// What is to be made of records.
+    pub fn request(&self) -> Result<TumbleRequest, Error> {
+        let uncertain = if self.gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
+        let Columns(readings) = self.readings.clone().unwrap_or_else(|| Columns(["f1", "f2", "f3"].map(named)));
+        Ok(TumbleRequest {
+            files: self.records.clone(),
+            folder: Folder::default(),
+            time: self.time.clone().unwrap_or_else(|| named("t")),
+            rate: self.rate,
+            readings,
+            unit: self.unit.clone().unwrap_or_else(|| "m/s^2".to_owned()),
+            gravity: self.gravity.unwrap_or(STANDARD_GRAVITY),
+            gravity_uncertainty: self.gravity_uncertainty.unwrap_or(uncertain),
+            attitudes: (self.attitudes.iter().zip(self.attitude_uncertainty))
+                .map(|(name, uncertainty)| StatedAttitudes::named(name, uncertainty))
+                .next()
+                .transpose()?,
+            turning_radius: self.turning_radius,
+            terms: self.terms.clone(),
+            serial: self.serial.clone().unwrap_or_default(),
+            date: self.date.clone().unwrap_or_default(),
+        })
+    }
+
+    /// Columns, unit, place and attitudes of a session stand in its experiment file.
+    pub fn refuse_what_a_session_states(&self, session: &Path) -> Result<(), Error> {
+        let given = [
+            ("--time", self.time.is_some()),
+            ("--rate", self.rate.is_some()),
+            ("--readings", self.readings.is_some()),
+            ("--unit", self.unit.is_some()),
+            ("--gravity", self.gravity.is_some()),
+            ("--gravity-uncertainty", self.gravity_uncertainty.is_some()),
+            ("--attitudes", self.attitudes.is_some()),
+            ("--turning-radius", self.turning_radius.is_some()),
+            ("--serial", self.serial.is_some()),
+            ("--date", self.date.is_some()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(Error::content(
+                session,
+                Place::Whole,
+                format!("{option} beside a session"),
+                "the same in its experiment file",
+            )),
+            None => Ok(()),
+        }
+    }
+}
+
+fn named(name: &str) -> ColumnName {
+    ColumnName::Name(name.to_owned())
+}
+
+fn three_columns(text: &str) -> Result<Columns, String> {
+    let columns = text.split(',').map(column_name).collect::<Result<Vec<_>, _>>()?;
+    let columns = <[ColumnName; 3]>::try_from(columns);
+    columns.map(Columns).map_err(|found| format!("found {} columns, expected three", found.len()))
+}
+
+fn angle(text: &str) -> Result<f64, NotThatQuantity> {
+    quantity(text, Dimension::Angle)
+}
+
+fn distance(text: &str) -> Result<f64, String> {
+    let distance = quantity(text, Dimension::Length).map_err(|not| not.to_string())?;
+    let is_distance = (0.0..=MOST_DISTANT).contains(&distance);
+    if is_distance { Ok(distance) } else { Err(format!("found {text}, expected a distance of 0 to {MOST_DISTANT} m")) }
+}
+
+fn acceleration(text: &str) -> Result<f64, NotThatQuantity> {
+    quantity(text, Dimension::Acceleration)
+}
