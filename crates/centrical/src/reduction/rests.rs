@@ -12,6 +12,7 @@ use super::record::RecordSlice;
 use super::survey::Survey;
 use super::turning::{draw_out, is_smooth, noise_along};
 use crate::linalg::least_squares::LeastSquares;
+use crate::progress::{OnProgress, Stopped, advance};
 
 /// The rests of some records.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,25 +43,23 @@ impl<'a> From<RecordSlice<'a>> for RestRecord<'a> {
 }
 
 /// The means of the rests of some records. The colour of the noise is pooled over all of them. A rest whose samples are not steady
-/// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid.
+/// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid. `progress` is asked again and again.
 ///
 /// # Errors
-/// [`ReductionError`] if a record is invalid (lengths, times) or too short.
-pub fn reduce_rests(records: &[RestRecord]) -> Result<Rests, ReductionError> {
-    let located = records.iter().map(|RestRecord { samples, turning_radius }| {
-        let located = locate_rests(&Survey::of(*samples)?, turning_radius.is_some())?;
-        let fits = (0..located.windows().len()).filter_map(|rest| average(&located, rest, *samples, 0).ok());
-        let is_smooth =
-            |fit: &PlateauFit| turning_radius.is_none_or(|radius| is_smooth(fit, located.sample_noise(), radius));
-        let fits: Vec<PlateauFit> = fits.filter(is_smooth).collect();
+/// [`ReductionError`] if a record is invalid (lengths, times) or too short, or when the caller stops.
+pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<Rests, ReductionError> {
+    let located = records.iter().map(|record| {
+        let located = locate_rests(&Survey::of(record.samples)?, record.turning_radius.is_some())?;
+        let fits = averaged(&located, record, progress)?;
         Ok((located, fits))
     });
-    let mut located: Vec<(Located, Vec<PlateauFit>)> = located.collect::<Result<_, _>>()?;
+    let mut located: Vec<(Located, Vec<PlateauFit>)> = located.collect::<Result<_, ReductionError>>()?;
     let with_noise = located.iter_mut().flat_map(|(located, fits)| {
         let white = *located.sample_noise();
         fits.iter_mut().map(move |fit| (fit, white))
     });
     let ellipsoid = draw_out(with_noise);
+    advance(progress, ())?;
     let mut along = Vec::new();
     for (record, (located, fits)) in records.iter().zip(&mut located) {
         match &ellipsoid {
@@ -80,9 +79,24 @@ pub fn reduce_rests(records: &[RestRecord]) -> Result<Rests, ReductionError> {
         ReducedMounting::of_rests(located, rests)
     });
     let reduced: Vec<ReducedMounting> = reduced.collect();
+    advance(progress, ())?;
     let noise = NoiseModel::pool_rests(&reduced, &along);
+    advance(progress, ())?;
     let means = reduced.iter().map(|record| plateau_means(record, &noise)).collect();
+    advance(progress, ())?;
     Ok(Rests { means, noise_at_most: noise.at_most(&reduced) })
+}
+
+/// The rests of a record that are steady, and its arcs that are smooth.
+fn averaged(located: &Located, record: &RestRecord, progress: OnProgress<()>) -> Result<Vec<PlateauFit>, Stopped> {
+    let is_smooth =
+        |fit: &PlateauFit| record.turning_radius.is_none_or(|radius| is_smooth(fit, located.sample_noise(), radius));
+    let mut fits = Vec::new();
+    for rest in 0..located.windows().len() {
+        advance(progress, ())?;
+        fits.extend(average(located, rest, record.samples, 0).ok().filter(is_smooth));
+    }
+    Ok(fits)
 }
 
 /// Coarse scale and bias of three newtonometers: `reading = scale f + bias`.
