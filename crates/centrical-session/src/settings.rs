@@ -47,6 +47,11 @@ pub(crate) fn editable(file: &Path, text: &str) -> Result<toml_edit::DocumentMut
     })
 }
 
+/// A text in quotes, as settings have it.
+pub(crate) fn toml_text(text: &str) -> String {
+    toml_edit::Value::from(text).to_string().trim().to_owned()
+}
+
 /// A document from JSON, which should be what `expected` says; `line` is the number of its first line in the file.
 pub(crate) fn from_json<T: DeserializeOwned>(file: &Path, line: usize, text: &str, expected: &str) -> Result<T, Error> {
     serde_json::from_str(text).map_err(|error| {

@@ -29,6 +29,7 @@
 
 mod average;
 mod colour;
+mod ellipsoid;
 mod error;
 mod locate;
 mod mistake;
@@ -45,13 +46,14 @@ mod turning;
 
 pub use average::{Averaging, PlateauFit, ReducedMounting, average};
 pub use colour::{EXCLUDED, NoiseModel, plateau_means};
+pub use ellipsoid::{CoarseScale, coarse_scale};
 pub use error::{ReductionError, Stretch};
 pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate, locate_rests};
 pub use mistake::Mistake;
 pub use packed_times::PackedTimes;
 pub use plateau::{Arc, LeftOut, PlateauMean, ScheduledPlateau};
 pub use record::{Record, RecordSlice};
-pub use rests::{CoarseScale, RestRecord, Rests, coarse_scale, reduce_rests};
+pub use rests::{RestRecord, Rests, reduce_rests};
 pub use speed::{MeasuredSpeed, measured_speeds};
 pub use steady::{Staircase, SteadyStretch, staircase, steady_stretches};
 pub use survey::{Condensed, Extremes, Survey};

@@ -37,6 +37,20 @@ fn line(number: usize, to: &str, parts: &[&str]) {
     refused(&copy, &[&["m07.csv"], parts].concat());
 }
 
+/// A record that was copied for another mounting, or named twice: its noise would count for half.
+#[test]
+fn readings_belong_to_one_mounting() {
+    for copied in ["records/m01.csv", "records/m13.csv"] {
+        let copy = Copy::new();
+        fs::copy(copy.session().join("records/m01.csv"), copy.session().join("records/m13.csv")).unwrap();
+        copy.edit("experiment.toml", |text| {
+            let mountings: Vec<&str> = text.split("[[mounting]]").collect();
+            format!("{text}\n[[mounting]]{}", mountings[1].replace("records/m01.csv", copied))
+        });
+        refused(&copy, &[copied, "found the readings of mounting 1, ", "expected readings of its own for mounting 13"]);
+    }
+}
+
 #[test]
 fn files() {
     let copy = Copy::new();

@@ -53,6 +53,66 @@ fn the_example_is_calibrated_to_its_truth() {
     assert_eq!(copy.run(&compensated).status.code(), Some(0));
 }
 
+/// The rests of a session give what their record gave, also beside an arm; what the session states is not stated again.
+#[test]
+fn rests_of_a_session_are_taken_alone() {
+    let copy = Copy::new();
+    let of_record = ["tumble", &example("record.csv"), "--gravity", "9.81523 m/s^2", "--out", "tumbled"];
+    assert_eq!(copy.run(&of_record).status.code(), Some(0));
+    assert_eq!(copy.run(&["tumble", "tumbled", "--out", "again"]).status.code(), Some(0));
+    let parameters = |folder: &str| json(&copy.out().join(folder).join("result.json"))["parameters"].clone();
+    assert_eq!(parameters("again"), parameters("tumbled"));
+    let refused = |arguments: &[&str], message: &str| {
+        let output = copy.run(arguments);
+        assert!(output.status.code() == Some(2) && said(&output).contains(message), "{}", said(&output));
+    };
+    refused(&["tumble", "tumbled", "--gravity", "9.8"], "tumbled: found --gravity beside a session");
+    refused(&["tumble", "tumbled", "--terms", "G9"], "[model], error_model: found \"G9\"");
+    refused(&["tumble", "../session"], "[[tumble]] 1, rests: found no such table");
+    copy.edit("experiment.toml", |text| text + "\n[[tumble]]\nrests = \"../out/tumbled/rests.csv\"\n");
+    let output = copy.run(&["tumble", "../session", "--out", "beside"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let (own, beside) = ("tumbled", "beside");
+    for name in ["df_1", "df_2", "df_3", "G0_11", "G0_21", "G0_22", "G0_31", "G0_32", "G0_33"] {
+        let [own, beside] = [own, beside].map(|out| estimate(&json(&copy.out().join(out).join("result.json")), name));
+        // What the session states besides moves the uncertainty, not the estimate.
+        assert!((own.0 - beside.0).abs() < 0.01 * own.1, "{name}: {own:?} {beside:?}");
+    }
+}
+
+/// The noise of a record that is given twice would count for half.
+#[test]
+fn a_record_counts_once() {
+    let copy = Copy::new();
+    fs::copy(example("record.csv"), copy.out().join("again.csv")).unwrap();
+    let output = copy.run(&["tumble", &example("record.csv"), "again.csv", "--gravity", "9.81523"]);
+    let text = said(&output);
+    assert!(output.status.code() == Some(2) && text.contains("again.csv: found the same bytes as in "), "{text}");
+    let of_record = ["tumble", &example("record.csv"), "--gravity", "9.81523", "--out", "tumbled"];
+    assert_eq!(copy.run(&of_record).status.code(), Some(0));
+    fs::copy(copy.out().join("tumbled/rests.csv"), copy.out().join("rests.csv")).unwrap();
+    let twice = "\n[[tumble]]\nrests = \"tumbled/rests.csv\"\n\n[[tumble]]\nrests = \"rests.csv\"\n";
+    let alone = fs::read_to_string(copy.out().join("tumbled/experiment.toml")).unwrap();
+    let alone = alone.split("[[tumble]]").next().unwrap();
+    fs::write(copy.out().join("twice.toml"), format!("{alone}{twice}")).unwrap();
+    let text = said(&copy.run(&["calibrate", "twice.toml", "--json"]));
+    assert!(text.contains("rests.csv: found the readings of [[tumble]] 1, "), "{text}");
+}
+
+/// Names go into the session of the rests as TOML writes them.
+#[test]
+fn names_of_any_characters_are_written() {
+    let copy = Copy::new();
+    let serial = "a\u{1b}[31m\u{202e}\"\\";
+    let output =
+        copy.run(&["tumble", &example("record.csv"), "--gravity", "9.81523", "--serial", serial, "--out", "tumbled"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let copied = copy.run(&["calibrate", "tumbled", "--out", "again"]);
+    assert_eq!(copied.status.code(), Some(0), "{}", said(&copied));
+    let serial_of = |folder: &str| json(&copy.out().join(folder).join("result.json"))["session"]["unit_serial"].clone();
+    assert_eq!((serial_of("again"), serial_of("tumbled")), (serial.into(), serial.into()));
+}
+
 /// Stated attitudes, in any order, show the case besides; the folder keeps them with their rests.
 #[test]
 fn known_attitudes_show_the_case() {

@@ -11,7 +11,7 @@ use centrical::{
 use centrical_table::{Extent, Source};
 
 use super::folder::Folder;
-use super::form::{Form, ModelTable, RecordEntry, SiteTable};
+use super::form::{Form, ModelTable, RecordEntry, SiteTable, TermEntry, TermList};
 use super::plateaus::{PlateauMean, PlateauTable};
 use super::prior::{self, PriorEntry};
 use super::rests::{RecordedRests, RestTable};
@@ -234,6 +234,44 @@ impl Session {
     #[must_use]
     pub fn on_arm(self) -> Self {
         self.with_rest_tables(Vec::new())
+    }
+
+    /// The session without the arm: its rests in free attitudes, and these terms of the error model. What is said of the arm, extensions of
+    /// the model and priors go.
+    ///
+    /// # Errors
+    /// If it has no such rests that are measured, or a term is unknown.
+    pub fn off_arm(self, terms: &[String]) -> Result<Self, Error> {
+        self.refuse_planned_rests()?;
+        if self.rest_tables.is_empty() {
+            let expected = "a table of rests, or a record of a unit that is turned and rests again and again";
+            return Err(TomlPath::entry(&self.file, "tumble", 0).unexpected("rests", "no such table", expected));
+        }
+        let terms = TermList(terms.iter().cloned().map(TermEntry::Named).collect());
+        let error_model = terms::error_model(&self.file, &terms)?;
+        let Experiment { site, unit, .. } = self.experiment;
+        let experiment = Experiment {
+            site,
+            unit,
+            centrifuge: Centrifuge::default(),
+            positions: Vec::new(),
+            pair_relation: PairRelation::Free,
+            mountings: Vec::new(),
+            set_points: Vec::new(),
+        };
+        let nothing = Self {
+            experiment,
+            error_model,
+            extensions: Vec::new(),
+            speeds: Speeds::default(),
+            mountings: Vec::new(),
+            plateaus: None,
+            rest_tables: Vec::new(),
+            durations: Vec::new(),
+            priors: Vec::new(),
+            ..self
+        };
+        Ok(nothing.with_rest_tables(self.rest_tables))
     }
 
     /// On an arm plateaus at rest alone show nothing of a centrifuge.

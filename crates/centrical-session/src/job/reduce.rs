@@ -2,6 +2,7 @@
 
 mod in_memory;
 mod mounting;
+mod own_readings;
 mod pooling;
 mod rests;
 mod scheduler;
@@ -13,6 +14,7 @@ use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 pub use self::in_memory::{Recorded, reduce_recorded};
+use self::own_readings::refuse_shared_readings;
 use self::pooling::pooled;
 pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size, with_all_rests};
 use self::scheduler::Scheduler;
@@ -33,6 +35,7 @@ pub fn reduce<'s>(session: &'s Session, progress: OnProgress) -> Result<(Cow<'s,
     let input = |file| Input::of(folder.path(), &folder.open(file, Input::EXPECTED)?, progress);
     let inputs = session.files().into_par_iter().map(input);
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
+    refuse_shared_readings(&session, &reduced)?;
     Ok((session, reduced))
 }
 

@@ -19,9 +19,10 @@
 //! force, a thousand times stronger in a hand, would be taken for noise along it. Proof masses beside the axes are accelerated by their place
 //! times the second derivative of the vertical. That is no noise either, and is taken out.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::average::{PlateauFit, average};
+use super::ellipsoid::Ellipsoid;
 use super::error::ReductionError;
 use super::locate::{Interval, TURNING, locate_spans};
 use super::record::{Record, RecordSlice};
@@ -42,7 +43,7 @@ const OF_KINK: f64 = 7.0 * 1.732_050_807_568_877_2;
 /// Samples of an arc for each one that may be left out as a spike.
 const PER_SPIKE: usize = 20;
 
-/// Least singular value that is not rounding or noise, over the largest.
+/// Least singular value of the terms of a place beside the axes that is not noise, over the largest.
 const LEAST: f64 = 1e-4;
 
 /// Longest stretch of rotation whose noise is looked at as a whole [s].
@@ -68,22 +69,22 @@ fn left(fit: &PlateauFit, white: &Vector3<f64>) -> f64 {
     (fit.variance.sum() - white.norm_squared()).max(0.0)
 }
 
-/// Draws out the means of the `fits` of all records, each with the white noise of its readings [m/s^2]; the ellipsoid of all means, `None`
-/// if the attitudes show none. A rest that trembles by 10 mrad about both axes is shorter by 1e-4.
-pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, Vector3<f64>)>) -> Option<Ellipsoid> {
+/// Draws out the means of the `fits` of all records, each with the white noise of its readings [m/s^2]; the ellipsoid of all means. A rest
+/// that trembles by 10 mrad about both axes is shorter by 1e-4.
+pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, Vector3<f64>)>) -> Ellipsoid {
     let mut fits: Vec<(&mut PlateauFit, Vector3<f64>)> = fits.into_iter().collect();
     let mean: Vec<Vector3<f64>> = fits.iter().map(|(fit, _)| fit.mean).collect();
-    let mut ellipsoid = Ellipsoid::through(&mean)?;
+    let mut ellipsoid = Ellipsoid::nearest(&mean);
     for _ in 0..ROUNDS {
         for ((fit, white), mean) in fits.iter_mut().zip(&mean) {
             let part = |k: usize| ellipsoid.size(&fit.turning[k]).powi(2) / (2 * k + 3) as f64;
-            let left = left(fit, white) / (mean - ellipsoid.centre).norm_squared();
+            let left = left(fit, white) / (mean - ellipsoid.centre()).norm_squared();
             let size = (1.0 - (0..TURNING).map(part).sum::<f64>() - left).sqrt();
-            fit.mean = ellipsoid.centre + (mean - ellipsoid.centre) / size;
+            fit.mean = ellipsoid.centre() + (mean - ellipsoid.centre()) / size;
         }
-        ellipsoid = Ellipsoid::through(&fits.iter().map(|(fit, _)| fit.mean).collect::<Vec<_>>())?;
+        ellipsoid = Ellipsoid::nearest(&fits.iter().map(|(fit, _)| fit.mean).collect::<Vec<_>>());
     }
-    Some(ellipsoid)
+    ellipsoid
 }
 
 /// The noise of a record along the force, in units of `white` [m/s^2], over the stretches of its arcs: their fits as those of rests.
@@ -166,88 +167,6 @@ impl Accelerated {
 
 /// Squares, products and components of the direction of a reading, and the coordinates of a bend.
 fn row(ellipsoid: &Ellipsoid, reading: &Vector3<f64>, bend: &Vector3<f64>) -> [f64; 12] {
-    let (y, b) = ((reading - ellipsoid.centre).normalize(), bend);
+    let (y, b) = ((reading - ellipsoid.centre()).normalize(), bend);
     [y.x * y.x, y.y * y.y, y.z * y.z, y.x * y.y, y.x * y.z, y.y * y.z, y.x, y.y, y.z, b.x, b.y, b.z]
-}
-
-/// The ellipsoid `(y - c)^T A (y - c) = 1` of readings at the size of gravity.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ellipsoid {
-    centre: Vector3<f64>,
-    a: Matrix3<f64>,
-}
-
-impl Ellipsoid {
-    /// Through these readings, by linear least squares; `None` if they determine none.
-    fn through(means: &[Vector3<f64>]) -> Option<Self> {
-        let first = *means.first()?;
-        let (low, high) = means.iter().fold((first, first), |(low, high), mean| (low.inf(mean), high.sup(mean)));
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max());
-        let row = |mean: &Vector3<f64>| {
-            let y = (mean - middle) / half;
-            [y.x * y.x, y.y * y.y, y.z * y.z, 2.0 * y.x * y.y, 2.0 * y.x * y.z, 2.0 * y.y * y.z, y.x, y.y, y.z]
-        };
-        let rows = DMatrix::from_row_iterator(means.len(), 9, means.iter().flat_map(row));
-        if means.len() < 9 || rows.iter().any(|value| !value.is_finite()) {
-            return None;
-        }
-        let svd = rows.svd(true, true);
-        if svd.singular_values.min() < LEAST * svd.singular_values.max() {
-            return None;
-        }
-        let x = svd.solve(&DVector::repeat(means.len(), 1.0), 0.0).ok()?;
-        let a = Matrix3::new(x[0], x[3], x[4], x[3], x[1], x[5], x[4], x[5], x[2]);
-        let centre = a.cholesky()?.solve(&x.fixed_rows::<3>(6).into_owned()) * -0.5;
-        let size = 1.0 + centre.dot(&(a * centre));
-        Some(Self { centre: middle + centre * half, a: a / (size * half * half) })
-    }
-
-    fn product(&self, one: &Vector3<f64>, other: &Vector3<f64>) -> f64 {
-        one.dot(&(self.a * other))
-    }
-
-    /// Direction of the noise that changes the size of a reading.
-    pub(super) fn normal(&self, reading: &Vector3<f64>) -> Vector3<f64> {
-        self.gradient(reading).normalize()
-    }
-
-    /// Half of what the square of the size of a reading exceeds that of gravity by, over the latter: about the excess of the size.
-    fn excess(&self, reading: &Vector3<f64>) -> f64 {
-        0.5 * (self.gradient(reading).dot(&(reading - self.centre)) - 1.0)
-    }
-
-    /// Half the gradient of `(y - c)^T A (y - c)`.
-    fn gradient(&self, reading: &Vector3<f64>) -> Vector3<f64> {
-        self.a * (reading - self.centre)
-    }
-
-    /// Size of a difference of readings in units of gravity.
-    fn size(&self, of: &Vector3<f64>) -> f64 {
-        self.product(of, of).sqrt()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Readings on an ellipsoid give it back.
-    #[test]
-    fn an_ellipsoid_goes_through_its_points() {
-        let gain = Matrix3::new(1.01, 0.0, 0.0, -0.02, 0.97, 0.0, 0.03, 0.01, 1.05) * 9.8;
-        let centre = Vector3::new(0.3, -0.2, 0.5);
-        let angle = |n: i32| (f64::from(n) * 2.4, f64::from(n) * 0.9);
-        let up = |n: i32| {
-            let (a, b) = angle(n);
-            Vector3::new(a.cos() * b.sin(), a.sin() * b.sin(), b.cos())
-        };
-        let means: Vec<Vector3<f64>> = (0..20).map(|n| centre + gain * up(n)).collect();
-        let ellipsoid = Ellipsoid::through(&means).unwrap();
-        assert!((ellipsoid.centre - centre).norm() < 1e-10, "{ellipsoid:?}");
-        assert!((ellipsoid.size(&(gain * Vector3::new(0.6, 0.0, 0.8))) - 1.0).abs() < 1e-10);
-        // Eight points determine none, nor do those of one plane.
-        assert!(Ellipsoid::through(&means[..8]).is_none());
-        let flat: Vec<Vector3<f64>> = means.iter().map(|mean| Vector3::new(mean.x, mean.y, 0.0)).collect();
-        assert!(Ellipsoid::through(&flat).is_none());
-    }
 }

@@ -8,7 +8,7 @@ use centrical_table::{ColumnName, DecimalSign, TextForm};
 use super::attitude::{Attitude, attitude};
 use super::draft::{Draft, UNKNOWN};
 use super::file_roles::{FileColumns, Label};
-use super::path_text::{quoted, relative};
+use super::path_text::relative;
 use super::raw::{Extremes, Raw};
 use super::request::InitRequest;
 use super::schedule::{Set, schedules};
@@ -18,6 +18,7 @@ use super::tumbled::Tumbled;
 use crate::error::{Error, Place};
 use crate::experiment::OutputUnit as Output;
 use crate::quantity::Dimension;
+use crate::settings::toml_text;
 
 /// The six positions of the source: attitude and pair.
 const SIX: &str = include_str!("six-positions.toml");
@@ -216,7 +217,7 @@ fn session(draft: &mut Draft, tumbled: Option<&Tumbled>) {
 fn unit(draft: &mut Draft, unit: &OutputUnit, tumbled: Option<&Tumbled>) {
     draft.line("[unit]");
     if let Some(tumbled) = tumbled.filter(|tumbled| !tumbled.serial.is_empty()) {
-        draft.found(&format!("serial = {}", quoted(&tumbled.serial)), &tumbled.how());
+        draft.found(&format!("serial = {}", toml_text(&tumbled.serial)), &tumbled.how());
     } else {
         let reason = "the number on the unit; results are filed by it";
         draft.fill_in("[unit] serial", &format!("serial = {UNKNOWN}"), reason);
@@ -340,7 +341,7 @@ fn written(label: &Label, usual: &str) -> String {
 
 fn column(name: &ColumnName) -> String {
     match name {
-        ColumnName::Name(name) => quoted(name),
+        ColumnName::Name(name) => toml_text(name),
         ColumnName::Number(number) => number.to_string(),
         ColumnName::Row => "\"\"".to_owned(),
     }
@@ -403,13 +404,13 @@ fn arm(draft: &mut Draft, mounting: usize, radius: Option<f64>) {
 }
 
 fn files(draft: &mut Draft, mounting: &SeenMounting, folder: &Path) {
-    let names: Vec<String> = mounting.records().map(|path| quoted(&relative(path, folder))).collect();
+    let names: Vec<String> = mounting.records().map(|path| toml_text(&relative(path, folder))).collect();
     match names.as_slice() {
         [one] => draft.line(&format!("record = {one}")),
         three => draft.line(&format!("record = [{}]", three.join(", "))),
     }
     if let Some(telemetry) = &mounting.group.telemetry {
-        draft.line(&format!("telemetry = {}", quoted(&relative(&telemetry.path, folder))));
+        draft.line(&format!("telemetry = {}", toml_text(&relative(&telemetry.path, folder))));
     }
 }
 

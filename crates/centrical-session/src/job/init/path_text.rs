@@ -1,11 +1,6 @@
-//! Names and paths as the experiment file writes them.
+//! Paths as the experiment file writes them.
 
 use std::path::Path;
-
-/// A text in quotes.
-pub(super) fn quoted(text: &str) -> String {
-    toml_edit::Value::from(text).to_string().trim().to_owned()
-}
 
 /// The path as the experiment file names it, with slashes.
 pub(super) fn relative(path: &Path, folder: &Path) -> String {

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::draft::Draft;
-use super::path_text::{quoted, relative};
+use super::path_text::relative;
 use super::raw::Raw;
 use crate::error::{Error, Place};
 use crate::experiment::{KnownAttitudes, OutputUnit, RestTable, Session};
+use crate::settings::toml_text;
 
 /// A unit that was calibrated by gravity alone.
 pub(super) struct Tumbled {
@@ -75,7 +76,7 @@ impl Tumbled {
         for table in &self.rests {
             draft.line("[[tumble]]");
             for (key, file) in ["rests", "attitudes"].into_iter().zip(table.files()) {
-                draft.found(&format!("{key} = {}", quoted(&relative(file, folder))), &self.how());
+                draft.found(&format!("{key} = {}", toml_text(&relative(file, folder))), &self.how());
             }
             if let Some(KnownAttitudes { uncertainty, .. }) = table.attitudes {
                 draft.found(&format!("attitude_uncertainty = \"{uncertainty:?} rad\""), &self.how());

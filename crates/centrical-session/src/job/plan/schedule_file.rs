@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::document::{ChosenRest, ChosenRests, PlanReport, PlannedMounting, PlannedPlateau};
 use crate::error::Error;
 use crate::quantity::Dimension::{self, Angle, Speed, Time};
+use crate::settings::toml_text;
 use crate::settings::{editable, read_settings};
 
 impl PlanReport {
@@ -49,8 +50,8 @@ impl PlannedMounting {
             format!("  {{ speed = {speed}{angle}, duration = {duration} }},\n")
         };
         let plateaus: String = self.plateaus.iter().map(plateau).collect();
-        let (position, radius) = (&self.position, self.radius);
-        format!("\n[[mounting]]\nposition = {position:?}\narm = [{radius:?}, 0, 0]\nplateaus = [\n{plateaus}]\n")
+        let (position, radius) = (toml_text(&self.position), self.radius);
+        format!("\n[[mounting]]\nposition = {position}\narm = [{radius:?}, 0, 0]\nplateaus = [\n{plateaus}]\n")
     }
 }
 

@@ -74,6 +74,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
     };
     let inputs = request.inputs().map(input);
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
+    refuse_twice(request, &reduced.inputs)?;
     let session = Session::parse_with(&text, &folder.join(EXPERIMENT_FILE), Folder::at(folder), |table, _| {
         table.means = rest_rows(&reduced.plateaus);
         if let (Some(table), Some(known)) = (&mut table.attitudes, &known) {
@@ -101,6 +102,18 @@ impl Tumble {
         write_whole(experiment, self.text.as_bytes())?;
         self.result.write(result)
     }
+}
+
+/// Refuses a record that is given twice: its noise would count for half.
+fn refuse_twice(request: &TumbleRequest, inputs: &[Input]) -> Result<(), Error> {
+    let records = || request.files.iter().zip(inputs);
+    for (n, (file, input)) in records().enumerate() {
+        if let Some((before, _)) = records().take(n).find(|(_, before)| before.sha256 == input.sha256) {
+            let found = format!("the same bytes as in {}", before.display());
+            return Err(Error::content(file, Place::Whole, found, "every record once"));
+        }
+    }
+    Ok(())
 }
 
 /// A record as it is, in m/s^2 where its unit is one of acceleration.

@@ -6,6 +6,7 @@ use centrical::reduction::{CoarseScale, Rests};
 
 use super::request::TumbleRequest;
 use crate::experiment::Turning;
+use crate::settings::toml_text;
 
 /// Name of the table of rests.
 pub(super) const TABLE: &str = "rests.csv";
@@ -22,19 +23,21 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
     };
     let names: Vec<String> = request.files.iter().map(|file| file.display().to_string()).collect();
     line("# Rests in attitudes of their own, found by `centrical tumble`.".to_owned());
-    line(format!("[session]\ntitle = {:?}\ndate = {:?}\n", format!("Rests of {}", names.join(", ")), request.date));
+    let title = toml_text(&format!("Rests of {}", names.join(", ")));
+    line(format!("[session]\ntitle = {title}\ndate = {}\n", toml_text(&request.date)));
     line(format!("[site]\ngravity = \"{:?} m/s^2\"\n", request.gravity));
     line(format!("[uncertainty]\ngravity = \"{:?} m/s^2\"\n", request.gravity_uncertainty));
-    line(format!("[unit]\nserial = {:?}", request.serial));
+    line(format!("[unit]\nserial = {}", toml_text(&request.serial)));
     match coarse {
         Some(CoarseScale { scale, bias }) => {
             let key = if request.unit == "V" { "volts" } else { "counts" };
             line(format!("output_unit = {:?}", if key == "volts" { "V" } else { "counts" }));
             line(format!("{key} = {{ scale = {:?}, bias = {:?} }}\n", scale.as_slice(), bias.as_slice()));
         }
-        None => line(format!("output_unit = {:?}\n", request.unit)),
+        None => line(format!("output_unit = {}\n", toml_text(&request.unit))),
     }
-    line(format!("[model]\nerror_model = {:?}\n", request.terms));
+    let terms: Vec<String> = request.terms.iter().map(|term| toml_text(term)).collect();
+    line(format!("[model]\nerror_model = [{}]\n", terms.join(", ")));
     line(format!("[[tumble]]\nrests = {TABLE:?}"));
     if rests.noise_at_most > 1.0 {
         line(format!("noise_at_most = {:?}", rests.noise_at_most));
