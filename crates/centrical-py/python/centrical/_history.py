@@ -87,9 +87,12 @@ def history(
     []
     """
     chosen = (model, serial, station)
-    of_unit = {"limit": limit, "until": until, "together": together, "out": out, "confidence": confidence != 0.95, "trend": not trend}
-    of_units = {"laboratory": laboratory, "batches": batches}
-    given = {"list": {"check": check}, "unit": of_unit, "units": of_units, "station": {}}
+    given: dict[str, dict[str, object]] = {
+        "list": {"check": check},
+        "unit": {"limit": limit, "until": until, "confidence": confidence != 0.95, "trend": not trend, "together": together, "out": out},
+        "units": {"laboratory": laboratory, "batches": batches},
+        "station": {},
+    }
     if of not in given:
         raise ValueError(f'of: found {of!r}, expected "list", "unit", "units" or "station"')
     for other in given.keys() - {of}:
