@@ -38,7 +38,10 @@ pub mod _native {
     #[pymodule_export]
     pub use crate::jobs::compensate::compensate;
     #[pymodule_export]
-    pub use crate::jobs::history::{add_failure, add_to_store, history};
+    pub use crate::jobs::history::{
+        add_failure, add_to_store, history_chart, history_list, history_pages, history_station, history_unit,
+        history_units,
+    };
     #[pymodule_export]
     pub use crate::jobs::in_memory::{calibrate_arrays, plateau_columns};
     #[pymodule_export]

@@ -31,7 +31,7 @@ def result():
 
 
 @pytest.fixture(scope="session")
-def program(root):
+def executable(root):
     """The program, built by the same job; without it the comparisons are left out."""
     named = os.environ.get("CENTRICAL_PROGRAM") or shutil.which("centrical")
     for folder in (os.environ.get("CARGO_TARGET_DIR", root / "target"),):
@@ -39,9 +39,15 @@ def program(root):
         named = named or (built if os.path.exists(built) else None)
     if named is None:
         pytest.skip("the program is not built: cargo build --release")
+    return named
+
+
+@pytest.fixture(scope="session")
+def program(root, executable):
+    """What the program prints as JSON."""
 
     def run(*arguments):
-        done = subprocess.run([named, *map(str, arguments), "--json"], capture_output=True, cwd=root)
+        done = subprocess.run([executable, *map(str, arguments), "--json"], capture_output=True, cwd=root)
         assert done.returncode in (0, 1), done.stderr.decode()
         return done.stdout.decode()
 

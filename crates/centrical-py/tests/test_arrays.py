@@ -55,6 +55,40 @@ def test_plateaus(example, tmp_path, result):
     assert sum(plateau.get("held_out", False) for plateau in held_out.document.plateaus) == 1
 
 
+def test_arrays_are_not_copied_before_the_calibration(example, arrays, result):
+    records, telemetry = arrays
+    session = ct.Session.from_arrays(example, records, telemetry=telemetry)
+    for m, (t, columns, *_) in enumerate(session._records, start=1):
+        assert np.shares_memory(t, records[m][0])
+        assert all(np.shares_memory(column, records[m][1]) for column in columns)
+    backwards = {m: (t[::-1].copy()[::-1], f[::-1].copy()[::-1]) for m, (t, f) in records.items()}
+    unaligned = {m: (t, unaligned_copy(f)) for m, (t, f) in records.items()}
+    for others in (backwards, unaligned):
+        again = ct.Session.from_arrays(example, others, telemetry=telemetry).calibrate()
+        assert without_inputs(again) == without_inputs(result)
+
+
+def unaligned_copy(array):
+    copy = np.frombuffer(bytearray(array.nbytes + 1), np.uint8)[1:].view(array.dtype).reshape(array.shape)
+    copy[...] = array
+    assert not copy.flags.aligned
+    return copy
+
+
+def test_what_is_masked_is_missing(example, arrays):
+    records, telemetry = arrays
+    t, f = records[2]
+    holes = np.zeros(f.shape, bool)
+    holes[500:520, 1] = True
+    by_mask = dict(records) | {2: (t, np.ma.masked_array(f, holes))}
+    by_nan = dict(records) | {2: (t, np.where(holes, np.nan, f))}
+    results = [ct.Session.from_arrays(example, given, telemetry=telemetry).calibrate() for given in (by_mask, by_nan)]
+    assert results[0].to_json() == results[1].to_json()
+    gaps = np.arange(len(t)) % 7 == 3
+    by_mask, by_nan = (ct.noise(given, rate=100.0) for given in (np.ma.masked_array(f[:, 0], gaps), np.where(gaps, np.nan, f[:, 0])))
+    assert by_mask.to_json() == by_nan.to_json()
+
+
 def refused(kind, message, *arguments, **options):
     with pytest.raises(kind, match=message):
         ct.Session.from_arrays(*arguments, **options).calibrate()
@@ -71,6 +105,9 @@ def test_misuse(example, arrays, tmp_path):
     refused(TypeError, r"records\[1\]: found ndarray, expected a pair", example, {1: t})
     refused(ValueError, r"readings of shape \(4, 2\), expected \(n, 3\)", example, {1: (t[:4], f[:4, :2])})
     refused(ValueError, r"found shape \(1, 4\), expected \(n,\)", example, {1: (t[None, :4], f[:4])})
+    refused(TypeError, r"records\[1\]: found datetime64\[ns\], expected numbers", example, {1: (t[:4].astype("datetime64[ns]"), f[:4])})
+    refused(TypeError, r"records\[1\]: found <U1, expected numbers", example, {1: (t[:4], np.full((4, 3), "1"))})
+    refused(TypeError, r"records\[1\]: found objects", example, {1: (t[:4], np.full((4, 3), "x", object))})
     few = dict(records) | {3: (t[:-1], f)}
     refused(ct.InputError, "mounting 3: columns of different lengths", example, few)
     empty = dict(records) | {5: (np.empty(0), np.empty((0, 3)))}

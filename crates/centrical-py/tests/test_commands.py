@@ -5,6 +5,7 @@ import inspect
 import json
 import re
 import shutil
+import subprocess
 import time
 
 import centrical as ct
@@ -241,14 +242,94 @@ def test_watch_says_what_it_waits_for(tmp_path):
     assert list(watched) == [] and watched.result is None and "m01.csv" in watched.waiting
 
 
-def test_every_command_has_its_function(root):
-    listed = re.findall(r"^        Command::(\w+)\(", (root / "crates/centrical-cli/src/main.rs").read_text(), re.MULTILINE)
-    commands = {name.lower() for name in listed} - {"completions", "man", "view"}
-    assert len(commands) == 18
-    page = (root / "docs/python.md").read_text()
-    for name in commands:
+@pytest.fixture(scope="module")
+def store(result_file, tmp_path_factory):
+    """Three calibrations each of two units."""
+    folder = tmp_path_factory.mktemp("history")
+    document = json.loads(result_file.read_text())
+    for n, serial in enumerate(["0001", "0002"] * 3):
+        document["session"] |= {"date": f"{2020 + n}-01-01", "unit_serial": serial}
+        for parameter in document["parameters"]:
+            if parameter["value"] is not None:
+                parameter["value"] += 0.3 * (-1) ** n * parameter["standard_uncertainty"]
+        (folder / f"{n}.json").write_text(json.dumps(document))
+    assert ct.add_to_store(folder / "store", folder.glob("*.json")) == (6, 0)
+    return folder / "store"
+
+
+def test_history(program, store, tmp_path):
+    listed = ct.history(store, "list", check=True)
+    assert listed.to_json() == program("history", "list", store, "--check") and listed.doubts
+    assert ct.history(store, "list", serial="0002").to_json() == program("history", "list", store, "--serial", "0002")
+    given = ct.history(store, serial="0001", limit="300 ug", until="2030-01-01", confidence=0.9, trend=False, together=True, out=tmp_path / "python")
+    options = ["--limit", "300 ug", "--until", "2030-01-01", "--confidence", "0.9", "--without-trend", "--together"]
+    assert given.to_json() == program("history", "unit", store, "--serial", "0001", *options, "--out", tmp_path / "command")
+    assert_same_files(tmp_path)
+    batches = tmp_path / "batches.csv"
+    batches.write_text("serial,batch\n0001,a\n0002,b\n")
+    laboratory = f"{SESSION}/laboratory.toml"
+    given = ct.history([store], "units", laboratory=laboratory, batches=batches)
+    assert given.to_json() == program("history", "units", store, "--laboratory", laboratory, "--batches", batches)
+    assert ct.history(store, "station").to_json() == program("history", "station", store)
+
+
+def test_what_a_history_is_not_asked(store):
+    for wrong, said in (
+        (lambda: ct.history(store, "years"), 'of: found \'years\', expected "list"'),
+        (lambda: ct.history(store, "station", limit=1.0), "limit: found it for 'station', expected it for 'unit' alone"),
+        (lambda: ct.history(store, check=True), "check: found it for 'unit', expected it for 'list' alone"),
+        (lambda: ct.history([], "unit"), "results: found none, expected a store"),
+        (lambda: ct.history([store, store], "list"), "results: found 2, expected one store"),
+        (lambda: ct.history(store), "no such calibrations, expected calibrations of one unit"),
+        (lambda: ct.control_chart("df_1", store, limits=(0.0, -1.0)), "deviation: found -1 about 0, expected"),
+        (lambda: ct.control_chart("df_9", store), "no session that determines df_9"),
+    ):
+        with pytest.raises(ValueError, match=re.escape(said)):
+            wrong()
+
+
+def test_control_chart(program, store, tmp_path):
+    given = ct.control_chart("df_1", store, accepted=4, rules="western-electric", out=tmp_path / "python")
+    options = ["--accepted", "4", "--rules", "western-electric", "--out", tmp_path / "command"]
+    assert given.to_json() == program("history", "chart", "df_1", store, *options)
+    assert_same_files(tmp_path)
+    stated = program("history", "chart", "df_1", store, "--centre", "-0.01", "--deviation", "0.001")
+    assert ct.control_chart("df_1", store, limits=(-0.01, 0.001)).to_json() == stated
+
+
+def test_pages_of_a_store(executable, store, tmp_path):
+    pages = ct.write_pages(store, tmp_path / "python", limit="300 ug", accepted=4)
+    command = [executable, "history", "page", store, "--out", tmp_path / "command", "--limit", "300 ug", "--accepted", "4"]
+    subprocess.run(command, check=True, capture_output=True)
+    assert pages == assert_same_files(tmp_path) == 5
+
+
+def assert_same_files(folder):
+    """The folders of both have the same files; how many."""
+    names = sorted(file.name for file in (folder / "command").iterdir())
+    assert names == sorted(file.name for file in (folder / "python").iterdir())
+    for name in names:
+        assert (folder / "python" / name).read_bytes() == (folder / "command" / name).read_bytes(), name
+    return len(names)
+
+
+def test_every_command_has_its_function(root, executable):
+    commands = set(all_commands(executable)) - {"completions", "man", "view"}
+    assert {"calibrate", "history page"} <= commands
+    rows = re.findall(r"^\| `([a-z -]+)[^`]*` \| `ct\.(\w+)\(", (root / "docs/python.md").read_text(), re.MULTILINE)
+    assert sorted(command.strip() for command, _ in rows) == sorted(commands)
+    for _, name in rows:
         assert inspect.isfunction(getattr(ct, name)) and getattr(ct, name).__doc__, name
-        assert f"| `{name} " in page and f"| `ct.{name}(" in page, name
+
+
+def all_commands(executable, *of):
+    """The commands of the program and their subcommands, by its help."""
+    helped = subprocess.run([executable, *of, "--help"], check=True, capture_output=True, text=True).stdout
+    if not re.search(r"^Usage: .* <COMMAND>$", helped, re.MULTILINE):
+        return [" ".join(of)]
+    names = set(re.findall(r"^  ([a-z-]+)(?: {2,}|$)", helped, re.MULTILINE)) - {"help"}
+    assert names
+    return [command for name in names for command in all_commands(executable, *of, name)]
 
 
 def test_arguments_are_checked():

@@ -25,7 +25,7 @@ pub use evaluation::{Judged, UnitStatement, UnitVerdict};
 pub use figure::{Figure, chart_plots, comparison_plot, figures, frontier_plot, positions_figure, unit_history_plots};
 pub use files::{
     DocumentRequest, Documents, PagesRequest, StorePages, read_issuer, write_all_documents, write_documents,
-    write_history_pages, write_history_plot, write_noise,
+    write_history_pages, write_history_plot, write_noise, write_plots,
 };
 pub use language::Language;
 pub use number::{counted, with_uncertainty};

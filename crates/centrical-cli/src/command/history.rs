@@ -3,7 +3,6 @@
 mod add;
 mod chart;
 mod choice;
-mod files;
 mod list;
 mod page;
 mod station;

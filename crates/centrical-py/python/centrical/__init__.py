@@ -20,12 +20,10 @@ from . import _native
 from ._array_session import ArraySession
 from ._columns import Columns
 from ._commands import (
-    add_to_store,
     assess,
     calibrate,
     compare,
     compensate,
-    history,
     init,
     models,
     montecarlo,
@@ -41,6 +39,7 @@ from ._commands import (
 )
 from ._document import Document, Record
 from ._errors import FileError, InputError, NoSuchFileError
+from ._history import add_to_store, control_chart, history, write_pages
 from ._noise import Noise
 from ._plan import Plan
 from ._plot import Drawing
@@ -73,6 +72,7 @@ __all__ = [
     "calibrate",
     "compare",
     "compensate",
+    "control_chart",
     "history",
     "init",
     "models",
@@ -90,4 +90,5 @@ __all__ = [
     "simulate",
     "tumble",
     "watch",
+    "write_pages",
 ]

@@ -13,7 +13,7 @@ from ._errors import InputError, no_session
 from ._given import InMemory, bytes_of, is_file
 from ._progress import Bar
 from ._result import Result
-from ._table import columns_named, names_of
+from ._table import columns_named, names_of, numbers
 
 
 class ArraySession:
@@ -126,10 +126,10 @@ def _refuse_gaps(records: dict[int, Any]) -> None:
 def _mounting(m: int, record: Any, trace: Any, pulses: Any) -> tuple[Any, ...]:
     place = f"records[{m}]"
     t, f = _pair(place, record, "(t, f)")
-    readings = np.asarray(f, dtype=np.float64)
+    readings = numbers(place, f)
     if readings.ndim != 2 or readings.shape[1] != 3:
         raise ValueError(f"{place}: found readings of shape {readings.shape}, expected (n, 3)")
-    columns = [np.ascontiguousarray(readings[:, axis]) for axis in range(3)]
+    columns = [_column(place, readings[:, axis]) for axis in range(3)]
     telemetry = None
     if trace is not None:
         times, speeds = _pair(f"telemetry[{m}]", trace, "(t, speed)")
@@ -146,7 +146,8 @@ def _pair(place: str, value: Any, expected: str) -> tuple[Any, Any]:
 
 
 def _column(place: str, values: Any) -> np.ndarray:
-    column = np.ascontiguousarray(values, dtype=np.float64)
+    # Views of any stride stay views; the core takes them as long as they are aligned.
+    column = np.require(numbers(place, values), requirements=["A"])
     if column.ndim != 1:
         raise ValueError(f"{place}: found shape {column.shape}, expected (n,)")
     return column
@@ -156,4 +157,4 @@ def _plateau_columns(plateaus: Any) -> list[np.ndarray]:
     *names, optional = _native.plateau_columns()
     wanted = [*names, optional] if optional in names_of(plateaus) else names
     columns = columns_named(plateaus, wanted, "plateaus")
-    return [np.ascontiguousarray(column) for column in columns]
+    return [_column("plateaus", column) for column in columns]

@@ -307,51 +307,6 @@ def series(
         return Document(_native.series(list(sessions), out, method, jobs, rows_only, reduced, shown))
 
 
-def add_to_store(store: Path, results: Path | Iterable[Path], *, rows_only: bool = False) -> tuple[int, int]:
-    """Adds results, or folders of them, to a store, which is made if it is not there; how many were new, and how many known.
-
-    >>> written = ct.calibrate(example).to_json(folder / "result.json")
-    >>> ct.add_to_store(folder / "kept", folder / "result.json")
-    (1, 0)
-    """
-    with Bar("adding") as shown:
-        return _native.add_to_store(store, paths(results), rows_only, shown)
-
-
-def history(
-    results: Path | Iterable[Path],
-    of: Literal["list", "unit", "units", "station"] = "unit",
-    *,
-    model: str | None = None,
-    serial: str | None = None,
-    station: str | None = None,
-    limit: Quantity | None = None,
-    until: str | None = None,
-    confidence: float = 0.95,
-    trend: bool = True,
-) -> Document:
-    """What many calibrations say: a unit over the years, units of one type beside each other, a station over its sessions.
-
-    Parameters
-    ----------
-    results
-        Stores, results of calibrations, or folders of them; for ``"list"`` a store.
-    of
-        ``"list"``: the calibrations of a store; ``"unit"``: scatter between sessions, drift, forecast and due date;
-        ``"units"``: distribution, outlying units; ``"station"``: parameters of the machine that drift or have changed.
-    limit
-        Largest error of a compensated reading [m/s^2], for the due date.
-    until
-        Day of the forecasts, ``"2027-10-05"``; a year after the last calibration by default.
-
-    >>> ct.series([example], folder / "store").sessions
-    1
-    >>> ct.history(folder / "store", "list").calibrations[0].unit_model
-    'TA-200'
-    """
-    return Document(_native.history(paths(results), of, (model, serial, station), limit, until, confidence, trend))
-
-
 def compensate(
     result: Path,
     record: Path,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 _Path = Union[str, os.PathLike[str]]
 _Quantity = Union[float, str]
 _Shown = Union[Callable[[int, int], None], None]
+_Chosen = tuple[Union[str, None], Union[str, None], Union[str, None]]
 _File = Union[_Path, tuple[str, bytes]]
 _Names = tuple[str, Union[str, None], Union[str, None]]
 _Session = Union[_Path, tuple[str, str, list[tuple[str, bytes]], list[_Names]]]
@@ -27,7 +28,12 @@ __all__ = [
     "compare",
     "compensate",
     "draw_curves",
-    "history",
+    "history_chart",
+    "history_list",
+    "history_pages",
+    "history_station",
+    "history_unit",
+    "history_units",
     "init",
     "models",
     "montecarlo",
@@ -124,15 +130,31 @@ def calibrate(
 ) -> CalibrationResult: ...
 def add_failure(store: _Path, session: str, message: str, file: str, found: str, expected: str) -> bool: ...
 def add_to_store(store: _Path, results: Sequence[_Path], rows_only: bool, shown: _Shown) -> tuple[int, int]: ...
-def history(
+def history_list(store: _Path, chosen: _Chosen, check: bool) -> str: ...
+def history_unit(
     results: Sequence[_Path],
-    of: str,
-    chosen: tuple[str | None, str | None, str | None],
+    chosen: _Chosen,
     limit: float | str | None,
     until: str | None,
     confidence: float,
     trend: bool,
+    together: bool,
+    out: _Path | None,
 ) -> str: ...
+def history_units(results: Sequence[_Path], chosen: _Chosen, laboratory: _Path | None, batches: _Path | None) -> str: ...
+def history_station(results: Sequence[_Path], chosen: _Chosen) -> str: ...
+def history_chart(
+    parameter: str,
+    results: Sequence[_Path],
+    chosen: _Chosen,
+    accepted: int,
+    stated: tuple[float, float] | None,
+    rules: str,
+    out: _Path | None,
+) -> str: ...
+def history_pages(
+    store: _Path, out: _Path, limit: float | str | None, laboratory: _Path | None, batches: _Path | None, accepted: int
+) -> int: ...
 def series(
     sessions: Sequence[_Path],
     out: _Path,

@@ -12,6 +12,7 @@ from . import _native
 from ._document import Document
 from ._plot import Curve, plot_curves
 from ._progress import Shown
+from ._table import numbers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -74,7 +75,7 @@ def noise_of_array(
     """Analyses an array, as the file that NumPy would save of it."""
     if rate is None:
         raise ValueError("rate: found nothing, expected the sampling rate of the array in Hz")
-    values = np.asarray(array, dtype=np.float64)
+    values = numbers("source", array)
     values = values[:, np.newaxis] if values.ndim == 1 else values
     if values.ndim != 2 or values.size == 0:
         raise ValueError(f"source: found shape {np.shape(array)}, expected (n,) or (n, k)")

@@ -16,7 +16,7 @@ from ._document import Document, Record, escape
 from ._documents import check_documents
 from ._paths import paths
 from ._plot import draw_correlation, draw_residuals, plot_figure
-from ._table import columns_of, is_table
+from ._table import columns_of, is_table, numbers
 
 if TYPE_CHECKING:
     from typing import Literal, overload
@@ -202,7 +202,7 @@ class Result:
         >>> f.shape, bool((u < 1e-3).all())
         ((1, 3), True)
         """
-        if type(readings) is np.ndarray and not uncertainty:
+        if type(readings) is np.ndarray and readings.dtype.names is None and not uncertainty:
             forces, outside = self.native.compensate(readings, out)
             if outside:
                 _warn(outside, self.native.range)
@@ -212,6 +212,8 @@ class Result:
     def _compensate_any(self, readings: Any, out: Any, uncertainty: bool) -> Any:
         is_columns = is_table(readings)
         rows = columns_of(readings) if is_columns else readings
+        if isinstance(rows, np.ma.MaskedArray):
+            rows = numbers("readings", rows)
         forces, outside = self.native.compensate(rows, out)
         if outside:
             _warn(outside, self.native.range)

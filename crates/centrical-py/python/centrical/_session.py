@@ -91,7 +91,8 @@ class Session:
         plateaus
             In place of records: a table with the columns of ``plateaus.csv``; ``angle`` is NaN while spinning.
 
-        All arrays are copied; bytes are not.
+        Arrays of float64 are not copied before ``calibrate``, which converts a copy to SI: until then do not change them. Other types are
+        copied at once, bytes never.
 
         >>> record = np.loadtxt(example / "records" / "m01.csv", delimiter=",", skiprows=1)
         >>> ct.Session.from_arrays(example, [(record[:, 0], record[:, 1:])]).calibrate()

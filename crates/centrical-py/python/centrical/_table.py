@@ -15,6 +15,8 @@ NAMES = ("f1", "f2", "f3")
 
 def is_table(thing: Any) -> bool:
     """Whether something has named columns."""
+    if isinstance(thing, np.ndarray):
+        return thing.dtype.names is not None
     return isinstance(thing, Mapping) or hasattr(thing, "__arrow_c_stream__") or hasattr(thing, "columns")
 
 
@@ -35,6 +37,22 @@ def columns_of(table: Any) -> NDArray[np.float64]:
     return rows
 
 
+def numbers(argument: str, values: Any) -> NDArray[np.float64]:
+    """An array of numbers as float64, copied only if it is none yet; what is masked becomes NaN. Instants are no numbers."""
+    masked = isinstance(values, np.ma.MaskedArray)
+    array = np.ma.asarray(values) if masked else np.asarray(values)
+    if array.dtype.kind == "O":
+        # Numbers that may be missing, of pandas.
+        try:
+            array = np.asarray(values, dtype=np.float64)
+        except (TypeError, ValueError) as wrong:
+            raise TypeError(f"{argument}: found objects ({wrong}), expected numbers") from None
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{argument}: found {array.dtype}, expected numbers")
+    floats = array.astype(np.float64, copy=False)
+    return np.ma.filled(floats, np.nan) if masked else floats
+
+
 def columns_named(table: Any, names: Sequence[str], argument: str) -> list[NDArray[np.float64]]:
     """The columns of these names, of numbers."""
     readable = _readable(table, argument)
@@ -44,6 +62,8 @@ def columns_named(table: Any, names: Sequence[str], argument: str) -> list[NDArr
 def names_of(table: Any) -> list[str]:
     """The names of the columns of a table."""
     readable = _readable(table, "table")
+    if isinstance(readable, np.ndarray):
+        return list(readable.dtype.names or ())
     return list(readable.column_names if hasattr(readable, "column_names") else getattr(readable, "columns", readable))
 
 
@@ -63,13 +83,13 @@ def _readable(table: Any, argument: str) -> Any:
 
 def _column(table: Any, name: str, names: Sequence[str], argument: str) -> NDArray[np.float64]:
     try:
-        column = np.asarray(table[name])
+        column = table[name]
     except (KeyError, IndexError) as missing:
         raise ValueError(f"{argument}: found no column {name!r}, expected {', '.join(names)}") from missing
     except Exception as other:
         # Every library has its own exception for a column that is not there.
         raise ValueError(f"{argument}: column {name!r} cannot be read ({other}), expected {', '.join(names)}") from other
-    if column.ndim != 1 or column.dtype.kind not in "fiu":
-        found = f"shape {column.shape} of {column.dtype}"
-        raise TypeError(f"{argument}, column {name}: found {found}, expected numbers, shape (n,)")
-    return column.astype(np.float64, copy=False)
+    column = numbers(f"{argument}, column {name}", column)
+    if column.ndim != 1:
+        raise TypeError(f"{argument}, column {name}: found shape {column.shape}, expected (n,)")
+    return column

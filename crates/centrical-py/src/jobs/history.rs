@@ -1,15 +1,21 @@
 //! `history`: a store of calibrations, and what many of them say.
 
 use std::path::PathBuf;
+use std::time::SystemTime;
 
+use centrical_report::{PagesRequest, chart_plots, unit_history_plots, write_history_pages, write_plots};
 use centrical_session::{
-    Date, Depth, Dimension, Error, Failure, Place, Row, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest,
-    add_results, by_unit, list_store, read_calibrations, station_history, unit_history, units_history,
+    ChartLimits, ChartRequest, Date, Depth, Dimension, Error, Failure, ParameterLimits, Place, Row, RuleSet, Selection,
+    Store, UnitHistoryRequest, UnitsHistoryRequest, add_results, by_unit, chart, check_store, list_store, read_batches,
+    read_calibrations, read_limits, station_history, unit_history, units_history,
 };
 use pyo3::prelude::*;
 
 use crate::progress::{self, Shown};
-use crate::words::{Amount, refused};
+use crate::words::{Amount, one_of, refused};
+
+/// Model and serial number of the unit, and the station.
+type Chosen = (Option<String>, Option<String>, Option<String>);
 
 /// Adds results to a store: how many were new, how many known.
 #[pyfunction]
@@ -39,17 +45,32 @@ pub fn add_failure(
     progress::run(py, &None, |_| Ok(Store::create(&store)?.add(vec![row])?.new > 0))
 }
 
-/// `centrical-history-list/1`, `centrical-unit-history/1`, `centrical-units-history/1` or `centrical-station-history/1`.
+/// `centrical-history-list/1`.
 #[pyfunction]
-pub fn history(
+pub fn history_list(py: Python, store: PathBuf, chosen: Chosen, check: bool) -> PyResult<String> {
+    progress::run(py, &None, |work| {
+        let (selection, progress) = (selection(Depth::Summary, chosen), |done| work.advance(done));
+        let list = if check {
+            check_store(&store, selection, today(), &progress)?
+        } else {
+            list_store(&store, selection, &progress)?
+        };
+        list.to_json()
+    })
+}
+
+/// `centrical-unit-history/1`; with a folder `out` the plots as well.
+#[pyfunction]
+pub fn history_unit(
     py: Python,
     results: Vec<PathBuf>,
-    of: &str,
-    chosen: (Option<String>, Option<String>, Option<String>),
+    chosen: Chosen,
     limit: Option<Amount>,
     until: Option<String>,
     confidence: f64,
     trend: bool,
+    together: bool,
+    out: Option<PathBuf>,
 ) -> PyResult<String> {
     if !(confidence > 0.5 && confidence < 1.0) {
         return Err(refused("confidence", format!("found {confidence}, expected a number between 0.5 and 1")));
@@ -59,43 +80,128 @@ pub fn history(
         let refuse = |_| refused("until", format!("found {day:?}, expected a day such as 2026-10-05"));
         day.parse::<Date>().map_err(refuse)
     };
-    let until = until.map(day).transpose()?;
-    let [first, ..] = results.as_slice() else {
-        return Err(refused("results", "found none, expected a store, results or folders of them"));
-    };
-    let (unit_model, unit_serial, station) = chosen;
-    let depth = match of {
-        "unit" => Depth::Whole,
-        "units" => Depth::Errors,
-        _ => Depth::Values,
-    };
-    let selection = Selection { depth, unit_model, unit_serial, station, keys: None };
-    let missing = |expected: &str| Error::content(first, Place::Whole, "no such calibrations", expected);
-    if !["list", "unit", "units", "station"].contains(&of) {
-        return Err(refused("of", format!("found {of:?}, expected \"list\", \"unit\", \"units\" or \"station\"")));
-    }
+    let request = UnitHistoryRequest { trend, until: until.map(day).transpose()?, limit, coverage: confidence };
+    let results = given(results)?;
     progress::run(py, &None, |work| {
-        let progress = |done| work.advance(done);
-        if of == "list" {
-            return list_store(first, Selection { depth: Depth::Summary, ..selection }, &progress)?.to_json();
+        let (model, serial, station) = chosen;
+        let read_of = if together { None } else { serial.clone() };
+        let selection = selection(Depth::Whole, (model, read_of, station));
+        let units = by_unit(read_calibrations(&results, &selection, &|done| work.advance(done))?);
+        let is_meant = |unit: &str| serial.as_deref().is_none_or(|wanted| wanted == unit);
+        let (own, others): (Vec<_>, Vec<_>) = units.into_iter().partition(|unit| is_meant(&unit[0].unit_serial));
+        let [own] = own.as_slice() else { return Err(missing(&results, "calibrations of one unit")) };
+        let others: Vec<_> = others.into_iter().filter(|unit| unit[0].unit_model == own[0].unit_model).collect();
+        let report = unit_history(own, &others, request)
+            .ok_or_else(|| missing(&results, "two calibrations of the unit or more"))?;
+        if let Some(folder) = &out {
+            write_plots(folder, &unit_history_plots(&report, &ParameterLimits::default()), &results)?;
         }
-        let calibrations = read_calibrations(&results, &selection, &progress)?;
-        if of == "station" {
-            let report = station_history(&calibrations);
-            return report.ok_or_else(|| missing("calibrations of the station"))?.to_json();
-        }
-        let units = by_unit(calibrations);
-        match of {
-            "unit" => {
-                let [own] = units.as_slice() else { return Err(missing("calibrations of one unit")) };
-                let request = UnitHistoryRequest { trend, until, limit, coverage: confidence };
-                unit_history(own, &[], request)
-                    .ok_or_else(|| missing("two calibrations of the unit or more"))?
-                    .to_json()
-            }
-            _ => units_history(&units, &UnitsHistoryRequest::default())
-                .ok_or_else(|| missing("calibrations with a parameter in common"))?
-                .to_json(),
-        }
+        report.to_json()
     })
+}
+
+/// `centrical-units-history/1`.
+#[pyfunction]
+pub fn history_units(
+    py: Python,
+    results: Vec<PathBuf>,
+    chosen: Chosen,
+    laboratory: Option<PathBuf>,
+    batches: Option<PathBuf>,
+) -> PyResult<String> {
+    let results = given(results)?;
+    progress::run(py, &None, |work| {
+        let selection = selection(Depth::Errors, chosen);
+        let calibrations = read_calibrations(&results, &selection, &|done| work.advance(done))?;
+        let limits = laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
+        let batches = batches.as_deref().map(read_batches).transpose()?;
+        let request = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
+        let report = units_history(&by_unit(calibrations), &request);
+        report.ok_or_else(|| missing(&results, "calibrations with a parameter in common"))?.to_json()
+    })
+}
+
+/// `centrical-station-history/1`.
+#[pyfunction]
+pub fn history_station(py: Python, results: Vec<PathBuf>, chosen: Chosen) -> PyResult<String> {
+    let results = given(results)?;
+    progress::run(py, &None, |work| {
+        let selection = selection(Depth::Values, chosen);
+        let calibrations = read_calibrations(&results, &selection, &|done| work.advance(done))?;
+        let report = station_history(&calibrations);
+        report.ok_or_else(|| missing(&results, "calibrations of the station"))?.to_json()
+    })
+}
+
+/// The document of control charts; with a folder `out` the plots as well. `stated` are centre and standard deviation [SI], in place of those of
+/// the sessions `accepted`.
+#[pyfunction]
+pub fn history_chart(
+    py: Python,
+    parameter: &str,
+    results: Vec<PathBuf>,
+    chosen: Chosen,
+    accepted: usize,
+    stated: Option<(f64, f64)>,
+    rules: &str,
+    out: Option<PathBuf>,
+) -> PyResult<String> {
+    let known = [("nelson", RuleSet::Nelson), ("western-electric", RuleSet::WesternElectric)];
+    let rules = one_of("rules", rules, &known)?;
+    let is_finite = |(centre, deviation): &(f64, f64)| centre.is_finite() && *deviation > 0.0 && deviation.is_finite();
+    if let Some((centre, deviation)) = stated.filter(|stated| !is_finite(stated)) {
+        let found = format!("found {deviation} about {centre}, expected a positive deviation about a finite centre");
+        return Err(refused("deviation", found));
+    }
+    let limits = stated.map_or(ChartLimits::Accepted(accepted), |(c, deviation)| ChartLimits::Stated(c, deviation));
+    let results = given(results)?;
+    progress::run(py, &None, |work| {
+        let selection = selection(Depth::Values, chosen);
+        let calibrations = read_calibrations(&results, &selection, &|done| work.advance(done))?;
+        let report = chart(&calibrations, parameter, ChartRequest { limits, rules, last: None })
+            .map_err(|none| Error::content(&results[0], Place::Whole, none.found(), none.expected()))?;
+        if let Some(folder) = &out {
+            write_plots(folder, &chart_plots(&report), &results)?;
+        }
+        report.to_json()
+    })
+}
+
+/// Writes the pages of a store: how many there are.
+#[pyfunction]
+pub fn history_pages(
+    py: Python,
+    store: PathBuf,
+    out: PathBuf,
+    limit: Option<Amount>,
+    laboratory: Option<PathBuf>,
+    batches: Option<PathBuf>,
+    accepted: usize,
+) -> PyResult<usize> {
+    let limit = Amount::optional(limit, "limit", Dimension::Acceleration)?;
+    let request = PagesRequest { limit, laboratory, batches, accepted };
+    progress::run(py, &None, |work| write_history_pages(&store, &out, &request, &|done| work.advance(done)))
+}
+
+fn selection(depth: Depth, (unit_model, unit_serial, station): Chosen) -> Selection {
+    Selection { depth, unit_model, unit_serial, station, keys: None }
+}
+
+/// Stores and results, one at least.
+fn given(results: Vec<PathBuf>) -> PyResult<Vec<PathBuf>> {
+    if results.is_empty() {
+        return Err(refused("results", "found none, expected a store, results or folders of them"));
+    }
+    Ok(results)
+}
+
+/// An error of results, one at least, as a whole.
+fn missing(results: &[PathBuf], expected: &str) -> Error {
+    Error::content(&results[0], Place::Whole, "no such calibrations", expected)
+}
+
+/// Days from 1970-01-01; a day more, since a station may be east of here.
+fn today() -> i64 {
+    let passed = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(passed.as_secs() / 86_400 + 1).unwrap_or(i64::MAX)
 }

@@ -37,8 +37,8 @@ pub fn calibrate_arrays(
 ) -> PyResult<CalibrationResult> {
     let (method, hold_out) = (words::method(method)?, words::plateaus("hold_out", &hold_out)?);
     let origin = match plateaus {
-        Some(columns) => Origin::Plateaus(columns.iter().map(numbers).collect::<PyResult<_>>()?),
-        None => Origin::Records(records.iter().map(recorded).collect::<PyResult<_>>()?),
+        Some(columns) => Origin::Plateaus(columns.iter().map(numbers).collect()),
+        None => Origin::Records(records.iter().map(recorded).collect()),
     };
     let result = progress::run(py, &shown, |work| calibrated(session.read()?, origin, method, &hold_out, work))?;
     Ok(result.into())
@@ -75,16 +75,16 @@ fn calibrated(
     }
 }
 
-fn recorded((t, f, telemetry, pulses): &OfMounting) -> PyResult<Recorded> {
-    let [f1, f2, f3] = f;
-    let trace = |[t, omega]: &[Column; 2]| Ok::<_, PyErr>(SpeedTrace { t: numbers(t)?, omega: numbers(omega)? });
-    Ok(Recorded {
-        record: Record { t: numbers(t)?, f_z: [numbers(f1)?, numbers(f2)?, numbers(f3)?] },
-        telemetry: telemetry.as_ref().map(trace).transpose()?,
-        pulses: pulses.as_ref().map(numbers).transpose()?,
-    })
+fn recorded((t, f, telemetry, pulses): &OfMounting) -> Recorded {
+    let trace = |[t, omega]: &[Column; 2]| SpeedTrace { t: numbers(t), omega: numbers(omega) };
+    Recorded {
+        record: Record { t: numbers(t), f_z: f.each_ref().map(numbers) },
+        telemetry: telemetry.as_ref().map(trace),
+        pulses: pulses.as_ref().map(numbers),
+    }
 }
 
-fn numbers(column: &Column) -> PyResult<Vec<f64>> {
-    Ok(column.as_slice()?.to_vec())
+/// The numbers of a column, with any stride; they are converted to SI in place.
+fn numbers(column: &Column) -> Vec<f64> {
+    column.as_array().to_vec()
 }

@@ -7,7 +7,7 @@ mod written;
 
 use std::path::Path;
 
-use centrical_session::{Error, claim_folder, refuse_inputs};
+use centrical_session::{Error, OnProgress, claim_folder, refuse_inputs, unwatched};
 
 use self::overview::Overview;
 pub use self::request::PagesRequest;
@@ -27,7 +27,11 @@ impl StorePages {
     /// # Errors
     /// [`Error`] when the store cannot be read, or a file of the request is wrong.
     pub fn read(folder: &Path, request: &PagesRequest) -> Result<Self, Error> {
-        let overview = Overview::read(folder, request)?;
+        Self::read_watched(folder, request, &unwatched)
+    }
+
+    fn read_watched(folder: &Path, request: &PagesRequest, progress: OnProgress) -> Result<Self, Error> {
+        let overview = Overview::read(folder, request, progress)?;
         let units = UnitPages::of(folder, &overview, request);
         Ok(Self { overview, units })
     }
@@ -49,18 +53,24 @@ impl StorePages {
 
 /// Writes the pages of the store in `folder` to `out`, the list as `index.html`, and returns their number. The page of a unit that was made of the
 /// same calibrations by the same program is left as it is. Memory is that of a few thousand whole calibrations and of the values of all.
+/// `progress` is asked again and again; where it stops the work, pages that are whole may be there without the list.
 ///
 /// # Errors
-/// [`Error`] when the store cannot be read, a file of the request is wrong, or `out` does not take a page.
-pub fn write_history_pages(folder: &Path, out: &Path, request: &PagesRequest) -> Result<usize, Error> {
+/// [`Error`] when the store cannot be read, a file of the request is wrong, or `out` does not take a page. [`Error::Stopped`].
+pub fn write_history_pages(
+    folder: &Path,
+    out: &Path,
+    request: &PagesRequest,
+    progress: OnProgress,
+) -> Result<usize, Error> {
     let index = out.join(INDEX);
     refuse_inputs(std::slice::from_ref(&index), &request.inputs())?;
-    let StorePages { overview, units } = StorePages::read(folder, request)?;
+    let StorePages { overview, units } = StorePages::read_watched(folder, request, progress)?;
     let _claim = claim_folder(out)?;
     for (file, page) in &overview.pages {
         write_page(&out.join(file), page)?;
     }
-    write_units(&units, out)?;
+    write_units(&units, out, progress)?;
     // The list comes last: it names pages that are there.
     write_page(&index, &overview.index)?;
     Ok(1 + overview.pages.len() + units.count())

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical::reduction::{PulseTrain, Record, SpeedTrace};
+use centrical::{OnProgress, unwatched};
 use centrical_table::{Extent, Source};
 
 use super::rests::RestTable;
@@ -18,7 +19,15 @@ impl Session {
     /// # Errors
     /// If the mounting has no record, or as [`read_record`].
     pub fn record(&self, mounting: usize) -> Result<Record, Error> {
-        read_records(self.open_record(mounting)?, &self.columns, Extent::Whole)
+        self.record_to(mounting, Extent::Whole, &unwatched)
+    }
+
+    /// The same as far as it was written. `progress` is called with the number of bytes read.
+    ///
+    /// # Errors
+    /// As [`Session::record`]; [`Error::Stopped`].
+    pub(crate) fn record_to(&self, mounting: usize, extent: Extent, progress: OnProgress) -> Result<Record, Error> {
+        read_records(self.open_record(mounting)?, &self.columns, extent, progress)
     }
 
     /// Reads the telemetry of a mounting, if it has any.

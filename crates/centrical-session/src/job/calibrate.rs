@@ -1,7 +1,6 @@
 //! The whole job for one session: what the command, a fleet's worker and a notebook all call.
 
-use centrical::uncertainty::BetweenRests;
-use centrical::{Calibration, Data, MeasurementModel, OnProgress, advance};
+use centrical::{Calibration, Data, FitError, MeasurementModel, OnProgress, advance};
 
 use super::reduce::reduce;
 use crate::document::{BetweenRestsSummary, CalibrationResult, Method};
@@ -66,22 +65,27 @@ pub fn calibrate_reduced(
     method: Method,
     progress: OnProgress,
 ) -> Result<CalibrationResult, Error> {
-    let (result, between) = by_noise(session, reduced, method, progress)?;
+    let between = |calibration: &Calibration, result: &CalibrationResult| {
+        let is_judged = result.validity.is_some() && result.objections().is_empty();
+        if is_judged { calibration.between_rests(&|()| progress(0)) } else { Ok(None) }
+    };
+    let (result, between) = by_noise(session, reduced, method, progress, between)?;
     let Some(between) = between else { return Ok(result) };
     // The rests were judged by their own noise: with the scatter added to it, a poor fit would pass.
     let mut session = session.clone();
     session.type_b = between.stated_beside(session.type_b);
-    let (result, _) = by_noise(&session, &reduced.clone().scattered(&between), method, progress)?;
+    let (result, ()) = by_noise(&session, &reduced.clone().scattered(&between), method, progress, |_, _| Ok(()))?;
     Ok(CalibrationResult { between_rests: Some(BetweenRestsSummary::from(between)), ..result })
 }
 
-/// The calibration by the noise of the plateaus; and where it is acceptable, what differs between rests beside.
-fn by_noise(
+/// The calibration by the noise of the plateaus, and what is asked of it beside.
+fn by_noise<T>(
     session: &Session,
     reduced: &Reduced,
     method: Method,
     progress: OnProgress,
-) -> Result<(CalibrationResult, Option<BetweenRests>), Error> {
+    beside: impl FnOnce(&Calibration, &CalibrationResult) -> Result<T, FitError>,
+) -> Result<(CalibrationResult, T), Error> {
     let model = reduced.model(session)?;
     let failed = |source| Error::fit(&session.file, source);
     let data = Data::new(&model, reduced.observations()).map_err(failed)?;
@@ -94,7 +98,6 @@ fn by_noise(
     let calibration = calibration.map_err(failed)?;
     let result = CalibrationResult::from(&calibration, session, reduced, progress).map_err(failed)?;
     advance(progress, 0)?;
-    let is_judged = result.validity.is_some() && result.objections().is_empty();
-    let between = if is_judged { calibration.between_rests().map_err(failed)? } else { None };
-    Ok((result, between))
+    let beside = beside(&calibration, &result).map_err(failed)?;
+    Ok((result, beside))
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical::reduction::{Record, RecordSlice, SpeedTrace};
+use centrical::{OnProgress, advance, unwatched};
 use centrical_table::{Extent, Index, Reread, Rows, Source, Stamps, TableLines, TableReader};
 
 use super::columns::{Column, Columns, Scale, fields};
@@ -15,15 +16,21 @@ use crate::error::Error;
 /// # Errors
 /// As [`RecordReader::next_batch`].
 pub fn read_record(file: &Path, columns: &Columns) -> Result<Record, Error> {
-    RecordReader::open(file, columns)?.into_record()
+    RecordReader::open(file, columns)?.into_record(&unwatched)
 }
 
-/// Reads the record of a mounting in its file, or in the three of its newtonometers, as far as it was written.
+/// Reads the record of a mounting in its file, or in the three of its newtonometers, as far as it was written. `progress` is
+/// called with the number of bytes read.
 ///
 /// # Errors
-/// As [`RecordReader::next_batch`].
-pub(crate) fn read_records(sources: Vec<Source>, columns: &Columns, extent: Extent) -> Result<Record, Error> {
-    RecordReader::open_all(sources, extent, columns)?.into_record()
+/// As [`RecordReader::next_batch`]; [`Error::Stopped`].
+pub(crate) fn read_records(
+    sources: Vec<Source>,
+    columns: &Columns,
+    extent: Extent,
+    progress: OnProgress,
+) -> Result<Record, Error> {
+    RecordReader::open_all(sources, extent, columns)?.into_record(progress)
 }
 
 /// Reads the telemetry of `file`.
@@ -185,13 +192,15 @@ impl RecordReader {
         table.into_index().map(|index| RecordIndex { index, scales })
     }
 
-    fn into_record(mut self) -> Result<Record, Error> {
+    fn into_record(mut self, progress: OnProgress) -> Result<Record, Error> {
         let mut record = Record::default();
         while let Some(batch) = self.next_batch()? {
             for rows in batch {
                 record.extend(stretch(rows));
             }
+            advance(progress, self.newly_read())?;
         }
+        advance(progress, self.newly_read())?;
         Ok(record)
     }
 }

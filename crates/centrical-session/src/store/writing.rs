@@ -5,6 +5,7 @@ use std::collections::{BinaryHeap, HashSet};
 use std::fs::{self, File};
 use std::iter;
 
+use centrical::{OnProgress, advance, unwatched};
 use centrical_table::{create_folder, write_whole};
 
 use super::folder::Store;
@@ -35,14 +36,19 @@ impl Store {
     /// # Errors
     /// [`Error`] if a part is damaged or the folder does not take a file; nothing is added then.
     pub fn add(&self, rows: Vec<Row>) -> Result<Added, Error> {
-        self.add_with_results(rows.into_iter().map(|row| (row, None)).collect())
+        self.add_with_results(rows.into_iter().map(|row| (row, None)).collect(), &unwatched)
     }
 
-    /// The same with the bytes of `result.json` of each, which are copied first.
+    /// The same with the bytes of `result.json` of each, which are copied first. `progress` is asked between copies; where it stops the work,
+    /// copies may be there without their rows, for the next writer.
     ///
     /// # Errors
-    /// As [`Store::add`].
-    pub fn add_with_results(&self, rows: Vec<(Row, Option<Vec<u8>>)>) -> Result<Added, Error> {
+    /// As [`Store::add`]; [`Error::Stopped`].
+    pub fn add_with_results(
+        &self,
+        rows: Vec<(Row, Option<Vec<u8>>)>,
+        progress: OnProgress<usize>,
+    ) -> Result<Added, Error> {
         let _lock = self.lock()?;
         for orphan in self.orphans()? {
             // Best effort: the next writer tries again.
@@ -58,6 +64,7 @@ impl Store {
             }
             if let Some(bytes) = result {
                 self.copy_result(&row.key, &bytes)?;
+                advance(progress, 0)?;
             }
             new.push(row);
         }

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use thiserror::Error;
 
 use super::mistake::Mistake;
+use crate::progress::Stopped;
 
 /// Why a record could not be reduced.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -163,6 +164,9 @@ pub enum ReductionError {
         /// Sampling interval [s].
         interval: f64,
     },
+    /// The caller stopped the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 /// A stationary stretch of a record.

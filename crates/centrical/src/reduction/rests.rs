@@ -11,6 +11,7 @@ use super::plateau::PlateauMean;
 use super::record::RecordSlice;
 use super::survey::Survey;
 use super::turning::{draw_out, is_smooth, noise_along};
+use crate::progress::{OnProgress, Stopped, advance};
 
 /// The rests of some records.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,20 +42,17 @@ impl<'a> From<RecordSlice<'a>> for RestRecord<'a> {
 }
 
 /// The means of the rests of some records. The colour of the noise is pooled over all of them. A rest whose samples are not steady
-/// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid.
+/// is left out. Arcs of slow rotation count if the attitudes of all show an ellipsoid. `progress` is asked again and again.
 ///
 /// # Errors
-/// [`ReductionError`] if a record is invalid (lengths, times) or too short.
-pub fn reduce_rests(records: &[RestRecord]) -> Result<Rests, ReductionError> {
-    let located = records.iter().map(|RestRecord { samples, turning_radius }| {
-        let located = locate_rests(&Survey::of(*samples)?, turning_radius.is_some())?;
-        let fits = (0..located.windows().len()).filter_map(|rest| average(&located, rest, *samples, 0).ok());
-        let is_smooth =
-            |fit: &PlateauFit| turning_radius.is_none_or(|radius| is_smooth(fit, located.sample_noise(), radius));
-        let fits: Vec<PlateauFit> = fits.filter(is_smooth).collect();
+/// [`ReductionError`] if a record is invalid (lengths, times) or too short, or when the caller stops.
+pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<Rests, ReductionError> {
+    let located = records.iter().map(|record| {
+        let located = locate_rests(&Survey::of(record.samples)?, record.turning_radius.is_some())?;
+        let fits = averaged(&located, record, progress)?;
         Ok((located, fits))
     });
-    let mut located: Vec<(Located, Vec<PlateauFit>)> = located.collect::<Result<_, _>>()?;
+    let mut located: Vec<(Located, Vec<PlateauFit>)> = located.collect::<Result<_, ReductionError>>()?;
     let all = located.iter().flat_map(|(_, fits)| fits.iter().map(|fit| fit.mean));
     if Ellipsoid::through(&all.collect::<Vec<Vector3<f64>>>()).is_none() {
         for (_, fits) in &mut located {
@@ -66,6 +64,7 @@ pub fn reduce_rests(records: &[RestRecord]) -> Result<Rests, ReductionError> {
         fits.iter_mut().map(move |fit| (fit, white))
     });
     let ellipsoid = draw_out(with_noise);
+    advance(progress, ())?;
     let mut along = Vec::new();
     for (record, (located, fits)) in records.iter().zip(&located) {
         along.extend(noise_along(record.samples, fits, &ellipsoid, located.sample_noise())?);
@@ -79,7 +78,22 @@ pub fn reduce_rests(records: &[RestRecord]) -> Result<Rests, ReductionError> {
         ReducedMounting::of_rests(located, rests)
     });
     let reduced: Vec<ReducedMounting> = reduced.collect();
+    advance(progress, ())?;
     let noise = NoiseModel::pool_rests(&reduced, &along);
+    advance(progress, ())?;
     let means = reduced.iter().map(|record| plateau_means(record, &noise)).collect();
+    advance(progress, ())?;
     Ok(Rests { means, noise_at_most: noise.at_most(&reduced) })
+}
+
+/// The rests of a record that are steady, and its arcs that are smooth.
+fn averaged(located: &Located, record: &RestRecord, progress: OnProgress<()>) -> Result<Vec<PlateauFit>, Stopped> {
+    let is_smooth =
+        |fit: &PlateauFit| record.turning_radius.is_none_or(|radius| is_smooth(fit, located.sample_noise(), radius));
+    let mut fits = Vec::new();
+    for rest in 0..located.windows().len() {
+        advance(progress, ())?;
+        fits.extend(average(located, rest, record.samples, 0).ok().filter(is_smooth));
+    }
+    Ok(fits)
 }

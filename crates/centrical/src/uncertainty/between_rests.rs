@@ -11,12 +11,13 @@
 //! together, and no strength is preferred (as for the noise within rests, `reduction/colour/posterior.rs`). So the uncertainties
 //! include what the residuals cannot exclude, and grow little where an effect is absent.
 
-use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen};
 
 use super::rivals::Rivals;
 use super::rivals::columns::Columns;
 use crate::fit::Calibration;
 use crate::model::{Course, Extension, FitError, Rival, TypeB};
+use crate::progress::{OnProgress, advance};
 
 /// Strengths per decade, over the mean variance of a rest, and from where on. Below the first no standard uncertainty changes by more
 /// than half a percent; above the last no fit passes its chi^2.
@@ -57,18 +58,19 @@ impl BetweenRests {
 
 impl Calibration<'_> {
     /// What the residuals of a calibration by rests alone cannot exclude beside the noise within rests; `None` with an arm, and where
-    /// two rests or fewer are redundant.
+    /// two rests or fewer are redundant. `progress` is asked again and again.
     ///
     /// # Errors
-    /// [`FitError`] when numbers overflow.
-    pub fn between_rests(&self) -> Result<Option<BetweenRests>, FitError> {
+    /// [`FitError`] when numbers overflow or the caller stops.
+    pub fn between_rests(&self, progress: OnProgress<()>) -> Result<Option<BetweenRests>, FitError> {
         if self.data().model().experiment().has_arm() {
             return Ok(None);
         }
         let (rests, gain) = (self.data().observations(), self.gain()?);
-        let along = |n: usize, c: usize| if n == c { rests[n].mean.normalize() } else { Vector3::zeros() };
-        let scatter = Columns::new(gain, (0..rests.len()).collect(), rests.len(), along);
+        let scatter = Columns::apart(gain, rests.len(), |n| rests[n].mean.normalize());
+        advance(progress, ())?;
         let redundancy = scatter.redundancy();
+        advance(progress, ())?;
         if redundancy.trace() <= FEWEST {
             return Ok(None);
         }
@@ -76,8 +78,10 @@ impl Calibration<'_> {
         let variances = scatter.lengths.iter().map(|length| 1.0 / (length * length));
         let unit = (variances.sum::<f64>() / rests.len() as f64).sqrt();
         let rivals = Rivals::of(self)?;
+        advance(progress, ())?;
         let drift = rivals.get(DRIFT).map(|drift| &drift.columns);
         let residuals = Residuals::of(&scatter, &redundancy, drift, unit);
+        advance(progress, ())?;
         let (scatter, drift) = residuals.posterior_mean();
         Ok(Some(BetweenRests { scatter: unit * scatter.sqrt(), drift: unit * drift.sqrt() }))
     }

@@ -4,7 +4,7 @@ use centrical::reduction::{PlateauMean, Record, RestRecord, coarse_scale, reduce
 use centrical::uncertainty::{Level, Rivals, chance_of_residuals};
 use centrical::{
     Calibration, Centrifuge, Data, ErrorModel, Experiment, Fit, MeasurementModel, Mounting, Observation, PairRelation,
-    Position, ReferencePoint, SetPoint, Site, SwitchOn, TypeB, Unit,
+    Position, ReferencePoint, SetPoint, Site, SwitchOn, TypeB, Unit, unwatched,
 };
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 
@@ -208,7 +208,7 @@ fn problem(positions: Vec<Position>, means: &[(Vector3<f64>, Matrix3<f64>)]) -> 
 
 /// The rests of a made record and the model of them.
 fn problem_of(made: &Made) -> (MeasurementModel, Vec<Observation>) {
-    problem_of_rests(&reduce_rests(&[made.record.as_slice().into()]).unwrap().means.concat())
+    problem_of_rests(&reduce_rests(&[made.record.as_slice().into()], &unwatched).unwrap().means.concat())
 }
 
 fn problem_of_rests(rests: &[PlateauMean]) -> (MeasurementModel, Vec<Observation>) {
@@ -243,7 +243,7 @@ fn rests_are_found_as_they_were_made() {
     for making in [BY_HAND, ON_A_TABLE, Making { bumps: 0.0, lasting: [1.2, 2.0], ..BY_HAND }] {
         for _ in 0..10 {
             let made = made(&making, &mut random);
-            let found = reduce_rests(&[made.record.as_slice().into()]).unwrap().means.concat();
+            let found = reduce_rests(&[made.record.as_slice().into()], &unwatched).unwrap().means.concat();
             // A bump may part one rest in two.
             let bumped = if making.bumps > 0.0 { making.rests / 4 } else { 0 };
             assert!((making.rests..=making.rests + bumped).contains(&found.len()), "{}", found.len());
@@ -260,13 +260,13 @@ fn rests_are_found_as_they_were_made() {
 fn neither_rests_nor_motion_are_invented() {
     let mut random = Random::new(6);
     let still = made(&Making { rests: 1, lasting: [60.0, 60.0], bumps: 0.0, ..BY_HAND }, &mut random);
-    assert_eq!(reduce_rests(&[still.record.as_slice().into()]).unwrap().means.concat().len(), 1);
+    assert_eq!(reduce_rests(&[still.record.as_slice().into()], &unwatched).unwrap().means.concat().len(), 1);
     let count = 6000;
     let t: Vec<f64> = (0..count).map(|i| f64::from(i) / RATE).collect();
     let turned = |phase: f64| t.iter().map(|t| GRAVITY * (1.7 * t + phase).sin() + 0.01 * random.normal()).collect();
     let mut turned = turned;
     let moving = Record { f_z: [turned(0.0), turned(1.6), turned(0.3)], t: t.clone() };
-    assert!(reduce_rests(&[moving.as_slice().into()]).unwrap().means.concat().is_empty());
+    assert!(reduce_rests(&[moving.as_slice().into()], &unwatched).unwrap().means.concat().is_empty());
 }
 
 /// Readings in counts: scale and bias to what misalignment leaves, from the rests alone.
@@ -280,8 +280,13 @@ fn counts_become_accelerations() {
             *value = *value * scale[axis] + bias[axis];
         }
     }
-    let means: Vec<_> =
-        reduce_rests(&[made.record.as_slice().into()]).unwrap().means.concat().iter().map(|rest| rest.mean).collect();
+    let means: Vec<_> = reduce_rests(&[made.record.as_slice().into()], &unwatched)
+        .unwrap()
+        .means
+        .concat()
+        .iter()
+        .map(|rest| rest.mean)
+        .collect();
     assert_eq!(means.len(), ON_A_TABLE.rests);
     let coarse = coarse_scale(&means, GRAVITY).unwrap();
     for axis in 0..3 {
@@ -296,7 +301,8 @@ fn counts_become_accelerations() {
 
 /// Mean variance of rests, or arcs, along the force times their number of samples: in the direction in which the size of a reading changes.
 pub fn noise_along_force(made: &Made, radius: Option<f64>) -> f64 {
-    let rests = reduce_rests(&[RestRecord { samples: made.record.as_slice(), turning_radius: radius }]).unwrap();
+    let rests =
+        reduce_rests(&[RestRecord { samples: made.record.as_slice(), turning_radius: radius }], &unwatched).unwrap();
     let [b1, b2, b3, k11, k21, k22, k31, k32, k33] = made.truth;
     let gain = Matrix3::identity() + Matrix3::new(k11, 0.0, 0.0, k21, k22, 0.0, k31, k32, k33);
     let back = gain.try_inverse().unwrap();
@@ -350,7 +356,7 @@ fn a_tremor_shortens_no_rest() {
         let [b1, b2, b3, k11, k21, k22, k31, k32, k33] = made.truth;
         let gain = Matrix3::identity() + Matrix3::new(k11, 0.0, 0.0, k21, k22, 0.0, k31, k32, k33);
         let size = |rest: &PlateauMean| gain.try_inverse().map(|back| back * (rest.mean - Vector3::new(b1, b2, b3)));
-        let rests = reduce_rests(&[made.record.as_slice().into()]).unwrap().means.concat();
+        let rests = reduce_rests(&[made.record.as_slice().into()], &unwatched).unwrap().means.concat();
         rests.iter().filter(|rest| size(rest).is_some_and(|force| force.norm() > GRAVITY)).count()
     };
     let too_long: usize = (0..RUNS).map(|_| too_long(&mut random)).sum();
@@ -408,7 +414,8 @@ fn judged(making: &Making, random: &mut Random) -> Judged {
 
 /// A record of slow rotation where the distance from its axis is stated [m].
 pub fn judged_record(made: &Made, radius: Option<f64>) -> Judged {
-    let found = reduce_rests(&[RestRecord { samples: made.record.as_slice(), turning_radius: radius }]).unwrap();
+    let found =
+        reduce_rests(&[RestRecord { samples: made.record.as_slice(), turning_radius: radius }], &unwatched).unwrap();
     // A rectangular distribution of each coordinate up to the largest distance.
     let from_axes = radius.map_or(0.0, |radius| radius / 3_f64.sqrt());
     let rests = found.means.concat();
@@ -424,7 +431,7 @@ pub fn judged_record(made: &Made, radius: Option<f64>) -> Judged {
     let of_noise = squared_error(&model, calibration.fit(), made.truth);
     let mut squared = of_noise;
     if !is_refused {
-        let between = calibration.between_rests().unwrap().unwrap();
+        let between = calibration.between_rests(&unwatched).unwrap().unwrap();
         let model = model.clone().with_stated(between.stated_beside(TypeB::default()));
         let scattered = |rest: &Observation| Observation { covariance: between.scattered(&rest.covariance), ..*rest };
         let scattered: Vec<Observation> = observations.iter().map(scattered).collect();
@@ -545,7 +552,7 @@ fn what_differs_between_rests_is_what_the_restricted_likelihood_says() {
         let (model, observations) = problem_of(&made(&making, &mut Random::new(3)));
         let data = Data::new(&model, observations.clone()).unwrap();
         let calibration = Calibration::exact(&data).unwrap();
-        let found = calibration.between_rests().unwrap().unwrap();
+        let found = calibration.between_rests(&unwatched).unwrap().unwrap();
         let x = calibration.fit().state();
         let n = observations.len();
         let (mut noise, mut design) = (DMatrix::zeros(3 * n, 3 * n), DMatrix::zeros(3 * n, x.len()));

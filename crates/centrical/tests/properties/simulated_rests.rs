@@ -5,7 +5,7 @@ use centrical::reduction::{Record, reduce_rests};
 use centrical::simulate::{
     Bumps, Coloured, Equipment, Hand, Sensor, SimulatedTumble, Simulation, Tremor, draw_attitudes, draw_truth,
 };
-use centrical::{Experiment, MeasurementModel, Mounting, PairRelation, Position, SetPoint};
+use centrical::{Experiment, MeasurementModel, Mounting, PairRelation, Position, SetPoint, unwatched};
 use nalgebra::Vector3;
 
 use crate::common::{experiment, kozlov};
@@ -104,7 +104,7 @@ fn the_means_of_simulated_rests_are_as_uncertain_as_stated() {
         let simulation = Simulation::new(&model, &truth, &equipment, seed).unwrap();
         let tumble = tumble(&simulation, &model);
         let (made, samples) = (tumble.rests(), record(&tumble));
-        let found = reduce_rests(&[samples.as_slice().into()]).unwrap().means.concat();
+        let found = reduce_rests(&[samples.as_slice().into()], &unwatched).unwrap().means.concat();
         // A bump may part one rest in two.
         assert!((22..=26).contains(&found.len()), "{seed}: {}", found.len());
         for rest in &found {

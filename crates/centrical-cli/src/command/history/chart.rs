@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{chart_plots, chart_text};
+use centrical_report::{chart_plots, chart_text, write_plots};
 use centrical_session::{ChartLimits, ChartRequest, Depth, Error, RuleSet, chart};
 
 use super::choice::Choice;
-use super::files::write_files;
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 
@@ -67,8 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let report = chart(&choice.read(Depth::Values)?, &arguments.parameter, request)
         .map_err(|source| choice.refuse(source.found(), &source.expected()))?;
     if let Some(folder) = &arguments.out {
-        let plots = chart_plots(&report).into_iter().map(|(name, plot)| (format!("{name}.svg"), plot.to_svg()));
-        write_files(folder, &plots.collect::<Vec<_>>(), &choice.results)?;
+        write_plots(folder, &chart_plots(&report), &choice.results)?;
     }
     arguments.printing.show(|| chart_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.signals.is_empty()))

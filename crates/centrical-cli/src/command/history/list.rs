@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         ..Selection::default()
     };
     let list = if arguments.check {
-        check_store(&arguments.store, selection, today())?
+        check_store(&arguments.store, selection, today(), &unwatched)?
     } else {
         list_store(&arguments.store, selection, &unwatched)?
     };

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use centrical_report::{PagesRequest, write_history_pages};
-use centrical_session::Error;
+use centrical_session::{Error, unwatched};
 
 use crate::command::compensate::acceleration;
 use crate::outcome::Outcome;
@@ -59,7 +59,7 @@ impl PageOptions {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let pages = write_history_pages(&arguments.store, &arguments.out, &arguments.options.request())?;
+    let pages = write_history_pages(&arguments.store, &arguments.out, &arguments.options.request(), &unwatched)?;
     if !arguments.quiet {
         print(&format!("{pages} pages written to {}, index.html first\n", arguments.out.display()))?;
     }

@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use centrical_report::{unit_history_plots, unit_history_text};
+use centrical_report::{unit_history_plots, unit_history_text, write_plots};
 use centrical_session::{Calibrated, Date, Depth, Error, ParameterLimits, UnitHistoryRequest, by_unit, unit_history};
 
 use super::choice::Choice;
-use super::files::write_files;
 use crate::command::compensate::acceleration;
 use crate::outcome::Outcome;
 use crate::printing::Printing;
@@ -74,9 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         choice.refuse(format!("{} calibration", calibrations.len()), "two or more with a parameter in common")
     })?;
     if let Some(folder) = &arguments.out {
-        let plots = unit_history_plots(&report, &ParameterLimits::default()).into_iter();
-        let files = plots.map(|(name, plot)| (format!("{name}.svg"), plot.to_svg()));
-        write_files(folder, &files.collect::<Vec<_>>(), &choice.results)?;
+        write_plots(folder, &unit_history_plots(&report, &ParameterLimits::default()), &choice.results)?;
     }
     arguments.printing.show(|| unit_history_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_acceptable()))

@@ -13,7 +13,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from .. import _commands
+from .. import _history
 from .._errors import InputError
 from .places import Place, get, names
 
@@ -84,7 +84,7 @@ def _units(place: Place, parts: list[str], store: Any) -> Any:
         for part in parts:
             (rows / f"{part}.parquet").write_bytes(get(store, f"rows/{part}.parquet"))
         try:
-            return _commands.history(folder, "units")
+            return _history.history(folder, "units")
         except InputError:
             # One unit, units of several models, or sessions without a date.
             return None

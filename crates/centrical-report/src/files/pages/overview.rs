@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use centrical_session::{
-    Calibrated, ChartLimits, ChartRequest, Depth, Error, HistoryList, ParameterLimits, RuleSet, Selection,
-    UnitsHistoryReport, UnitsHistoryRequest, by_unit, chart, list_store, read_batches, read_calibrations, read_limits,
-    station_history, unit_means, units_history, unwatched,
+    Calibrated, ChartLimits, ChartRequest, Depth, Error, HistoryList, OnProgress, ParameterLimits, RuleSet, Selection,
+    UnitsHistoryReport, UnitsHistoryRequest, advance, by_unit, chart, list_store, read_batches, read_calibrations,
+    read_limits, station_history, unit_means, units_history,
 };
 use rayon::prelude::*;
 
@@ -35,20 +35,22 @@ pub struct Overview {
 }
 
 impl Overview {
-    /// Reads the values of all calibrations.
+    /// Reads the values of all calibrations. `progress` is asked again and again.
     ///
     /// # Errors
     /// [`Error`] when the store cannot be read, or a file of the request is wrong.
-    pub fn read(folder: &Path, request: &PagesRequest) -> Result<Self, Error> {
-        let list = list_store(folder, Selection::default(), &unwatched)?;
+    pub fn read(folder: &Path, request: &PagesRequest, progress: OnProgress) -> Result<Self, Error> {
+        let list = list_store(folder, Selection::default(), progress)?;
         let selection = Selection { depth: Depth::Errors, ..Selection::default() };
-        let calibrations = read_calibrations(&[folder.to_owned()], &selection, &unwatched)?;
+        let calibrations = read_calibrations(&[folder.to_owned()], &selection, progress)?;
         let limits = request.laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
         let batches = request.batches.as_deref().map(read_batches).transpose()?;
         let asked = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
         let mut pages = BTreeMap::new();
         let stations = stations(&calibrations, request, &mut pages);
+        advance(progress, 0)?;
         let models = models(calibrations, &asked, request, &mut pages);
+        advance(progress, 0)?;
         let units = units(&list);
         let index = history_index(&list, &models, &stations, |file| units.contains_key(file));
         Ok(Self { limits: asked.limits, index, pages, units })

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    Calibrated, Depth, Error, ParameterLimits, Selection, UnitHistoryRequest, read_calibrations, sha256, unit_history,
-    unwatched,
+    Calibrated, Depth, Error, OnProgress, ParameterLimits, Selection, UnitHistoryRequest, read_calibrations, sha256,
+    unit_history, unwatched,
 };
 
 use super::overview::{Overview, charts};
@@ -50,17 +50,17 @@ impl UnitPages {
     /// [`Error`] when the store cannot be read.
     pub fn page(&self, file: &str) -> Result<Option<String>, Error> {
         let Some(keys) = self.units.get(file) else { return Ok(None) };
-        let calibrations = self.read(keys.clone())?;
+        let calibrations = self.read(keys.clone(), &unwatched)?;
         Ok((!calibrations.is_empty()).then(|| self.made(&calibrations)))
     }
 
-    /// Whole calibrations, in the order of time.
+    /// Whole calibrations, in the order of time. `progress` is asked again and again.
     ///
     /// # Errors
     /// [`Error`] when the store cannot be read.
-    pub fn read(&self, keys: BTreeSet<String>) -> Result<Vec<Calibrated>, Error> {
+    pub fn read(&self, keys: BTreeSet<String>, progress: OnProgress) -> Result<Vec<Calibrated>, Error> {
         let selection = Selection { depth: Depth::Whole, keys: Some(keys), ..Selection::default() };
-        read_calibrations(std::slice::from_ref(&self.folder), &selection, &unwatched)
+        read_calibrations(std::slice::from_ref(&self.folder), &selection, progress)
     }
 
     /// The page of a unit by its calibrations, in the order of time.

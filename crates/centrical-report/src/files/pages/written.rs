@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use centrical_session::{Calibrated, Error, by_unit, write_stream};
+use centrical_session::{Calibrated, Error, OnProgress, advance, by_unit, write_stream};
 use rayon::prelude::*;
 
 use super::unit::UnitPages;
@@ -26,18 +26,23 @@ pub fn write_page(file: &Path, page: &str) -> Result<(), Error> {
 ///
 /// # Errors
 /// [`Error`] when the store cannot be read or `out` does not take a page.
-pub fn write_units(units: &UnitPages, out: &Path) -> Result<(), Error> {
+pub fn write_units(units: &UnitPages, out: &Path, progress: OnProgress) -> Result<(), Error> {
     let all: Vec<(&str, &BTreeSet<String>)> = units.units().collect();
     let is_due = |(file, keys): &(&str, &BTreeSet<String>)| !begins_with(&out.join(file), &opening(units, keys));
     let due: Vec<_> = all.into_par_iter().filter(is_due).collect();
     let mut batches = batches(&due).into_iter();
-    let mut next = batches.next().map(|keys| units.read(keys));
+    let mut next = batches.next().map(|keys| units.read(keys, progress));
     while let Some(read) = next {
         let unit_by_unit = by_unit(read?);
         // The next ones are read meanwhile.
         let (written, ahead) = rayon::join(
-            || unit_by_unit.par_iter().try_for_each(|unit| write_unit(units, unit, out)),
-            || batches.next().map(|keys| units.read(keys)),
+            || {
+                unit_by_unit.par_iter().try_for_each(|unit| {
+                    advance(progress, 0)?;
+                    write_unit(units, unit, out)
+                })
+            },
+            || batches.next().map(|keys| units.read(keys, progress)),
         );
         written?;
         next = ahead;

@@ -3,7 +3,7 @@
 use std::mem;
 use std::path::{Path, PathBuf};
 
-use centrical::{OnProgress, advance};
+use centrical::{OnProgress, advance, unwatched};
 
 use super::results::collect_results;
 use crate::document::CalibrationResult;
@@ -43,7 +43,7 @@ pub fn add_results(
         let row = CalibrationResult::parse(file, &text)?.row(text.as_bytes());
         batch.push((row, (!rows_only).then(|| text.into_bytes())));
         if batch.len() == BATCH || n + 1 == files.len() {
-            let of_batch = store.add_with_results(mem::take(&mut batch))?;
+            let of_batch = store.add_with_results(mem::take(&mut batch), progress)?;
             added = Added { new: added.new + of_batch.new, known: added.known + of_batch.known };
         }
         advance(progress, 1)?;
@@ -58,5 +58,5 @@ pub fn add_results(
 pub fn add_result(folder: &Path, result: &CalibrationResult) -> Result<Added, Error> {
     let text = result.to_json()?;
     let row = result.row(text.as_bytes());
-    Store::create(folder)?.add_with_results(vec![(row, Some(text.into_bytes()))])
+    Store::create(folder)?.add_with_results(vec![(row, Some(text.into_bytes()))], &unwatched)
 }

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use centrical::unwatched;
+use centrical::OnProgress;
 use centrical_table::Source;
 
 use crate::document::{Doubt, DoubtKind, HistoryList};
@@ -12,18 +12,24 @@ use crate::error::{Error, ErrorKind};
 use crate::record::Input;
 use crate::store::{Row, Selection, Status, Store};
 
-/// The calibrations that a selection picks, by unit and day, with the doubts about them. `today` in days from 1970-01-01.
+/// The calibrations that a selection picks, by unit and day, with the doubts about them. `today` in days from 1970-01-01; `progress` is
+/// asked again and again.
 ///
 /// # Errors
-/// [`Error`] if the folder is no store, a part is damaged, or a copy cannot be read.
-pub fn check_store(folder: &Path, selection: Selection, today: i64) -> Result<HistoryList, Error> {
+/// [`Error`] if the folder is no store, a part is damaged, or a copy cannot be read. [`Error::Stopped`].
+pub fn check_store(
+    folder: &Path,
+    selection: Selection,
+    today: i64,
+    progress: OnProgress,
+) -> Result<HistoryList, Error> {
     let store = Store::open(folder)?;
-    let rows = store.rows(selection, &unwatched)?.collect::<Result<Vec<_>, _>>()?;
+    let rows = store.rows(selection, progress)?.collect::<Result<Vec<_>, _>>()?;
     let done: Vec<&Row> = rows.iter().filter(|row| row.status == Status::Done).collect();
     let mut doubts = two_spellings(&done);
     doubts.extend(twice(&done));
     doubts.extend(done.iter().filter_map(|row| day(row, today)));
-    doubts.extend(copies(&store, &done)?);
+    doubts.extend(copies(&store, &done, progress)?);
     let mut list = HistoryList::new(&folder.display().to_string(), rows);
     list.doubts = Some(doubts);
     Ok(list)
@@ -96,14 +102,14 @@ fn day(row: &Row, today: i64) -> Option<Doubt> {
 }
 
 /// Copies that are missing or not as they were added. A store that keeps none has none to miss.
-fn copies(store: &Store, rows: &[&Row]) -> Result<Vec<Doubt>, Error> {
+fn copies(store: &Store, rows: &[&Row], progress: OnProgress) -> Result<Vec<Doubt>, Error> {
     let mut doubts = Vec::new();
     if !store.keeps_results() {
         return Ok(doubts);
     }
     for row in rows {
         let copy = Source::open(&store.result_file(&row.key), "the copy of a result").map_err(Error::from);
-        let kind = match copy.and_then(|copy| Input::of(Path::new(""), &copy, &unwatched)) {
+        let kind = match copy.and_then(|copy| Input::of(Path::new(""), &copy, progress)) {
             Ok(copy) if copy.sha256 == row.key => continue,
             Ok(_) => DoubtKind::Changed,
             Err(error) if error.kind() == ErrorKind::Missing => DoubtKind::Missing,

@@ -68,8 +68,8 @@ impl Series {
     }
 
     /// The readings of a mounting whose newtonometers have a file each.
-    fn of_files(session: &Session, mounting: usize, window: [f64; 2]) -> Result<Self, Error> {
-        let record = session.record(mounting)?;
+    fn of_files(session: &Session, mounting: usize, window: [f64; 2], progress: OnProgress) -> Result<Self, Error> {
+        let record = session.record_to(mounting, Extent::Whole, progress)?;
         let inside = record.as_slice().between(window);
         let named = |(column, values): (&Column, &[f64])| (column.name.to_string(), si_unit(column), values.to_vec());
         let columns = session.columns.f.iter().zip(inside.f_z).map(named).collect();
@@ -108,7 +108,7 @@ impl Series {
                     "samples as they were recorded: analyse the file of each newtonometer by itself (noise FILE)";
                 return Err(Error::content(record, Place::Whole, "readings interpolated to common stamps", expected));
             }
-            let series = Self::of_files(session, set_points[set_point].mounting, window)?;
+            let series = Self::of_files(session, set_points[set_point].mounting, window, progress)?;
             return Ok((series, PlateauName::of(session, set_point)));
         }
         let series = Self::read(

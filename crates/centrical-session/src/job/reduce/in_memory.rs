@@ -44,7 +44,7 @@ pub fn reduce_recorded<'s>(
     }
     let mountings = recorded.into_par_iter().enumerate().map(|(number, recorded)| {
         advance(progress, 0)?;
-        let reduced = reduce_mounting(session, number, recorded)?;
+        let reduced = reduce_mounting(session, number, recorded, progress)?;
         advance(progress, 1)?;
         Ok(reduced)
     });
@@ -55,7 +55,12 @@ pub fn reduce_recorded<'s>(
     Ok((session, reduced.with_rests(rests)))
 }
 
-fn reduce_mounting(session: &Session, number: usize, recorded: Recorded) -> Result<OfRecord, Error> {
+fn reduce_mounting(
+    session: &Session,
+    number: usize,
+    recorded: Recorded,
+    progress: OnProgress<usize>,
+) -> Result<OfRecord, Error> {
     let Recorded { record, telemetry, pulses } = in_si(session, recorded);
     let refused = |source: ReductionError| Error::Reduction {
         file: session.file.clone(),
@@ -63,13 +68,17 @@ fn reduce_mounting(session: &Session, number: usize, recorded: Recorded) -> Resu
         source: Box::new(source),
     };
     let survey = Survey::of(record.as_slice()).map_err(refused)?.with_resolution(session.type_b.resolution);
+    advance(progress, 0)?;
     let schedule = schedule(session, number);
     let mut located = locate(&survey, telemetry.as_ref(), &schedule).map_err(refused)?;
     if let Some(t) = pulses.filter(|_| counts_pulses(session)) {
         located.time_pulses(&PulseTrain { t, per_revolution: session.pulses_per_revolution() });
     }
-    let means = (0..schedule.len()).map(|plateau| average(&located, plateau, record.as_slice(), 0));
-    let means = means.collect::<Result<_, _>>().map_err(refused)?;
+    let means = (0..schedule.len()).map(|plateau| {
+        advance(progress, 0)?;
+        average(&located, plateau, record.as_slice(), 0).map_err(refused)
+    });
+    let means = means.collect::<Result<_, _>>()?;
     let overview = RecordOverview::of(number + 1, &survey.extremes().collect::<Vec<_>>());
     Ok(OfRecord { reduced: ReducedMounting::new(located, means), overview, interpolated: None })
 }

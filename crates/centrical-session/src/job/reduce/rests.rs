@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use centrical::reduction::{Record, RestRecord, Rests, reduce_rests};
-use centrical::{OnProgress, advance};
-use centrical_table::{Extent, Source};
+use centrical::OnProgress;
+use centrical::reduction::{Record, ReductionError, RestRecord, Rests, reduce_rests};
+use centrical_table::Extent;
 use nalgebra::Vector3;
 
 use crate::error::{Error, Place};
@@ -17,10 +17,13 @@ use crate::reduced::{ReducedPlateau, rest_rows};
 /// name `file`.
 ///
 /// # Errors
-/// If a record is invalid, or there are fewer than two rests: a single one shows nothing.
-pub(crate) fn find_rests(records: &[RestRecord], file: &Path) -> Result<Rests, Error> {
-    let refused = |source| Error::Reduction { file: file.to_owned(), mounting: 1, source: Box::new(source) };
-    let rests = reduce_rests(records).map_err(refused)?;
+/// If a record is invalid, or there are fewer than two rests: a single one shows nothing. [`Error::Stopped`].
+pub(crate) fn find_rests(records: &[RestRecord], file: &Path, progress: OnProgress) -> Result<Rests, Error> {
+    let refused = |source| match source {
+        ReductionError::Stopped(stopped) => stopped.into(),
+        source => Error::Reduction { file: file.to_owned(), mounting: 1, source: Box::new(source) },
+    };
+    let rests = reduce_rests(records, &|()| progress(0)).map_err(refused)?;
     let count: usize = rests.means.iter().map(Vec::len).sum();
     if count < 2 {
         let stretches = if count == 1 { "stretch" } else { "stretches" };
@@ -67,7 +70,7 @@ pub(crate) fn with_all_rests<'s>(
     let records: Vec<RestRecord> = (read.iter())
         .map(|(record, turning_radius)| RestRecord { samples: record.as_slice(), turning_radius: *turning_radius })
         .collect();
-    let Rests { means, noise_at_most } = find_rests(&records, file)?;
+    let Rests { means, noise_at_most } = find_rests(&records, file, progress)?;
     let mut found = means.into_iter();
     let mut rests = Vec::new();
     let mut tables = session.rest_tables.clone();
@@ -91,10 +94,7 @@ pub(crate) fn with_all_rests<'s>(
 fn record(session: &Session, recorded: &RecordedRests, progress: OnProgress) -> Result<Record, Error> {
     let files: Vec<&Path> = recorded.files.iter().map(AsRef::as_ref).collect();
     let sources = session.folder.open_record(&files)?;
-    let bytes = sources.iter().map(Source::length).sum();
-    let record = read_records(sources, &session.columns, Extent::Whole)?;
-    advance(progress, bytes)?;
-    Ok(record)
+    read_records(sources, &session.columns, Extent::Whole, progress)
 }
 
 /// Fills a table with the rests that were found in its record, each in the nearest of the attitudes that are stated.

@@ -8,7 +8,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use centrical::{OnProgress, Stopped};
+use centrical::{OnProgress, Stopped, unwatched};
 use rayon::ThreadPoolBuilder;
 
 use super::ledger::Ledger;
@@ -111,7 +111,7 @@ impl Workers<'_> {
             let result = done.result.take().filter(|_| keeps).map(String::into_bytes);
             (done.row.clone(), result)
         });
-        self.store.add_with_results(rows.collect())?;
+        self.store.add_with_results(rows.collect(), &unwatched)?;
         ledger.add(waiting.iter().map(|(number, done)| (sessions[*number], done)))
     }
 }

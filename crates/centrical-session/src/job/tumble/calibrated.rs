@@ -45,7 +45,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         answers(request, &record, file)?;
         records.push(record);
     }
-    let mut rests = found(request, &records)?;
+    let mut rests = found(request, &records, progress)?;
     advance(progress, 0)?;
     let coarse = if Dimension::Acceleration.factor(&request.unit).is_some() {
         None
@@ -54,7 +54,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         for record in &mut records {
             in_si(record, &coarse);
         }
-        rests = found(request, &records)?;
+        rests = found(request, &records, progress)?;
         Some(coarse)
     };
     let means = means(&rests);
@@ -133,11 +133,11 @@ fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<
 }
 
 /// The rests of the records, and the arcs if they count.
-fn found(request: &TumbleRequest, records: &[Record]) -> Result<Rests, Error> {
+fn found(request: &TumbleRequest, records: &[Record], progress: OnProgress) -> Result<Rests, Error> {
     let turning_radius = request.turning_radius;
     let records: Vec<RestRecord> =
         records.iter().map(|record| RestRecord { samples: record.as_slice(), turning_radius }).collect();
-    find_rests(&records, &first(request))
+    find_rests(&records, &first(request), progress)
 }
 
 /// The mean readings of the rests of all records.

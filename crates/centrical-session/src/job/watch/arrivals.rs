@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
@@ -17,7 +18,6 @@ use super::growth::Growth;
 use super::rests;
 use crate::error::Error;
 use crate::experiment::{PlateauMean, Session, SpeedSource};
-use crate::record::read_records;
 
 /// A session folder that is looked into again and again.
 ///
@@ -119,7 +119,7 @@ impl<'s> Watch<'s> {
     /// earlier mountings as far as it was known.
     ///
     /// A record that cannot be made out and has not been left alone yet is waited for, with a [`Watch::note`]. Where `stop` is raised, the
-    /// records after the one that is read wait for another look.
+    /// record that is read and those after it wait for another look.
     ///
     /// # Errors
     /// [`Error`] when a record that has been left alone is wrong.
@@ -137,7 +137,7 @@ impl<'s> Watch<'s> {
             self.come = table.rows.len();
         } else {
             let is_wanted = |finished: usize| finished < self.session.mountings.len() && !stop.load(Ordering::Relaxed);
-            while is_wanted(self.finished.len()) && self.look_at_current(&mut arrivals)? {}
+            while is_wanted(self.finished.len()) && self.look_at_current(stop, &mut arrivals)? {}
         }
         if let Some(file) = rests::awaited(self.session).filter(|_| self.has_arm()) {
             self.note = Some(format!("waiting for {}", file.display()));
@@ -146,7 +146,7 @@ impl<'s> Watch<'s> {
     }
 
     /// Looks at the record of the first mounting that is not finished; whether it is now.
-    fn look_at_current(&mut self, arrivals: &mut Vec<Observation>) -> Result<bool, Error> {
+    fn look_at_current(&mut self, stop: &AtomicBool, arrivals: &mut Vec<Observation>) -> Result<bool, Error> {
         let mounting = self.finished.len();
         let Some(file) = self.session.mountings[mounting].record.as_deref() else {
             // The error of a session that names no record.
@@ -166,13 +166,14 @@ impl<'s> Watch<'s> {
         self.seen = Some(look);
         self.note = None;
         let finished = look.left_alone || look.followed;
-        let reduced = self.read(mounting, look).and_then(|record| {
+        let reduced = self.read(mounting, look, stop).and_then(|record| {
             if let Some(growth) = &mut self.growth {
                 growth.show(&record);
             }
             if finished { self.whole(mounting, &record).map(Some) } else { self.begun(mounting, &record) }
         });
         match reduced {
+            Err(Error::Stopped(_)) => self.seen = None,
             Err(error) if !look.left_alone => self.note = Some(format!("not yet: {error}")),
             Err(error) => return Err(error),
             Ok(None) => {}
@@ -207,12 +208,9 @@ impl<'s> Watch<'s> {
     }
 
     /// The record of a mounting. Unless it has been left alone a last line without end is not read: it may have come in part.
-    fn read(&self, mounting: usize, look: Look) -> Result<Record, Error> {
-        if look.left_alone {
-            self.session.record(mounting)
-        } else {
-            read_records(self.session.open_record(mounting)?, &self.session.columns, Extent::Growing)
-        }
+    fn read(&self, mounting: usize, look: Look, stop: &AtomicBool) -> Result<Record, Error> {
+        let extent = if look.left_alone { Extent::Whole } else { Extent::Growing };
+        self.session.record_to(mounting, extent, &|_| until(stop))
     }
 
     /// All plateaus of a finished mounting.
@@ -304,6 +302,11 @@ impl<'s> Watch<'s> {
         let file = self.session.mountings[mounting].record.clone().unwrap_or_default();
         Error::Reduction { file, mounting: mounting + 1, source: Box::new(source) }
     }
+}
+
+/// The progress of work that ends when `stop` is raised.
+pub(super) fn until(stop: &AtomicBool) -> ControlFlow<()> {
+    if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 /// How many plateaus of a schedule that was found are over: those before the last one that reads unlike its predecessor.

@@ -1,7 +1,6 @@
 //! A session that is watched: every plateau is tested, taken up or held out, and kept; the calibration when all have arrived.
 
 use std::collections::HashSet;
-use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -13,7 +12,7 @@ use centrical::{FitError, MeasurementModel, Observation, SetPoint, Weight, linea
 
 use nalgebra::Vector3;
 
-use super::arrivals::Watch;
+use super::arrivals::{Watch, until};
 use super::board::Board;
 use super::progress::WatchProgress;
 use super::request::{WatchEnd, WatchEvent, WatchRequest};
@@ -286,8 +285,7 @@ impl<'a> Following<'a> {
     fn finish(&self, stop: &AtomicBool) -> Result<WatchEnd, Error> {
         let held_out = self.state.plateaus.iter().filter(|plateau| plateau.held_out);
         let held_out: Vec<_> = held_out.map(|plateau| PlateauName::of(self.session, plateau.set_point)).collect();
-        let goes_on = |_| if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-        let result = match calibrate_without(self.session, &held_out, Method::Recursive, &goes_on) {
+        let result = match calibrate_without(self.session, &held_out, Method::Recursive, &|_| until(stop)) {
             Err(Error::Stopped(_)) => return Ok(self.stopped()),
             result => result?,
         };

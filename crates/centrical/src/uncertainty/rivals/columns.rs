@@ -13,6 +13,8 @@ pub(in crate::uncertainty) struct Columns {
     acting: Vec<usize>,
     /// Whitened columns on these observations, each of unit length.
     z: DMatrix<f64>,
+    /// `Z^T Z`.
+    square: DMatrix<f64>,
     /// `Q^T Z`.
     pub followed: DMatrix<f64>,
     /// Lengths of the whitened columns.
@@ -48,7 +50,25 @@ impl Columns {
         let rows: Vec<usize> = acting.iter().flat_map(|n| 3 * n..3 * n + 3).collect();
         let followed = gain.basis().select_rows(&rows).tr_mul(&z);
         let along = z.tr_mul(&gain.whitened_residuals().select_rows(&rows));
-        Self { acting, z, followed, lengths, along }
+        Self { acting, square: z.tr_mul(&z), z, followed, lengths, along }
+    }
+
+    /// A column for each of the `count` observations, which acts there alone: `derivative` gives the change of observation `n` by one unit of
+    /// its column [m/s^2].
+    pub fn apart(gain: &Gain, count: usize, derivative: impl Fn(usize) -> Vector3<f64>) -> Self {
+        let (mut z, mut followed) = (DMatrix::zeros(3 * count, count), DMatrix::zeros(gain.basis().ncols(), count));
+        let mut lengths = Vec::with_capacity(count);
+        for (n, mut column) in followed.column_iter_mut().enumerate() {
+            let mut whitened = gain.whitener(n).apply(&derivative(n));
+            let length = whitened.norm();
+            whitened.unscale_mut(if length > 0.0 { length } else { 1.0 });
+            z.fixed_view_mut::<3, 1>(3 * n, n).copy_from(&whitened);
+            gain.basis().rows(3 * n, 3).tr_mul_to(&whitened, &mut column);
+            lengths.push(length);
+        }
+        let along = z.tr_mul(&gain.whitened_residuals());
+        let square = DMatrix::from_diagonal(&DVector::from_fn(count, |n, _| z.column(n).norm_squared()));
+        Self { acting: (0..count).collect(), z, square, followed, lengths, along }
     }
 
     /// Column `c` alone.
@@ -56,6 +76,7 @@ impl Columns {
         Self {
             acting: self.acting.clone(),
             z: self.z.columns(c, 1).into_owned(),
+            square: self.square.view((c, c), (1, 1)).into_owned(),
             followed: self.followed.columns(c, 1).into_owned(),
             lengths: vec![self.lengths[c]],
             along: self.along.rows(c, 1).into_owned(),
@@ -64,7 +85,7 @@ impl Columns {
 
     /// `s^T s = Z^T Z - (Q^T Z)^T Q^T Z`.
     pub fn redundancy(&self) -> DMatrix<f64> {
-        self.z.tr_mul(&self.z) - self.followed.tr_mul(&self.followed)
+        &self.square - self.followed.tr_mul(&self.followed)
     }
 
     /// The square `s^T s` above which a combination is seen: [`REDUNDANT`] squared, and what the uncertainty of attitudes makes. A
