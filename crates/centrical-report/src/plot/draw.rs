@@ -25,7 +25,7 @@ const PANEL: Sheet = Sheet { class: "plot panel", width: 400.0, height: 320.0, l
 const RIGHT: f64 = 24.0;
 const BOTTOM: f64 = 56.0;
 /// Room of the label of the ordinate, and between numbers and frame.
-const LABEL: f64 = 32.0;
+const LABEL: f64 = 36.0;
 /// Baseline of the title, first row of the legend, height of a legend row.
 const TITLE: f64 = 26.0;
 const LEGEND: f64 = 50.0;
