@@ -24,6 +24,8 @@ const WHOLE: Sheet = Sheet { class: "plot", width: 760.0, height: 460.0, left: 9
 const PANEL: Sheet = Sheet { class: "plot panel", width: 400.0, height: 320.0, left: 78.0, letter: 7.2, ticks: [5, 6] };
 const RIGHT: f64 = 24.0;
 const BOTTOM: f64 = 56.0;
+/// Room of the label of the ordinate, and between numbers and frame.
+const LABEL: f64 = 36.0;
 /// Baseline of the title, first row of the legend, height of a legend row.
 const TITLE: f64 = 26.0;
 const LEGEND: f64 = 50.0;
@@ -59,7 +61,7 @@ struct Frame {
 }
 
 pub(super) fn plot(plot: &Plot, style: &str) -> String {
-    let sheet = if plot.is_panel { PANEL } else { WHOLE };
+    let sheet = sheet(plot);
     let legend = legend_places(&plot.series, &sheet);
     let rows = legend.last().map_or(0.0, |&(_, row)| row + 1.0);
     let frame = Frame::new(plot, sheet, LEGEND - 12.0 + ROW * rows);
@@ -67,6 +69,21 @@ pub(super) fn plot(plot: &Plot, style: &str) -> String {
     // Writing to a String cannot fail.
     let _ = draw(&mut svg, plot, &frame, &legend, style);
     svg
+}
+
+/// The lengths of a drawing, with room for the longest number beside the ordinate.
+fn sheet(plot: &Plot) -> Sheet {
+    let sheet = if plot.is_panel { PANEL } else { WHOLE };
+    let (ticks, _) = Ruler::new(&plot.y, ordinates(plot), sheet.height).ticks(sheet.ticks[1]);
+    let longest = ticks.iter().filter_map(|tick| tick.text.as_ref()).map(|text| text.chars().count()).max();
+    Sheet { left: sheet.left.max(LABEL + sheet.letter * longest.unwrap_or(0) as f64), ..sheet }
+}
+
+fn ordinates(plot: &Plot) -> impl Iterator<Item = f64> {
+    plot.series.iter().flat_map(|series| &series.points).flat_map(|point| {
+        let (low, high) = point.interval.unwrap_or((point.y, point.y));
+        [point.y, low, high]
+    })
 }
 
 fn draw(svg: &mut String, plot: &Plot, frame: &Frame, legend: &[(f64, f64)], style: &str) -> std::fmt::Result {
@@ -101,13 +118,9 @@ fn draw(svg: &mut String, plot: &Plot, frame: &Frame, legend: &[(f64, f64)], sty
 impl Frame {
     fn new(plot: &Plot, sheet: Sheet, top: f64) -> Self {
         let (width, height) = (sheet.width - sheet.left - RIGHT, sheet.height - top - BOTTOM);
-        let points = || plot.series.iter().flat_map(|series| &series.points);
-        let ordinates = points().flat_map(|point| {
-            let (low, high) = point.interval.unwrap_or((point.y, point.y));
-            [point.y, low, high]
-        });
-        let x = Ruler::new(&plot.x, points().map(|point| point.x), width);
-        Self { sheet, top, x, y: Ruler::new(&plot.y, ordinates, height), width, height }
+        let abscissae = plot.series.iter().flat_map(|series| &series.points).map(|point| point.x);
+        let x = Ruler::new(&plot.x, abscissae, width);
+        Self { sheet, top, x, y: Ruler::new(&plot.y, ordinates(plot), height), width, height }
     }
 
     /// Place of a point inside the frame, from its upper left corner.

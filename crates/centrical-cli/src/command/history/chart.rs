@@ -11,8 +11,8 @@ use crate::printing::Printing;
 
 /// Control charts of one parameter: individuals and moving range, EWMA, CUSUM.
 ///
-/// A chart gives a false signal in about one of 370 values by each of its rules: it says where to look. `history units` and `history station` say
-/// what is certain.
+/// A chart says where to look: where nothing changes, charts of 100 sessions with limits from 20 give a false signal in one of two. `history
+/// units` and `history station` say what is certain.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: centrical history chart alpha_1 results --accepted 25 --out charts")]
 pub struct Arguments {

@@ -1,6 +1,10 @@
-//! Small probabilities.
+//! Probabilities.
 
-/// A small probability, which may be too small for a number.
+/// A probability as a person reads it; a small one may be too small for a number.
 pub fn chance(probability: f64) -> String {
-    if probability < 1e-300 { "below 1e-300".to_owned() } else { format!("{probability:.1e}") }
+    match probability {
+        0.01.. => format!("{probability:.2}"),
+        1e-300.. => format!("{probability:.1e}"),
+        _ => "below 1e-300".to_owned(),
+    }
 }

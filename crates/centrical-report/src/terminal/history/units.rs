@@ -32,8 +32,10 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
     }
     for finding in &report.findings {
         let words = format!(
-            "serial {}, {}: family-wise probability {:.1e}",
-            finding.unit_serial, finding.parameter, finding.probability
+            "serial {}, {}: family-wise probability {}",
+            finding.unit_serial,
+            finding.parameter,
+            chance(finding.probability)
         );
         screen.marked(Emphasis::NotAcceptable, if finding.kind == "drifts" { "DRIFTS" } else { "SCATTERS" }, &words);
     }

@@ -126,18 +126,18 @@ impl Calibrated {
     /// were not read, with their variances.
     pub fn stated_estimates(&self, places: &[usize]) -> SessionEstimates {
         let seen = self.seen(Basis::Stated);
-        let variance = |j: usize| seen.own_covariance(j, j).max(CERTAIN * self.standard_uncertainties[j].powi(2));
         let numbers: Option<Vec<usize>> = places.iter().map(|&place| self.number_in_unit(place)).collect();
-        let own = |a: usize, b: usize| match (&self.errors, &numbers) {
-            (Some(errors), Some(numbers)) => errors.covariance(numbers[a], numbers[b]),
-            _ => seen.own_covariance(places[a], places[b]),
-        };
         let n = places.len();
-        let mut covariance = DMatrix::from_fn(n, n, own);
+        let mut covariance = match (&self.errors, &numbers) {
+            (Some(errors), Some(numbers)) => errors.covariances(numbers),
+            _ => DMatrix::from_fn(n, n, |a, b| seen.own_covariance(places[a], places[b])),
+        };
+        let stated = covariance.diagonal();
+        let variance = |(own, &j): (&f64, &usize)| own.max(CERTAIN * self.standard_uncertainties[j].powi(2));
         if !covariance.iter().all(|value| value.is_finite()) {
             covariance.fill(0.0);
         }
-        covariance.set_diagonal(&DVector::from_fn(n, |a, _| variance(places[a])));
+        covariance.set_diagonal(&DVector::from_iterator(n, stated.iter().zip(places).map(variance)));
         SessionEstimates { values: DVector::from_fn(n, |a, _| self.values[places[a]]), covariance }
     }
 

@@ -1,17 +1,21 @@
 //! The errors of sessions as neighbouring sessions show them.
 //!
-//! Session `t` states errors of covariance `C_t`; it has `f C_t + h_t T`, where `f <= 1` lowers what is stated too large, and `T` is what
-//! sessions differ by beside it. `h_t` is 1, as of what a switch-on changes, or the size of stated errors, where they are too small by a factor:
-//! the mean over the parameters of a variance over that of all sessions. The more likely of both is taken.
+//! Session `t` states errors of covariance `C_t = L_t L_t^T`. Its differences from its neighbours correct them in one of two forms:
+//!
+//! - beside, `C_t + T`: sessions differ by more than they state, as by what a switch-on changes;
+//! - in proportion, `L_t W L_t^T`: they state too much or too little, or correlations that their errors do not have.
+//!
+//! `W` is the covariance of the differences in units of what is stated, shrunk towards independent ones. The more likely form is taken. For
+//! that, a difference beyond the farthest of sound ones counts by its distance in place of the square (P. Huber, Ann. Math. Statist. 35,
+//! 1964): a bad session does not decide, nor is a form likely that gives up many.
 
-use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rayon::prelude::*;
 
 use super::component::{Component, Known};
 use super::rows::{Rows, add_scaled};
 use super::sessions::UnitSessions;
 use crate::history::together::SessionEstimates;
-use crate::statistics::median;
 
 /// Fewer differences say nothing.
 const FEWEST_DIFFERENCES: usize = 10;
@@ -21,45 +25,58 @@ const MOST_DIFFERENCES: usize = 5000;
 
 /// What differences of sessions correct.
 #[derive(Debug, Clone)]
-pub struct Corrected {
-    /// `f`.
-    factor: f64,
-    /// `T`.
-    beside: DMatrix<f64>,
-    /// Mean variances of sessions, if `h_t` is the size of stated errors.
-    mean_variances: Option<DVector<f64>>,
+pub enum Corrected {
+    /// Nothing: there are too few, or they do not differ.
+    AsStated,
+    /// By `T`.
+    Beside(DMatrix<f64>),
+    /// By `W`, of which this is a root.
+    InProportion(DMatrix<f64>),
 }
 
 impl Corrected {
-    /// By the `sessions` of units, of `p` values; as stated where there are too few, or they do not differ.
+    /// By the `sessions` of units, of `p` values.
     pub fn of(sessions: &UnitSessions, p: usize) -> Self {
         let pairs_of = |(unit, count): (usize, &usize)| (1..*count).map(move |t| (unit, t));
         let all: Vec<(usize, usize)> = sessions.counts.iter().enumerate().flat_map(pairs_of).collect();
         let pairs: Vec<(usize, usize)> =
             all.iter().step_by(all.len().div_ceil(MOST_DIFFERENCES).max(1)).copied().collect();
-        let as_stated = Self { factor: 1.0, beside: DMatrix::zeros(p, p), mean_variances: None };
         if pairs.len() < FEWEST_DIFFERENCES {
-            return as_stated;
+            return Self::AsStated;
         }
         let differences = Differences { sessions, pairs: &pairs, p };
-        let factor = differences.stated_too_large().unwrap_or(1.0);
-        let with = |mean_variances| differences.corrected(Self { factor, mean_variances, ..as_stated.clone() });
-        let found = [None, Some(differences.mean_variances())].map(with);
-        let likely = found.into_iter().flatten().min_by(|a, b| a.1.total_cmp(&b.1));
-        likely.map_or(as_stated, |(corrected, _)| corrected)
+        match (differences.beside(), differences.in_proportion()) {
+            (Some((_, unlikely)), Some((root, less))) if less < unlikely && have_factors(sessions) => {
+                Self::InProportion(root)
+            }
+            (Some((beside, _)), _) => Self::Beside(beside),
+            (None, _) => Self::AsStated,
+        }
     }
 
-    /// Adds the covariance of the errors of a session, times a weight, to a sum.
+    /// Adds the covariance of the errors of a session, times a weight, to a sum; not a number where a factor is missing.
     pub fn add_errors(&self, session: &SessionEstimates, weight: f64, sum: &mut DMatrix<f64>) {
-        add_scaled(&session.covariance, weight * self.factor, sum);
-        add_scaled(&self.beside, weight * self.size(session), sum);
+        match self {
+            Self::AsStated => add_scaled(&session.covariance, weight, sum),
+            Self::Beside(beside) => {
+                add_scaled(&session.covariance, weight, sum);
+                add_scaled(beside, weight, sum);
+            }
+            Self::InProportion(root) => match session.covariance.clone().cholesky() {
+                Some(factor) => {
+                    let root = factor.unpack() * root;
+                    sum.gemm(weight, &root, &root.transpose(), 1.0);
+                }
+                None => sum.fill(f64::NAN),
+            },
+        }
     }
+}
 
-    /// `h_t`.
-    fn size(&self, session: &SessionEstimates) -> f64 {
-        let of_mean = |means: &DVector<f64>| session.covariance.diagonal().component_div(means).mean();
-        self.mean_variances.as_ref().map_or(1.0, of_mean)
-    }
+/// Whether all stated covariances are positive definite.
+fn have_factors(sessions: &UnitSessions) -> bool {
+    let has_factor = |unit: usize, t: usize| (sessions.session)(unit, t).covariance.cholesky().is_some();
+    sessions.counts.par_iter().enumerate().all(|(unit, count)| (0..*count).all(|t| has_factor(unit, t)))
 }
 
 /// The differences of neighbouring sessions.
@@ -71,55 +88,54 @@ struct Differences<'a> {
 }
 
 impl Differences<'_> {
-    fn of_pair(&self, pair: usize) -> [SessionEstimates; 2] {
+    /// A difference and the covariance that both sessions state for it.
+    fn of_pair(&self, pair: usize) -> (DVector<f64>, DMatrix<f64>) {
         let (unit, t) = self.pairs[pair];
-        [t - 1, t].map(|t| (self.sessions.session)(unit, t))
+        let [before, after] = [t - 1, t].map(|t| (self.sessions.session)(unit, t));
+        (after.values - before.values, after.covariance + before.covariance)
     }
 
-    /// The differences over the roots of `sizes`, with `factor` times their stated errors.
-    fn rows<R>(&self, factor: f64, sizes: &[f64], then: impl FnOnce(&Rows) -> R) -> R {
-        let (mut values, mut variances) = (DMatrix::zeros(sizes.len(), self.p), DMatrix::zeros(sizes.len(), self.p));
-        for (pair, size) in sizes.iter().enumerate() {
-            let [before, after] = self.of_pair(pair);
-            values.set_row(pair, &((after.values - before.values) / size.sqrt()).transpose());
-            let variance = (after.covariance.diagonal() + before.covariance.diagonal()) * (factor / size);
-            variances.set_row(pair, &variance.transpose());
+    /// `T`, and twice the negative logarithm of the likelihood.
+    fn beside(&self) -> Option<(DMatrix<f64>, f64)> {
+        let mut values = DMatrix::zeros(self.pairs.len(), self.p);
+        let mut variances = values.clone();
+        for pair in 0..self.pairs.len() {
+            let (difference, stated) = self.of_pair(pair);
+            values.set_row(pair, &difference.transpose());
+            variances.set_row(pair, &stated.diagonal().transpose());
         }
-        let add_errors = |pair: usize, weight: f64, sum: &mut DMatrix<f64>| {
-            for session in self.of_pair(pair) {
-                add_scaled(&session.covariance, weight * factor / sizes[pair], sum);
-            }
-        };
-        then(&Rows { values, variances, add_errors: &add_errors })
+        let add_errors =
+            |pair: usize, weight: f64, sum: &mut DMatrix<f64>| add_scaled(&self.of_pair(pair).1, weight, sum);
+        let (of_difference, unlikely) = scatter(&Rows { values, variances, add_errors: &add_errors })?;
+        Some((of_difference * 0.5, unlikely))
     }
 
-    /// The median of `d_i^2` by stated errors alone over that of its law, if it is below 1.
-    fn stated_too_large(&self) -> Option<f64> {
-        let nothing = (DVector::zeros(self.p), DMatrix::zeros(self.p, self.p));
-        let mut squares =
-            self.rows(1.0, &vec![1.0; self.pairs.len()], |rows| rows.squared_distances(&nothing.0, &nothing.1))?;
-        let ratio = median(&mut squares) / ChiSquared::new(self.p as f64).ok()?.inverse_cdf(0.5);
-        (ratio > 0.0 && ratio < 1.0).then_some(ratio)
+    /// A root of `W`, and the same of the likelihood.
+    fn in_proportion(&self) -> Option<(DMatrix<f64>, f64)> {
+        let mut values = DMatrix::zeros(self.pairs.len(), self.p);
+        let mut of_units = 0.0;
+        for pair in 0..self.pairs.len() {
+            let (mut difference, stated) = self.of_pair(pair);
+            let factor: Cholesky<f64, Dyn> = stated.cholesky()?;
+            factor.l_dirty().solve_lower_triangular_mut(&mut difference);
+            values.set_row(pair, &difference.transpose());
+            of_units += factor.ln_determinant();
+        }
+        let no_errors = |_: usize, _: f64, _: &mut DMatrix<f64>| ();
+        let variances = DMatrix::zeros(self.pairs.len(), self.p);
+        let (in_proportion, unlikely) = scatter(&Rows { values, variances, add_errors: &no_errors })?;
+        Some((in_proportion.cholesky()?.unpack(), of_units + unlikely))
     }
+}
 
-    /// The stated variances of sessions in the mean over all pairs.
-    fn mean_variances(&self) -> DVector<f64> {
-        let variances = (0..self.pairs.len()).flat_map(|pair| self.of_pair(pair)).map(|s| s.covariance.diagonal());
-        variances.sum::<DVector<f64>>() / (2 * self.pairs.len()) as f64
-    }
-
-    /// With `T`, and twice the negative logarithm of the likelihood, to which no difference adds more than the farthest of sound ones.
-    fn corrected(&self, with: Corrected) -> Option<(Corrected, f64)> {
-        let size = |pair| self.of_pair(pair).iter().map(|session| with.size(session)).sum();
-        let sizes: Vec<f64> = (0..self.pairs.len()).map(size).collect();
-        let known = Known::of(sizes.len(), self.p)?;
-        let (found, terms) = self.rows(with.factor, &sizes, |rows| {
-            let found = Component::of(rows, &known)?;
-            let terms = rows.likelihoods(&found.centre, &found.between)?;
-            Some((found, terms))
-        })?;
-        let of_scale: f64 = sizes.iter().map(|size| self.p as f64 * size.ln()).sum();
-        let unlikely: f64 = terms.iter().map(|(square, log_det)| square.min(known.farthest) + log_det).sum();
-        Some((Corrected { beside: found.between, ..with }, of_scale + unlikely))
-    }
+/// What `rows` scatter by beside their errors, and twice the negative logarithm of the likelihood.
+fn scatter(rows: &Rows) -> Option<(DMatrix<f64>, f64)> {
+    let known = Known::of(rows.values.nrows(), rows.values.ncols())?;
+    let found = Component::of(rows, &known)?;
+    let bounded = |square: f64| {
+        if square <= known.farthest { square } else { 2.0 * (known.farthest * square).sqrt() - known.farthest }
+    };
+    let terms = rows.likelihoods(&found.centre, &found.between)?;
+    let unlikely = terms.iter().map(|(square, log_det)| bounded(*square) + log_det).sum();
+    Some((found.between, unlikely))
 }

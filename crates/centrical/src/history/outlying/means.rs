@@ -1,6 +1,7 @@
 //! The mean of each unit over its sessions, with its errors.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::corrected::Corrected;
 use super::sessions::UnitSessions;
@@ -22,14 +23,17 @@ impl UnitMeans {
         let (n, p) = (sessions.counts.len(), session(0, 0).values.len());
         let corrected = Corrected::of(sessions, p);
         let mut means = Self { values: DMatrix::zeros(n, p), variances: DMatrix::zeros(n, p), corrected };
-        for (unit, &count) in sessions.counts.iter().enumerate() {
-            let mut errors = DMatrix::zeros(p, p);
-            for session in (0..count).map(|t| session(unit, t)) {
-                let mut sum = means.values.row_mut(unit);
-                sum += session.values.transpose() / count as f64;
-            }
+        let of_unit = |unit: usize| {
+            let count = sessions.counts[unit];
+            let (mut mean, mut errors) = (DVector::zeros(p), DMatrix::zeros(p, p));
+            (0..count).for_each(|t| mean += session(unit, t).values / count as f64);
             means.add_errors(sessions, unit, 1.0, &mut errors);
-            means.variances.set_row(unit, &errors.diagonal().transpose());
+            (mean, errors.diagonal())
+        };
+        let of_units: Vec<(DVector<f64>, DVector<f64>)> = (0..n).into_par_iter().map(of_unit).collect();
+        for (unit, (mean, variances)) in of_units.into_iter().enumerate() {
+            means.values.set_row(unit, &mean.transpose());
+            means.variances.set_row(unit, &variances.transpose());
         }
         means
     }

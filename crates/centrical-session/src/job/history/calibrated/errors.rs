@@ -1,5 +1,7 @@
 //! The errors of one session in the parameters of its unit, in a kB: a hundred thousand calibrations of a store fit in memory.
 
+use nalgebra::DMatrix;
+
 /// Standard deviations and correlations of errors that belong to one session alone.
 #[derive(Debug, Clone)]
 pub struct OwnErrors {
@@ -17,6 +19,19 @@ impl OwnErrors {
         #[expect(clippy::cast_possible_truncation)]
         let correlations = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| correlation(i, j) as f32);
         Self { correlations: correlations.collect(), deviations }
+    }
+
+    /// Covariances of the errors of the parameters with these `numbers`.
+    pub fn covariances(&self, numbers: &[usize]) -> DMatrix<f64> {
+        let mut covariances = DMatrix::zeros(numbers.len(), numbers.len());
+        for (b, &j) in numbers.iter().enumerate() {
+            for (a, &i) in numbers.iter().enumerate().skip(b) {
+                let covariance = self.covariance(i, j);
+                covariances[(a, b)] = covariance;
+                covariances[(b, a)] = covariance;
+            }
+        }
+        covariances
     }
 
     /// Covariance of the errors of parameters `i` and `j`.
