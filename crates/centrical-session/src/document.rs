@@ -41,8 +41,8 @@ pub use self::draft::{DRAFT_SCHEMA, DraftReport, LineToFillIn};
 pub use self::history::{
     BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession,
     ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter,
-    UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitHistoryReport, UnitParameter, UnitsHistoryReport,
-    UnitsParameter,
+    UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter,
+    UnitsHistoryReport, UnitsParameter,
 };
 pub use self::history_list::{Doubt, DoubtKind, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList};
 pub use self::models::{CandidateSummary, MODELS_SCHEMA, ModelsReport, NestedTestSummary, TermSupport};

@@ -64,8 +64,8 @@ pub use document::{
 pub use document::{
     BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession,
     ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter,
-    UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitHistoryReport, UnitParameter, UnitsHistoryReport,
-    UnitsParameter,
+    UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter,
+    UnitsHistoryReport, UnitsParameter,
 };
 pub use document::{
     GroupProgress, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed,

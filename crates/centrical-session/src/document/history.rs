@@ -11,6 +11,6 @@ pub use self::unit::{
     DueDate, PastSession, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport, UnitParameter,
 };
 pub use self::units::{
-    BatchSummary, CapabilitySummary, OutlyingUnit, UNITS_HISTORY_SCHEMA, UnitFinding, UnitsHistoryReport,
-    UnitsParameter,
+    BatchSummary, CapabilitySummary, OutlyingUnit, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind,
+    UnitsHistoryReport, UnitsParameter,
 };

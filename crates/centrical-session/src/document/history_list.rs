@@ -60,8 +60,8 @@ pub enum DoubtKind {
 pub struct HistoryLine {
     /// SHA-256 of `result.json`.
     pub key: String,
-    /// "done" or "failed".
-    pub status: &'static str,
+    /// Whether there is a result.
+    pub status: Status,
     /// Model of the unit.
     pub unit_model: String,
     /// Serial number of the unit.
@@ -116,7 +116,7 @@ impl HistoryLine {
     fn new(row: Row) -> Self {
         let is_done = row.status == Status::Done;
         Self {
-            status: row.status.word(),
+            status: row.status,
             acceptable: is_done.then_some(row.acceptable),
             chi_squared: json::finite(row.chi_squared).filter(|_| is_done),
             degrees_of_freedom: row.degrees_of_freedom,

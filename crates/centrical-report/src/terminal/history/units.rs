@@ -1,6 +1,6 @@
 //! Units of one type beside each other.
 
-use centrical_session::{UnitsHistoryReport, customary};
+use centrical_session::{UnitFindingKind, UnitsHistoryReport, customary};
 
 use super::chance::chance;
 use crate::number::{counted, with_uncertainty};
@@ -37,7 +37,11 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
             finding.parameter,
             chance(finding.probability)
         );
-        screen.marked(Emphasis::NotAcceptable, if finding.kind == "drifts" { "DRIFTS" } else { "SCATTERS" }, &words);
+        let does = match finding.kind {
+            UnitFindingKind::Drifts => "DRIFTS",
+            UnitFindingKind::Scatters => "SCATTERS",
+        };
+        screen.marked(Emphasis::NotAcceptable, does, &words);
     }
     screen.gap();
     let counts = format!("{}, {}", counted(report.units, "unit"), counted(report.sessions, "calibration"));

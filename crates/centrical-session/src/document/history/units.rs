@@ -48,11 +48,21 @@ pub struct OutlyingUnit {
     pub most: Vec<(String, f64)>,
 }
 
+/// What a unit does in the course of its sessions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum UnitFindingKind {
+    /// Its values have a slope.
+    Drifts,
+    /// They scatter about their line by more than those of the other units.
+    Scatters,
+}
+
 /// A unit that drifts or scatters in one parameter: family-wise 5 % over all units and parameters (Holm).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UnitFinding {
-    /// drifts, scatters
-    pub kind: &'static str,
+    /// Which of the two.
+    pub kind: UnitFindingKind,
     /// Serial number.
     pub unit_serial: String,
     /// The parameter.

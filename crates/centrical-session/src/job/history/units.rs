@@ -12,8 +12,8 @@ use super::calibrated::{Basis, Calibrated, Finder, Places, series, single};
 use super::limits::ParameterLimits;
 use super::unit::common_names;
 use crate::document::{
-    BatchSummary, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA, UnitFinding, UnitsHistoryReport,
-    UnitsParameter,
+    BatchSummary, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind,
+    UnitsHistoryReport, UnitsParameter,
 };
 
 /// What is asked of units.
@@ -189,7 +189,10 @@ fn findings(numbers: &[usize], series: &[Series], lasts: &[&Calibrated], name: &
             variance_ratio: trend.variance_ratio,
             probability,
         };
-        Some([finding("drifts", trend.drift_probability), finding("scatters", trend.scatter_probability)])
+        Some([
+            finding(UnitFindingKind::Drifts, trend.drift_probability),
+            finding(UnitFindingKind::Scatters, trend.scatter_probability),
+        ])
     });
     findings.flatten().collect()
 }
