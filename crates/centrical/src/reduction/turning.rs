@@ -19,6 +19,8 @@
 //! force, a thousand times stronger in a hand, would be taken for noise along it. Proof masses beside the axes are accelerated by their place
 //! times the second derivative of the vertical. That is no noise either, and is taken out.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::average::{PlateauFit, average};
@@ -84,8 +86,8 @@ pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, V
     ellipsoid
 }
 
-/// The noise of a record along the force, in units of `white` [m/s^2], over stretches of arcs without a gap: their fits as those of rests. Errors of
-/// the coefficients follow the attitude: noise as slow as a turn weighs in them, and only whole stretches show it.
+/// The noise of a record along the force, in units of `white` [m/s^2], over stretches of arcs of a turn each: their fits as those of rests. Errors of
+/// the coefficients follow the attitude: noise as slow as a turn weighs in them. Longer stretches would be too few to show the density.
 ///
 /// # Errors
 /// [`ReductionError`] if the record is too short.
@@ -97,10 +99,11 @@ pub(super) fn noise_along(
 ) -> Result<Vec<PlateauFit>, ReductionError> {
     let mut spans: Vec<[f64; 2]> = Vec::new();
     let arcs: Vec<&PlateauFit> = fits.iter().filter(|fit| fit.turns()).collect();
+    let turn = time_of_turn(&arcs);
     for arc in &arcs {
         let [from, to] = arc.window;
         match spans.last_mut() {
-            Some(span) if from - span[1] < 1e-6 * (to - from) => span[1] = to,
+            Some(span) if from - span[1] < 1e-6 * (to - from) && to - span[0] <= turn => span[1] = to,
             _ => spans.push([from, to]),
         }
     }
@@ -117,6 +120,16 @@ pub(super) fn noise_along(
     let noise = Record { t: record.t.to_vec(), f_z: [noise.clone(), noise.clone(), noise] };
     let located = locate_spans(&Survey::of(noise.as_slice())?, &spans)?;
     Ok((0..spans.len()).filter_map(|span| average(&located, span, noise.as_slice(), 0).ok()).collect())
+}
+
+/// Time of a whole turn at the mean rate [s].
+fn time_of_turn(arcs: &[&PlateauFit]) -> f64 {
+    let (mut turned, mut lasted) = (0.0, 0.0);
+    for (arc, [from, to]) in arcs.iter().filter_map(|fit| Some((fit.arc()?, fit.window))) {
+        turned += arc.rate * (to - from);
+        lasted += to - from;
+    }
+    TAU * lasted / turned
 }
 
 /// Mean second derivative of the vertical over an arc [1/s^2].

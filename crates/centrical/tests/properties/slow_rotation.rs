@@ -145,8 +145,8 @@ fn a_place_beside_the_axis_leaves_the_noise() {
         noise_along_force(&turned(&white, &rotation, &mut Random::new(19)), Some(radius))
     };
     let (on, beside) = (noise(0.0), noise(0.2));
-    // The same noise: the place has three coefficients, and 300 contrasts show the density to a tenth.
-    assert!((beside / on - 1.0).abs() < 0.1, "{on} {beside}");
+    // The same noise: the place has three coefficients, and 150 contrasts show the density to an eighth. Two standard deviations.
+    assert!((beside / on - 1.0).abs() < 0.25, "{on} {beside}");
 }
 
 /// Many records of units that turn slowly and never rest, on a table and in a hand, with white and slow noise, bumps and warming up.
