@@ -30,8 +30,8 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
     line(format!("[unit]\nserial = {}", toml_text(&request.serial)));
     match coarse {
         Some(CoarseScale { scale, bias }) => {
-            let key = if request.unit == "V" { "volts" } else { "counts" };
-            line(format!("output_unit = {:?}", if key == "volts" { "V" } else { "counts" }));
+            let (key, unit) = if request.unit == "V" { ("volts", "V") } else { ("counts", "counts") };
+            line(format!("output_unit = \"{unit}\""));
             line(format!("{key} = {{ scale = {:?}, bias = {:?} }}\n", scale.as_slice(), bias.as_slice()));
         }
         None => line(format!("output_unit = {}\n", toml_text(&request.unit))),
