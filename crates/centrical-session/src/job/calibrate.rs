@@ -90,7 +90,7 @@ fn by_noise<T>(
     let failed = |source| Error::fit(&session.file, source);
     let data = Data::new(&model, reduced.observations()).map_err(failed)?;
     let calibration = match method {
-        Method::Exact => Calibration::exact(&data),
+        Method::Exact => Calibration::exact_watched(&data, &|()| progress(0)),
         Method::Recursive => Calibration::recursive(&data),
         Method::Linear => Calibration::linear(&data),
     };

@@ -11,6 +11,7 @@ use super::estimates::{Fit, Termination};
 use super::structure::Structure;
 use crate::linalg::least_squares::{LeastSquares, Solution};
 use crate::model::{FitError, Linearisation, NULL_HOLD};
+use crate::progress::{OnProgress, advance, unwatched};
 
 /// The null directions are released when the data keep every one of them to this part of the hold: it then informs by less
 /// than 1 %.
@@ -44,7 +45,7 @@ impl Structure {
     /// # Errors
     /// [`FitError`] when numbers overflow.
     pub fn exact(&self, data: &Data) -> Result<Fit, FitError> {
-        Search::from(Start::new(self, data)?).run()
+        Search::from(Start::new(self, data)?).run(&unwatched)
     }
 }
 
@@ -152,8 +153,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    pub fn run(mut self) -> Result<Fit, FitError> {
+    pub fn run(mut self, progress: OnProgress<()>) -> Result<Fit, FitError> {
         while self.is_running() {
+            advance(progress, ())?;
             self.linearise()?;
             self.step()?;
         }

@@ -12,6 +12,7 @@ use super::gain::Gain;
 use super::structure::Structure;
 use crate::model::whitening::total_covariance;
 use crate::model::{FitError, SetPoint};
+use crate::progress::{OnProgress, unwatched};
 
 /// The data, the structure of their design, and the fit: all that a budget, checks and residual patterns ask for.
 #[derive(Debug, Clone)]
@@ -28,7 +29,15 @@ impl<'d> Calibration<'d> {
     /// # Errors
     /// [`FitError`] when numbers overflow.
     pub fn exact(data: &'d Data<'d>) -> Result<Self, FitError> {
-        Self::by(Assembly::Batch, data, |start| Search::from(start).run())
+        Self::exact_watched(data, &unwatched)
+    }
+
+    /// [`Calibration::exact`], which calls `progress` before every iteration.
+    ///
+    /// # Errors
+    /// As [`Calibration::exact`]; [`FitError::Stopped`].
+    pub fn exact_watched(data: &'d Data<'d>, progress: OnProgress<()>) -> Result<Self, FitError> {
+        Self::by(Assembly::Batch, data, |start| Search::from(start).run(progress))
     }
 
     /// Weighted least squares on the source's linear model [K5.3].
@@ -44,7 +53,7 @@ impl<'d> Calibration<'d> {
     /// # Errors
     /// As [`Calibration::exact`].
     pub fn recursive(data: &'d Data<'d>) -> Result<Self, FitError> {
-        Self::by(Assembly::Filter, data, |start| Search::from(start).run())
+        Self::by(Assembly::Filter, data, |start| Search::from(start).run(&unwatched))
     }
 
     /// [`Calibration::linear`] by one pass of the filter, in the order of the observations.
