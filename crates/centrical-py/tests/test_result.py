@@ -60,7 +60,8 @@ def test_verdict_and_parts(result):
 
 def test_notebook_has_table_and_figures(result):
     page = result._repr_html_()
-    assert page.startswith("<pre>ACCEPTABLE") and page.count("<svg") > 5
+    assert page.startswith("<pre style='font-family: monospace;") and page.count("<svg") > 5
+    assert page.split(">")[1].startswith("ACCEPTABLE")
 
 
 def test_round_trip_by_file_and_pickle(result, tmp_path):

@@ -343,7 +343,8 @@ class Result:
             f"<p>{escape(caption)}</p></div></details>"
             for _, title, caption, drawings in self.native.figures()
         )
-        return f"<pre>{escape(self.summary())}</pre>{figures}"
+        # Jupyter gives a block of preformatted text the letters of its surroundings, which are not of one width.
+        return f"<pre style='font-family: monospace; line-height: 1.3'>{escape(self.summary())}</pre>{figures}"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Result) and self.to_json() == other.to_json()
