@@ -30,7 +30,7 @@ pub use self::history::{
     UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, read_limits, station_history,
     unit_history, unit_means, units_history,
 };
-pub use self::history::{add_result, add_results, check_store, collect_results, list_store, spelling};
+pub use self::history::{add_result, add_results, check_store, collect_results, list_store, spelling, today};
 pub use self::init::{Draft, FillIn, InitRequest, init};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};

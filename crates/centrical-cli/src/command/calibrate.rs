@@ -128,12 +128,12 @@ fn refuse_another_unit(file: &Path, session: &Session) -> Result<(), Error> {
     Err(Error::content(file, Place::Whole, there, expected))
 }
 
-/// The verdict, then what it rests on.
-fn report(
+/// The verdict, then what it rests on, and the `written` file or folder.
+pub fn report(
     result: &CalibrationResult,
     objections: &[ResultObjection],
     unit: Option<&UnitStatement>,
-    file: Option<&Path>,
+    written: Option<&Path>,
 ) -> Screen {
     let mut screen = verdict_text(objections);
     if let Some(unit) = unit {
@@ -141,9 +141,9 @@ fn report(
     }
     screen.gap();
     screen.add(terminal_table(result));
-    if let Some(file) = file {
+    if let Some(written) = written {
         screen.gap();
-        screen.say(0, &format!("Written to {}", file.display()));
+        screen.say(0, &format!("Written to {}", written.display()));
     }
     screen
 }

@@ -14,14 +14,9 @@ use crate::outcome::Outcome;
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     match &arguments.records[..] {
-        [session] if is_session(session) => of_session(arguments, session),
+        [session] if Session::is_named_by(session) => of_session(arguments, session),
         _ => of_records(arguments),
     }
-}
-
-/// Whether the path is that of a session: no record is a folder, or a text in TOML.
-fn is_session(path: &Path) -> bool {
-    path.is_dir() || path.extension().is_some_and(|extension| extension == "toml")
 }
 
 /// By records whose rests are still to be found.

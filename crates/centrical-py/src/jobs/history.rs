@@ -1,13 +1,12 @@
 //! `history`: a store of calibrations, and what many of them say.
 
 use std::path::PathBuf;
-use std::time::SystemTime;
 
 use centrical_report::{PagesRequest, chart_plots, unit_history_plots, write_history_pages, write_plots};
 use centrical_session::{
     ChartLimits, ChartRequest, Date, Depth, Dimension, Error, Failure, ParameterLimits, Place, Row, RuleSet, Selection,
     Store, UnitHistoryRequest, UnitsHistoryRequest, add_results, by_unit, chart, check_store, list_store, read_batches,
-    read_calibrations, read_limits, station_history, unit_history, units_history,
+    read_calibrations, read_limits, station_history, today, unit_history, units_history,
 };
 use pyo3::prelude::*;
 
@@ -198,10 +197,4 @@ fn given(results: Vec<PathBuf>) -> PyResult<Vec<PathBuf>> {
 /// An error of results, one at least, as a whole.
 fn missing(results: &[PathBuf], expected: &str) -> Error {
     Error::content(&results[0], Place::Whole, "no such calibrations", expected)
-}
-
-/// Days from 1970-01-01; a day more, since a station may be east of here.
-fn today() -> i64 {
-    let passed = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-    i64::try_from(passed.as_secs() / 86_400 + 1).unwrap_or(i64::MAX)
 }

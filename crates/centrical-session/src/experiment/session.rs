@@ -89,6 +89,11 @@ impl MountingFiles {
 }
 
 impl Session {
+    /// Whether the path is that of a session, and not of a record: no record is a folder, or a text in TOML.
+    pub fn is_named_by(path: &Path) -> bool {
+        path.is_dir() || path.extension().is_some_and(|extension| extension == "toml")
+    }
+
     /// Reads the session in a folder, or of an experiment file. The records themselves are not touched.
     ///
     /// # Errors

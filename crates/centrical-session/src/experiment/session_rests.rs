@@ -64,7 +64,7 @@ impl Session {
         self.durations.truncate(self.experiment.set_points.len());
     }
 
-    /// Refuses rests of which nothing is measured yet.
+    /// Refuses rests that are still to be measured.
     pub(crate) fn refuse_planned_rests(&self) -> Result<(), Error> {
         let Some(planned) = self.rest_tables.iter().position(RestTable::is_planned) else { return Ok(()) };
         let expected = "a table of rests, in a session that is measured";

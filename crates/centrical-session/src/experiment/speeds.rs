@@ -1,7 +1,8 @@
 //! What `[centrifuge]` says of speeds: how well they are set, and how they are measured if they are.
 
-use serde::{Deserialize, Serialize};
 use std::path::Path;
+
+use serde::{Deserialize, Serialize};
 
 use super::form::{CentrifugeTable, MeasuredTable, PresetCentrifugeTable};
 use super::toml_path::TomlPath;

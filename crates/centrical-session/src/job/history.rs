@@ -19,7 +19,7 @@ pub use self::add::{add_result, add_results};
 pub use self::batches::read_batches;
 pub use self::calibrated::{Calibrated, CalibratedParameter};
 pub use self::chart::{ChartLimits, ChartRequest, NoChart, RuleSet, chart};
-pub use self::check::{check_store, spelling};
+pub use self::check::{check_store, spelling, today};
 pub use self::earlier::history_up_to;
 pub use self::limits::{ParameterLimits, read_limits};
 pub use self::list::list_store;

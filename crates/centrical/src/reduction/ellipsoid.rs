@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 /// Least singular value that is not rounding or noise, over the largest.
 const LEAST: f64 = 1e-4;
 
-/// The same for a quadric near a sphere: misalignment of a hundredth moves what is left out by a tenth.
+/// The same for a quadric near a sphere, which a misalignment of 0.01 then moves by 0.1 at most.
 const HARDLY: f64 = 0.1;
 
 /// The ellipsoid `(y - c)^T A (y - c) = 1` of readings at the size of gravity.

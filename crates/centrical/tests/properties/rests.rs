@@ -110,13 +110,16 @@ impl Flicker {
     }
 }
 
+/// Gain and bias of a unit with this truth: it reads `gain f + bias`.
+pub fn gain_and_bias([b1, b2, b3, k11, k21, k22, k31, k32, k33]: [f64; 9]) -> (Matrix3<f64>, Vector3<f64>) {
+    (Matrix3::identity() + Matrix3::new(k11, 0.0, 0.0, k21, k22, 0.0, k31, k32, k33), Vector3::new(b1, b2, b3))
+}
+
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 fn made(making: &Making, random: &mut Random) -> Made {
     let sizes = [0.05, 0.05, 0.05, 3e-3, 3e-3, 3e-3, 3e-3, 3e-3, 3e-3];
     let truth = sizes.map(|size| size * random.normal());
-    let [b1, b2, b3, k11, k21, k22, k31, k32, k33] = truth;
-    let gain = Matrix3::identity() + Matrix3::new(k11, 0.0, 0.0, k21, k22, 0.0, k31, k32, k33);
-    let bias = Vector3::new(b1, b2, b3);
+    let (gain, bias) = gain_and_bias(truth);
     let direction = |random: &mut Random| Vector3::from_fn(|_, _| random.normal()).normalize();
     let mut slow = Markov::new(1.0, random);
     let mut tremor = Markov::new(0.3, random);
@@ -236,6 +239,16 @@ fn squared_error(model: &MeasurementModel, fit: &Fit, truth: [f64; 9]) -> f64 {
     error.dot(&covariance.cholesky().unwrap().solve(&error))
 }
 
+/// The same of one coefficient, on average over `runs` made records, by the noise within rests.
+fn mean_squared_error(making: &Making, runs: usize, random: &mut Random) -> f64 {
+    let squared = |_| {
+        let made = made(making, random);
+        let (model, observations) = problem_of(&made);
+        squared_error(&model, &exact(&model, &observations).unwrap(), made.truth)
+    };
+    (0..runs).map(squared).sum::<f64>() / (9 * runs) as f64
+}
+
 /// Every rest is found, none is invented, and each lies within the one that was made.
 #[test]
 fn rests_are_found_as_they_were_made() {
@@ -303,11 +316,10 @@ fn counts_become_accelerations() {
 pub fn noise_along_force(made: &Made, radius: Option<f64>) -> f64 {
     let rests =
         reduce_rests(&[RestRecord { samples: made.record.as_slice(), turning_radius: radius }], &unwatched).unwrap();
-    let [b1, b2, b3, k11, k21, k22, k31, k32, k33] = made.truth;
-    let gain = Matrix3::identity() + Matrix3::new(k11, 0.0, 0.0, k21, k22, 0.0, k31, k32, k33);
+    let (gain, bias) = gain_and_bias(made.truth);
     let back = gain.try_inverse().unwrap();
     let of = |rest: &PlateauMean| {
-        let normal = back.tr_mul(&(back * (rest.mean - Vector3::new(b1, b2, b3)))).normalize();
+        let normal = back.tr_mul(&(back * (rest.mean - bias))).normalize();
         normal.dot(&(rest.covariance * normal)) * rest.samples as f64
     };
     let rests = rests.means.concat();
@@ -342,20 +354,14 @@ fn a_tremor_shortens_no_rest() {
     const RUNS: usize = 30;
     let trembling = Making { tremor: 1e-2, white: Vector3::repeat(1e-3), slow: 0.0, bumps: 0.0, ..BY_HAND };
     let mut random = Random::new(29);
-    let squared = |random: &mut Random| {
-        let made = made(&trembling, random);
-        let (model, observations) = problem_of(&made);
-        squared_error(&model, &exact(&model, &observations).unwrap(), made.truth)
-    };
-    let mean: f64 = (0..RUNS).map(|_| squared(&mut random)).sum::<f64>() / (9 * RUNS) as f64;
+    let mean = mean_squared_error(&trembling, RUNS, &mut random);
     assert!(mean < 1.0 + 4.0 * (2.0 / (9 * RUNS) as f64).sqrt(), "{mean}");
     // Six rests show no ellipsoid in general position; half of the means lie above the size of gravity all the same.
     let few = Making { rests: 6, ..trembling };
     let too_long = |random: &mut Random| {
         let made = made(&few, random);
-        let [b1, b2, b3, k11, k21, k22, k31, k32, k33] = made.truth;
-        let gain = Matrix3::identity() + Matrix3::new(k11, 0.0, 0.0, k21, k22, 0.0, k31, k32, k33);
-        let size = |rest: &PlateauMean| gain.try_inverse().map(|back| back * (rest.mean - Vector3::new(b1, b2, b3)));
+        let (gain, bias) = gain_and_bias(made.truth);
+        let size = |rest: &PlateauMean| gain.try_inverse().map(|back| back * (rest.mean - bias));
         let rests = reduce_rests(&[made.record.as_slice().into()], &unwatched).unwrap().means.concat();
         rests.iter().filter(|rest| size(rest).is_some_and(|force| force.norm() > GRAVITY)).count()
     };
@@ -370,12 +376,7 @@ fn errors_are_as_large_as_stated() {
     const RUNS: usize = 100;
     for (seed, making) in [(1, BY_HAND), (2, ON_A_TABLE)] {
         let mut random = Random::new(seed);
-        let squared = |random: &mut Random| {
-            let made = made(&making, random);
-            let (model, observations) = problem_of(&made);
-            squared_error(&model, &exact(&model, &observations).unwrap(), made.truth)
-        };
-        let mean: f64 = (0..RUNS).map(|_| squared(&mut random)).sum::<f64>() / (9 * RUNS) as f64;
+        let mean = mean_squared_error(&making, RUNS, &mut random);
         // Weights of few rests are themselves estimates: four standard deviations of the mean, and 5 % for them.
         assert!((mean - 1.0).abs() < 4.0 * (2.0 / (9 * RUNS) as f64).sqrt() + 0.05, "{mean}");
     }
@@ -387,12 +388,7 @@ fn a_long_rest_beside_short_ones_is_no_harm() {
     const RUNS: usize = 6;
     let making = Making { first: 300.0, lasting: [1.0, 1.6], slow: 0.0, ..DOUBTFUL };
     let mut random = Random::new(37);
-    let squared = |random: &mut Random| {
-        let made = made(&making, random);
-        let (model, observations) = problem_of(&made);
-        squared_error(&model, &exact(&model, &observations).unwrap(), made.truth)
-    };
-    let mean: f64 = (0..RUNS).map(|_| squared(&mut random)).sum::<f64>() / (9 * RUNS) as f64;
+    let mean = mean_squared_error(&making, RUNS, &mut random);
     assert!((mean - 1.0).abs() < 4.0 * (2.0 / (9 * RUNS) as f64).sqrt(), "{mean}");
 }
 

@@ -2,12 +2,12 @@
 
 use centrical::reduction::{Arc, Record, RestRecord, reduce_rests};
 use centrical::unwatched;
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 
 use crate::common::Random;
 use crate::rests::{
     BY_HAND, DOUBTFUL, GRAVITY, Judged, Made, Making, Markov, ON_A_TABLE, RATE, Tally, add_wander,
-    assert_a_bias_leaves_the_noise, judged_record, noise_along_force,
+    assert_a_bias_leaves_the_noise, gain_and_bias, judged_record, noise_along_force,
 };
 
 /// A unit that turns slowly and never rests.
@@ -30,9 +30,7 @@ struct Rotation {
 fn turned(making: &Making, rotation: &Rotation, random: &mut Random) -> Made {
     let sizes = [0.05, 0.05, 0.05, 3e-3, 3e-3, 3e-3, 3e-3, 3e-3, 3e-3];
     let truth = sizes.map(|size| size * random.normal());
-    let [b1, b2, b3, k11, k21, k22, k31, k32, k33] = truth;
-    let gain = Matrix3::identity() + Matrix3::new(k11, 0.0, 0.0, k21, k22, 0.0, k31, k32, k33);
-    let bias = Vector3::new(b1, b2, b3);
+    let (gain, bias) = gain_and_bias(truth);
     let count = (rotation.duration * RATE) as usize;
     let attitude = Rotation3::from_scaled_axis(Vector3::from_fn(|_, _| 2.0 * random.normal()));
     let place = Vector3::from_fn(|_, _| random.normal()).normalize() * rotation.radius;

@@ -1,10 +1,9 @@
 //! `centrical history list STORE`: the calibrations of a store.
 
 use std::path::PathBuf;
-use std::time::SystemTime;
 
 use centrical_report::history_list_text;
-use centrical_session::{Error, Selection, check_store, list_store, unwatched};
+use centrical_session::{Error, Selection, check_store, list_store, today, unwatched};
 
 use crate::outcome::Outcome;
 use crate::printing::Printing;
@@ -46,10 +45,4 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     };
     arguments.printing.show(|| history_list_text(&list), || list.to_json())?;
     Ok(Outcome::acceptable(list.doubts.is_none_or(|doubts| doubts.is_empty())))
-}
-
-/// Days from 1970-01-01; a day more, since a station may be east of here.
-fn today() -> i64 {
-    let passed = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-    i64::try_from(passed.as_secs() / 86_400 + 1).unwrap_or(i64::MAX)
 }

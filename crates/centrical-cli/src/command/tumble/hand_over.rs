@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use centrical_report::{read_issuer, terminal_table, unit_text, verdict_text, write_all_documents};
+use centrical_report::{read_issuer, write_all_documents};
 use centrical_session::{CalibrationResult, Error, refuse_inputs};
 
 use super::arguments::Arguments;
-use crate::command::calibrate::outputs;
+use crate::command::calibrate::{outputs, report};
 use crate::command::report::is_within_limits;
 use crate::outcome::Outcome;
 
@@ -36,19 +36,7 @@ impl Arguments {
         }
         let objections = result.objections();
         let unit = issuer.and_then(|issuer| issuer.unit);
-        let text = || {
-            let mut screen = verdict_text(&objections);
-            if let Some(unit) = &unit {
-                screen.add(unit_text(unit));
-            }
-            screen.gap();
-            screen.add(terminal_table(result));
-            if let Some(folder) = out {
-                screen.gap();
-                screen.say(0, &format!("Written to {}", folder.display()));
-            }
-            screen
-        };
+        let text = || report(result, &objections, unit.as_ref(), out);
         self.printing.show(text, || result.to_json())?;
         Ok(Outcome::acceptable(objections.is_empty() && is_within_limits(unit.as_ref())))
     }

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::time::SystemTime;
 
 use centrical::OnProgress;
 use centrical_table::Source;
@@ -11,6 +12,12 @@ use crate::document::{Doubt, DoubtKind, HistoryList};
 use crate::error::{Error, ErrorKind};
 use crate::record::Input;
 use crate::store::{Row, Selection, Status, Store};
+
+/// Days from 1970-01-01; a day more, since a station may be east of here.
+pub fn today() -> i64 {
+    let passed = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(passed.as_secs() / 86_400 + 1).unwrap_or(i64::MAX)
+}
 
 /// The calibrations that a selection picks, by unit and day, with the doubts about them. `today` in days from 1970-01-01; `progress` is
 /// asked again and again.

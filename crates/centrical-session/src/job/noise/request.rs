@@ -45,7 +45,7 @@ pub struct NoiseRequest {
 /// [`Error`] naming the file, the place, what was found and what was expected.
 pub fn noise_of(request: &NoiseRequest, progress: OnProgress) -> Result<(NoiseAnalysis, Option<PlateauName>), Error> {
     let NoiseRequest { file, estimators, .. } = request;
-    if file.is_dir() || file.extension().is_some_and(|extension| extension == "toml") {
+    if Session::is_named_by(file) {
         let (analysis, name) = noise_of_plateau(&Session::read(file)?, request.plateau, estimators, progress)?;
         return Ok((analysis, Some(name)));
     }

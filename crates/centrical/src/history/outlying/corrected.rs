@@ -30,7 +30,7 @@ pub enum Corrected {
     AsStated,
     /// By `T`.
     Beside(DMatrix<f64>),
-    /// By `W`, of which this is a root.
+    /// By a root of `W`.
     InProportion(DMatrix<f64>),
 }
 
