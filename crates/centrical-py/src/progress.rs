@@ -15,7 +15,7 @@ use crate::failure::{defect, exception};
 use crate::pool;
 
 /// How soon a signal is noticed.
-const SLICE: Duration = Duration::from_millis(50);
+const SLICE: Duration = Duration::from_millis(20);
 
 /// A function of Python that shows progress: it takes what is done and all there is to do.
 pub type Shown = Option<Py<PyAny>>;

@@ -20,7 +20,7 @@ use crate::result::CalibrationResult;
 use crate::words;
 
 /// How soon a signal is noticed.
-const SLICE: Duration = Duration::from_millis(50);
+const SLICE: Duration = Duration::from_millis(20);
 
 /// What happens to a session that is watched.
 enum Event {

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import sys
@@ -126,6 +127,26 @@ def test_sessions(long_session, name):
     assert_in_time_throughout(lambda: getattr(ct, name)(long_session, **options))
 
 
+@pytest.fixture(scope="module")
+def long_campaign(example, truth, tmp_path_factory):
+    """The example with 414 loads a mounting, 4968 plateaus in all, already averaged."""
+    folder = tmp_path_factory.mktemp("campaign")
+    text = (example / "experiment.toml").read_text()
+    loads = "".join(f'  {{ speed = "{133.0 + 465.0 * n / 414:.3f} rpm" }},\n' for n in range(414))
+    plan = re.sub(r"plateaus = \[\n.*?\n\]", lambda _: f"plateaus = [\n{loads}]", text, flags=re.DOTALL)
+    (folder / "plan").mkdir()
+    (folder / "plan" / "experiment.toml").write_text(plan)
+    ct.simulate(folder / "plan", truth(50, 3), seed=1, out=folder / "records")
+    ct.reduce(folder / "records", folder / "means")
+    return folder / "means"
+
+
+def test_calibrate_of_thousands_of_plateaus(long_campaign, tmp_path):
+    out = tmp_path / "out"
+    assert_in_time_throughout(lambda: ct.Session(long_campaign).calibrate())
+    assert_in_time_throughout(lambda: ct.Session(long_campaign).calibrate(out=out), lambda: shutil.rmtree(out, ignore_errors=True))
+
+
 def test_models_between_rivals(example):
     assert_in_time_throughout(lambda: ct.models(example))
 
@@ -191,7 +212,9 @@ def test_tumble(root):
     assert_in_time_throughout(lambda: ct.tumble(root / "examples/tumble/record.csv", gravity=9.81523))
 
 
-def test_tumble_of_hundreds_of_rests(tmp_path):
+@pytest.fixture(scope="module")
+def hundreds_of_rests(tmp_path_factory):
+    """A record of a unit that is turned by hand and left alone 480 times."""
     random = np.random.default_rng(24)
     rests, samples, turning = 480, 100, 30
     up = random.normal(size=(rests, 3))
@@ -201,10 +224,27 @@ def test_tumble_of_hundreds_of_rests(tmp_path):
     force = (9.81523 * way / np.linalg.norm(way, axis=2)[:, :, None]).reshape(-1, 3)
     readings = 1.001 * force + 0.02 + 2e-3 * random.normal(size=force.shape)
     record = np.column_stack([np.arange(len(readings)) / 50.0, readings])
-    file = tmp_path / "record.csv"
+    file = tmp_path_factory.mktemp("rests") / "record.csv"
     np.savetxt(file, record, delimiter=",", header="t,f1,f2,f3", comments="", fmt="%.6f")
-    assert len(ct.tumble(file, gravity=9.81523).names) > 800
-    assert_in_time_throughout(lambda: ct.tumble(file, gravity=9.81523))
+    return file
+
+
+def test_tumble_of_hundreds_of_rests(hundreds_of_rests):
+    assert len(ct.tumble(hundreds_of_rests, gravity=9.81523).names) > 800
+    assert_in_time_throughout(lambda: ct.tumble(hundreds_of_rests, gravity=9.81523))
+
+
+def test_watch_of_hundreds_of_rests(example, hundreds_of_rests, tmp_path):
+    session, out = shutil.copytree(example, tmp_path / "session"), tmp_path / "out"
+    shutil.copy(hundreds_of_rests, session / "tumble.csv")
+    with (session / "experiment.toml").open("a") as file:
+        file.write('\n[[tumble]]\nrecord = "tumble.csv"\n')
+
+    def watch():
+        with ct.watch(session, out, once=True, quiet=0.0) as watched:
+            assert len(list(watched)) > 108
+
+    assert_in_time_throughout(watch, lambda: shutil.rmtree(out, ignore_errors=True))
 
 
 def test_series(example, long_session, tmp_path):

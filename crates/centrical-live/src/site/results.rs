@@ -3,7 +3,7 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
-use centrical_report::{LIVE_STYLE, Language, ListedResult, compared_page, html, report, results_page};
+use centrical_report::{LIVE_STYLE, Language, ListedResult, compared_page, figures, html, report, results_page};
 use centrical_session::{CalibrationResult, ComparisonRequest, Error, collect_results, compare_results};
 
 use super::answer::{Answer, Query, Site};
@@ -67,7 +67,7 @@ impl Results {
     fn report(&self, id: &str, language: Language) -> Option<Answer> {
         let result = CalibrationResult::read(&self.file(id)?);
         Some(match result {
-            Ok(result) => Answer::Document(html(&report(&result, None, None, &[], language))),
+            Ok(result) => Answer::Document(html(&report(&result, None, None, figures(&result, language), language))),
             Err(error) => Answer::Failed(error.to_string()),
         })
     }

@@ -13,23 +13,23 @@ use super::switch_on::switch_on;
 use super::symbols::{nominal_output, symbols};
 use super::tables::{budget, of_arm, parameters};
 use crate::evaluation::{UnitStatement, UnitVerdict, by_group, equations};
-use crate::figure::{Figure, figures, positions};
+use crate::figure::{Figure, positions};
 use crate::language::Language;
 use crate::number::grouped;
 
 /// The report of a result: what every reader sees, then what some will open. `unit` is what a decision says of the unit, `past`
-/// what its earlier calibrations say, and `further` figures stand after its own.
+/// what its earlier calibrations say, and `figures` are those of the result ([`crate::figures`]) and what is to stand after them.
 pub fn report(
     result: &CalibrationResult,
     unit: Option<&UnitStatement>,
     past: Option<&UnitHistoryReport>,
-    further: &[Figure],
+    figures: Vec<Figure>,
     language: Language,
 ) -> Document {
     let (messages, session, program) = (language.messages(), &result.session, &result.program);
     let serial = if session.unit_serial.is_empty() { messages.not_given } else { &session.unit_serial };
     let title = format!("{}: {}", messages.calibration_report, session.unit_model);
-    let (drawn, rest): (Vec<_>, Vec<_>) = figures(result, language).into_iter().partition(is_of_first_layer);
+    let (drawn, rest): (Vec<_>, Vec<_>) = figures.into_iter().partition(is_of_first_layer);
     let first = [
         headline(result, language),
         error_model(result, language),
@@ -48,7 +48,7 @@ pub fn report(
         uncertainty_budget(result, language),
         all_rests_on(result, language),
         mounting_positions(result, language),
-        plots(messages.further_plots, rest.into_iter().chain(further.iter().cloned()).collect(), language),
+        plots(messages.further_plots, rest, language),
         inputs(result, language),
     ];
     let is_not_empty = |blocks: &Vec<Block>| !blocks.is_empty();

@@ -86,8 +86,9 @@ pub fn write_documents(request: &DocumentRequest) -> Result<Documents, Error> {
     if let Some(file) = &request.html {
         let history = request.history.as_deref().map(read_history).transpose()?.unwrap_or_default();
         let group_of = |name: &str| result.parameter(name).map(|parameter| parameter.group);
-        let further = history_figure(&history, &group_of, language);
-        write_whole(file, html(&report(&result, unit, past.as_ref(), further.as_slice(), language)).as_bytes())?;
+        let mut drawn = figures(&result, language);
+        drawn.extend(history_figure(&history, &group_of, language));
+        write_whole(file, html(&report(&result, unit, past.as_ref(), drawn, language)).as_bytes())?;
     }
     if let Some(issuer) = &issuer {
         let before = request.before.as_deref().map(|file| before(file, &result, &issuer.laboratory)).transpose()?;
@@ -119,7 +120,8 @@ pub fn write_all_documents(
     folder: &Path,
 ) -> Result<(), Error> {
     let unit = issuer.and_then(|issuer| issuer.unit.as_ref());
-    write_whole(&folder.join("report.html"), html(&report(result, unit, None, &[], language)).as_bytes())?;
+    let drawn = figures(result, language);
+    write_whole(&folder.join("report.html"), html(&report(result, unit, None, drawn.clone(), language)).as_bytes())?;
     if let Some(issuer) = issuer {
         let dcc = dcc(result, issuer, language, &folder.join("result.json"))?;
         let certificate = with_attachment(certificate(result, None, issuer, language), Some(&dcc));
@@ -128,7 +130,7 @@ pub fn write_all_documents(
     }
     let plots = folder.join("plots");
     create_folder(&plots)?;
-    for figure in figures(result, language) {
+    for figure in drawn {
         let is_one = figure.drawings.len() == 1;
         for (n, drawing) in (1..).zip(&figure.drawings) {
             let name = if is_one { format!("{}.svg", figure.name) } else { format!("{}-{n:02}.svg", figure.name) };

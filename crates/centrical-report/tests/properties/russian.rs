@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use centrical_report::{Block, Document, Language, Row, certificate, read_issuer, report};
+use centrical_report::{Block, Document, Language, Row, certificate, figures, read_issuer, report};
 use centrical_session::{CalibrationResult, Method, Session, calibrate, unwatched};
 
 const EXAMPLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/ta-200");
@@ -84,7 +84,7 @@ fn russian_documents_have_no_english_words() {
     let allowed = format!("{} {} {own} {CITED} {}", names.join(" "), inputs.join(" "), result.schema);
     let documents = [
         certificate(&result, Some(&result), &issuer, Language::Russian),
-        report(&result, issuer.unit.as_ref(), None, &[], Language::Russian),
+        report(&result, issuer.unit.as_ref(), None, figures(&result, Language::Russian), Language::Russian),
     ];
     for document in documents {
         let text = text(&document);
@@ -93,7 +93,7 @@ fn russian_documents_have_no_english_words() {
             assert!(latin_words(&allowed).any(|known| known == word), "{word}");
         }
     }
-    let report = text(&report(&result, None, None, &[], Language::Russian));
+    let report = text(&report(&result, None, None, figures(&result, Language::Russian), Language::Russian));
     for words in [
         "рекуррентный фильтр",
         "скорости в рад/с прочитаны в об/мин",

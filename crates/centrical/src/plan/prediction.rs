@@ -19,6 +19,7 @@ use super::candidates::{Candidates, Schedule, Visit};
 use super::criterion::ReadingRange;
 use crate::fit::{Calibration, Data, Structure};
 use crate::model::{Experiment, FitError, MeasurementModel, Mounting, Observation, Weight};
+use crate::progress::unwatched;
 use crate::uncertainty::{Budget, Compensated, CurvePoint, Rivals, Unseen};
 
 /// The uncertainties that are expected of a plan.
@@ -90,7 +91,7 @@ impl Prediction {
     /// [`FitError`] when numbers overflow.
     pub fn rests_on(&self) -> Result<Vec<Unseen>, FitError> {
         let perfect = Data::new(&self.model, readings(&self.model, &self.weights, &self.truth))?;
-        Rivals::of(&Calibration::exact(&perfect)?)?.rests_on()
+        Rivals::of(&Calibration::exact(&perfect)?, &unwatched)?.rests_on(&unwatched)
     }
 
     /// The budget by source.

@@ -77,8 +77,7 @@ impl Calibration<'_> {
         // Of a whitened column along the force the length is the inverse of the standard deviation.
         let variances = scatter.lengths.iter().map(|length| 1.0 / (length * length));
         let unit = (variances.sum::<f64>() / rests.len() as f64).sqrt();
-        let rivals = Rivals::of(self)?;
-        advance(progress, ())?;
+        let rivals = Rivals::of(self, progress)?;
         let drift = rivals.get(DRIFT).map(|drift| &drift.columns);
         let residuals = Residuals::of(&scatter, &redundancy, drift, unit);
         advance(progress, ())?;

@@ -419,7 +419,7 @@ pub fn judged_record(made: &Made, radius: Option<f64>) -> Judged {
     let data = Data::new(&model, observations.clone()).unwrap();
     let calibration = Calibration::exact(&data).unwrap();
     let level = Level::Objection;
-    let shown = Rivals::of(&calibration).unwrap().suspects(level.probability()).shown;
+    let shown = Rivals::of(&calibration, &unwatched).unwrap().suspects(level.probability()).shown;
     let fit = calibration.fit();
     let chance = chance_of_residuals(fit.chi_squared, fit.degrees_of_freedom, found.noise_at_most);
     let is_by_noise = level.is_passed_by(calibration.validity().unwrap().probability);
@@ -622,7 +622,7 @@ fn faces_in_known_attitudes_raise_no_alarm() {
         let (model, observations) = problem(positions, &means);
         let data = Data::new(&model, observations).unwrap();
         let calibration = Calibration::exact(&data).unwrap();
-        let shown = Rivals::of(&calibration).unwrap().suspects(Level::Objection.probability()).shown;
+        let shown = Rivals::of(&calibration, &unwatched).unwrap().suspects(Level::Objection.probability()).shown;
         // By chance in one set of 10,000.
         assert!(shown.is_empty(), "{run}: {shown:?}");
     }

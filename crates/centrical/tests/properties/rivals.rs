@@ -1,5 +1,7 @@
 use centrical::uncertainty::{Level, Rivals, Suspects};
-use centrical::{Calibration, Data, Difference, Extension, MeasurementModel, Observation, Parameter, Rival, SetPoint};
+use centrical::{
+    Calibration, Data, Difference, Extension, MeasurementModel, Observation, Parameter, Rival, SetPoint, unwatched,
+};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -23,7 +25,7 @@ fn catalogue() -> Vec<Rival> {
 fn suspects(model: &MeasurementModel, observations: Vec<Observation>) -> Suspects {
     let data = Data::new(model, observations).unwrap();
     let calibration = Calibration::exact(&data).unwrap();
-    Rivals::of(&calibration).unwrap().suspects(Level::Reported.probability())
+    Rivals::of(&calibration, &unwatched).unwrap().suspects(Level::Reported.probability())
 }
 
 /// The model with a rival, and unknowns of typical errors with a random mixture of the rival's, so large that it leaves chi^2
@@ -129,7 +131,7 @@ fn sound_sessions_are_left_alone() {
             let data = Data::new(model, readings).unwrap();
             let calibration = Calibration::exact(&data).unwrap();
             let validity = calibration.validity().unwrap();
-            let shown = Rivals::of(&calibration).unwrap().suspects(Level::Reported.probability()).shown;
+            let shown = Rivals::of(&calibration, &unwatched).unwrap().suspects(Level::Reported.probability()).shown;
             let outlier = validity.plateaus.iter().map(|p| p.prediction.probability).fold(1.0, f64::min);
             let others = validity.probability.min(outlier * validity.plateaus.len() as f64);
             (shown.iter().map(|test| test.family_wise).fold(1.0, f64::min), others)
@@ -154,7 +156,7 @@ fn unseen_effects_do_what_is_said() {
     let mut noisy = Random::new(78);
     let data = Data::new(&model, session(&model, &x, &mut noisy)).unwrap();
     let of_session = Calibration::exact(&data).unwrap();
-    let unseen = Rivals::of(&of_session).unwrap().rests_on().unwrap();
+    let unseen = Rivals::of(&of_session, &unwatched).unwrap().rests_on(&unwatched).unwrap();
     for name in ["arm-turn-load", "spin-step", "odd-quadratic", "yield", "elastic-turn-speed", "one-mounting-turn[4]"] {
         let effect = unseen.iter().find(|effect| effect.rival.name() == name).unwrap();
         let richer = model.with_rivals(&[effect.rival]);
@@ -173,7 +175,7 @@ fn unseen_effects_do_what_is_said() {
             let mut random = Random::new(5000 + seed);
             let data = Data::new(&model, session(&richer, &with, &mut random)).unwrap();
             let calibration = Calibration::exact(&data).unwrap();
-            !Rivals::of(&calibration).unwrap().suspects(Level::Objection.probability()).shown.is_empty()
+            !Rivals::of(&calibration, &unwatched).unwrap().suspects(Level::Objection.probability()).shown.is_empty()
         };
         let told = (0..200_u64).into_par_iter().filter(is_told).count();
         println!("{name} {}: {:.1} u, told {told} of 200", effect.unknown.name, effect.standard_uncertainties);

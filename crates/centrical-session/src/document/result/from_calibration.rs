@@ -40,11 +40,11 @@ impl CalibrationResult {
         let (validity, rests_on) = if fit.termination == Termination::Linear {
             (None, Vec::new())
         } else {
-            let rivals = Rivals::of(calibration)?;
-            advance(progress, 0)?;
+            let asked = |()| progress(0);
+            let rivals = Rivals::of(calibration, &asked)?;
             let checks = ValiditySummary::of(calibration, &rivals, session.noise_at_most())?;
             advance(progress, 0)?;
-            (Some(checks), RestsOn::all(model, rivals.rests_on()?))
+            (Some(checks), RestsOn::all(model, rivals.rests_on(&asked)?))
         };
         advance(progress, 0)?;
         let next_attitude = NextAttitudeSummary::of(calibration)?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant, SystemTime};
 
 use centrical::uncertainty::{Level, Rivals};
-use centrical::{Calibration, Data, FitError, Study, Weight};
+use centrical::{Calibration, Data, FitError, Study, Weight, unwatched};
 
 use super::arrivals::Watch;
 use super::progress::WatchProgress;
@@ -196,6 +196,6 @@ fn rivals(progress: &WatchProgress) -> Result<Vec<RivalSummary>, FitError> {
     let taken = progress.plateaus.iter().filter(|plateau| !plateau.held_out);
     let data = Data::new(progress.model, taken.map(WatchedPlateau::observation).collect())?;
     let calibration = Calibration::exact(&data)?;
-    let suspects = Rivals::of(&calibration)?.suspects(Level::Reported.probability());
+    let suspects = Rivals::of(&calibration, &unwatched)?.suspects(Level::Reported.probability());
     Ok(RivalSummary::all(&suspects))
 }

@@ -1,10 +1,12 @@
 //! Rests in attitudes of their own, which join a watch when their files are there.
 
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use centrical::{Observation, unwatched};
+use centrical::Observation;
 
+use super::arrivals::until;
 use crate::error::Error;
 use crate::experiment::{RestTable, Session};
 use crate::job::reduce::with_all_rests;
@@ -13,14 +15,14 @@ use crate::job::reduce::with_all_rests;
 /// files are not is waited for, and so are those after it: rests are numbered in the order of the file.
 ///
 /// # Errors
-/// [`Error`] when a table or a record that has been left alone is wrong.
-pub(super) fn with_rests_there(session: &Session, quiet: Duration) -> Result<Session, Error> {
+/// [`Error`] when a table or a record that has been left alone is wrong; [`Error::Stopped`] when `stop` is raised while it is read.
+pub(super) fn with_rests_there(session: &Session, quiet: Duration, stop: &AtomicBool) -> Result<Session, Error> {
     let mut tables = session.rest_tables.clone();
     let waited_for = tables.iter().position(|table| !is_there(table, quiet)).unwrap_or(tables.len());
     let later = tables.split_off(waited_for);
     tables.iter_mut().try_for_each(|table| table.read(&session.folder))?;
     let there = session.clone().with_rest_tables(tables);
-    let (filled, _) = with_all_rests(&there, &unwatched)?;
+    let (filled, _) = with_all_rests(&there, &|_| until(stop))?;
     let tables = filled.rest_tables.iter().cloned().chain(later).collect();
     Ok(session.clone().with_rest_tables(tables))
 }

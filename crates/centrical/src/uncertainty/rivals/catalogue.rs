@@ -1,12 +1,11 @@
 //! The columns of every rival that a model leaves out.
 
-use std::collections::HashMap;
-
 use nalgebra::{DMatrix, Vector3};
 
 use super::columns::{Columns, Seen};
 use crate::fit::Calibration;
 use crate::model::{FitError, Kind, MeasurementModel, Parameter, Rival};
+use crate::progress::{OnProgress, advance};
 
 /// The rivals of a calibration that act on its observations.
 pub struct Rivals<'c> {
@@ -34,42 +33,55 @@ impl Suspect {
 }
 
 impl<'c> Rivals<'c> {
-    /// The rivals that the model of `calibration` leaves out.
+    /// The rivals that the model of `calibration` leaves out. `progress` is called again and again.
     ///
     /// # Errors
-    /// [`FitError`] when numbers overflow.
-    pub fn of(calibration: &'c Calibration<'c>) -> Result<Self, FitError> {
+    /// [`FitError`] when numbers overflow or the caller stops.
+    pub fn of(calibration: &'c Calibration<'c>, progress: OnProgress<()>) -> Result<Self, FitError> {
         let left_out = calibration.data().model().left_out();
         let (terms, effects): (Vec<Rival>, Vec<Rival>) =
             left_out.into_iter().partition(|rival| matches!(rival, Rival::Terms(_)));
-        let mut list = suspects(calibration, &terms)?;
-        list.extend(suspects(calibration, &effects)?);
+        let mut list = suspects(calibration, &terms, progress)?;
+        list.extend(suspects(calibration, &effects, progress)?);
         Ok(Self { calibration, list })
     }
 }
 
 /// The columns of `rivals`, all terms or all effects, that act on the observations.
-fn suspects(calibration: &Calibration, rivals: &[Rival]) -> Result<Vec<Suspect>, FitError> {
+fn suspects(
+    calibration: &Calibration,
+    rivals: &[Rival],
+    progress: OnProgress<()>,
+) -> Result<Vec<Suspect>, FitError> {
     let (gain, data) = (calibration.gain()?, calibration.data());
     let model = data.model();
     let richer = model.with_rivals(rivals);
     let mut first = first_further(model, &richer);
     let x = widened(calibration.fit().state(), first, &richer);
     let set_points = &richer.experiment().set_points;
-    let linearised = data.observations().iter().map(|o| richer.linearise(&set_points[o.set_point], &x));
-    let derivatives: Vec<HashMap<usize, Vector3<f64>>> =
-        linearised.map(|at| at.columns.into_iter().collect()).collect();
+    let mut derivatives = Vec::with_capacity(data.observations().len());
+    for observation in data.observations() {
+        advance(progress, ())?;
+        let all = richer.linearise(&set_points[observation.set_point], &x).columns;
+        let mut further: Vec<(usize, Vector3<f64>)> = all.into_iter().filter(|(index, _)| *index >= first).collect();
+        further.sort_by_key(|(index, _)| *index);
+        derivatives.push(further);
+    }
+    let derivative = |n: usize, index: usize| -> Option<Vector3<f64>> {
+        let place = derivatives[n].binary_search_by_key(&index, |(index, _)| *index).ok()?;
+        Some(derivatives[n][place].1)
+    };
     let attitudes = attitude_uncertainties(calibration);
     let mut list = Vec::new();
     for &rival in rivals {
+        advance(progress, ())?;
         let unknowns = rival.parameters(model.experiment(), model.error_model());
         let all = first..first + unknowns.len();
-        let acts = |n: &usize| all.clone().any(|index| derivatives[*n].get(&index).is_some_and(|d| d.amax() > 0.0));
+        let acts = |n: &usize| all.clone().any(|index| derivative(*n, index).is_some_and(|d| d.amax() > 0.0));
         let acting: Vec<usize> = (0..derivatives.len()).filter(acts).collect();
         if !acting.is_empty() {
-            let derivative =
-                |n: usize, c: usize| derivatives[n].get(&(all.start + c)).copied().unwrap_or_else(Vector3::zeros);
-            let columns = Columns::new(gain, acting, unknowns.len(), derivative);
+            let by_column = |n: usize, c: usize| derivative(n, all.start + c).unwrap_or_else(Vector3::zeros);
+            let columns = Columns::new(gain, acting, unknowns.len(), by_column);
             let least = columns.least(|n| attitudes[n]);
             let seen = Seen::of(columns.redundancy(), &least);
             list.push(Suspect { rival, unknowns, columns, least, seen });

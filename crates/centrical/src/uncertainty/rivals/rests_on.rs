@@ -9,6 +9,7 @@ use super::catalogue::{Rivals, Suspect};
 use super::columns::Columns;
 use super::power::non_centrality;
 use crate::model::{FitError, Parameter, Rival};
+use crate::progress::{OnProgress, advance};
 use crate::uncertainty::verdict::Level;
 
 /// Power with which the smallest size is shown.
@@ -58,11 +59,11 @@ impl Unseen {
 }
 
 impl Rivals<'_> {
-    /// What the result rests on, the worst first.
+    /// What the result rests on, the worst first. `progress` is called for each rival.
     ///
     /// # Errors
-    /// [`FitError`] when numbers overflow.
-    pub fn rests_on(&self) -> Result<Vec<Unseen>, FitError> {
+    /// [`FitError`] when numbers overflow or the caller stops.
+    pub fn rests_on(&self, progress: OnProgress<()>) -> Result<Vec<Unseen>, FitError> {
         let ranks = self.list.iter().map(|suspect| suspect.seen.rank()).filter(|rank| *rank > 0);
         let level = Level::Objection.probability() / ranks.clone().count().max(1) as f64;
         let of_all = self.calibration.fit().degrees_of_freedom;
@@ -75,6 +76,7 @@ impl Rivals<'_> {
         let forces_z = self.forces();
         let mut list = Vec::new();
         for suspect in &self.list {
+            advance(progress, ())?;
             if let Some((c, mut unseen)) = self.worst_of(suspect, needed(suspect), &forces_z)? {
                 unseen.shrink_to(self.smallest_shown(&suspect.columns.only(c), needed));
                 list.push(unseen);
