@@ -33,4 +33,13 @@ impl Assembly {
             Self::Filter => Vec::new(),
         }
     }
+
+    /// The same where the equations determine all unknowns: then those of a position are determined by its own equations.
+    pub fn own_of_positions(self, data: &Data, priors: &[Prior]) -> Vec<Own> {
+        let set_points: Vec<usize> = data.observations().iter().map(|observation| observation.set_point).collect();
+        match self {
+            Self::Batch => data.model().unknowns_of_positions(&set_points, priors),
+            Self::Filter => Vec::new(),
+        }
+    }
 }

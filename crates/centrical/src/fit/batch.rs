@@ -17,9 +17,12 @@ use crate::progress::{OnProgress, advance, unwatched};
 /// than 1 %.
 const RELEASE_BELOW: f64 = 0.1;
 
-/// A step of less than this many standard uncertainties, all unknowns together, ends the iteration: it converges
-/// quadratically, so the step after it would be lost in rounding.
+/// A step ends the iteration if the next one would be shorter than this many standard uncertainties, all unknowns together. Steps shrink
+/// by the ratio of the last two at least: the iteration converges quadratically where steps are short.
 const CONVERGED: f64 = 1e-6;
+
+/// The longest step that ends the iteration, in standard uncertainties: weights and covariance are those before it.
+const LAST: f64 = 1e-3;
 
 /// Steps along a curved valley are halved many times; the longest ways seen took 51.
 const ITERATION_LIMIT: usize = 200;
@@ -137,7 +140,7 @@ pub(super) struct Search<'a> {
 impl<'a> Search<'a> {
     pub fn from(start: Start<'a>) -> Self {
         let null_weight = if start.structure.null_basis.ncols() > 0 { 1.0 / NULL_HOLD } else { 0.0 };
-        let x = start.step().1.x;
+        let Solution { x, whitened_length } = start.step().1;
         Self {
             start,
             x,
@@ -146,7 +149,7 @@ impl<'a> Search<'a> {
             design: None,
             null_weight,
             iterations: 0,
-            last_length: f64::INFINITY,
+            last_length: whitened_length,
             termination: None,
             covariance: DMatrix::zeros(0, 0),
             curved: DMatrix::zeros(0, 0),
@@ -184,10 +187,12 @@ impl<'a> Search<'a> {
         let step = equations.solve(misfit);
         // Of a sum of squares of readings that are known to a few units of their last place.
         let rounding = 100.0 * f64::EPSILON * design.magnitude;
-        let is_shrinking = step.whitened_length < 0.5 * self.last_length;
-        let has_settled = self.null_weight > 0.0 && step.whitened_length < SETTLED && !is_shrinking;
-        self.last_length = step.whitened_length;
-        if step.whitened_length <= CONVERGED + rounding || has_settled {
+        let length = step.whitened_length;
+        let next = length * (length / self.last_length).min(1.0);
+        let has_converged = next <= CONVERGED + rounding && length <= LAST + rounding;
+        let has_settled = self.null_weight > 0.0 && length < SETTLED && length >= 0.5 * self.last_length;
+        self.last_length = length;
+        if has_converged || has_settled {
             self.x += &step.x;
             self.termination = (!self.release_null_space(&equations)).then_some(Termination::Converged);
         } else if let Some((x, linearisations)) = self.descend(&step, (objective_norm + rounding).powi(2))? {
@@ -244,7 +249,7 @@ impl<'a> Search<'a> {
     }
 
     /// The residuals at the last point, with the weights and the covariance of the last linearisation: on convergence
-    /// less than a millionth of a standard uncertainty away.
+    /// less than a thousandth of a standard uncertainty away.
     fn into_fit(self) -> Result<Fit, FitError> {
         let residuals = self.start.data.residuals(self.x.as_slice());
         let parameters = self.start.data.model().parameters().len();

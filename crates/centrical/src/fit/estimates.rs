@@ -10,7 +10,7 @@ use crate::observability::Observability;
 pub enum Termination {
     /// One linear solution was asked for.
     Linear,
-    /// The last step was below a millionth of a standard uncertainty, or of rounding size.
+    /// The next step would be below a millionth of a standard uncertainty, or of rounding size.
     Converged,
     /// No step along the Gauss-Newton direction lowers chi^2 any more.
     Stalled,
@@ -60,6 +60,12 @@ impl Fit {
     pub fn covariance(&self, i: usize, j: usize) -> Option<f64> {
         let both = self.observability.is_estimable(i) && self.observability.is_estimable(j);
         both.then(|| self.covariance[(i, j)])
+    }
+
+    /// Covariance of the estimates of some parameters, if all are determined.
+    pub(crate) fn covariance_of(&self, parameters: &[usize]) -> Option<DMatrix<f64>> {
+        let determined = parameters.iter().all(|&j| self.observability.is_estimable(j));
+        determined.then(|| self.covariance.select_rows(parameters).select_columns(parameters))
     }
 
     /// Standard uncertainty of the estimate of parameter `j`, if it is determined.

@@ -73,6 +73,7 @@ impl Structure {
         for &j in own.iter().flat_map(|own| &own.columns) {
             null_basis.row_mut(j).fill(0.0);
         }
+        let own = if observability.lost() == 0 { assembly.own_of_positions(data, model.priors()) } else { own };
         let (null_basis, start) = (orthonormal(null_basis), OnceLock::new());
         Self { assembly, own, observability, of_data, null_basis, typical, linearisations, start }
     }

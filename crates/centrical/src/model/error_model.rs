@@ -183,8 +183,10 @@ impl ErrorModel {
             let value = term.monomial.value((*f).into());
             each(t, value);
             at.reading[term.axis] += c * value;
-            for (j, derivative) in term.monomial.gradient((*f).into()).into_iter().enumerate() {
-                at.gain[(term.axis, j)] += derivative * c;
+            for j in 0..3 {
+                if let Some((factor, lower)) = term.monomial.derivative(j) {
+                    at.gain[(term.axis, j)] += factor * lower.value((*f).into()) * c;
+                }
             }
         }
         at

@@ -1,4 +1,6 @@
-//! Attitudes of rests that gravity alone shows: unknowns that the equations of one plateau alone contain.
+//! Unknowns that few equations contain: of the positions, and the attitudes of rests that gravity alone shows.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector3;
 
@@ -12,10 +14,7 @@ impl MeasurementModel {
     /// The attitudes of rests in free positions that one of the plateaus `set_points` is in. Equations are three per plateau, then those of
     /// `priors`.
     pub(crate) fn attitudes_of_single_rests(&self, set_points: &[usize], priors: &[Prior]) -> Vec<Own> {
-        let position = |set_point: usize| {
-            let mounting = self.experiment.set_points[set_point].mounting;
-            self.experiment.mountings[mounting].position
-        };
+        let position = |set_point: usize| self.position_of(set_point);
         let mut plateaus = vec![0; self.experiment.positions.len()];
         for &set_point in set_points {
             plateaus[position(set_point)] += 1;
@@ -33,6 +32,31 @@ impl MeasurementModel {
             (plateaus[position] == 1).then_some(Own { columns, rows })
         };
         set_points.iter().enumerate().filter_map(own).collect()
+    }
+
+    /// The turns and shifts of positions on the arm, those together that have a shift in common, and the attitudes of free positions, with
+    /// the equations that contain them: three per plateau, then those of `priors`.
+    pub(crate) fn unknowns_of_positions(&self, set_points: &[usize], priors: &[Prior]) -> Vec<Own> {
+        let mut groups: BTreeMap<usize, (BTreeSet<usize>, Vec<usize>)> = BTreeMap::new();
+        for (n, &set_point) in set_points.iter().enumerate() {
+            let (shared, turn) = match self.parameters.of_position(self.position_of(set_point)) {
+                OfPosition::OnArm { turn, shift } => (shift.column, turn..turn + 3),
+                OfPosition::Free { attitude, .. } => (attitude, 0..0),
+            };
+            let (columns, rows) = groups.entry(shared).or_default();
+            columns.extend([shared, shared + 1].into_iter().chain(turn));
+            rows.extend(3 * n..3 * n + 3);
+        }
+        let own = |(columns, mut rows): (BTreeSet<usize>, Vec<usize>)| {
+            let of_group = priors.iter().enumerate().filter(|(_, prior)| columns.contains(&prior.parameter));
+            rows.extend(of_group.map(|(row, _)| 3 * set_points.len() + row));
+            Own { columns: columns.into_iter().collect(), rows }
+        };
+        groups.into_values().map(own).collect()
+    }
+
+    fn position_of(&self, set_point: usize) -> usize {
+        self.experiment.mountings[self.experiment.set_points[set_point].mounting].position
     }
 
     /// [`Linearisation::normal`] of a plateau with these derivatives by its unknowns.

@@ -4,7 +4,7 @@
 //! prior, their true values from it; lets the exact model make the readings, and fits them as if nothing were off. Run `n` uses stream `n` of the seed, and runs are gathered
 //! in their order, so the outcome does not depend on the number of threads.
 
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::budget::Budget;
@@ -220,13 +220,7 @@ impl<'a> Laboratory<'a> {
 
     fn judge(&self, fit: &Fit, truth: &[f64]) -> Option<Run> {
         let errors: Vec<f64> = self.determined.iter().map(|&j| fit.state()[j] - truth[j]).collect();
-        let count = self.determined.len();
-        let mut covariance = DMatrix::zeros(count, count);
-        for (a, &i) in self.determined.iter().enumerate() {
-            for (b, &j) in self.determined.iter().enumerate() {
-                covariance[(a, b)] = fit.covariance(i, j)?;
-            }
-        }
+        let covariance = fit.covariance_of(&self.determined)?;
         let converged = matches!(fit.termination, Termination::Converged | Termination::Linear);
         let run = Run {
             weighted_square: weighted_square(errors.iter().copied(), &covariance)?,

@@ -48,11 +48,7 @@ impl<'c> Rivals<'c> {
 }
 
 /// The columns of `rivals`, all terms or all effects, that act on the observations.
-fn suspects(
-    calibration: &Calibration,
-    rivals: &[Rival],
-    progress: OnProgress<()>,
-) -> Result<Vec<Suspect>, FitError> {
+fn suspects(calibration: &Calibration, rivals: &[Rival], progress: OnProgress<()>) -> Result<Vec<Suspect>, FitError> {
     let (gain, data) = (calibration.gain()?, calibration.data());
     let model = data.model();
     let richer = model.with_rivals(rivals);
