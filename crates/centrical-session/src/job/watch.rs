@@ -37,7 +37,7 @@ pub fn watch(
     let _claim = claim_folder(&request.out)?;
     refuse_inputs(&OUTPUTS.map(|name| request.out.join(name)), &session.files())?;
     loop {
-        let session = rests::with_rests_there(session, request.quiet, stop)?;
+        let session = rests::with_rests_there(session, request.quiet, &|_| arrivals::until(stop))?;
         let model = session.model()?;
         let mut following = following::Following::resume(request, &session, &model)?;
         report(WatchEvent::Begun(&model));

@@ -1,12 +1,10 @@
 //! Rests in attitudes of their own, which join a watch when their files are there.
 
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use centrical::Observation;
+use centrical::{Observation, OnProgress};
 
-use super::arrivals::until;
 use crate::error::Error;
 use crate::experiment::{RestTable, Session};
 use crate::job::reduce::with_all_rests;
@@ -15,14 +13,14 @@ use crate::job::reduce::with_all_rests;
 /// files are not is waited for, and so are those after it: rests are numbered in the order of the file.
 ///
 /// # Errors
-/// [`Error`] when a table or a record that has been left alone is wrong; [`Error::Stopped`] when `stop` is raised while it is read.
-pub(super) fn with_rests_there(session: &Session, quiet: Duration, stop: &AtomicBool) -> Result<Session, Error> {
+/// [`Error`] when a table or a record that has been left alone is wrong; [`Error::Stopped`].
+pub(super) fn with_rests_there(session: &Session, quiet: Duration, progress: OnProgress) -> Result<Session, Error> {
     let mut tables = session.rest_tables.clone();
     let waited_for = tables.iter().position(|table| !is_there(table, quiet)).unwrap_or(tables.len());
     let later = tables.split_off(waited_for);
     tables.iter_mut().try_for_each(|table| table.read(&session.folder))?;
     let there = session.clone().with_rest_tables(tables);
-    let (filled, _) = with_all_rests(&there, &|_| until(stop))?;
+    let (filled, _) = with_all_rests(&there, progress)?;
     let tables = filled.rest_tables.iter().cloned().chain(later).collect();
     Ok(session.clone().with_rest_tables(tables))
 }
