@@ -235,13 +235,21 @@ def test_tumble_of_hundreds_of_rests(hundreds_of_rests):
 
 
 def test_watch_that_reads_rests(example, hundreds_of_rests, tmp_path):
-    session, out = shutil.copytree(example, tmp_path / "session"), tmp_path / "out"
     table = np.loadtxt(hundreds_of_rests, delimiter=",", skiprows=1)
-    rests = 12 * 130
     # At 20 kHz: it takes a while to read, and has few rests.
-    dense = np.repeat(table[:rests], 400, axis=0)
-    dense[:, 0] = np.arange(len(dense)) / 20000.0
-    np.savetxt(session / "tumble.csv", dense, delimiter=",", header="t,f1,f2,f3", comments="", fmt="%.6f")
+    assert_watch_in_time_throughout(example, np.repeat(table[: 12 * 130], 400, axis=0), 20000.0, tmp_path)
+
+
+def test_watch_of_hundreds_of_rests(example, hundreds_of_rests, tmp_path):
+    table = np.loadtxt(hundreds_of_rests, delimiter=",", skiprows=1)
+    assert_watch_in_time_throughout(example, table[: 240 * 130], 50.0, tmp_path)
+
+
+def assert_watch_in_time_throughout(example, record, rate, tmp_path):
+    """Of the example with a record of rests, at `rate` samples a second."""
+    session, out = shutil.copytree(example, tmp_path / "session"), tmp_path / "out"
+    record[:, 0] = np.arange(len(record)) / rate
+    np.savetxt(session / "tumble.csv", record, delimiter=",", header="t,f1,f2,f3", comments="", fmt="%.6f")
     with (session / "experiment.toml").open("a") as file:
         file.write('\n[[tumble]]\nrecord = "tumble.csv"\n')
 

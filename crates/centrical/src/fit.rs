@@ -25,6 +25,7 @@ mod estimates;
 pub mod filter;
 mod follower;
 mod gain;
+mod global;
 mod linearised;
 mod past;
 mod structure;

@@ -25,20 +25,13 @@ impl Assembly {
         Ok(design.with_priors(data.model().priors(), data.model().influences().len(), x))
     }
 
-    /// Unknowns that few of the equations with `priors` contain: attitudes of single rests, as long as the equations stand as they are.
-    pub fn own(self, data: &Data, priors: &[Prior]) -> Vec<Own> {
+    /// Unknowns that few of the equations with `priors` contain, as long as the equations stand as they are: attitudes of single rests; those
+    /// of all positions where the equations determine all unknowns, since then each position's own do so.
+    pub fn own(self, data: &Data, priors: &[Prior], determine_all: bool) -> Vec<Own> {
         let set_points: Vec<usize> = data.observations().iter().map(|observation| observation.set_point).collect();
         match self {
+            Self::Batch if determine_all => data.model().unknowns_of_positions(&set_points, priors),
             Self::Batch => data.model().attitudes_of_single_rests(&set_points, priors),
-            Self::Filter => Vec::new(),
-        }
-    }
-
-    /// The same where the equations determine all unknowns: then those of a position are determined by its own equations.
-    pub fn own_of_positions(self, data: &Data, priors: &[Prior]) -> Vec<Own> {
-        let set_points: Vec<usize> = data.observations().iter().map(|observation| observation.set_point).collect();
-        match self {
-            Self::Batch => data.model().unknowns_of_positions(&set_points, priors),
             Self::Filter => Vec::new(),
         }
     }

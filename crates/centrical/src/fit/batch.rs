@@ -63,15 +63,15 @@ pub(super) struct Start<'a> {
 impl<'a> Start<'a> {
     /// Assembles the equations of `data` at `X = 0` for a structure that is known.
     fn new(structure: &'a Structure, data: &'a Data<'a>) -> Result<Self, FitError> {
-        let zero = vec![0.0; structure.typical.len()];
+        let zero = vec![0.0; structure.held.typical.len()];
         let design = structure.assembly.design(data, &zero, &structure.linearisations)?;
         Ok(Self { data, structure, design })
     }
 
     /// The first step, from zero: every fit of one experiment has the same equations there, and its own misfit.
     fn step(&self) -> (&'a LeastSquares, Solution) {
-        let zero = DVector::zeros(self.structure.typical.len());
-        let equations = || self.structure.equations(&self.design, &zero, 1.0 / NULL_HOLD).0;
+        let zero = DVector::zeros(self.structure.held.typical.len());
+        let equations = || self.structure.held.equations(&self.design, &zero, 1.0 / NULL_HOLD).0;
         let equations = self.structure.start.get_or_init(equations);
         (equations, equations.solve(self.design.misfit.clone()))
     }
@@ -102,7 +102,7 @@ impl<'a> Start<'a> {
             covariance,
             chi_squared: whitened.norm_squared() + self.design.rest.powi(2),
             degrees_of_freedom: self.degrees_of_freedom(),
-            null_directions_held: self.structure.null_basis.ncols() > 0,
+            null_directions_held: self.structure.held.null_basis.ncols() > 0,
             iterations: 1,
             termination: Termination::Linear,
             residuals,
@@ -139,7 +139,7 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub fn from(start: Start<'a>) -> Self {
-        let null_weight = if start.structure.null_basis.ncols() > 0 { 1.0 / NULL_HOLD } else { 0.0 };
+        let null_weight = if start.structure.held.null_basis.ncols() > 0 { 1.0 / NULL_HOLD } else { 0.0 };
         let Solution { x, whitened_length } = start.step().1;
         Self {
             start,
@@ -182,7 +182,7 @@ impl<'a> Search<'a> {
     /// One Gauss-Newton step, halved until chi^2 falls with the weights as they are.
     fn step(&mut self) -> Result<(), FitError> {
         let Some(design) = self.design.take() else { return Ok(()) };
-        let (equations, misfit) = self.start.structure.equations(&design, &self.x, self.null_weight);
+        let (equations, misfit) = self.start.structure.held.equations(&design, &self.x, self.null_weight);
         let objective_norm = misfit.norm().hypot(design.rest);
         let step = equations.solve(misfit);
         // Of a sum of squares of readings that are known to a few units of their last place.
@@ -213,7 +213,7 @@ impl<'a> Search<'a> {
 
     /// Releases the null directions, once, if the data keep them well within the hold.
     fn release_null_space(&mut self, equations: &LeastSquares) -> bool {
-        let null_basis = &self.start.structure.null_basis;
+        let null_basis = &self.start.structure.held.null_basis;
         let free =
             self.null_weight > 0.0 && (null_basis.transpose() * equations.inverse()).norm() < RELEASE_BELOW * NULL_HOLD;
         if free {
@@ -238,7 +238,7 @@ impl<'a> Search<'a> {
     /// the shares of the priors and of the hold.
     fn objective(&self, x: &DVector<f64>, there: &[Linearisation]) -> Result<f64, FitError> {
         let structure = self.start.structure;
-        let held = structure.null_basis.transpose() * x.component_div(&structure.typical) * self.null_weight;
+        let held = structure.held.null_basis.transpose() * x.component_div(&structure.held.typical) * self.null_weight;
         let residuals: Vec<_> =
             self.start.data.observations().iter().zip(there).map(|(o, l)| o.mean - l.reading).collect();
         Ok(self.chi_squared(&residuals, x)? + held.norm_squared())

@@ -43,7 +43,7 @@ pub(super) fn left_by(
     }
     // The rows of the plateaus themselves, not those that a filter turned them into.
     let design = Assembly::Batch.design(data, x.as_slice(), linearisations)?;
-    let (equations, _) = structure.equations(&design, x, null_weight);
+    let (equations, _) = structure.held.equations(&design, x, null_weight);
     let directions = widest(&equations, &data.typical(), of_priors);
     let missed = missed(data, x, &directions);
     let mut whitened = DMatrix::zeros(3 * linearisations.len(), missed.len());

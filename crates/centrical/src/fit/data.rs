@@ -18,7 +18,7 @@ impl<'m> Data<'m> {
     /// # Errors
     /// [`FitError`] when an observation is invalid, or if there is none.
     pub fn new(model: &'m MeasurementModel, observations: Vec<Observation>) -> Result<Self, FitError> {
-        observations.iter().try_for_each(|observation| check(model, observation))?;
+        observations.iter().try_for_each(|observation| Self::check(model, observation))?;
         if observations.is_empty() { Err(FitError::Empty) } else { Ok(Self { model, observations }) }
     }
 
@@ -39,14 +39,9 @@ impl<'m> Data<'m> {
 
     /// Adds a plateau.
     pub(super) fn push(&mut self, observation: Observation) -> Result<(), FitError> {
-        self.check(&observation)?;
+        Self::check(self.model, &observation)?;
         self.observations.push(observation);
         Ok(())
-    }
-
-    /// Whether an observation can be one of the model.
-    pub(super) fn check(&self, observation: &Observation) -> Result<(), FitError> {
-        check(self.model, observation)
     }
 
     /// The data without observation `n`, unless it is the only one.
@@ -117,16 +112,17 @@ impl<'m> Data<'m> {
         let set_points = &self.model.experiment().set_points;
         self.observations.iter().map(|observation| &set_points[observation.set_point])
     }
-}
 
-fn check(model: &MeasurementModel, observation: &Observation) -> Result<(), FitError> {
-    let count = model.experiment().set_points.len();
-    let set_point = observation.set_point;
-    if set_point >= count {
-        return Err(FitError::Unknown { set_point, count });
+    /// Whether an observation can be one of the model.
+    pub(super) fn check(model: &MeasurementModel, observation: &Observation) -> Result<(), FitError> {
+        let count = model.experiment().set_points.len();
+        let set_point = observation.set_point;
+        if set_point >= count {
+            return Err(FitError::Unknown { set_point, count });
+        }
+        if !observation.mean.iter().chain(observation.covariance.iter()).all(|v| v.is_finite()) {
+            return Err(FitError::NotFinite { set_point });
+        }
+        observation.noise_factor().map(|_| ())
     }
-    if !observation.mean.iter().chain(observation.covariance.iter()).all(|v| v.is_finite()) {
-        return Err(FitError::NotFinite { set_point });
-    }
-    observation.noise_factor().map(|_| ())
 }

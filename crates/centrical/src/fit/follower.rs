@@ -5,19 +5,22 @@
 //! that nothing is lost ([`Past`]), and the new one is tested and taken up or left. The point is the estimate
 //! with every unknown held about zero by its typical magnitude, so that what is not
 //! determined yet stays where units are. The hold places the point; no estimate, uncertainty or test knows of it.
+//!
+//! The equations are those of the unknowns that several plateaus contain ([`Global`](super::global::Global)): the attitude of a rest follows them.
 
 use nalgebra::{DVector, Matrix3};
 
-use super::assembly::Assembly;
 use super::batch::HALVING_LIMIT;
 use super::data::Data;
 use super::design::Design;
 use super::filter::innovation::{Innovation, Unexplained};
+use super::global::{Attitude, PlateauEquations};
 use super::linearised::Linearised;
 use super::past::Past;
-use super::structure::Structure;
+use super::structure::Held;
 use crate::linalg::least_squares::LeastSquares;
 use crate::model::{FitError, MeasurementModel, NULL_HOLD, Observation};
+use crate::observability::Observability;
 
 /// A point is close enough when the last step was below this many standard uncertainties: what the step after it would
 /// change is of the square of it.
@@ -33,7 +36,7 @@ const FRESH_REMAINDER: f64 = 0.1;
 /// Relative growth of the plateaus; below 50 of them every new one exceeds it.
 const GROWTH: f64 = 0.02;
 
-/// How the point is held about zero, in typical magnitudes: as units are. What is determined is not held by it.
+/// How the global unknowns of the point are held about zero, in typical magnitudes: as units are. What is determined is not held by it.
 const HOLD: f64 = 1.0;
 
 /// Steps towards a point, halved until they descend. They converge quadratically from the point before; a plateau that is
@@ -133,7 +136,7 @@ impl<'m> Follower<'m> {
     /// # Errors
     /// [`FitError`] when the observation is invalid.
     pub fn test(&self, observation: &Observation) -> Result<Arrival<'m>, FitError> {
-        self.data.check(observation)?;
+        Data::check(self.data.model(), observation)?;
         let (point, past) = self.moved(observation)?;
         let behind = past.as_ref().unwrap_or(&self.past);
         let after = self.unexplained(behind, Some(observation), &point)?;
@@ -174,13 +177,28 @@ impl<'m> Follower<'m> {
     }
 
     fn progress_with(&self, newcomer: Option<&Observation>) -> Result<Progress, FitError> {
-        let (structure, equations, misfit, _) = self.equations(&self.past, newcomer, &self.point)?;
-        let (step, covariance) = (equations.solve(misfit), equations.covariance());
-        let known = |j: usize| (self.point[j] + step.x[j], covariance[(j, j)].sqrt());
-        let estimates = (0..structure.observability.columns())
-            .map(|j| structure.observability.is_estimable(j).then(|| known(j)))
-            .collect();
-        Ok(Progress { rank: structure.observability.rank(), estimates })
+        let known = self.known(&self.past, newcomer, &self.point)?;
+        let (global, root) = (self.past.global(), known.equations.root());
+        let dy = known.equations.solve(known.misfit).x;
+        let x = self.past.completed(known.attitude.as_ref(), &(global.part(&self.point) + dy));
+        let mut estimates = vec![None; x.len()];
+        for prior in global.priors_of_attitudes() {
+            estimates[prior.parameter] = Some((prior.mean, prior.standard_uncertainty));
+        }
+        for j in (0..known.observability.columns()).filter(|j| known.observability.is_estimable(*j)) {
+            let column = global.columns()[j];
+            estimates[column] = Some((x[column], root.row(j).norm()));
+        }
+        let null_basis = known.observability.null_basis().resize_vertically(global.len(), 0.0);
+        let at_zero = self.past.at_zero().attitudes().iter().chain(&known.attitude_at_zero);
+        for (attitude, at_zero) in self.past.attitudes().iter().chain(&known.attitude).zip(at_zero) {
+            let (uncertainties, along) = (attitude.standard_uncertainties(&root), at_zero.followed(&null_basis));
+            for ((&column, uncertainty), along) in attitude.columns.iter().zip(uncertainties).zip(along) {
+                estimates[column] = (!known.observability.takes_part(along)).then_some((x[column], uncertainty));
+            }
+        }
+        estimates.truncate(self.data.model().parameters().len());
+        Ok(Progress { rank: known.rank, estimates })
     }
 
     fn append(&mut self, observation: Observation) -> Result<(), FitError> {
@@ -190,19 +208,24 @@ impl<'m> Follower<'m> {
 
     /// The point moved to the estimate with one plateau more, and the plateaus before where they had to be linearised anew.
     fn moved(&self, newcomer: &Observation) -> Result<(DVector<f64>, Option<Past<'m>>), FitError> {
-        let typical = self.data.typical();
+        let (global, typical) = (self.past.global(), self.data.typical());
+        let typical = global.part(&typical);
         let (mut point, mut moved) = (self.point.clone(), None);
         for _ in 0..STEP_LIMIT {
             let past = moved.as_ref().unwrap_or(&self.past);
             let newcomer = past.linearised(newcomer)?;
-            let (equations, misfit) = held(&self.whole(past.design(Some(&newcomer), &point), &point), &point, &typical);
+            let (plateau, y) = (past.equations_of(&newcomer), global.part(&point));
+            let (equations, misfit) = held(&global.with_priors(past.design(Some(&plateau), &y), &y), &y, &typical);
             let step = equations.solve(misfit);
-            let x = &point + &step.x;
+            let x = past.completed(plateau.attitude.as_ref(), &(y + step.x));
+            let dx = &x - &point;
             let limit = if moved.is_none() && self.is_fresh() { FRESH_REMAINDER } else { REMAINDER };
-            if step.whitened_length < CLOSE || past.remainder(&newcomer, &x) < limit {
+            // The attitude of a rest moves besides.
+            let length = step.whitened_length.max(newcomer.change(&dx));
+            if length < CLOSE || past.remainder(&newcomer, &x) < limit {
                 return Ok((x, moved));
             }
-            let Some(next) = self.descend(past, &newcomer, &point, &step.x, &typical) else { break };
+            let Some(next) = self.descend(past, &newcomer, &point, &dx, &typical) else { break };
             moved = Some(past.linearised_at(&next)?);
             point = next;
         }
@@ -226,7 +249,8 @@ impl<'m> Follower<'m> {
     ) -> Option<DVector<f64>> {
         let objective = |x: &DVector<f64>| {
             let plateaus = past.squared(x) + newcomer.squared(self.data.model(), x);
-            plateaus + self.data.squared_beforehand(x) + (x.component_div(typical) / HOLD).norm_squared()
+            let held = (self.past.global().part(x).component_div(typical) / HOLD).norm_squared();
+            plateaus + self.data.squared_beforehand(x) + held
         };
         let here = objective(point);
         let mut halved = (0..HALVING_LIMIT).map(|halvings| point + dx * 0.5_f64.powi(halvings.cast_signed()));
@@ -240,32 +264,59 @@ impl<'m> Follower<'m> {
         newcomer: Option<&Observation>,
         x: &DVector<f64>,
     ) -> Result<Unexplained, FitError> {
-        let (structure, equations, misfit, rest) = self.equations(past, newcomer, x)?;
-        let left = equations.redundant(&misfit).norm_squared();
-        Ok(Unexplained { squared: left + rest.powi(2), rank: structure.observability.rank() })
+        let known = self.known(past, newcomer, x)?;
+        let left = known.equations.redundant(&known.misfit).norm_squared();
+        Ok(Unexplained { squared: left + known.rest.powi(2), rank: known.rank })
     }
 
-    /// What some plateaus and perhaps one more determine, their equations at `x` with the misfit, and the norm of the part that
-    /// no unknown can follow.
-    fn equations(
-        &self,
-        past: &Past,
-        newcomer: Option<&Observation>,
-        x: &DVector<f64>,
-    ) -> Result<(Structure, LeastSquares, DVector<f64>, f64), FitError> {
-        let at_zero = self.whole(past.design_at_zero(newcomer)?, &DVector::zeros(x.len()));
-        let structure = Structure::decided(Assembly::Filter, &self.data, Vec::new(), &at_zero);
+    /// What some plateaus and perhaps one more determine, and their equations at `x`.
+    fn known(&self, past: &Past, newcomer: Option<&Observation>, x: &DVector<f64>) -> Result<Known, FitError> {
+        let global = past.global();
+        let at_zero = newcomer.map(|newcomer| past.equations_at_zero(newcomer)).transpose()?;
+        let observability = observability(past, at_zero.as_ref());
+        let held = Held::new(&observability, Vec::new(), global.part(&self.data.typical()));
         let newcomer = newcomer.map(|newcomer| past.linearised(newcomer)).transpose()?;
-        let design = self.whole(past.design(newcomer.as_ref(), x), x);
-        let (equations, misfit) = structure.equations(&design, x, 1.0 / NULL_HOLD);
-        Ok((structure, equations, misfit, design.rest))
+        let (newcomer, y) = (newcomer.map(|newcomer| past.equations_of(&newcomer)), global.part(x));
+        let design = global.with_priors(past.design(newcomer.as_ref(), &y), &y);
+        let (equations, misfit) = held.equations(&design, &y, 1.0 / NULL_HOLD);
+        let attitude_at_zero = at_zero.and_then(|plateau| plateau.attitude);
+        let attitudes = past.at_zero().attitudes().iter().chain(&attitude_at_zero);
+        let of_attitudes: usize = attitudes.map(|attitude| attitude.unknown_before).sum();
+        Ok(Known {
+            rank: observability.rank() + global.priors_of_attitudes().count() + of_attitudes,
+            observability,
+            equations,
+            misfit,
+            rest: design.rest,
+            attitude: newcomer.and_then(|newcomer| newcomer.attitude),
+            attitude_at_zero,
+        })
     }
+}
 
-    /// The equations of plateaus with those of what is known beforehand, at `x`.
-    fn whole(&self, plateaus: Design, x: &DVector<f64>) -> Design {
-        let model = self.data.model();
-        plateaus.with_priors(model.priors(), model.influences().len(), x.as_slice())
-    }
+/// What some plateaus and perhaps one more determine, and their equations at a point.
+struct Known {
+    /// Of all unknowns.
+    rank: usize,
+    /// Of the global parameters.
+    observability: Observability,
+    /// The equations of the global unknowns with the misfit, null directions held, and the norm of the part that no unknown can follow.
+    equations: LeastSquares,
+    misfit: DVector<f64>,
+    rest: f64,
+    /// The attitude of the one more, where it has its own.
+    attitude: Option<Attitude>,
+    attitude_at_zero: Option<Attitude>,
+}
+
+/// What the plateaus and the priors show of the global parameters, by the equations at zero.
+fn observability(past: &Past, newcomer: Option<&PlateauEquations>) -> Observability {
+    let global = past.global();
+    let design = global.with_priors(past.at_zero().design(newcomer), &DVector::zeros(global.len()));
+    let (rows, parameters) = (design.rows.nrows() - global.influences(), global.len() - global.influences());
+    let squared_lengths = past.at_zero().squared_lengths(newcomer) + global.squared_lengths_of_priors();
+    let lengths = squared_lengths.rows(0, parameters).map(|square| if square > 0.0 { square.sqrt() } else { 1.0 });
+    Observability::left_of(design.rows.view((0, 0), (rows, parameters)).into_owned(), lengths)
 }
 
 /// The equations at `x` and their misfit, with every unknown held about zero.

@@ -38,7 +38,7 @@ impl Gain {
         let pairs = data.observations().iter().zip(&linearisations);
         let whiteners = pairs.map(|(o, l)| Whitener::new(&o.into(), l)).collect::<Result<_, _>>()?;
         let null_weight = if fit.null_directions_held { 1.0 / NULL_HOLD } else { 0.0 };
-        let (equations, _) = structure.equations(&design, &DVector::from_vec(at), null_weight);
+        let (equations, _) = structure.held.equations(&design, &DVector::from_vec(at), null_weight);
         let (parameters, priors) = (data.model().parameters().len(), data.model().priors().len());
         let basis = equations.basis(3 * data.observations().len());
         Ok(Self { equations, whiteners, linearisations, basis, parameters, priors, residuals: design.misfit })

@@ -92,6 +92,12 @@ impl Linearised {
         self.sum.rest()
     }
 
+    /// Length of the change of the readings with the unknowns, by the linearisation, in their standard uncertainties.
+    pub fn change(&self, dx: &DVector<f64>) -> f64 {
+        let change: Vector3<f64> = self.at.by_unknowns().map(|(unknown, change)| change * dx[unknown]).sum();
+        (triangle(&self.sum).0 * change).norm()
+    }
+
     /// Norm of the residual at `x` less that of the linearisation, from which `x` is `dx` away, whitened by the triangle of `sum`.
     pub fn remainder(&self, sum: &Factor, model: &MeasurementModel, dx: &DVector<f64>, x: &DVector<f64>) -> f64 {
         let linear: Vector3<f64> = self.at.by_unknowns().map(|(unknown, change)| change * dx[unknown]).sum();

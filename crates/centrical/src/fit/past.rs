@@ -8,7 +8,7 @@
 //!
 //! Plateaus of one mounting at one speed read alike ([`MeasurementModel::alike`]): they are linearised together, so that a reference
 //! costs as much as the different plateaus, however often a campaign repeats them. The remainder is asked for at every
-//! plateau, so it may not cost more as they become more: see [`Kin`].
+//! plateau, so it may not cost more as they become more: see [`Kin`]. The triangles are of the unknowns that several plateaus contain ([`Global`]).
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -17,6 +17,7 @@ use nalgebra::{DVector, Vector3};
 
 use super::design::Design;
 use super::filter::Readings;
+use super::global::{Attitude, Gathered, Global, PlateauEquations};
 use super::linearised::Linearised;
 use crate::linalg::factor::Factor;
 use crate::model::{FitError, MeasurementModel, Observation, linear};
@@ -25,6 +26,7 @@ use crate::model::{FitError, MeasurementModel, Observation, linear};
 #[derive(Debug, Clone)]
 pub(super) struct Past<'m> {
     model: &'m MeasurementModel,
+    global: Arc<Global>,
     /// The first set point that reads as each.
     alike: Arc<[usize]>,
     reference: DVector<f64>,
@@ -36,10 +38,10 @@ pub(super) struct Past<'m> {
     kin: Vec<Kin>,
     /// Where the kin of a group are: by the unknowns that change its reading, and the power of two in its nominal force.
     kin_of: HashMap<(Vec<usize>, u64), usize>,
-    at_reference: Factor,
+    at_reference: Gathered,
     /// What no reading takes up of the plateaus that had come when the reference was set.
     rest: f64,
-    at_zero: Factor,
+    at_zero: Gathered,
 }
 
 /// Plateaus that the same unknowns change, under forces within a factor of two: their readings bend alike. The remainder of all
@@ -56,12 +58,25 @@ struct Kin {
 impl<'m> Past<'m> {
     /// No plateau yet; the next ones will be linearised at the `reference`.
     pub fn new(model: &'m MeasurementModel, reference: DVector<f64>) -> Self {
-        let none = || Factor::new(reference.len());
+        let global = Arc::new(Global::of(model));
+        let (alike, none) = (model.alike().into(), Gathered::none(&global));
+        Self::none(model, global, alike, none, reference)
+    }
+
+    /// No plateau at the reference yet, of those that have come `at_zero`.
+    fn none(
+        model: &'m MeasurementModel,
+        global: Arc<Global>,
+        alike: Arc<[usize]>,
+        at_zero: Gathered,
+        reference: DVector<f64>,
+    ) -> Self {
         Self {
             model,
-            alike: model.alike().into(),
-            at_reference: none(),
-            at_zero: none(),
+            at_reference: Gathered::none(&global),
+            global,
+            alike,
+            at_zero,
             reference,
             referenced: 0,
             groups: Vec::new(),
@@ -70,6 +85,11 @@ impl<'m> Past<'m> {
             kin_of: HashMap::new(),
             rest: 0.0,
         }
+    }
+
+    /// The unknowns of the equations.
+    pub fn global(&self) -> &Global {
+        &self.global
     }
 
     /// Where the plateaus are linearised.
@@ -87,11 +107,9 @@ impl<'m> Past<'m> {
     /// # Errors
     /// [`FitError::Covariance`] when its covariance is not positive definite.
     pub fn push(&mut self, observation: &Observation) -> Result<(), FitError> {
-        let at_zero = readings_at_zero(self.model, observation)?;
-        self.at_zero.update(&at_zero.columns, &at_zero.misfit);
+        self.at_zero.take(self.equations_at_zero(observation)?);
         let linearised = self.linearised(observation)?;
-        let readings = linearised.readings();
-        self.at_reference.update(&readings.columns, &readings.misfit);
+        self.at_reference.take(self.equations_of(&linearised));
         let Some(&group) = self.group_of.get(&self.alike[observation.set_point]) else {
             self.found(linearised);
             return Ok(());
@@ -113,12 +131,11 @@ impl<'m> Past<'m> {
     /// # Errors
     /// As [`Past::push`].
     pub fn linearised_at(&self, x: &DVector<f64>) -> Result<Self, FitError> {
-        let mut past =
-            Self { alike: self.alike.clone(), at_zero: self.at_zero.clone(), ..Self::new(self.model, x.clone()) };
+        let (global, alike, at_zero) = (self.global.clone(), self.alike.clone(), self.at_zero.clone());
+        let mut past = Self::none(self.model, global, alike, at_zero, x.clone());
         for group in &self.groups {
             let linearised = Linearised::together(self.model, group.observations(), x)?;
-            let readings = linearised.readings();
-            past.at_reference.update(&readings.columns, &readings.misfit);
+            past.at_reference.take(past.equations_of(&linearised));
             past.referenced += group.observations().len();
             past.found(linearised);
         }
@@ -166,44 +183,48 @@ impl<'m> Past<'m> {
         self.kin.iter().map(|kin| of_kin(kin).powi(2)).sum::<f64>().sqrt().hypot(own)
     }
 
-    /// The equations of the reference as equations at `x`, perhaps with those of a plateau more.
-    pub fn design(&self, newcomer: Option<&Linearised>, x: &DVector<f64>) -> Design {
-        let mut design = with_readings(design_of(&self.at_reference), newcomer.map(Linearised::readings).as_ref());
+    /// The equations of the reference as equations at the global unknowns `y`, perhaps with those of a plateau more.
+    pub fn design(&self, newcomer: Option<&PlateauEquations>, y: &DVector<f64>) -> Design {
+        let mut design = self.at_reference.design(newcomer);
         design.rest = design.rest.hypot(self.rest.sqrt());
-        design.misfit -= &design.rows * (x - &self.reference);
+        design.misfit -= &design.rows * (y - self.global.part(&self.reference));
         design
     }
 
     /// The equations at zero, on which the rank is decided, perhaps with those of a plateau more.
+    pub fn at_zero(&self) -> &Gathered {
+        &self.at_zero
+    }
+
+    /// The attitudes of the rests that have come, as they follow the global unknowns from the reference.
+    pub fn attitudes(&self) -> &[Attitude] {
+        self.at_reference.attitudes()
+    }
+
+    /// All unknowns where the global ones are `y`, with the attitude of a plateau more. Those that no plateau knows of stay where they are.
+    pub fn completed(&self, newcomer: Option<&Attitude>, y: &DVector<f64>) -> DVector<f64> {
+        let dy = y - self.global.part(&self.reference);
+        let mut x = self.reference.clone();
+        self.global.columns().iter().zip(y.iter()).for_each(|(column, value)| x[*column] = *value);
+        for attitude in self.attitudes().iter().chain(newcomer) {
+            attitude.columns.iter().zip(attitude.change(&dy)).for_each(|(column, change)| x[*column] += change);
+        }
+        x
+    }
+
+    /// The equations of a plateau at the reference.
+    pub fn equations_of(&self, linearised: &Linearised) -> PlateauEquations {
+        self.global.equations_of(linearised.set_point(), &linearised.readings(), self.reference.as_slice())
+    }
+
+    /// The equations of a plateau by the linear model.
     ///
     /// # Errors
     /// As [`Past::push`].
-    pub fn design_at_zero(&self, newcomer: Option<&Observation>) -> Result<Design, FitError> {
-        let readings = newcomer.map(|newcomer| readings_at_zero(self.model, newcomer)).transpose()?;
-        Ok(with_readings(design_of(&self.at_zero), readings.as_ref()))
+    pub fn equations_at_zero(&self, observation: &Observation) -> Result<PlateauEquations, FitError> {
+        let set_point = observation.set_point;
+        let at_zero = self.model.linearise_at_zero(&self.model.experiment().set_points[set_point]);
+        let readings = Readings::new(observation, &at_zero)?;
+        Ok(self.global.equations_of(set_point, &readings, &vec![0.0; self.reference.len()]))
     }
-}
-
-/// The equations of a triangle. A follower has no use for the magnitude of the readings.
-fn design_of(factor: &Factor) -> Design {
-    let (rows, misfit) = (factor.triangle(), factor.right_side());
-    Design { rows, misfit, rest: factor.rest().sqrt(), magnitude: 0.0 }
-}
-
-/// The equations, perhaps with those of one plateau more.
-fn with_readings(mut design: Design, readings: Option<&Readings>) -> Design {
-    let Some(readings) = readings else { return design };
-    let n = design.rows.nrows();
-    design.rows = design.rows.resize_vertically(n + 3, 0.0);
-    design.misfit = design.misfit.resize_vertically(n + 3, 0.0);
-    for (unknown, derivative) in &readings.columns {
-        design.rows.fixed_view_mut::<3, 1>(n, *unknown).copy_from(derivative);
-    }
-    design.misfit.fixed_rows_mut::<3>(n).copy_from(&readings.misfit);
-    design
-}
-
-/// A plateau by the linear model.
-fn readings_at_zero(model: &MeasurementModel, observation: &Observation) -> Result<Readings, FitError> {
-    Readings::new(observation, &model.linearise_at_zero(&model.experiment().set_points[observation.set_point]))
 }

@@ -18,18 +18,25 @@ use crate::observability::Observability;
 pub struct Structure {
     /// How the equations are brought together, at zero and at every later point.
     pub(super) assembly: Assembly,
-    /// Unknowns that few equations contain.
-    own: Vec<Own>,
     pub(super) observability: Observability,
     /// What the data determine without the priors, if there are any.
     pub(super) of_data: Option<Observability>,
-    /// Orthonormal basis of the null space in typical units, `(p + q) x (p - rank)`.
-    pub(super) null_basis: DMatrix<f64>,
-    pub(super) typical: DVector<f64>,
+    pub(super) held: Held,
     /// Of the observations at `X = 0`.
     pub(super) linearisations: Vec<Linearisation>,
     /// The equations at `X = 0`, null directions held, factored when the first fit starts from them.
     pub(super) start: OnceLock<LeastSquares>,
+}
+
+/// Equations, of which the null directions are held.
+#[derive(Debug, Clone)]
+pub(super) struct Held {
+    /// Unknowns that few equations contain.
+    own: Vec<Own>,
+    /// Orthonormal basis of the null space in typical units, `(p + q) x (p - rank)`.
+    pub null_basis: DMatrix<f64>,
+    /// Typical magnitudes of the unknowns.
+    pub typical: DVector<f64>,
 }
 
 impl Structure {
@@ -49,33 +56,23 @@ impl Structure {
     }
 
     /// The structure decided on the equations at `X = 0`, those of the priors and influences among them.
-    pub(super) fn decided(
-        assembly: Assembly,
-        data: &Data,
-        linearisations: Vec<Linearisation>,
-        design: &Design,
-    ) -> Self {
+    fn decided(assembly: Assembly, data: &Data, linearisations: Vec<Linearisation>, design: &Design) -> Self {
         let model = data.model();
         let (columns, influences) = (model.parameters().len(), model.influences().len());
         // The influences have proper distributions of their own: they take part in no null direction.
         let plateaus = design.rows.nrows() - influences - model.priors().len();
         let with = |priors: &[Prior]| {
             let rows = design.rows.view((0, 0), (plateaus + priors.len(), columns)).into_owned();
-            let own = assembly.own(data, priors);
+            let own = assembly.own(data, priors, false);
             (Observability::of(rows, &own, 0), own)
         };
         let of_data = (!model.priors().is_empty()).then(|| with(&[]).0);
         let (observability, own) = with(model.priors());
-        let typical = data.typical();
-        let mut null_basis = observability.null_basis().clone().resize_vertically(data.unknowns(), 0.0);
-        null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);
-        // What is eliminated is determined where all else is held.
-        for &j in own.iter().flat_map(|own| &own.columns) {
-            null_basis.row_mut(j).fill(0.0);
+        let mut held = Held::new(&observability, own, data.typical());
+        if observability.lost() == 0 {
+            held.own = assembly.own(data, model.priors(), true);
         }
-        let own = if observability.lost() == 0 { assembly.own_of_positions(data, model.priors()) } else { own };
-        let (null_basis, start) = (orthonormal(null_basis), OnceLock::new());
-        Self { assembly, own, observability, of_data, null_basis, typical, linearisations, start }
+        Self { assembly, observability, of_data, held, linearisations, start: OnceLock::new() }
     }
 
     /// What the design determines.
@@ -87,15 +84,23 @@ impl Structure {
     pub(super) fn lost_by_data(&self) -> usize {
         self.of_data.as_ref().map_or(0, |data| data.lost().saturating_sub(self.observability.lost()))
     }
+}
+
+impl Held {
+    /// Equations of unknowns with these `typical` magnitudes; influences, which the observability does not count, stand last.
+    pub fn new(observability: &Observability, own: Vec<Own>, typical: DVector<f64>) -> Self {
+        let mut null_basis = observability.null_basis().resize_vertically(typical.len(), 0.0);
+        null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);
+        // What is eliminated is determined where all else is held.
+        for &j in own.iter().flat_map(|own| &own.columns) {
+            null_basis.row_mut(j).fill(0.0);
+        }
+        Self { own, null_basis: orthonormal(null_basis), typical }
+    }
 
     /// The whitened equations and their misfit, with one equation more for each null direction: its component is zero, with
     /// weight `null_weight`.
-    pub(super) fn equations(
-        &self,
-        design: &Design,
-        x: &DVector<f64>,
-        null_weight: f64,
-    ) -> (LeastSquares, DVector<f64>) {
+    pub fn equations(&self, design: &Design, x: &DVector<f64>, null_weight: f64) -> (LeastSquares, DVector<f64>) {
         let (n, p, lost) = (design.rows.nrows(), design.rows.ncols(), self.null_basis.ncols());
         let mut rows = DMatrix::zeros(n + lost, p);
         rows.rows_mut(0, n).copy_from(&design.rows);

@@ -96,13 +96,18 @@ impl LeastSquares {
 
     /// Covariance of the solution for errors of `b` of unit variance.
     pub fn covariance(&self) -> DMatrix<f64> {
-        let inverse = self.in_units(self.inverse());
-        &inverse * inverse.transpose()
+        let root = self.root();
+        &root * root.transpose()
     }
 
     /// Standard uncertainties of the solution for errors of `b` of unit variance: lengths of the rows of `S R^-1`.
     pub fn standard_uncertainties(&self) -> Vec<f64> {
         self.inverse().row_iter().zip(self.sizes.iter()).map(|(row, size)| row.norm() * size).collect()
+    }
+
+    /// A root of the covariance, `S R^-1`.
+    pub fn root(&self) -> DMatrix<f64> {
+        self.in_units(self.inverse())
     }
 
     /// [`LeastSquares::unknowns`] in units of the sizes.

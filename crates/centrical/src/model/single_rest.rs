@@ -19,10 +19,7 @@ impl MeasurementModel {
         for &set_point in set_points {
             plateaus[position(set_point)] += 1;
         }
-        let mut of_parameter = vec![Vec::new(); self.parameters.len()];
-        for (row, prior) in priors.iter().enumerate() {
-            of_parameter[prior.parameter].push(3 * set_points.len() + row);
-        }
+        let of_parameter = self.rows_of_priors(3 * set_points.len(), priors);
         let own = |(n, &set_point): (usize, &usize)| {
             let position = position(set_point);
             let OfPosition::Free { attitude, .. } = self.parameters.of_position(position) else { return None };
@@ -47,12 +44,19 @@ impl MeasurementModel {
             columns.extend([shared, shared + 1].into_iter().chain(turn));
             rows.extend(3 * n..3 * n + 3);
         }
+        let of_parameter = self.rows_of_priors(3 * set_points.len(), priors);
         let own = |(columns, mut rows): (BTreeSet<usize>, Vec<usize>)| {
-            let of_group = priors.iter().enumerate().filter(|(_, prior)| columns.contains(&prior.parameter));
-            rows.extend(of_group.map(|(row, _)| 3 * set_points.len() + row));
+            rows.extend(columns.iter().flat_map(|&j| of_parameter[j].iter().copied()));
             Own { columns: columns.into_iter().collect(), rows }
         };
         groups.into_values().map(own).collect()
+    }
+
+    /// The rows of the priors of each parameter, that of the first prior being `first`.
+    fn rows_of_priors(&self, first: usize, priors: &[Prior]) -> Vec<Vec<usize>> {
+        let mut rows = vec![Vec::new(); self.parameters.len()];
+        priors.iter().enumerate().for_each(|(n, prior)| rows[prior.parameter].push(first + n));
+        rows
     }
 
     fn position_of(&self, set_point: usize) -> usize {

@@ -58,23 +58,27 @@ impl Observability {
         let (own, rows) = Elimination::of(rows, own);
         let (unknowns, equations) = (rows.ncols() - influences, rows.nrows());
         let of_all = Own { columns: (unknowns..unknowns + influences).collect(), rows: (0..equations).collect() };
-        let (stated, mut scaled) = Elimination::of(rows, &[of_all]);
+        let (stated, left) = Elimination::of(rows, &[of_all]);
         // What an elimination leaves of a column may be rounding, which the length of the whole column tells from a reading.
-        let norms =
-            if own.columns() > 0 { lengths.select_rows(&own.left()[..unknowns]) } else { column_norms(&scaled) };
-        for (mut column, norm) in scaled.column_iter_mut().zip(norms.iter()) {
-            column /= *norm;
-        }
-        let (singular_values, vectors) = decompose(scaled);
-        let tolerance = RANK_TOLERANCE * singular_values.first().copied().unwrap_or(0.0);
-        let seen = singular_values.iter().filter(|&&s| s > tolerance).count();
-        let gap = if seen > 0 { singular_values[seen - 1] / singular_values[0] } else { 1.0 };
-        let rounding = (NULL_ROUNDING / gap).min(TAKES_PART);
-        let mut all = Self { singular_values, seen, vectors, norms, null_directions: OnceLock::new(), rounding };
+        let norms = if own.columns() > 0 { lengths.select_rows(&own.left()[..unknowns]) } else { column_norms(&left) };
+        let mut all = Self::left_of(left, norms);
         if own.columns() > 0 {
             all.complete(&own, &stated, &lengths);
         }
         all
+    }
+
+    /// Analyses the equations that an elimination leaves of a design whose columns have these lengths, 1 for a column of zeros.
+    pub(crate) fn left_of(mut rows: DMatrix<f64>, norms: DVector<f64>) -> Self {
+        for (mut column, norm) in rows.column_iter_mut().zip(norms.iter()) {
+            column /= *norm;
+        }
+        let (singular_values, vectors) = decompose(rows);
+        let tolerance = RANK_TOLERANCE * singular_values.first().copied().unwrap_or(0.0);
+        let seen = singular_values.iter().filter(|&&s| s > tolerance).count();
+        let gap = if seen > 0 { singular_values[seen - 1] / singular_values[0] } else { 1.0 };
+        let rounding = (NULL_ROUNDING / gap).min(TAKES_PART);
+        Self { singular_values, seen, vectors, norms, null_directions: OnceLock::new(), rounding }
     }
 
     /// Takes up the eliminated unknowns, whose columns have these `lengths`.
@@ -145,7 +149,7 @@ impl Observability {
 
     /// Whether the data determine unknown `j`: it takes part in no null direction.
     pub fn is_estimable(&self, j: usize) -> bool {
-        self.null_row(j).norm() <= self.rounding
+        !self.takes_part(self.null_row(j).norm())
     }
 
     /// Whether the data determine the linear combination: it does not change along any null direction.
@@ -175,6 +179,11 @@ impl Observability {
     /// Groups of estimable parameters that the data hardly tell apart: see [`CorrelatedGroup`].
     pub fn correlated_groups(&self) -> Vec<CorrelatedGroup> {
         correlation::groups(&self.covariance_scaled(), |j| self.is_estimable(j))
+    }
+
+    /// Whether a component of a null vector, in scaled columns, is one.
+    pub(crate) fn takes_part(&self, component: f64) -> bool {
+        component > self.rounding
     }
 
     /// A basis of the null space in physical units, `p x (p - rank)`; its scale is arbitrary.

@@ -5,7 +5,7 @@
 //! is never formed. A change `dN` at candidate `c` changes it by `-C J^T Q J C`, `Q = dN (E + A dN)^-1`, `A = J C J^T`, so a
 //! goal `r = sum |P^T k|^2` changes by `-tr(Q G)`, `G = sum (J C k)(J C k)^T`: all in 3x3.
 
-use nalgebra::{Cholesky, DMatrix, Matrix3, MatrixXx3, Vector3};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, MatrixXx3, Vector3};
 
 use super::atom::Atoms;
 use super::candidates::{Candidates, Scenario};
@@ -119,18 +119,22 @@ impl LinearisedScenario {
 
     /// The factor of `M_0` and the information at some candidates.
     pub fn factor(&self, information: &[(usize, Matrix3<f64>)]) -> Factor {
-        let p = self.prior.len();
-        self.stacked(&DMatrix::from_fn(p, p, |i, j| if i == j { self.prior[i] } else { 0.0 }), information)
+        self.factor_of(self.stacked(self.held(), information))
     }
 
     /// The factor with more information at some candidates.
     pub fn with(&self, factor: &Factor, information: &[(usize, Matrix3<f64>)]) -> Factor {
-        self.stacked(&factor.triangle, information)
+        self.factor_of(self.stacked(factor.triangle.clone(), information))
     }
 
-    fn stacked(&self, triangle: &DMatrix<f64>, information: &[(usize, Matrix3<f64>)]) -> Factor {
+    /// `R` of `M_0`.
+    pub fn held(&self) -> DMatrix<f64> {
+        DMatrix::from_diagonal(&DVector::from_column_slice(&self.prior))
+    }
+
+    /// `R` with more information at some candidates.
+    pub fn stacked(&self, mut triangle: DMatrix<f64>, information: &[(usize, Matrix3<f64>)]) -> DMatrix<f64> {
         let p = self.prior.len();
-        let mut triangle = triangle.clone();
         for some in information.chunks(AT_ONCE) {
             let mut rows = DMatrix::zeros(3 * some.len(), p);
             for (n, (candidate, precision)) in some.iter().enumerate() {
@@ -142,7 +146,12 @@ impl LinearisedScenario {
             }
             fold(&mut triangle, &mut rows);
         }
-        let mut root = DMatrix::identity(p, p);
+        triangle
+    }
+
+    /// The factor with this `R`.
+    pub fn factor_of(&self, triangle: DMatrix<f64>) -> Factor {
+        let mut root = DMatrix::identity(triangle.nrows(), triangle.ncols());
         // The hold leaves no zero on the diagonal.
         let solved = triangle.solve_upper_triangular_mut(&mut root);
         debug_assert!(solved, "the hold makes every factor regular");

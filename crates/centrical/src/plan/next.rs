@@ -1,10 +1,10 @@
 //! The best next plateau after some have been measured.
 
-use nalgebra::Matrix3;
+use nalgebra::{DMatrix, Matrix3};
 
 use super::criterion::Criterion;
 use super::error::PlanError;
-use super::information::{Factor, LinearisedScenario, precision};
+use super::information::{LinearisedScenario, precision};
 use crate::model::{MeasurementModel, Weight};
 
 /// How much the next plateau would improve the criterion.
@@ -16,14 +16,15 @@ pub struct Benefit {
     pub factor: f64,
 }
 
-/// What a next plateau would bring, kept up to date as plateaus are taken up. Unknowns that are not determined yet are held by
+/// What a next plateau would bring after those that have been taken up. Unknowns that are not determined yet are held by
 /// ten typical magnitudes, so that a plateau that determines a new one comes before one that repeats.
 #[derive(Debug, Clone)]
 pub struct NextPlateau<'m> {
     model: &'m MeasurementModel,
     nominal: Vec<f64>,
     scenario: LinearisedScenario,
-    factor: Factor,
+    /// `R` of the information so far: it is brought up to date with the square of the unknowns, what is made of it with their cube.
+    triangle: DMatrix<f64>,
 }
 
 impl<'m> NextPlateau<'m> {
@@ -34,8 +35,8 @@ impl<'m> NextPlateau<'m> {
     pub fn new(model: &'m MeasurementModel, criterion: &Criterion) -> Result<Self, PlanError> {
         let nominal = vec![0.0; model.parameters().len()];
         let scenario = LinearisedScenario::of(model, &nominal, criterion)?;
-        let factor = scenario.factor(&[]);
-        Ok(Self { model, nominal, scenario, factor })
+        let triangle = scenario.held();
+        Ok(Self { model, nominal, scenario, triangle })
     }
 
     /// Takes plateaus up.
@@ -45,7 +46,7 @@ impl<'m> NextPlateau<'m> {
     pub fn take(&mut self, plateaus: &[Weight]) -> Result<(), PlanError> {
         let information = plateaus.iter().map(|weight| Ok((weight.set_point, self.precision(weight)?)));
         let information = information.collect::<Result<Vec<(usize, Matrix3<f64>)>, PlanError>>()?;
-        self.factor = self.scenario.with(&self.factor, &information);
+        self.triangle = self.scenario.stacked(std::mem::take(&mut self.triangle), &information);
         Ok(())
     }
 
@@ -54,10 +55,11 @@ impl<'m> NextPlateau<'m> {
     /// # Errors
     /// [`PlanError`] when a weight is invalid.
     pub fn benefits(&self, candidates: &[Weight]) -> Result<Vec<Benefit>, PlanError> {
-        let before = LinearisedScenario::value(&self.factor);
+        let factor = self.scenario.factor_of(self.triangle.clone());
+        let before = LinearisedScenario::value(&factor);
         let benefit = |candidate: &Weight| {
-            let insight = self.scenario.insight(&self.factor, candidate.set_point);
-            let after = self.scenario.value_after(&self.factor, &insight, &self.precision(candidate)?);
+            let insight = self.scenario.insight(&factor, candidate.set_point);
+            let after = self.scenario.value_after(&factor, &insight, &self.precision(candidate)?);
             Ok(Benefit { set_point: candidate.set_point, factor: (0.5 * (after - before)).exp() })
         };
         let mut benefits = candidates.iter().map(benefit).collect::<Result<Vec<_>, PlanError>>()?;

@@ -68,7 +68,7 @@ fn uncertainties_converge_to_those_of_the_fit() {
     let data = observations(&model, &truth(&model, 1.0, &mut random));
     let data = Data::new(&model, data).unwrap();
     let calibration = Calibration::exact(&data).unwrap();
-    let (fit, stages) = (calibration.fit(), calibration.convergence(30));
+    let (fit, stages) = (calibration.fit(), calibration.convergence(30).unwrap());
     assert!(stages.len() <= 30 && stages.last().unwrap().plateaus == data.observations().len());
     for pair in stages.windows(2) {
         for (before, after) in pair[0].standard_uncertainty.iter().zip(&pair[1].standard_uncertainty) {

@@ -1,5 +1,6 @@
 //! Rests in attitudes that only gravity shows: the model, what they determine, and what they add to a centrifuge session.
 
+use centrical::fit::Follower;
 use centrical::observability::Addition;
 use centrical::position::ThirdPosition::AxisOneUp;
 use centrical::{
@@ -185,7 +186,7 @@ fn uncertainties_by_rests_converge_to_those_of_the_fit() {
     let truth = vec![0.0; model.parameters().len()];
     let data = Data::new(&model, observed(&model, &truth, &mut random)).unwrap();
     let calibration = Calibration::exact(&data).unwrap();
-    let stages = calibration.convergence(60);
+    let stages = calibration.convergence(60).unwrap();
     assert_eq!(stages.len(), 26);
     for (j, sigma) in stages.last().unwrap().standard_uncertainty.iter().enumerate() {
         let is_attitude = matches!(model.parameters()[j].kind, Kind::Attitude { .. });
@@ -472,4 +473,55 @@ fn a_change_of_bias_is_what_a_refit_shows() {
     }
     let bias = model.parameters().find("df_2").unwrap();
     assert!(stated.standard_uncertainty(bias) > 0.1 * budget.standard_uncertainty(bias).unwrap());
+}
+
+/// On its way a follower determines what a fit of the same plateaus determines, and stands where that stands, whether rests come before
+/// those on the arm, after them or between them, and whether their attitudes are known or not.
+#[test]
+fn a_follower_of_rests_stands_where_a_fit_stands() {
+    let mut random = Random::new(23);
+    let free =
+        with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &random_directions(14, &mut random));
+    let stated = TypeB { gravity: 1e-5, ..TypeB::default() };
+    let models = [kozlov(free.clone()), kozlov(known(free.clone(), 1e-3)), kozlov(free).with_stated(stated)];
+    for (k, model) in models.iter().enumerate() {
+        let mut data = observed(model, &truth(model, 0.5, &mut random), &mut random);
+        let (arm, rests) = (data.len() - 14, 14);
+        match k {
+            0 => random.shuffle(&mut data),
+            1 => data.rotate_left(arm),
+            _ => data.truncate(arm + rests),
+        }
+        let mut follower = Follower::new(model);
+        let (mut squared, mut degrees_of_freedom) = (0.0, 0);
+        for n in 0..data.len() {
+            let arrival = follower.test(&data[n]).unwrap();
+            squared += arrival.innovation.squared;
+            degrees_of_freedom += arrival.innovation.degrees_of_freedom;
+            follower.take(arrival).unwrap();
+            if n % 9 == 4 || n + 1 == data.len() {
+                let fit = exact(model, &data[..=n]).unwrap();
+                let progress = follower.progress().unwrap();
+                assert_eq!(progress.rank, fit.observability().rank(), "{k}, {n}");
+                assert_eq!(degrees_of_freedom, fit.degrees_of_freedom, "{k}, {n}");
+                for (j, estimate) in progress.estimates.iter().enumerate() {
+                    let name = &model.parameters()[j].name;
+                    assert_eq!(estimate.is_some(), fit.value(j).is_some(), "{k}, {n}, {name}");
+                    let Some((value, uncertainty)) = estimate.filter(|_| fit.observability().lost() == 0) else {
+                        continue;
+                    };
+                    let expected = fit.standard_uncertainty(j).unwrap();
+                    assert!((value - fit.value(j).unwrap()).abs() < 0.1 * expected, "{k}, {n}, {name}");
+                    assert!((uncertainty / expected - 1.0).abs() < 0.01, "{k}, {n}, {name}");
+                }
+                // The first tests are made where the point has yet to move.
+                let tolerance = if n + 1 == data.len() { 0.01 } else { 0.1 };
+                assert!((squared - fit.chi_squared).abs() < tolerance * (1.0 + fit.chi_squared), "{k}, {n}: {squared}");
+            }
+        }
+        let point = follower.point().to_vec();
+        let reference = (follower.reference(), follower.referenced());
+        let resumed = Follower::resume(model, follower.taken().to_vec(), &point, reference).unwrap();
+        assert_eq!(resumed.progress().unwrap(), follower.progress().unwrap());
+    }
 }

@@ -49,7 +49,7 @@ impl CalibrationResult {
         advance(progress, 0)?;
         let next_attitude = NextAttitudeSummary::of(calibration)?;
         advance(progress, 0)?;
-        let convergence = ConvergenceSummary::new(calibration);
+        let convergence = ConvergenceSummary::of(calibration)?;
         advance(progress, 0)?;
         Ok(Self {
             schema: SCHEMA.to_owned(),
@@ -158,12 +158,12 @@ impl ConvergenceSummary {
     /// Stages that are kept: more than a plot can show apart.
     const STAGES: usize = 60;
 
-    fn new(calibration: &Calibration) -> Self {
-        let stages = calibration.convergence(Self::STAGES);
-        Self {
+    fn of(calibration: &Calibration) -> Result<Self, FitError> {
+        let stages = calibration.convergence(Self::STAGES)?;
+        Ok(Self {
             plateaus: stages.iter().map(|stage| stage.plateaus).collect(),
             standard_uncertainty: stages.into_iter().map(|stage| stage.standard_uncertainty).collect(),
-        }
+        })
     }
 }
 
