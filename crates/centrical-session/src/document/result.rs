@@ -5,6 +5,7 @@ mod axes_summary;
 mod between_rests;
 mod budget_and_checks;
 mod error_terms;
+mod file;
 mod from_calibration;
 mod next_attitude;
 mod rivals;

@@ -2,13 +2,15 @@
 
 mod entries;
 mod entry_schemas;
+mod plan_tables;
 mod tables;
 
 pub(crate) use self::entries::{
     AttitudeList, ColumnEntry, ColumnTable, PriorValue, RecordEntry, Steps, TermEntry, TermList, TermTable,
 };
+pub(crate) use self::plan_tables::{CandidatesTable, PlanTable};
 pub(crate) use self::tables::{
-    CandidatesTable, CentrifugeTable, ColumnsTable, Form, MeasuredTable, ModelTable, MountingTable, PlanForm,
-    PlanTable, PlateauEntry, PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, RawTable, SiteTable,
-    TumbleTable, TurningTable, UnitTable,
+    CentrifugeTable, ColumnsTable, Form, MeasuredTable, ModelTable, MountingTable, PlanForm, PlateauEntry,
+    PositionTable, PresetCentrifugeTable, PresetForm, PresetTable, RawTable, SiteTable, TumbleTable, TurningTable,
+    UnitTable,
 };

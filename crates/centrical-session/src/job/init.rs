@@ -9,6 +9,7 @@ mod attitude;
 mod draft;
 mod experiment_text;
 mod file_roles;
+mod output_unit;
 mod path_text;
 mod raw;
 mod request;

@@ -1,5 +1,8 @@
 //! The colour of the noise, and the covariances that it gives the means.
 
+mod contrasts;
+mod likelihood;
+mod markov;
 mod mean;
 mod noise_model;
 mod posterior;

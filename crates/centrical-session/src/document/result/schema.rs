@@ -4,12 +4,7 @@
 //! The same inputs give the same bytes: fields in a fixed order, numbers in their shortest exact decimal form,
 //! no time of day, no absolute paths.
 
-use std::path::Path;
-
-use centrical::uncertainty::Estimates;
-use centrical::{Group, PairRelation, ReferencePoint, Source, Termination};
-use centrical_table::write_whole;
-use nalgebra::DMatrix;
+use centrical::{Group, PairRelation, ReferencePoint, Termination};
 use serde::{Deserialize, Serialize};
 
 use super::axes_summary::AxesSummary;
@@ -18,12 +13,9 @@ use super::budget_and_checks::{BudgetSummary, ValiditySummary};
 use super::next_attitude::NextAttitudeSummary;
 use super::rivals::RestsOn;
 use super::speeds::SpeedsSummary;
-use crate::document::json;
 use crate::document::steadiness::{DriftSummary, LeftOutSummary, TiltSummary};
-use crate::error::{Error, Place};
 use crate::experiment::Turning;
 use crate::record::{Input, RecordOverview};
-use crate::settings::{from_json, read_result};
 
 /// Name of the schema's present version.
 pub const SCHEMA: &str = "centrical-result/1";
@@ -388,107 +380,6 @@ pub struct StabilityCurve {
     pub lower: Vec<f64>,
     /// Upper ends of their intervals [m/s^2].
     pub upper: Vec<f64>,
-}
-
-impl CalibrationResult {
-    /// Writes the file, whole or not at all.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON, [`Error::Table`] when the folder does not take it.
-    pub fn write(&self, path: &Path) -> Result<(), Error> {
-        Ok(write_whole(path, self.to_json()?.as_bytes())?)
-    }
-
-    /// The text of the file.
-    ///
-    /// # Errors
-    /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_json(&self) -> Result<String, Error> {
-        json::document(SCHEMA, self)
-    }
-
-    /// The plateaus that are rests in free attitudes.
-    pub fn rests(&self) -> impl Iterator<Item = &PlateauSummary> {
-        let is_free = |id: &str| self.model.positions.iter().any(|position| position.is_free && position.id == id);
-        let free: Vec<bool> = self.mountings.iter().map(|mounting| is_free(&mounting.position)).collect();
-        self.plateaus.iter().filter(move |p| p.mounting.checked_sub(1).and_then(|m| free.get(m)) == Some(&true))
-    }
-
-    /// The combinations that the data do not show, as people read them: of rests in free attitudes alone without the attitudes, in
-    /// which each rest takes part, and without coefficients that change a reading at 1 g by less than a twentieth of the most that one
-    /// does. All others as they are.
-    pub fn null_directions_in_short(&self) -> Vec<serde_json::Map<String, serde_json::Value>> {
-        const CHIEF: f64 = 0.05;
-        if self.model.has_arm() {
-            return self.observability.null_directions.clone();
-        }
-        let degree = |name: &str| {
-            let term = self.model.error_model.iter().find(|term| term.name == name)?;
-            Some(i32::from(term.powers.iter().sum::<u8>()))
-        };
-        let change = |(name, component): (&String, &serde_json::Value)| {
-            Some((component.as_f64()? * self.model.gravity.powi(degree(name)?)).abs())
-        };
-        let chiefly = |direction: &serde_json::Map<String, serde_json::Value>| {
-            let most = direction.iter().filter_map(change).fold(0.0, f64::max);
-            let chief = direction.iter().filter(|&term| change(term).is_some_and(|size| size >= CHIEF * most));
-            let first = chief.clone().next().and_then(|(_, component)| component.as_f64()).unwrap_or(1.0);
-            let to_one = |(name, component): (&String, &serde_json::Value)| {
-                (name.clone(), (component.as_f64().unwrap_or(0.0) / first).into())
-            };
-            chief.map(to_one).collect()
-        };
-        self.observability.null_directions.iter().map(chiefly).collect()
-    }
-
-    /// The estimates that the data determine, of the coefficients of the error model alone: what belongs to the unit
-    /// and not to how it was mounted.
-    pub fn of_unit(&self) -> Estimates {
-        let place = |name: &str| self.parameters.iter().position(|p| p.name == name && p.value.is_some());
-        let own: Vec<usize> = self.model.error_model.iter().filter_map(|term| place(&term.name)).collect();
-        let covariance = |a: usize, b: usize| self.covariance.get(own[a])?.get(own[b]).copied().flatten();
-        Estimates {
-            names: own.iter().map(|&j| self.parameters[j].name.clone()).collect(),
-            values: own.iter().filter_map(|&j| self.parameters[j].value).collect(),
-            covariance: DMatrix::from_fn(own.len(), own.len(), |a, b| covariance(a, b).unwrap_or(f64::NAN)),
-        }
-    }
-
-    /// A parameter by name.
-    pub fn parameter(&self, name: &str) -> Option<&ParameterEstimate> {
-        self.parameters.iter().find(|p| p.name == name)
-    }
-
-    /// Reads a result.
-    ///
-    /// # Errors
-    /// [`Error`] when the file is not there or is not a result of this schema.
-    pub fn read(path: &Path) -> Result<Self, Error> {
-        Self::parse(path, &read_result(path, "a result.json")?)
-    }
-
-    /// The result of a file with this `text`. Messages name `path`.
-    ///
-    /// # Errors
-    /// As [`CalibrationResult::read`].
-    pub fn parse(path: &Path, text: &str) -> Result<Self, Error> {
-        let result: Self = from_json(path, 1, text, &format!("a result of schema {SCHEMA:?}"))?;
-        if result.schema != SCHEMA {
-            let found = format!("schema {:?}", result.schema);
-            return Err(Error::content(path, Place::Whole, found, format!("schema {SCHEMA:?}")));
-        }
-        if let Some(axes) = result.axes.as_ref().filter(|axes| !axes.is_turned()) {
-            let found = format!("axes with the matrix {:?}", axes.matrix);
-            return Err(Error::content(path, Place::Whole, found, "a rotation"));
-        }
-        Ok(result)
-    }
-
-    /// The sources that the session states beyond what the fit weighs.
-    pub fn stated_sources(&self) -> Vec<Source> {
-        let sources = self.budget.iter().flat_map(|budget| &budget.sources);
-        sources.filter(|source| !source.weighed_in_fit).map(|source| source.name).collect()
-    }
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
