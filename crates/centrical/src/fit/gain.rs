@@ -25,7 +25,7 @@ pub struct Gain {
     basis: DMatrix<f64>,
     parameters: usize,
     priors: usize,
-    /// Whitened residuals of the observations, the priors and the influences.
+    /// Whitened residuals of the observations, without what a linear step from the estimate would take up; of the priors and the influences.
     residuals: DVector<f64>,
 }
 
@@ -38,10 +38,14 @@ impl Gain {
         let pairs = data.observations().iter().zip(&linearisations);
         let whiteners = pairs.map(|(o, l)| Whitener::new(&o.into(), l)).collect::<Result<_, _>>()?;
         let null_weight = if fit.null_directions_held { 1.0 / NULL_HOLD } else { 0.0 };
-        let (equations, _) = structure.held.equations(&design, &DVector::from_vec(at), null_weight);
+        let (equations, misfit) = structure.held.equations(&design, &DVector::from_vec(at), null_weight);
         let (parameters, priors) = (data.model().parameters().len(), data.model().priors().len());
         let basis = equations.basis(3 * data.observations().len());
-        Ok(Self { equations, whiteners, linearisations, basis, parameters, priors, residuals: design.misfit })
+        // What a last step would take up would pass for much of a column that the unknowns follow all but wholly.
+        let step = equations.rotated(DMatrix::from_columns(&[misfit])).rows_range(..basis.ncols()).into_owned();
+        let (mut residuals, followed) = (design.misfit, &basis * step);
+        residuals.rows_range_mut(..followed.nrows()).axpy(-1.0, &followed.column(0), 1.0);
+        Ok(Self { equations, whiteners, linearisations, basis, parameters, priors, residuals })
     }
 
     /// Changes of the estimates, `p x m` [units of the parameters], by `m` changes of one observation each: its index, and the
