@@ -39,8 +39,8 @@ pub use self::compensation::{COMPENSATION_SCHEMA, CompensationReport, FirstReadi
 pub use self::documents::{DOCUMENTS_SCHEMA, DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
 pub use self::draft::{DRAFT_SCHEMA, DraftReport, LineToFillIn};
 pub use self::history::{
-    BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession,
-    ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter,
+    BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, LeftOutSession, OutlyingUnit,
+    PastSession, ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter,
     UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter,
     UnitsHistoryReport, UnitsParameter,
 };

@@ -62,8 +62,8 @@ pub use document::{
     TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history,
 };
 pub use document::{
-    BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, OutlyingUnit, PastSession,
-    ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter,
+    BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, LeftOutSession, OutlyingUnit,
+    PastSession, ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter,
     UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter,
     UnitsHistoryReport, UnitsParameter,
 };
@@ -88,9 +88,9 @@ pub use job::{
     tumble, watch, write_reduced,
 };
 pub use job::{
-    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, NoChart, ParameterLimits, RuleSet, UnitHistoryRequest,
-    UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations, read_limits, station_history,
-    unit_history, unit_means, units_history,
+    Calibrated, CalibratedParameter, ChartLimits, ChartRequest, ComparedUnits, NoChart, ParameterLimits, RuleSet,
+    UnitHistoryRequest, UnitsHistoryRequest, by_unit, chart, history_up_to, read_batches, read_calibrations,
+    read_limits, station_history, unit_history, unit_means, units_history,
 };
 pub use laboratory::{
     Address, Certificate, Condition, Contact, Customer, Decision, DecisionRule, Environment, Item, Laboratory,

@@ -307,3 +307,67 @@ fn documents_say_what_the_past_means_for_a_reading() {
     assert!(said.contains("plant/0004: found no earlier calibration of the unit, expected one or more of"), "{said}");
     assert!(!folder.path().join("x.html").exists());
 }
+
+/// A calibration that does not determine what the others do, as by rests alone, is left out and named, and so are the parameters that only the last one
+/// determines.
+#[test]
+fn a_calibration_with_fewer_parameters_is_left_out() {
+    let folder = plant();
+    let folder = folder.path();
+    let without = |result: &Path, prefix: &str| {
+        let mut document: Value = serde_json::from_slice(&fs::read(result).unwrap()).unwrap();
+        for parameter in document["parameters"].as_array_mut().unwrap() {
+            if parameter["name"].as_str().unwrap().starts_with(prefix) {
+                parameter["value"] = Value::Null;
+                parameter["standard_uncertainty"] = Value::Null;
+                parameter["estimable"] = json!(false);
+            }
+        }
+        fs::write(result, document.to_string()).unwrap();
+    };
+    without(&folder.join("plant/0001/1/result.json"), "G1_");
+    let ask = ["unit", "plant/0001", "--limit", "100 mg"];
+    let (unit, code) = history(folder, &ask);
+    let count = |key: &str| unit[key].as_array().unwrap().len();
+    assert_eq!((count("sessions"), count("left_out"), code), (3, 1, 0));
+    assert!(unit["left_out"][0]["date"] == "2022-03-02" && unit["left_out"][0]["lacks"][0] == "G1_11", "{unit}");
+    assert!(unit["is_within"].is_boolean() || unit["due_after"].is_string());
+    let (units, _) = history(folder, &["units", "plant"]);
+    assert_eq!((units["sessions"].as_u64(), units["left_out"].as_array().unwrap().len()), (Some(55), 1));
+    assert!(units["parameters"].as_array().unwrap().iter().any(|p| p["name"] == "G1_11"));
+    let shown = String::from_utf8(run(folder, &[&["history"], ask.as_slice()].concat()).stdout).unwrap();
+    assert!(shown.contains("LEFT OUT  2022-03-02"), "{shown}");
+
+    // Where only the last has them, the others are compared by what they have, and no day is promised.
+    for session in [0, 2] {
+        without(&folder.join(format!("plant/0001/{session}/result.json")), "G1_");
+    }
+    let (unit, _) = history(folder, &ask);
+    assert_eq!(unit["sessions"].as_array().unwrap().len(), 4);
+    assert!(unit["not_compared"].as_array().unwrap().contains(&json!("G1_11")), "{unit}");
+    assert!(unit["due_after"].is_null() && unit["is_within"] != true, "{unit}");
+    let shown = String::from_utf8(run(folder, &[&["history"], ask.as_slice()].concat()).stdout).unwrap();
+    assert!(shown.contains("NOT KNOWN") && shown.contains("NOT COMPARED"), "{shown}");
+}
+
+/// Attitudes of rests are as a hand laid the unit down: a station does not answer for them.
+#[test]
+fn attitudes_of_rests_are_not_of_the_machine() {
+    let folder = plant();
+    let folder = folder.path();
+    let (station, code) = history(folder, &["station", "plant"]);
+    assert!(names(&station["parameters"], "changes").contains(&"alpha_1") && code == 1);
+    for unit in 0..UNITS {
+        for session in 0..SESSIONS {
+            let file = folder.join(format!("plant/{unit:04}/{session}/result.json"));
+            let mut result: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+            let parameters = result["parameters"].as_array_mut().unwrap();
+            for parameter in parameters.iter_mut().filter(|p| p["name"] == "alpha_1") {
+                parameter["group"] = json!("attitude");
+            }
+            fs::write(&file, result.to_string()).unwrap();
+        }
+    }
+    let (station, _) = history(folder, &["station", "plant"]);
+    assert!(station["parameters"].as_array().unwrap().iter().all(|p| p["name"] != "alpha_1"), "{station}");
+}

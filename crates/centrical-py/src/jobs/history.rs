@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use centrical_report::{PagesRequest, chart_plots, unit_history_plots, write_history_pages, write_plots};
 use centrical_session::{
-    ChartLimits, ChartRequest, Date, Depth, Dimension, Error, Failure, ParameterLimits, Place, Row, RuleSet, Selection,
-    Store, UnitHistoryRequest, UnitsHistoryRequest, add_results, by_unit, chart, check_store, list_store, read_batches,
-    read_calibrations, read_limits, station_history, today, unit_history, units_history,
+    ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Dimension, Error, Failure, ParameterLimits, Place, Row,
+    RuleSet, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest, add_results, by_unit, chart, check_store,
+    list_store, read_batches, read_calibrations, read_limits, station_history, today, unit_history, units_history,
 };
 use pyo3::prelude::*;
 
@@ -115,7 +115,7 @@ pub fn history_units(
         let limits = laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
         let batches = batches.as_deref().map(read_batches).transpose()?;
         let request = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
-        let report = units_history(&by_unit(calibrations), &request);
+        let report = units_history(&ComparedUnits::of(by_unit(calibrations)), &request);
         report.ok_or_else(|| missing(&results, "calibrations with a parameter in common"))?.to_json()
     })
 }

@@ -172,6 +172,7 @@ fn method(result: &CalibrationResult, laboratory: &Laboratory, language: Languag
         (messages.procedure, method.procedure.clone().unwrap_or_default()),
         (messages.deviations, method.deviations.clone().unwrap_or_else(|| messages.none.to_owned())),
         (messages.software, format!("{} {}", result.program.name, result.program.version)),
+        (messages.held_out_plateaus, result.held_out().join(", ")),
     ]);
     vec![Block::heading(messages.method, 6), Block::paragraph(&method_text(&result.model, language)), facts]
 }

@@ -224,7 +224,7 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
         "{}: {mountings}; {}: {}; {}: {}; {}: {}",
         messages.mountings_used,
         messages.plateaus_used,
-        result.plateaus.len(),
+        result.plateaus.len() - result.held_out().len(),
         messages.samples,
         grouped(samples),
         messages.rejected,
@@ -241,6 +241,7 @@ fn conduct(result: &CalibrationResult, language: Language) -> Vec<Block> {
         (messages.speed_uncertainty, of_arm(language.scientific(model.speed_uncertainty))),
         (messages.speeds, of_arm(speeds(result, language))),
         (messages.data, data),
+        (messages.held_out_plateaus, result.held_out().join(", ")),
         (messages.method, method),
         (messages.software, format!("{} {}", result.program.name, result.program.version)),
     ]);

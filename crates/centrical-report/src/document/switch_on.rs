@@ -47,12 +47,16 @@ pub(crate) fn switch_on_sentence(history: &UnitHistoryReport, language: Language
     ))
 }
 
-/// How many, from which day to which.
+/// How many, from which day to which, and how many besides that do not determine the same parameters.
 fn calibrations(history: &UnitHistoryReport, language: Language) -> String {
     let days = history.sessions.iter().map(|session| session.date);
     let ends = days.clone().min().zip(days.max());
     let ends = ends.map(|(first, last)| format!(" ({} – {})", language.date(first), language.date(last)));
-    format!("{}{}", history.sessions.len(), ends.unwrap_or_default())
+    let left_out = match history.left_out.len() {
+        0 => String::new(),
+        count => format!("; {}: {count}", language.messages().calibrations_left_out),
+    };
+    format!("{}{}{left_out}", history.sessions.len(), ends.unwrap_or_default())
 }
 
 fn sameness(history: &UnitHistoryReport, language: Language) -> String {

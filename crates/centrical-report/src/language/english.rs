@@ -58,6 +58,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     degrees_word: "Eff. degrees of freedom",
     chi_squared_chance: "Chance of so large a χ²",
     outlying_plateaus: "plateaus that stand out",
+    held_out_plateaus: "Plateaus held out of the fit",
     patterns_found: "patterns in the residuals",
     worst_mounting: "Worst of the mountings, each predicted from all others",
     steadiness: "Steadiness",
@@ -331,6 +332,7 @@ pub(crate) const ENGLISH: Messages = Messages {
         calibrations with its interval of 95 %, and both together. For each newtonometer: at zero force, and where both \
         together are largest.",
     calibrations_of_unit: "Calibrations of the unit",
+    calibrations_left_out: "others, which do not determine the same parameters",
     same_unit: "Agreement of the calibrations",
     parameters_scatter: "More scatter than stated",
     parameters_drift: "Drift",

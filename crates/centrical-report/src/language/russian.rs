@@ -58,6 +58,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
     degrees_word: "Эфф. степени свободы",
     chi_squared_chance: "Вероятность столь большого χ²",
     outlying_plateaus: "выделяющиеся площадки",
+    held_out_plateaus: "Площадки, исключённые из обработки",
     patterns_found: "закономерности в остатках",
     worst_mounting: "Худшая из установок, каждая предсказана по остальным",
     steadiness: "Постоянство показаний",
@@ -329,6 +330,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
         между калибровками с интервалом 95 % и обе вместе. Для каждого ньютонометра: при нулевой силе и там, где обе вместе \
         наибольшие.",
     calibrations_of_unit: "Калибровки прибора",
+    calibrations_left_out: "прочие, не определяющие тех же параметров",
     same_unit: "Согласие калибровок",
     parameters_scatter: "Разброс больше указанного",
     parameters_drift: "Дрейф",

@@ -291,6 +291,9 @@ fn uncertainties(screen: &mut Screen, result: &CalibrationResult) {
     }
 }
 
+/// Plateaus that are named one by one where they are held out.
+const NAMES: usize = 8;
+
 /// What the residuals say of the model and of the weights.
 fn validity(screen: &mut Screen, result: &CalibrationResult) {
     let Some(validity) = result.validity.as_ref().filter(|_| result.fit.degrees_of_freedom > 0) else { return };
@@ -299,7 +302,13 @@ fn validity(screen: &mut Screen, result: &CalibrationResult) {
     if result.chi_squared_is_small() {
         screen.fact("", Language::English.messages().chi_squared_small);
     }
-    let fitted = result.plateaus.iter().filter(|plateau| !plateau.held_out).count();
+    let held_out = result.held_out();
+    let fitted = result.plateaus.len() - held_out.len();
+    if !held_out.is_empty() {
+        let names = held_out.iter().take(NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let others = if held_out.len() > NAMES { ", ..." } else { "" };
+        screen.fact("", &format!("{} held out of the fit: {names}{others}", counted(held_out.len(), "plateau")));
+    }
     if validity.outlying.is_empty() {
         screen.fact("", &format!("none of the {} stands out", counted(fitted, "plateau")));
     }

@@ -8,7 +8,8 @@ mod units;
 pub use self::chart::{CHART_SCHEMA, ChartReport, ChartSignal};
 pub use self::station::{STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
 pub use self::unit::{
-    DueDate, PastSession, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport, UnitParameter,
+    DueDate, LeftOutSession, PastSession, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
+    UnitParameter,
 };
 pub use self::units::{
     BatchSummary, CapabilitySummary, OutlyingUnit, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind,

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use centrical_report::units_history_text;
-use centrical_session::{Depth, Error, UnitsHistoryRequest, by_unit, read_batches, read_limits, units_history};
+use centrical_session::{
+    ComparedUnits, Depth, Error, UnitsHistoryRequest, by_unit, read_batches, read_limits, units_history,
+};
 
 use super::choice::Choice;
 use crate::outcome::Outcome;
@@ -36,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let limits = arguments.laboratory.as_deref().map(|file| read_limits(file, &calibrations)).transpose()?;
     let batches = arguments.batches.as_deref().map(read_batches).transpose()?;
     let request = UnitsHistoryRequest { limits: limits.unwrap_or_default(), batches: batches.unwrap_or_default() };
-    let report = units_history(&by_unit(calibrations), &request).ok_or_else(|| {
+    let report = units_history(&ComparedUnits::of(by_unit(calibrations)), &request).ok_or_else(|| {
         choice.refuse("no parameter that all determine".to_owned(), "calibrations with one in common")
     })?;
     arguments.printing.show(|| units_history_text(&report), || report.to_json())?;

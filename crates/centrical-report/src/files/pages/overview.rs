@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use centrical_session::{
-    Calibrated, ChartLimits, ChartRequest, Depth, Error, HistoryList, OnProgress, ParameterLimits, RuleSet, Selection,
-    UnitsHistoryReport, UnitsHistoryRequest, advance, by_unit, chart, list_store, read_batches, read_calibrations,
-    read_limits, station_history, unit_means, units_history,
+    Calibrated, ChartLimits, ChartRequest, ComparedUnits, Depth, Error, HistoryList, OnProgress, ParameterLimits,
+    RuleSet, Selection, UnitsHistoryReport, UnitsHistoryRequest, advance, by_unit, chart, list_store, read_batches,
+    read_calibrations, read_limits, station_history, unit_means, units_history,
 };
 use rayon::prelude::*;
 
@@ -98,8 +98,10 @@ fn models(
         models.entry(unit[0].unit_model.clone()).or_default().push(unit);
     }
     let mut indexed = Vec::new();
-    for units in models.values() {
-        let Some(report) = units_history(units, asked) else { continue };
+    for units in models.into_values() {
+        let compared = ComparedUnits::of(units);
+        let units = &compared.units;
+        let Some(report) = units_history(&compared, asked) else { continue };
         let mut all: Vec<&Calibrated> = units.iter().flatten().collect();
         all.sort_by(|a, b| a.date.cmp(&b.date).then_with(|| a.source.cmp(&b.source)));
         let names: Vec<&str> = report.parameters.iter().map(|p| p.name.as_str()).collect();

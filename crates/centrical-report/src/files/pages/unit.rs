@@ -84,7 +84,7 @@ impl UnitPages {
 }
 
 /// Counts up when a page of the same calibrations looks otherwise.
-const FORM: u32 = 1;
+const FORM: u32 = 2;
 
 /// Probability of the intervals, as of an expanded uncertainty.
 const COVERAGE: f64 = 0.95;

@@ -1,7 +1,8 @@
 //! One unit over its calibrations.
 
 use centrical_session::{
-    DueDate, MICRO_G, ReadingHistory, STANDARD_GRAVITY as G, UnitHistoryReport, UnitParameter, customary,
+    DueDate, LeftOutSession, MICRO_G, ReadingHistory, STANDARD_GRAVITY as G, UnitHistoryReport, UnitParameter,
+    customary,
 };
 
 use super::chance::chance;
@@ -62,12 +63,23 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
             );
             screen.marked(Emphasis::NotAcceptable, "OVERDUE", &words);
         }
-        (None, Some(limit), Some(day)) if !report.readings.is_empty() => {
+        (None, Some(limit), Some(day)) => {
             let words =
                 format!("after {day}: until then every compensated reading is {} after each switch-on", within(limit));
             screen.marked(Emphasis::Acceptable, "DUE", &words);
         }
-        _ => {}
+        (None, Some(limit), None) => {
+            let words = format!("the calibrations do not show until when a compensated reading is {}", within(limit));
+            screen.marked(Emphasis::Warning, "NOT KNOWN", &words);
+        }
+        (_, None, _) => {}
+    }
+    for session in &report.left_out {
+        screen.marked(Emphasis::Warning, "LEFT OUT", &left_out(session));
+    }
+    if !report.not_compared.is_empty() {
+        let words = format!("not determined before the last calibration: {}", short_list(&report.not_compared));
+        screen.marked(Emphasis::Warning, "NOT COMPARED", &words);
     }
     if let Some(test) = report.sameness {
         let words = format!(
@@ -84,6 +96,21 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");
     }
 }
+
+/// A calibration that is left out, and why.
+pub(super) fn left_out(left_out: &LeftOutSession) -> String {
+    let session = &left_out.session;
+    format!("{}, {}: it does not determine {}", session.date, session.source, short_list(&left_out.lacks))
+}
+
+/// The first names, and the number of the others.
+fn short_list(names: &[String]) -> String {
+    let first = names.iter().take(NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if names.len() > NAMES { format!("{first} and {} more", names.len() - NAMES) } else { first }
+}
+
+/// Names in a short list.
+const NAMES: usize = 3;
 
 /// A probability in percent: 95 %, 95.45 %.
 fn percent(probability: f64) -> String {

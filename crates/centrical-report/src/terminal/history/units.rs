@@ -3,10 +3,14 @@
 use centrical_session::{UnitFindingKind, UnitsHistoryReport, customary};
 
 use super::chance::chance;
+use super::unit::left_out;
 use crate::number::{counted, with_uncertainty};
 use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
+
+/// Calibrations that are left out and named one by one.
+const SHOWN: usize = 5;
 
 /// Units of one type beside each other.
 pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
@@ -19,6 +23,14 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
     screen.marked(emphasis, mark, words);
     if !report.is_tested {
         screen.marked(Emphasis::Warning, "FEW", "fewer than ten units do not show which of them is outlying");
+    }
+    for session in report.left_out.iter().take(SHOWN) {
+        let words = format!("serial {}, {}", session.session.unit_serial, left_out(session));
+        screen.marked(Emphasis::Warning, "LEFT OUT", &words);
+    }
+    if report.left_out.len() > SHOWN {
+        let words = format!("and {} more", counted(report.left_out.len() - SHOWN, "calibration"));
+        screen.marked(Emphasis::Warning, "LEFT OUT", &words);
     }
     for unit in &report.outlying {
         let most = unit.most.iter().map(|(name, score)| format!("{name} {score:+.1}")).collect::<Vec<_>>().join(", ");

@@ -28,6 +28,16 @@ pub struct PastSession {
     pub acceptable: bool,
 }
 
+/// A calibration that is left out of a history.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LeftOutSession {
+    /// The calibration.
+    #[serde(flatten)]
+    pub session: PastSession,
+    /// Parameters of the others that it does not determine.
+    pub lacks: Vec<String>,
+}
+
 /// The history of a unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UnitHistoryReport {
@@ -39,8 +49,14 @@ pub struct UnitHistoryReport {
     pub unit_model: String,
     /// Serial number of the unit.
     pub unit_serial: String,
-    /// Its calibrations, in the order of time.
+    /// Its calibrations that are compared, in the order of time.
     pub sessions: Vec<PastSession>,
+    /// Those that do not determine the same parameters.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeftOutSession>,
+    /// Parameters of the last calibration that the others do not determine.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_compared: Vec<String>,
     /// Whether parameters may drift.
     pub trend: bool,
     /// Probability of all intervals.
@@ -51,7 +67,7 @@ pub struct UnitHistoryReport {
     pub until: Date,
     /// All parameters together.
     pub sameness: Option<SamenessSummary>,
-    /// The parameters that all calibrations determine.
+    /// The parameters that all calibrations compared determine.
     pub parameters: Vec<UnitParameter>,
     /// Largest specific force of the readings below [m/s^2].
     pub range: f64,
@@ -59,11 +75,11 @@ pub struct UnitHistoryReport {
     pub limit: Option<f64>,
     /// Whether a reading compensated by the last calibration is within the limit on the day after it; null without a due date.
     pub is_within: Option<bool>,
-    /// The first due date of all readings.
+    /// The first due date of all readings; null where some are not determined, unless one is overdue.
     pub due: Option<DueDate>,
-    /// The day at which the search for a due date ended.
+    /// The day at which the search for a due date ended; null where some readings are not determined.
     pub due_after: Option<Date>,
-    /// Compensated readings.
+    /// Compensated readings, those that the calibrations compared determine.
     pub readings: Vec<ReadingHistory>,
 }
 

@@ -3,6 +3,7 @@
 use centrical::Group;
 use serde::Serialize;
 
+use super::unit::LeftOutSession;
 use crate::document::json;
 use crate::document::result::Program;
 use crate::error::Error;
@@ -21,8 +22,11 @@ pub struct UnitsHistoryReport {
     pub unit_model: String,
     /// Number of units.
     pub units: usize,
-    /// Number of their calibrations.
+    /// Number of their calibrations that are compared.
     pub sessions: usize,
+    /// Calibrations that do not determine the same parameters.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeftOutSession>,
     /// Whether there are enough units to say which is outlying: ten.
     pub is_tested: bool,
     /// Whether no unit is outlying, drifts or scatters, and batches do not differ.
@@ -31,7 +35,7 @@ pub struct UnitsHistoryReport {
     pub outlying: Vec<OutlyingUnit>,
     /// Units that drift, or scatter more than the others.
     pub findings: Vec<UnitFinding>,
-    /// The parameters that all calibrations determine.
+    /// The parameters that all calibrations compared determine.
     pub parameters: Vec<UnitsParameter>,
 }
 

@@ -3,10 +3,11 @@
 use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
 
+use centrical::Group;
 use centrical::history::{Reading, station_test};
 use centrical::uncertainty::family_wise;
 
-use super::calibrated::{Calibrated, years};
+use super::calibrated::{Calibrated, CalibratedParameter, years};
 use crate::document::{Program, STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
 
 /// Family-wise level of what is called a change.
@@ -23,7 +24,7 @@ pub fn station_history(calibrations: &[impl Borrow<Calibrated>]) -> Option<Stati
     let mut names: Vec<(&str, &str)> = Vec::new();
     for &calibrated in &calibrations {
         let all = calibrated.parameters.iter().zip(&calibrated.values);
-        for (parameter, &value) in all.filter(|(p, value)| !p.is_of_unit && value.is_finite()) {
+        for (parameter, &value) in all.filter(|(p, value)| is_of_machine(p) && value.is_finite()) {
             let unit = number.get(&calibrated.unit()).copied().unwrap_or_default();
             let reading = Reading { time: years(first, calibrated.date), unit, value };
             let name = (parameter.name.as_str(), parameter.unit.as_str());
@@ -50,6 +51,11 @@ pub fn station_history(calibrations: &[impl Borrow<Calibrated>]) -> Option<Stati
         is_steady: !parameters.iter().any(|p| p.changes),
         parameters,
     })
+}
+
+/// Attitudes of rests are as the unit was laid down, and the turn against the case is the unit's.
+fn is_of_machine(parameter: &CalibratedParameter) -> bool {
+    !parameter.is_of_unit && !matches!(parameter.group, Group::Attitude | Group::CaseTurn)
 }
 
 fn parameter((name, unit): (&str, &str), sessions: &[(&Calibrated, Reading)]) -> Option<StationParameter> {

@@ -6,6 +6,7 @@ use centrical_compensate::Term;
 use nalgebra::{DMatrix, Vector3};
 
 use super::calibrated::{Basis, Calibrated, DAYS, Finder, series, single, years};
+use super::comparable::Comparison;
 use crate::document::{
     DueDate, PastSession, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
     UnitParameter,
@@ -31,6 +32,9 @@ const HORIZON: f64 = 20.0;
 /// Forces at which a compensated reading is looked at, over the range.
 const PARTS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 
+/// Readings that are looked at: of three newtonometers at rest, and at forces along three axes.
+const READINGS: usize = 3 * (1 + 3 * PARTS.len());
+
 /// The history of a unit by its `calibrations`, two or more, in the order of time. With `others`, the calibrations of other units of its type, unit by
 /// unit, the component between sessions is the one that all have in common. `None` where fewer than two calibrations have a parameter in common.
 pub fn unit_history(
@@ -38,8 +42,9 @@ pub fn unit_history(
     others: &[Vec<Calibrated>],
     request: UnitHistoryRequest,
 ) -> Option<UnitHistoryReport> {
-    let own: Vec<&Calibrated> = calibrations.iter().collect();
-    let last = own.last()?;
+    let all: Vec<&Calibrated> = calibrations.iter().collect();
+    let last = *all.last()?;
+    let Comparison { calibrations: own, left_out } = Comparison::of(&all, Some(last));
     let names = common_names(&own);
     if own.len() < 2 || names.is_empty() {
         return None;
@@ -65,13 +70,18 @@ pub fn unit_history(
         parameter.drifts = parameter.slope_probability.is_some() && chance < FAMILY;
     }
     let readings = job.readings();
+    // Of some readings alone a day would pass for that of all.
+    let are_all = readings.len() == READINGS;
     let due = readings.iter().filter_map(|r| r.due.as_ref()).min_by_key(|due| due.date).cloned();
+    let due = due.filter(|due| are_all || due.date <= last.date);
     Some(UnitHistoryReport {
         schema: UNIT_HISTORY_SCHEMA,
         program: Program::this(),
         unit_model: last.unit_model.clone(),
         unit_serial: last.unit_serial.clone(),
         sessions: own.iter().map(|calibrated| past(calibrated)).collect(),
+        left_out,
+        not_compared: last.determined().filter(|name| !names.contains(name)).collect(),
         trend,
         coverage: request.coverage,
         units_together: 1 + others.len(),
@@ -82,7 +92,7 @@ pub fn unit_history(
         limit: request.limit,
         is_within: due.as_ref().map(|due| due.date > last.date),
         due,
-        due_after: request.limit.map(|_| last.date.after(HORIZON * DAYS)),
+        due_after: request.limit.filter(|_| are_all).map(|_| last.date.after(HORIZON * DAYS)),
         readings,
     })
 }
@@ -216,12 +226,8 @@ impl Job<'_> {
             let Some(sensitivity) = compensated.sensitivity(&force) else { continue };
             for axis in 0..3 {
                 let row = sensitivity.row(axis);
-                let combination: Vec<(String, f64)> = names
-                    .iter()
-                    .zip(row.iter())
-                    .filter(|(_, c)| **c != 0.0)
-                    .map(|(name, c)| ((*name).clone(), *c))
-                    .collect();
+                let shares = names.iter().zip(row.iter()).filter(|(_, c)| **c != 0.0);
+                let combination: Vec<(String, f64)> = shares.map(|(name, c)| (name.clone(), *c)).collect();
                 readings.extend(self.reading(force, axis, &combination));
             }
         }

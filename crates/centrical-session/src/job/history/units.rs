@@ -9,6 +9,7 @@ use centrical::uncertainty::family_wise;
 use rayon::prelude::*;
 
 use super::calibrated::{Basis, Calibrated, Finder, Places, series, single};
+use super::comparable::ComparedUnits;
 use super::limits::ParameterLimits;
 use super::unit::common_names;
 use crate::document::{
@@ -33,8 +34,9 @@ const COVERAGE: f64 = 0.95;
 /// Seed of the laws that are drawn.
 const SEED: u64 = 1;
 
-/// The history of units of one type, each with its calibrations in the order of time. `None` without a parameter that all determine.
-pub fn units_history(units: &[Vec<Calibrated>], request: &UnitsHistoryRequest) -> Option<UnitsHistoryReport> {
+/// The history of units of one type by the calibrations that are compared. `None` without a parameter that these determine.
+pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) -> Option<UnitsHistoryReport> {
+    let ComparedUnits { units, left_out } = compared;
     let all: Vec<&Calibrated> = units.iter().flatten().collect();
     let names = common_names(&all);
     let lasts: Vec<&Calibrated> = units.iter().filter_map(|unit| unit.last()).collect();
@@ -56,6 +58,7 @@ pub fn units_history(units: &[Vec<Calibrated>], request: &UnitsHistoryRequest) -
         unit_model: lasts[0].unit_model.clone(),
         units: units.len(),
         sessions: all.len(),
+        left_out: left_out.clone(),
         is_tested: units.len() >= FEWEST_UNITS,
         is_sound: outlying.is_empty() && findings.is_empty() && !parameters.iter().any(|p| p.batches_differ),
         outlying,
