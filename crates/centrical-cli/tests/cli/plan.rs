@@ -249,3 +249,25 @@ fn plans_of_rests_alone() {
     let observed = json(&copy, &["observe", "schedule.toml", "--json"]);
     assert_eq!(observed["plateaus"], 22);
 }
+
+/// Some of the positions suffice for a plan; wanted uncertainties beside a criterion that does not know of them are refused.
+#[test]
+fn some_positions_and_goals_without_their_criterion() {
+    let copy = Copy::new();
+    let plan = small(
+        &copy,
+        "durations = [\"30 s\", \"60 s\", \"120 s\"]",
+        "durations = [\"30 s\", \"60 s\"]\npositions = [\"1\", \"2\", \"3\"]",
+    );
+    let report = copy.run(&["plan", &plan, "--json", "--out", "schedule.toml"]);
+    let report: Value = serde_json::from_slice(&report.stdout).unwrap();
+    assert!(report["mountings"].as_array().unwrap().iter().all(|mounting| mounting["position"] != "4"));
+    let observed = copy.run(&["observe", "schedule.toml", "--json"]);
+    assert!(serde_json::from_slice::<Value>(&observed.stdout).is_ok(), "{}", String::from_utf8_lossy(&observed.stderr));
+
+    let goals = small(&copy, "[robust]", "[target.uncertainty]\ndf_1 = \"5 ug\"\n\n[robust]");
+    let run = copy.run(&["plan", &goals]);
+    let said = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(2), "{said}");
+    assert!(said.contains("[target], criterion: found criterion \"I\" beside [target.uncertainty]"), "{said}");
+}

@@ -54,6 +54,7 @@ impl Planning {
         let mut form = from_toml::<Form>(path, &read_text(path)?)?.with_schedules();
         let at = TomlPath::table(path, "candidates");
         form.mounting = mountings(&at, &form)?;
+        form.position.retain(|position| form.mounting.iter().any(|mounting| mounting.position == position.id));
         form.target.time = time.map(Quantity::Number).or(form.target.time);
         let form = form;
         let table = stated(&at, &form)?;
@@ -309,6 +310,14 @@ fn target(file: &Path, form: &Form, model: &MeasurementModel) -> Result<(Criteri
     let range = ReadingRange { force };
     let goals = goals(file, form, model, range)?;
     let name = table.criterion.as_deref().unwrap_or(if goals.is_empty() { "I" } else { "worst" });
+    if ["I", "A", "D"].contains(&name) && !goals.is_empty() {
+        let found = format!("criterion {name:?} beside [target.uncertainty]");
+        return Err(at.unexpected(
+            "criterion",
+            found,
+            "\"worst\", which the wanted uncertainties are for, or one of the two",
+        ));
+    }
     let criterion = match name {
         "I" => Criterion::Reading(range),
         "A" => Criterion::Average,
