@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -103,6 +103,63 @@ fn a_plateau_that_does_not_fit_is_held_out() {
     let watched = fs::read(copy.out().join("result.json")).unwrap();
     copy.calibrate(&["--method", "recursive", "--hold-out", "5:9"]);
     assert!(watched == fs::read(copy.out().join("result.json")).unwrap());
+}
+
+/// The first plateau has its line in the history, although nothing is known without it.
+#[test]
+fn the_first_plateau_can_be_held_out() {
+    let copy = averaged();
+    let run = copy.run(&["watch", copy.session().to_str().unwrap(), "--quiet", "0", "--once", "--hold-out", "1:1"]);
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let history = history(&copy.out());
+    let numbers: Vec<u64> = history.iter().map(|line| line["plateau"].as_u64().unwrap()).collect();
+    assert_eq!(numbers, (1..=108).collect::<Vec<_>>());
+    assert!(history[0]["held_out"] == true && history[0]["rank"] == 0 && history[1]["rank"] == 3, "{}", history[0]);
+}
+
+/// A plateau that is off before much is known makes good ones raise alarms. The result holds out the one that all plateaus single out.
+#[test]
+fn alarms_by_an_early_plateau_that_is_off_are_traced_to_it() {
+    let copy = averaged();
+    copy.edit("plateaus.csv", |text| shifted(&text, 10));
+    let session = copy.session();
+    let run = copy.run(&["watch", session.to_str().unwrap(), "--quiet", "0", "--once", "--hold-out-alarms"]);
+    let text = [run.stdout, run.stderr].map(|part| String::from_utf8(part).unwrap()).concat();
+    assert!(
+        text.contains("plateaus raised an alarm while the session ran; of all plateaus together 2:2 stands out"),
+        "{text}"
+    );
+    assert!(text.contains("1 plateau held out of the fit: 2:2"), "{text}");
+    assert!(history(&copy.out()).iter().filter(|line| line["held_out"] == true).count() > 1);
+    let watched = fs::read(copy.out().join("result.json")).unwrap();
+    copy.calibrate(&["--method", "recursive", "--hold-out", "2:2"]);
+    assert!(watched == fs::read(copy.out().join("result.json")).unwrap());
+}
+
+/// What was taken up from a file that another has replaced since is said to rest on the earlier one.
+#[test]
+fn a_plateau_that_was_corrected_is_noticed() {
+    let copy = averaged();
+    let session = copy.session();
+    let arguments = ["watch", session.to_str().unwrap(), "--quiet", "0", "--once"];
+    let said = |run: Output| [run.stdout, run.stderr].map(|part| String::from_utf8(part).unwrap()).concat();
+    assert!(!said(copy.run(&arguments)).contains("otherwise than before"));
+    assert!(!said(copy.run(&arguments)).contains("otherwise than before"));
+    copy.edit("plateaus.csv", |text| shifted(&text, 10));
+    let text = said(copy.run(&arguments));
+    assert!(text.contains("plateau 2:2 reads otherwise than before"), "{text}");
+}
+
+/// The table of plateaus with the row `row`, from 0, off by 20 mm/s^2.
+fn shifted(table: &str, row: usize) -> String {
+    let moved = |(n, line): (usize, &str)| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        for (cell, off) in cells[3..6].iter_mut().zip([0.02, 0.014, 0.02]).filter(|_| n == row + 1) {
+            *cell = (cell.parse::<f64>().unwrap() + off).to_string();
+        }
+        cells.join(",") + "\n"
+    };
+    table.lines().enumerate().map(moved).collect()
 }
 
 /// An order that does not keep positions together is followed as well, and it is said what it costs.

@@ -146,3 +146,27 @@ fn a_table_of_rests_is_waited_for() {
     let [a, b] = ["watched", "calibrated"].map(|out| fs::read(laboratory.path(out).join("result.json")).unwrap());
     assert!(a == b);
 }
+
+/// A prior of a rest that has not come yet has no parameter to be of. Rests that have gone since they were taken up are what is wrong, and not
+/// the experiment file.
+#[test]
+fn rests_that_have_not_come_and_rests_that_have_gone() {
+    let laboratory = Laboratory::new();
+    laboratory.run(&["reduce", "session", "--out", "reduced"]);
+    let experiment = laboratory.path("reduced/experiment.toml");
+    let text = fs::read_to_string(&experiment).unwrap();
+    fs::write(&experiment, format!("{text}\n[prior]\n\"theta_1[r3]\" = \"10 mrad\"\n")).unwrap();
+    let rests = laboratory.path("reduced/rests.csv");
+    fs::rename(&rests, laboratory.path("later.csv")).unwrap();
+    let arguments = ["watch", "reduced", "--once", "--quiet", "0", "--out", "watched"];
+    assert!(laboratory.run(&arguments).contains("PLATEAU 108 of 108"));
+    let table = fs::read_to_string(laboratory.path("later.csv")).unwrap();
+    fs::write(&rests, &table).unwrap();
+    assert!(laboratory.run(&arguments).contains("PLATEAU 120 of 120"));
+    let fewer: Vec<&str> = table.lines().take(11).collect();
+    fs::write(&rests, fewer.join("\n") + "\n").unwrap();
+    let run = program::centrical().args(arguments).current_dir(laboratory.0.path()).output().unwrap();
+    let said = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(2), "{said}");
+    assert!(said.contains("watch.json") && said.contains("a session of 120 plateaus or more"), "{said}");
+}

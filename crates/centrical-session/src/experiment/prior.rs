@@ -21,6 +21,13 @@ pub(crate) struct PriorEntry {
     value: PriorValue,
 }
 
+impl PriorEntry {
+    /// Whether the name stands for a parameter of the model.
+    pub fn is_of(&self, model: &MeasurementModel) -> bool {
+        !model.parameters().select(&self.name).is_empty()
+    }
+}
+
 /// The entries of the table `[prior]`, by name.
 pub(crate) fn entries(table: &BTreeMap<String, PriorValue>) -> Vec<PriorEntry> {
     let entry = |(name, value): (&String, &PriorValue)| PriorEntry { name: name.clone(), value: value.clone() };

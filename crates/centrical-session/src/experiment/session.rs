@@ -200,6 +200,11 @@ impl Session {
         let experiment = Experiment { set_points, ..self.experiment.clone() };
         let model =
             MeasurementModel::new(experiment, self.error_model.clone(), &self.extensions).with_stated(self.type_b);
+        if self.rest_tables.iter().any(RestTable::is_awaited) {
+            // A name that stands for nothing may be that of a rest to come.
+            let there: Vec<_> = self.priors.iter().filter(|prior| prior.is_of(&model)).cloned().collect();
+            return prior::with_priors(&self.file, model, &there);
+        }
         prior::with_priors(&self.file, model, &self.priors)
     }
 

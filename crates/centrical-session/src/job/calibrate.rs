@@ -54,6 +54,39 @@ pub fn calibrate_without(
     calibrate_reduced(&session, &reduced, method, progress)
 }
 
+/// The calibration of a session that was watched, without the plateaus `held_out` by request, and without those that `alarmed` while it ran:
+/// with the plateaus before them they did not agree. All plateaus together may single out fewer, one of those before, for example. These are
+/// held out then, and returned beside the result. `alpha` is the family-wise error of singling out.
+///
+/// # Errors
+/// As [`calibrate_without`].
+pub(crate) fn calibrate_watched(
+    session: &Session,
+    held_out: &[usize],
+    alarmed: &[usize],
+    alpha: f64,
+    progress: OnProgress,
+) -> Result<(CalibrationResult, Option<Vec<PlateauName>>), Error> {
+    let (session, mut reduced) = reduce(session, progress)?;
+    reduced.held_out = held_out.to_vec();
+    let singled_out = if alarmed.is_empty() { None } else { fewer(&session, &reduced, alarmed.len(), alpha)? };
+    reduced.held_out.extend(singled_out.as_deref().unwrap_or(alarmed));
+    let names = singled_out.map(|those| those.iter().map(|n| PlateauName::of(&session, *n)).collect());
+    Ok((calibrate_reduced(&session, &reduced, Method::Recursive, progress)?, names))
+}
+
+/// The set points of outlying plateaus without which no other stands out, if they are fewer than `most`.
+fn fewer(session: &Session, reduced: &Reduced, most: usize, alpha: f64) -> Result<Option<Vec<usize>>, Error> {
+    let model = reduced.model(session)?;
+    let failed = |source| Error::fit(&session.file, source);
+    let data = Data::new(&model, reduced.observations()).map_err(failed)?;
+    let cleaned = data.without_outliers(alpha).map_err(failed)?;
+    let validity = Calibration::exact(&cleaned.data).and_then(|calibration| calibration.validity()).map_err(failed)?;
+    let is_clean = validity.outlier(alpha).is_none();
+    let left_out = cleaned.left_out.into_iter().map(|(set_point, _)| set_point).collect::<Vec<_>>();
+    Ok((is_clean && left_out.len() < most).then_some(left_out))
+}
+
 /// Fits a session that is reduced already, from files or from memory. Of rests alone, where they are acceptable by their own noise,
 /// the uncertainties include what the residuals cannot exclude beside it. `progress` is called with 0 after every step.
 ///

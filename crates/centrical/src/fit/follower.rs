@@ -19,7 +19,7 @@ use super::linearised::Linearised;
 use super::past::Past;
 use super::structure::Held;
 use crate::linalg::least_squares::LeastSquares;
-use crate::model::{FitError, MeasurementModel, NULL_HOLD, Observation};
+use crate::model::{FitError, Kind, MeasurementModel, NULL_HOLD, Observation};
 use crate::observability::Observability;
 
 /// A point is close enough when the last step was below this many standard uncertainties: what the step after it would
@@ -38,6 +38,9 @@ const GROWTH: f64 = 0.02;
 
 /// How the global unknowns of the point are held about zero, in typical magnitudes: as units are. What is determined is not held by it.
 const HOLD: f64 = 1.0;
+
+/// The same of the turns against the case: a fixture holds it within 10 deg. Nearer to zero the hold would turn all attitudes that are known.
+const HOLD_OF_CASE: f64 = 100.0;
 
 /// Steps towards a point, halved until they descend. They converge quadratically from the point before; a plateau that is
 /// far off may not let them, and is found out by the test wherever the point is.
@@ -156,12 +159,12 @@ impl<'m> Follower<'m> {
         self.append(arrival.observation)
     }
 
-    /// What the plateaus taken up say.
+    /// What the plateaus taken up say; before the first, what the priors say.
     ///
     /// # Errors
-    /// [`FitError::Empty`] before the first.
+    /// [`FitError`] when a covariance is not positive definite.
     pub fn progress(&self) -> Result<Progress, FitError> {
-        if self.taken().is_empty() { Err(FitError::Empty) } else { self.progress_with(None) }
+        self.progress_with(None)
     }
 
     /// What they are expected to say with one plateau more, whose mean will have `covariance` [m^2/s^4].
@@ -208,14 +211,13 @@ impl<'m> Follower<'m> {
 
     /// The point moved to the estimate with one plateau more, and the plateaus before where they had to be linearised anew.
     fn moved(&self, newcomer: &Observation) -> Result<(DVector<f64>, Option<Past<'m>>), FitError> {
-        let (global, typical) = (self.past.global(), self.data.typical());
-        let typical = global.part(&typical);
+        let (global, held_to) = (self.past.global(), self.past.global().part(&self.held_to()));
         let (mut point, mut moved) = (self.point.clone(), None);
         for _ in 0..STEP_LIMIT {
             let past = moved.as_ref().unwrap_or(&self.past);
             let newcomer = past.linearised(newcomer)?;
             let (plateau, y) = (past.equations_of(&newcomer), global.part(&point));
-            let (equations, misfit) = held(&global.with_priors(past.design(Some(&plateau), &y), &y), &y, &typical);
+            let (equations, misfit) = held(&global.with_priors(past.design(Some(&plateau), &y), &y), &y, &held_to);
             let step = equations.solve(misfit);
             let x = past.completed(plateau.attitude.as_ref(), &(y + step.x));
             let dx = &x - &point;
@@ -225,11 +227,23 @@ impl<'m> Follower<'m> {
             if length < CLOSE || past.remainder(&newcomer, &x) < limit {
                 return Ok((x, moved));
             }
-            let Some(next) = self.descend(past, &newcomer, &point, &dx, &typical) else { break };
-            moved = Some(past.linearised_at(&next)?);
-            point = next;
+            let Some(next) = self.descend(past, &newcomer, &point, &dx, &held_to) else { break };
+            // Where a plateau that is far off leads to readings beyond all numbers, the point stays where it is.
+            let Ok(linearised) = past.linearised_at(&next) else { break };
+            (moved, point) = (Some(linearised), next);
         }
         Ok((point, moved))
+    }
+
+    /// Magnitudes to which unknowns of the point are held.
+    fn held_to(&self) -> DVector<f64> {
+        let mut held_to = self.data.typical() * HOLD;
+        for (j, parameter) in self.data.model().parameters().iter().enumerate() {
+            if matches!(parameter.kind, Kind::CaseTurn(_)) {
+                held_to[j] = parameter.typical * HOLD_OF_CASE;
+            }
+        }
+        held_to
     }
 
     /// Whether hardly a plateau has come since the reference was set.
@@ -245,11 +259,11 @@ impl<'m> Follower<'m> {
         newcomer: &Linearised,
         point: &DVector<f64>,
         dx: &DVector<f64>,
-        typical: &DVector<f64>,
+        held_to: &DVector<f64>,
     ) -> Option<DVector<f64>> {
         let objective = |x: &DVector<f64>| {
             let plateaus = past.squared(x) + newcomer.squared(self.data.model(), x);
-            let held = (self.past.global().part(x).component_div(typical) / HOLD).norm_squared();
+            let held = self.past.global().part(x).component_div(held_to).norm_squared();
             plateaus + self.data.squared_beforehand(x) + held
         };
         let here = objective(point);
@@ -319,13 +333,13 @@ fn observability(past: &Past, newcomer: Option<&PlateauEquations>) -> Observabil
     Observability::left_of(design.rows.view((0, 0), (rows, parameters)).into_owned(), lengths)
 }
 
-/// The equations at `x` and their misfit, with every unknown held about zero.
-fn held(design: &Design, x: &DVector<f64>, typical: &DVector<f64>) -> (LeastSquares, DVector<f64>) {
+/// The equations at `x` and their misfit, with every unknown held about zero, to `held_to`.
+fn held(design: &Design, x: &DVector<f64>, held_to: &DVector<f64>) -> (LeastSquares, DVector<f64>) {
     let (n, p) = design.rows.shape();
     let mut rows = design.rows.clone().resize_vertically(n + p, 0.0);
-    rows.column_iter_mut().zip(typical.iter()).for_each(|(mut column, typical)| column *= *typical);
-    rows.rows_mut(n, p).fill_diagonal(1.0 / HOLD);
+    rows.column_iter_mut().zip(held_to.iter()).for_each(|(mut column, size)| column *= *size);
+    rows.rows_mut(n, p).fill_diagonal(1.0);
     let mut misfit = design.misfit.clone().resize_vertically(n + p, 0.0);
-    misfit.rows_mut(n, p).copy_from(&(x.component_div(typical) / -HOLD));
-    (LeastSquares::new(rows, typical.clone()), misfit)
+    misfit.rows_mut(n, p).copy_from(&-x.component_div(held_to));
+    (LeastSquares::new(rows, held_to.clone()), misfit)
 }

@@ -525,3 +525,38 @@ fn a_follower_of_rests_stands_where_a_fit_stands() {
         assert_eq!(resumed.progress().unwrap(), follower.progress().unwrap());
     }
 }
+
+/// A case that sits turned in its fixture by several degrees turns the attitudes that are known with it, and a follower stands where a fit
+/// stands.
+#[test]
+fn a_follower_of_rests_in_a_turned_case() {
+    const TURN: [f64; 3] = [0.09, -0.05, 0.07];
+    let mut random = Random::new(31);
+    let free =
+        with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &random_directions(20, &mut random));
+    let model = kozlov(known(free, 5e-3));
+    let mut x = truth(&model, 0.5, &mut random);
+    for (x, parameter) in x.iter_mut().zip(model.parameters().iter()) {
+        match parameter.kind {
+            Kind::CaseTurn(axis) => *x = TURN[axis],
+            Kind::Attitude { .. } => *x = 5e-3 * random.normal(),
+            _ => {}
+        }
+    }
+    let mut data = observed(&model, &x, &mut random);
+    let arm = data.len() - 20;
+    data.rotate_left(arm);
+    let mut follower = Follower::new(&model);
+    for n in 0..data.len() {
+        let arrival = follower.test(&data[n]).unwrap();
+        follower.take(arrival).unwrap();
+        if ![19, 60, data.len() - 1].contains(&n) {
+            continue;
+        }
+        let (fit, progress) = (exact(&model, &data[..=n]).unwrap(), follower.progress().unwrap());
+        for (j, estimate) in progress.estimates.iter().enumerate() {
+            let (Some((value, u)), Some(expected)) = (estimate, fit.value(j)) else { continue };
+            assert!((value - expected).abs() < 0.05 * u, "{n}, {}", model.parameters()[j].name);
+        }
+    }
+}

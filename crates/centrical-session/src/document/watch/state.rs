@@ -97,12 +97,16 @@ impl WatchState {
         let text = read_result(file, expected)?;
         let mut state: Self = from_json(file, 1, &text, expected)?;
         let refuse = |found: String, expected: &str| Err(Error::content(file, Place::Whole, found, expected));
-        let other = state.schema != fresh.schema || state.experiment != fresh.experiment;
-        let count = session.experiment.set_points.len();
-        if other || state.plateaus.iter().any(|plateau| plateau.set_point >= count) {
-            let found = "the state of another experiment file";
+        if state.schema != fresh.schema || state.experiment != fresh.experiment {
             let expected = format!("that of {}, or no such file to begin anew", session.file.display());
-            return Err(Error::content(file, Place::Whole, found, expected));
+            return refuse("the state of another experiment file".to_owned(), &expected);
+        }
+        let count = session.experiment.set_points.len();
+        let largest = state.plateaus.iter().map(|plateau| plateau.set_point + 1).max().unwrap_or(0);
+        if largest > count {
+            let expected =
+                format!("{count}, as many as the session has now with its rests, or no such file to begin anew");
+            return refuse(format!("the state of a session of {largest} plateaus or more"), &expected);
         }
         // What the program writes is always so; what another hand wrote is blamed here, not where it is used.
         let lengths: Vec<usize> = [&state.point].into_iter().chain(&state.reference).map(Vec::len).collect();

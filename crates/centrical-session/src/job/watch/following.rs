@@ -17,10 +17,10 @@ use super::board::Board;
 use super::progress::WatchProgress;
 use super::request::{WatchEnd, WatchEvent, WatchRequest};
 use super::rests;
-use crate::document::{LiveStatus, Method, WatchState, WatchedPlateau, append_history, keep_history};
+use crate::document::{LiveStatus, WatchState, WatchedPlateau, append_history, keep_history};
 use crate::error::{Error, Place};
 use crate::experiment::{PlateauName, Session};
-use crate::job::calibrate::calibrate_without;
+use crate::job::calibrate::calibrate_watched;
 
 /// A session that is watched: the estimates, and where they are kept.
 #[derive(Debug)]
@@ -37,6 +37,8 @@ pub(super) struct Following<'a> {
     come: Vec<bool>,
     /// Plateaus that the user holds out, as set points.
     held_out: Vec<usize>,
+    /// Set points of plateaus whose files have changed since they were taken up.
+    changed: Vec<usize>,
     /// What is shown of it, if it is.
     board: Option<Board<'a>>,
 }
@@ -71,7 +73,19 @@ impl<'a> Following<'a> {
         let mut come = vec![false; experiment.set_points.len()];
         state.plateaus.iter().for_each(|plateau| come[plateau.set_point] = true);
         let kept = Instant::now();
-        let mut following = Self { request, session, model, follower, next, state, kept, come, held_out, board: None };
+        let mut following = Self {
+            request,
+            session,
+            model,
+            follower,
+            next,
+            state,
+            kept,
+            come,
+            held_out,
+            changed: Vec::new(),
+            board: None,
+        };
         following.board = following.first_board()?;
         Ok(following)
     }
@@ -139,6 +153,7 @@ impl<'a> Following<'a> {
             if count > 0 {
                 self.keep()?;
             }
+            self.changed_since().iter().for_each(|note| report(WatchEvent::Waiting(note)));
             if let Some(board) = &mut board {
                 board.pace(self.state.plateaus.len());
                 if let Some(standing) = (count > 0).then(|| self.standing()).transpose()?.flatten() {
@@ -149,7 +164,7 @@ impl<'a> Following<'a> {
             if watch.is_complete() {
                 // The calibration reads the records anew, and needs the room of what was kept of them.
                 drop(watch);
-                return self.finish(stop).map(Some);
+                return self.finish(stop, report).map(Some);
             }
             if watch.note() != note.as_deref() {
                 note = watch.note().map(str::to_owned);
@@ -201,6 +216,7 @@ impl<'a> Following<'a> {
     fn arrived(&mut self, observation: &Observation, is_last: bool) -> Result<Option<WatchProgress<'_>>, Error> {
         let set_point = observation.set_point;
         if self.has(set_point) {
+            self.compare(observation);
             return Ok(None);
         }
         let arrival = self.fitted(self.follower.test(observation))?;
@@ -216,10 +232,6 @@ impl<'a> Following<'a> {
         self.come[set_point] = true;
         self.state.plateaus.push(WatchedPlateau::new(observation, innovation, alarm, held_out));
         self.state.move_to(&self.follower);
-        if self.follower.taken().is_empty() {
-            self.keep()?;
-            return Ok(None);
-        }
         let now = self.fitted(self.follower.progress())?;
         let count = self.state.plateaus.len();
         let entry = self.state.plateaus[count - 1].entry(count, self.model, &now);
@@ -230,6 +242,37 @@ impl<'a> Following<'a> {
         self.progress(now, observation, is_last).map(Some)
     }
 
+    /// Notes a plateau whose files have changed since it was taken up, which happens while no watch runs.
+    fn compare(&mut self, observation: &Observation) {
+        let kept = self.state.plateaus.iter().find(|plateau| plateau.set_point == observation.set_point);
+        let differs = kept.is_some_and(|kept| {
+            let (change, covariance) = (observation.mean - kept.observation().mean, kept.observation().covariance);
+            covariance.cholesky().is_some_and(|factor| change.dot(&factor.solve(&change)) > LARGEST_CHANGE.powi(2))
+        });
+        if differs {
+            self.changed.push(observation.set_point);
+        }
+    }
+
+    /// What to say of plateaus whose files have changed since they were taken up, if there are any.
+    fn changed_since(&mut self) -> Option<String> {
+        let changed = std::mem::take(&mut self.changed);
+        let PlateauName { mounting, plateau } = PlateauName::of(self.session, *changed.first()?);
+        let first = match self.session.rest_of(mounting - 1) {
+            Some(rest) => format!("rest {rest}"),
+            None => format!("plateau {mounting}:{plateau}"),
+        };
+        let whole = match changed.len() {
+            1 => format!("{first} reads"),
+            count => format!("{first} and {} more read", count - 1),
+        };
+        let state = self.request.out.join(STATE_FILE);
+        let state = state.display();
+        Some(format!(
+            "{whole} otherwise than before; what is shown rests on the earlier readings, and begins anew without {state}"
+        ))
+    }
+
     /// Writes the state. It holds all plateaus: many that come at once are not written one by one. After a kill the history
     /// may be ahead of it, and is cut to it.
     fn keep(&mut self) -> Result<(), Error> {
@@ -237,9 +280,9 @@ impl<'a> Following<'a> {
         self.state.write(&self.request.out.join(STATE_FILE))
     }
 
-    /// What is known after the last plateau that has arrived; `None` while none is taken up.
+    /// What is known after the last plateau that has arrived; `None` before the first.
     fn standing(&self) -> Result<Option<WatchProgress<'_>>, Error> {
-        let last = self.state.plateaus.last().filter(|_| !self.follower.taken().is_empty());
+        let last = self.state.plateaus.last();
         last.map(|last| self.progress(self.fitted(self.follower.progress())?, &last.observation(), true)).transpose()
     }
 
@@ -282,13 +325,29 @@ impl<'a> Following<'a> {
     }
 
     /// The calibration, unless `stop` is raised before its end.
-    fn finish(&self, stop: &AtomicBool) -> Result<WatchEnd, Error> {
-        let held_out = self.state.plateaus.iter().filter(|plateau| plateau.held_out);
-        let held_out: Vec<_> = held_out.map(|plateau| PlateauName::of(self.session, plateau.set_point)).collect();
-        let result = match calibrate_without(self.session, &held_out, Method::Recursive, &|_| until(stop)) {
+    fn finish(&self, stop: &AtomicBool, report: &mut dyn FnMut(WatchEvent)) -> Result<WatchEnd, Error> {
+        let held_out = self.state.plateaus.iter().filter(|plateau| plateau.held_out).map(|plateau| plateau.set_point);
+        let (by_request, alarmed): (Vec<usize>, Vec<usize>) = held_out.partition(|n| self.held_out.contains(n));
+        let alpha = self.request.false_alarm;
+        let progress = |_| until(stop);
+        let (result, singled_out) = match calibrate_watched(self.session, &by_request, &alarmed, alpha, &progress) {
             Err(Error::Stopped(_)) => return Ok(self.stopped()),
             result => result?,
         };
+        if let Some(names) = singled_out {
+            let names: Vec<String> = names.iter().map(|name| format!("{}:{}", name.mounting, name.plateau)).collect();
+            let instead = match &names[..] {
+                [] => "of all plateaus together none stands out, and the result holds none of them out".to_owned(),
+                names => format!(
+                    "of all plateaus together {} stands out, and the result holds that out instead",
+                    names.join(", ")
+                ),
+            };
+            report(WatchEvent::Waiting(&format!(
+                "{} plateaus raised an alarm while the session ran; {instead}",
+                alarmed.len()
+            )));
+        }
         result.write(&self.request.out.join("result.json"))?;
         Ok(WatchEnd::Complete(Box::new(result)))
     }
@@ -317,6 +376,9 @@ fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) 
 
 /// Longest time for which plateaus that have come are not in the state on disk.
 const KEPT_EACH: Duration = Duration::from_secs(1);
+
+/// Largest change of a plateau that is read anew, in its standard uncertainties: telemetry that has come since may move its ends.
+const LARGEST_CHANGE: f64 = 3.0;
 
 const STATE_FILE: &str = "watch.json";
 
