@@ -336,7 +336,7 @@ fn a_calibration_with_fewer_parameters_is_left_out() {
     assert_eq!((units["sessions"].as_u64(), units["left_out"].as_array().unwrap().len()), (Some(55), 1));
     assert!(units["parameters"].as_array().unwrap().iter().any(|p| p["name"] == "G1_11"));
     let shown = String::from_utf8(run(folder, &[&["history"], ask.as_slice()].concat()).stdout).unwrap();
-    assert!(shown.contains("LEFT OUT  2022-03-02"), "{shown}");
+    assert!(shown.contains("INCOMPLETE  2022-03-02"), "{shown}");
 
     // Where only the last has them, the others are compared by what they have, and no day is promised.
     for session in [0, 2] {

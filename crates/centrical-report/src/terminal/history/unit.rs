@@ -75,7 +75,7 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         (_, None, _) => {}
     }
     for session in &report.left_out {
-        screen.marked(Emphasis::Warning, "LEFT OUT", &left_out(session));
+        screen.marked(Emphasis::Warning, "INCOMPLETE", &left_out(session));
     }
     if !report.not_compared.is_empty() {
         let words = format!("not determined before the last calibration: {}", short_list(&report.not_compared));
@@ -100,7 +100,8 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
 /// A calibration that is left out, and why.
 pub(super) fn left_out(left_out: &LeftOutSession) -> String {
     let session = &left_out.session;
-    format!("{}, {}: it does not determine {}", session.date, session.source, short_list(&left_out.lacks))
+    let lacks = short_list(&left_out.lacks);
+    format!("{}, {}: it does not determine {lacks}, and is not compared", session.date, session.source)
 }
 
 /// The first names, and the number of the others.

@@ -26,11 +26,11 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
     }
     for session in report.left_out.iter().take(SHOWN) {
         let words = format!("serial {}, {}", session.session.unit_serial, left_out(session));
-        screen.marked(Emphasis::Warning, "LEFT OUT", &words);
+        screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
     }
     if report.left_out.len() > SHOWN {
         let words = format!("and {} more", counted(report.left_out.len() - SHOWN, "calibration"));
-        screen.marked(Emphasis::Warning, "LEFT OUT", &words);
+        screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
     }
     for unit in &report.outlying {
         let most = unit.most.iter().map(|(name, score)| format!("{name} {score:+.1}")).collect::<Vec<_>>().join(", ");
