@@ -69,22 +69,28 @@ pub(crate) fn calibrate_watched(
 ) -> Result<(CalibrationResult, Option<Vec<PlateauName>>), Error> {
     let (session, mut reduced) = reduce(session, progress)?;
     reduced.held_out = held_out.to_vec();
-    let singled_out = if alarmed.is_empty() { None } else { fewer(&session, &reduced, alarmed.len(), alpha)? };
+    let singled_out =
+        if alarmed.is_empty() { None } else { fewer(&session, &reduced, alarmed.len(), alpha, progress)? };
     reduced.held_out.extend(singled_out.as_deref().unwrap_or(alarmed));
     let names = singled_out.map(|those| those.iter().map(|n| PlateauName::of(&session, *n)).collect());
     Ok((calibrate_reduced(&session, &reduced, Method::Recursive, progress)?, names))
 }
 
-/// The set points of outlying plateaus without which no other stands out, if they are fewer than `most`.
-fn fewer(session: &Session, reduced: &Reduced, most: usize, alpha: f64) -> Result<Option<Vec<usize>>, Error> {
+/// The set points of outlying plateaus without which no other stands out, if they are fewer than `count`.
+fn fewer(
+    session: &Session,
+    reduced: &Reduced,
+    count: usize,
+    alpha: f64,
+    progress: OnProgress,
+) -> Result<Option<Vec<usize>>, Error> {
     let model = reduced.model(session)?;
     let failed = |source| Error::fit(&session.file, source);
     let data = Data::new(&model, reduced.observations()).map_err(failed)?;
-    let cleaned = data.without_outliers(alpha).map_err(failed)?;
+    let cleaned = data.without_most_outlying(alpha, count - 1, &|()| progress(0)).map_err(failed)?;
     let validity = Calibration::exact(&cleaned.data).and_then(|calibration| calibration.validity()).map_err(failed)?;
-    let is_clean = validity.outlier(alpha).is_none();
-    let left_out = cleaned.left_out.into_iter().map(|(set_point, _)| set_point).collect::<Vec<_>>();
-    Ok((is_clean && left_out.len() < most).then_some(left_out))
+    let singled_out = cleaned.left_out.into_iter().map(|(set_point, _)| set_point).collect();
+    Ok(validity.outlier(alpha).is_none().then_some(singled_out))
 }
 
 /// Fits a session that is reduced already, from files or from memory. Of rests alone, where they are acceptable by their own noise,

@@ -14,6 +14,7 @@ use statrs::function::beta::beta_reg;
 use super::coverage::chi_squared_tail;
 use crate::fit::{Calibration, Data};
 use crate::model::FitError;
+use crate::progress::{OnProgress, advance, unwatched};
 
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
 const REDUNDANT: f64 = 1e-8;
@@ -130,10 +131,24 @@ impl<'m> Data<'m> {
     /// # Errors
     /// [`FitError`] when numbers overflow.
     pub fn without_outliers(&self, alpha: f64) -> Result<Cleaned<'m>, FitError> {
+        self.without_most_outlying(alpha, self.observations().len(), &unwatched)
+    }
+
+    /// The same with no more than `most` left out. `progress` is asked before each fit.
+    ///
+    /// # Errors
+    /// As [`Data::without_outliers`]; [`FitError::Stopped`].
+    pub fn without_most_outlying(
+        &self,
+        alpha: f64,
+        most: usize,
+        progress: OnProgress<()>,
+    ) -> Result<Cleaned<'m>, FitError> {
         let mut data = self.clone();
         let mut left_out = Vec::new();
-        let most = data.observations().len() / 10;
+        let most = most.min(data.observations().len() / 10);
         loop {
+            advance(progress, ())?;
             let validity = Calibration::exact(&data)?.validity()?;
             let Some(n) = validity.outlier(alpha).filter(|_| left_out.len() < most) else {
                 return Ok(Cleaned { data, left_out });

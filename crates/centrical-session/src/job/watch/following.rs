@@ -326,8 +326,11 @@ impl<'a> Following<'a> {
 
     /// The calibration, unless `stop` is raised before its end.
     fn finish(&self, stop: &AtomicBool, report: &mut dyn FnMut(WatchEvent)) -> Result<WatchEnd, Error> {
-        let held_out = self.state.plateaus.iter().filter(|plateau| plateau.held_out).map(|plateau| plateau.set_point);
-        let (by_request, alarmed): (Vec<usize>, Vec<usize>) = held_out.partition(|n| self.held_out.contains(n));
+        let held_out = self.state.plateaus.iter().filter(|plateau| plateau.held_out);
+        let by_alarm = |plateau: &&WatchedPlateau| plateau.alarm && !self.held_out.contains(&plateau.set_point);
+        let set_points = |those: Vec<&WatchedPlateau>| those.into_iter().map(|plateau| plateau.set_point).collect();
+        let (alarmed, by_request) = held_out.partition(by_alarm);
+        let (alarmed, by_request): (Vec<usize>, Vec<usize>) = (set_points(alarmed), set_points(by_request));
         let alpha = self.request.false_alarm;
         let progress = |_| until(stop);
         let (result, singled_out) = match calibrate_watched(self.session, &by_request, &alarmed, alpha, &progress) {
