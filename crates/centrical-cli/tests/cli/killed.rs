@@ -159,8 +159,6 @@ fn a_watch_goes_on_from_every_write() {
     let history = "watch-history.jsonl";
     dies_in_a_watch(&[&begun], history, |_| 1);
     dies_in_a_watch(&[&begun], history, |length| (length - 1) / BLOCK);
-    // While all that has come is held out there is no history, and the state is the largest file.
-    dies_in_a_watch(&[&begun, "--hold-out", "1:1"], "watch.json", |_| 1);
     dies_in_a_watch(&[&complete], "result.json", |length| (length - 1) / BLOCK);
 }
 

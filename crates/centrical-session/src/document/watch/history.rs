@@ -138,7 +138,7 @@ pub fn keep_history(file: &Path, plateaus: usize) -> Result<(), Error> {
         return Ok(());
     }
     let text = read_result(file, "the history of a watch")?;
-    // One plateau may have no line: while nothing is taken up there is nothing to tell.
+    // Earlier programs wrote no line while nothing was taken up.
     let is_of = |line: &&str| serde_json::from_str::<HistoryEntry>(line).is_ok_and(|entry| entry.plateau <= plateaus);
     let kept: String = ended(&text).split_inclusive('\n').take_while(is_of).collect();
     if kept == text { Ok(()) } else { Ok(write_whole(file, kept.as_bytes())?) }

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use self::errors::OwnErrors;
 pub use self::kinds::{CalibratedParameter, Kinds, Places};
 use super::of_data::{OfData, PRIORS};
-use crate::document::TermSummary;
+use crate::document::{PastSession, TermSummary};
 use crate::quantity::Date;
 use crate::store::{Row, SharedInfluence};
 
@@ -107,6 +107,18 @@ impl Calibrated {
             covariance: row.covariance,
             shared: row.shared,
         })
+    }
+
+    /// What a history says of it.
+    pub fn past(&self) -> PastSession {
+        PastSession {
+            source: self.source.clone(),
+            unit_model: self.unit_model.clone(),
+            unit_serial: self.unit_serial.clone(),
+            station: self.station.clone(),
+            date: self.date,
+            acceptable: self.acceptable,
+        }
     }
 
     /// The parameters of its unit that it determines.

@@ -5,7 +5,6 @@ use std::borrow::Borrow;
 use centrical::history::{Control, Rule, cusum, ewma, moving_ranges, signals};
 
 use super::calibrated::{Calibrated, Finder};
-use super::unit::past;
 use crate::document::{CHART_SCHEMA, ChartReport, ChartSignal, Program};
 
 /// The rules of single values.
@@ -124,7 +123,7 @@ pub fn chart(
         deviation: control.deviation,
         limits: control.limits(),
         range_limit: control.range_limit(),
-        sessions: of[first..].iter().map(|(calibrated, _)| past(calibrated)).collect(),
+        sessions: of[first..].iter().map(|(calibrated, _)| calibrated.past()).collect(),
         ranges: ranges.get(first..).unwrap_or_default().to_vec(),
         values: values.split_off(first),
         ewma: means.means.split_off(first),

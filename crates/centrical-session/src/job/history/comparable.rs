@@ -7,7 +7,6 @@ use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use super::calibrated::Calibrated;
-use super::unit::past;
 use crate::document::LeftOutSession;
 
 /// Calibrations of units, unit by unit, that determine the same parameters.
@@ -69,7 +68,7 @@ impl<'a> Comparison<'a> {
             if lacks.is_empty() {
                 calibrations.push(calibrated);
             } else {
-                left_out.push(LeftOutSession { session: past(calibrated), lacks });
+                left_out.push(LeftOutSession { session: calibrated.past(), lacks });
             }
         }
         Self { calibrations, left_out }

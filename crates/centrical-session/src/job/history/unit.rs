@@ -8,8 +8,7 @@ use nalgebra::{DMatrix, Vector3};
 use super::calibrated::{Basis, Calibrated, DAYS, Finder, series, single, years};
 use super::comparable::Comparison;
 use crate::document::{
-    DueDate, PastSession, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
-    UnitParameter,
+    DueDate, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport, UnitParameter,
 };
 use crate::quantity::Date;
 
@@ -79,7 +78,7 @@ pub fn unit_history(
         program: Program::this(),
         unit_model: last.unit_model.clone(),
         unit_serial: last.unit_serial.clone(),
-        sessions: own.iter().map(|calibrated| past(calibrated)).collect(),
+        sessions: own.iter().map(|calibrated| calibrated.past()).collect(),
         left_out,
         not_compared: last.determined().filter(|name| !names.contains(name)).collect(),
         trend,
@@ -109,17 +108,6 @@ pub fn common_names(calibrations: &[&Calibrated]) -> Vec<String> {
         calibrations.iter().all(|calibrated| finder.place(calibrated).is_some())
     };
     of_unit.filter(|p| in_all(&p.name)).map(|p| p.name.clone()).collect()
-}
-
-pub fn past(calibrated: &Calibrated) -> PastSession {
-    PastSession {
-        source: calibrated.source.clone(),
-        unit_model: calibrated.unit_model.clone(),
-        unit_serial: calibrated.unit_serial.clone(),
-        station: calibrated.station.clone(),
-        date: calibrated.date,
-        acceptable: calibrated.acceptable,
-    }
 }
 
 struct Job<'a> {
