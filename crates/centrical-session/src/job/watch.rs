@@ -2,6 +2,7 @@
 
 mod arrivals;
 mod board;
+mod changed;
 mod following;
 mod growth;
 mod progress;

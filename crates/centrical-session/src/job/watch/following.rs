@@ -14,6 +14,7 @@ use nalgebra::Vector3;
 
 use super::arrivals::{Watch, until};
 use super::board::Board;
+use super::changed::Changed;
 use super::progress::WatchProgress;
 use super::request::{WatchEnd, WatchEvent, WatchRequest};
 use super::rests;
@@ -37,8 +38,7 @@ pub(super) struct Following<'a> {
     come: Vec<bool>,
     /// Plateaus that the user holds out, as set points.
     held_out: Vec<usize>,
-    /// Set points of plateaus whose files have changed since they were taken up.
-    changed: Vec<usize>,
+    changed: Changed,
     /// What is shown of it, if it is.
     board: Option<Board<'a>>,
 }
@@ -83,7 +83,7 @@ impl<'a> Following<'a> {
             kept,
             come,
             held_out,
-            changed: Vec::new(),
+            changed: Changed::default(),
             board: None,
         };
         following.board = following.first_board()?;
@@ -153,7 +153,9 @@ impl<'a> Following<'a> {
             if count > 0 {
                 self.keep()?;
             }
-            self.changed_since().iter().for_each(|note| report(WatchEvent::Waiting(note)));
+            if let Some(note) = self.changed.told(self.session, &self.request.out.join(STATE_FILE)) {
+                report(WatchEvent::Waiting(&note));
+            }
             if let Some(board) = &mut board {
                 board.pace(self.state.plateaus.len());
                 if let Some(standing) = (count > 0).then(|| self.standing()).transpose()?.flatten() {
@@ -216,7 +218,9 @@ impl<'a> Following<'a> {
     fn arrived(&mut self, observation: &Observation, is_last: bool) -> Result<Option<WatchProgress<'_>>, Error> {
         let set_point = observation.set_point;
         if self.has(set_point) {
-            self.compare(observation);
+            if let Some(kept) = self.state.plateaus.iter().find(|plateau| plateau.set_point == set_point) {
+                self.changed.compare(kept, observation);
+            }
             return Ok(None);
         }
         let arrival = self.fitted(self.follower.test(observation))?;
@@ -240,37 +244,6 @@ impl<'a> Following<'a> {
             self.keep()?;
         }
         self.progress(now, observation, is_last).map(Some)
-    }
-
-    /// Notes a plateau whose files have changed since it was taken up, which happens while no watch runs.
-    fn compare(&mut self, observation: &Observation) {
-        let kept = self.state.plateaus.iter().find(|plateau| plateau.set_point == observation.set_point);
-        let differs = kept.is_some_and(|kept| {
-            let (change, covariance) = (observation.mean - kept.observation().mean, kept.observation().covariance);
-            covariance.cholesky().is_some_and(|factor| change.dot(&factor.solve(&change)) > LARGEST_CHANGE.powi(2))
-        });
-        if differs {
-            self.changed.push(observation.set_point);
-        }
-    }
-
-    /// What to say of plateaus whose files have changed since they were taken up, if there are any.
-    fn changed_since(&mut self) -> Option<String> {
-        let changed = std::mem::take(&mut self.changed);
-        let PlateauName { mounting, plateau } = PlateauName::of(self.session, *changed.first()?);
-        let first = match self.session.rest_of(mounting - 1) {
-            Some(rest) => format!("rest {rest}"),
-            None => format!("plateau {mounting}:{plateau}"),
-        };
-        let whole = match changed.len() {
-            1 => format!("{first} reads"),
-            count => format!("{first} and {} more read", count - 1),
-        };
-        let state = self.request.out.join(STATE_FILE);
-        let state = state.display();
-        Some(format!(
-            "{whole} otherwise than before; what is shown rests on the earlier readings, and begins anew without {state}"
-        ))
     }
 
     /// Writes the state. It holds all plateaus: many that come at once are not written one by one. After a kill the history
@@ -379,9 +352,6 @@ fn check_groups(wanted: &[String], session: &Session, model: &MeasurementModel) 
 
 /// Longest time for which plateaus that have come are not in the state on disk.
 const KEPT_EACH: Duration = Duration::from_secs(1);
-
-/// Largest change of a plateau that is read anew, in its standard uncertainties: telemetry that has come since may move its ends.
-const LARGEST_CHANGE: f64 = 3.0;
 
 const STATE_FILE: &str = "watch.json";
 

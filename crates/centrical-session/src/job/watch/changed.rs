@@ -1,0 +1,43 @@
+//! Plateaus whose files have changed since they were taken up, which happens while no watch runs.
+
+use std::path::Path;
+
+use centrical::Observation;
+
+use crate::document::WatchedPlateau;
+use crate::experiment::{PlateauName, Session};
+
+/// Set points of such plateaus, until they are told.
+#[derive(Debug, Default)]
+pub(super) struct Changed(Vec<usize>);
+
+/// Largest change of a plateau that is read anew, in its standard uncertainties: telemetry that has come since may move its ends.
+const LARGEST_CHANGE: f64 = 3.0;
+
+impl Changed {
+    /// Compares a plateau with what was kept of it.
+    pub fn compare(&mut self, kept: &WatchedPlateau, observation: &Observation) {
+        let kept = kept.observation();
+        let change = observation.mean - kept.mean;
+        let squared = kept.covariance.cholesky().map(|factor| change.dot(&factor.solve(&change)));
+        if squared.is_some_and(|squared| squared > LARGEST_CHANGE.powi(2)) {
+            self.0.push(observation.set_point);
+        }
+    }
+
+    /// What to say of them, if there are any; `state` is the file that keeps what was read.
+    pub fn told(&mut self, session: &Session, state: &Path) -> Option<String> {
+        let changed = std::mem::take(&mut self.0);
+        let PlateauName { mounting, plateau } = PlateauName::of(session, *changed.first()?);
+        let first = match session.rest_of(mounting - 1) {
+            Some(rest) => format!("rest {rest}"),
+            None => format!("plateau {mounting}:{plateau}"),
+        };
+        let whole = match changed.len() {
+            1 => format!("{first} reads"),
+            count => format!("{first} and {} more read", count - 1),
+        };
+        let rest = "what is shown rests on the earlier readings, and begins anew without";
+        Some(format!("{whole} otherwise than before; {rest} {}", state.display()))
+    }
+}
