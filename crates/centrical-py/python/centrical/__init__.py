@@ -13,6 +13,8 @@ True
 (1, 3)
 """
 
+import typing as _typing
+
 # First: without NumPy this is an ImportError, and not a panic at the first array.
 import numpy as _numpy  # noqa: F401
 
@@ -42,11 +44,13 @@ from ._errors import FileError, InputError, NoSuchFileError
 from ._history import add_to_store, control_chart, history, write_pages
 from ._noise import Noise
 from ._plan import Plan
-from ._plot import Drawing
 from ._progress import set_progress
 from ._result import Objection, Observability, Parameter, Result, read_result
 from ._session import Session
 from ._watch import Watch, watch
+
+if _typing.TYPE_CHECKING:
+    from ._plot import Drawing
 
 set_threads = _native.set_threads
 
@@ -92,3 +96,12 @@ __all__ = [
     "watch",
     "write_pages",
 ]
+
+
+def __getattr__(name: str) -> object:
+    # The figures are loaded when they are used.
+    if name == "Drawing":
+        from ._plot import Drawing
+
+        return Drawing
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

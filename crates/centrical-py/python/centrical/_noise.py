@@ -10,7 +10,6 @@ import numpy as np
 
 from . import _native
 from ._document import Document
-from ._plot import Curve, plot_curves
 from ._progress import Shown
 from ._table import numbers
 
@@ -51,6 +50,8 @@ class Noise(Document):
 
         Without Matplotlib an object that a notebook shows as SVG.
         """
+        from ._plot import Curve, plot_curves
+
         curves = []
         for reading in self.readings:
             for curve in reading.deviations:

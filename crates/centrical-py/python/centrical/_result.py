@@ -15,7 +15,6 @@ from ._columns import columns_of_rows
 from ._document import Document, Record, escape
 from ._documents import check_documents
 from ._paths import paths
-from ._plot import draw_correlation, draw_residuals, plot_figure
 from ._table import columns_of, is_table, numbers
 
 if TYPE_CHECKING:
@@ -284,6 +283,8 @@ class Result:
         >>> ct.calibrate(example).plot("convergence")
         <Drawing 'Uncertainty as the session goes on'>
         """
+        from ._plot import draw_correlation, draw_residuals, plot_figure
+
         on_axes = {
             "residuals": lambda axes: draw_residuals([row.residual for row in self.document.plateaus], axes),
             "correlation": lambda axes: draw_correlation(self.names, self.covariance, self.uncertainties, axes),
