@@ -22,7 +22,7 @@ impl ComparedUnits {
     /// Those of `units` that are compared.
     pub fn of(mut units: Vec<Vec<Calibrated>>) -> Self {
         let all: Vec<&Calibrated> = units.iter().flatten().collect();
-        let Comparison { left_out, .. } = Comparison::of(&all, None);
+        let Compared { left_out, .. } = Compared::of(&all, None);
         if !left_out.is_empty() {
             let sources: BTreeSet<&str> = left_out.iter().map(|other| other.session.source.as_str()).collect();
             for unit in &mut units {
@@ -35,14 +35,14 @@ impl ComparedUnits {
 }
 
 /// Calibrations that determine the same parameters.
-pub(super) struct Comparison<'a> {
+pub(super) struct Compared<'a> {
     /// Those that are compared, in their order.
     pub calibrations: Vec<&'a Calibrated>,
     /// Those that lack some of the parameters.
     pub left_out: Vec<LeftOutSession>,
 }
 
-impl<'a> Comparison<'a> {
+impl<'a> Compared<'a> {
     /// Of `all`; parameters that the calibration `last` does not determine do not count, and it is compared itself.
     pub fn of(all: &[&'a Calibrated], last: Option<&Calibrated>) -> Self {
         let mut lists = Lists::default();

@@ -6,7 +6,7 @@ use centrical_compensate::Term;
 use nalgebra::{DMatrix, Vector3};
 
 use super::calibrated::{Basis, Calibrated, DAYS, Finder, series, single, years};
-use super::comparable::Comparison;
+use super::comparable::Compared;
 use crate::document::{
     DueDate, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport, UnitParameter,
 };
@@ -43,7 +43,7 @@ pub fn unit_history(
 ) -> Option<UnitHistoryReport> {
     let all: Vec<&Calibrated> = calibrations.iter().collect();
     let last = *all.last()?;
-    let Comparison { calibrations: own, left_out } = Comparison::of(&all, Some(last));
+    let Compared { calibrations: own, left_out } = Compared::of(&all, Some(last));
     let names = common_names(&own);
     if own.len() < 2 || names.is_empty() {
         return None;
