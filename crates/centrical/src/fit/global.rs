@@ -1,4 +1,4 @@
-//! The unknowns that several plateaus contain, apart from the attitudes of rests, each of which is in the equations of one plateau alone.
+//! The unknowns that several plateaus contain. The attitude of a rest is apart: one plateau alone contains it.
 //!
 //! A rest in an attitude of its own has three equations and two unknowns that no other plateau contains. The two are eliminated as
 //! it comes ([`Elimination`]), and the remaining equation is one of the global unknowns. Time and memory for these do not depend on the

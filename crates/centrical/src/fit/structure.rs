@@ -28,7 +28,7 @@ pub struct Structure {
     pub(super) start: OnceLock<LeastSquares>,
 }
 
-/// Equations, of which the null directions are held.
+/// What holds the null directions of equations.
 #[derive(Debug, Clone)]
 pub(super) struct Held {
     /// Unknowns that few equations contain.

@@ -475,8 +475,8 @@ fn a_change_of_bias_is_what_a_refit_shows() {
     assert!(stated.standard_uncertainty(bias) > 0.1 * budget.standard_uncertainty(bias).unwrap());
 }
 
-/// On its way a follower determines what a fit of the same plateaus determines, and stands where that stands, whether rests come before
-/// those on the arm, after them or between them, and whether their attitudes are known or not.
+/// A follower determines what a fit of the same plateaus determines, and stands where that stands. Rests come before the plateaus on
+/// the arm, after them or between them, in attitudes that are known or not.
 #[test]
 fn a_follower_of_rests_stands_where_a_fit_stands() {
     let mut random = Random::new(23);

@@ -42,9 +42,8 @@ impl CalibrationResult {
         held_out.map(|plateau| format!("{}:{}", plateau.mounting, plateau.index + 1)).collect()
     }
 
-    /// The combinations that the data do not show, as people read them: of rests in free attitudes alone without the attitudes, in
-    /// which each rest takes part, and without coefficients that change a reading at 1 g by less than a twentieth of the most that one
-    /// does. All others as they are.
+    /// The combinations that the data do not show, as people read them. Those of rests in free attitudes alone are without the attitudes, and
+    /// without coefficients that change a reading at 1 g by less than a twentieth of the largest change. All others are as they are.
     pub fn null_directions_in_short(&self) -> Vec<serde_json::Map<String, serde_json::Value>> {
         const CHIEF: f64 = 0.05;
         if self.model.has_arm() {

@@ -29,7 +29,7 @@ pub(crate) struct CandidatesTable {
     /// Radii of the seats, R0_1.
     #[serde(default)]
     pub radii: Vec<Quantity>,
-    /// Ids of positions; all if there is none.
+    /// Ids of positions; all if absent.
     #[serde(default)]
     pub positions: Vec<String>,
     /// Speeds of plateaus: a list, or equal steps.

@@ -122,9 +122,9 @@ impl Calibrated {
     }
 
     /// The parameters of its unit that it determines.
-    pub fn determined(&self) -> impl Iterator<Item = String> {
+    pub fn determined(&self) -> impl Iterator<Item = &str> {
         let own = self.parameters.iter().zip(&self.values).filter(|(p, value)| p.is_of_unit && value.is_finite());
-        own.map(|(parameter, _)| parameter.name.clone())
+        own.map(|(parameter, _)| parameter.name.as_str())
     }
 
     /// The same with the errors of its unit's parameters alone in place of all covariances, and as its result states it.

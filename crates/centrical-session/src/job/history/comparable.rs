@@ -87,9 +87,7 @@ struct Lists {
 impl Lists {
     /// The parameters of its unit that a calibration determines.
     fn determined(&mut self, calibrated: &Calibrated) -> Arc<BTreeSet<usize>> {
-        let parameters = calibrated.parameters.iter().zip(&calibrated.values);
-        let own = parameters.filter(|(parameter, value)| parameter.is_of_unit && value.is_finite());
-        let set: BTreeSet<usize> = own.map(|(parameter, _)| self.number(&parameter.name)).collect();
+        let set: BTreeSet<usize> = calibrated.determined().map(|name| self.number(name)).collect();
         Arc::clone(self.sets.entry(set.clone()).or_insert_with(|| Arc::new(set)))
     }
 

@@ -80,7 +80,7 @@ pub fn unit_history(
         unit_serial: last.unit_serial.clone(),
         sessions: own.iter().map(|calibrated| calibrated.past()).collect(),
         left_out,
-        not_compared: last.determined().filter(|name| !names.contains(name)).collect(),
+        not_compared: last.determined().map(str::to_owned).filter(|name| !names.contains(name)).collect(),
         trend,
         coverage: request.coverage,
         units_together: 1 + others.len(),

@@ -7,7 +7,7 @@ use centrical::Observation;
 use crate::document::WatchedPlateau;
 use crate::experiment::{PlateauName, Session};
 
-/// Set points of such plateaus, until they are told.
+/// The set points of these plateaus that nobody was told of yet.
 #[derive(Debug, Default)]
 pub(super) struct Changed(Vec<usize>);
 
