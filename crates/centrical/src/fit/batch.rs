@@ -8,7 +8,7 @@ use super::curvature;
 use super::data::Data;
 use super::design::Design;
 use super::estimates::{Fit, Termination};
-use super::structure::Structure;
+use super::structure::{Hold, Structure};
 use crate::linalg::least_squares::{LeastSquares, Solution};
 use crate::model::{FitError, Linearisation, NULL_HOLD};
 use crate::progress::{OnProgress, advance, unwatched};
@@ -69,11 +69,8 @@ impl<'a> Start<'a> {
     }
 
     /// The first step, from zero: every fit of one experiment has the same equations there, and its own misfit.
-    fn step(&self) -> (&'a LeastSquares, Solution) {
-        let zero = DVector::zeros(self.structure.held.typical.len());
-        let equations = || self.structure.held.equations(&self.design, &zero, 1.0 / NULL_HOLD).0;
-        let equations = self.structure.start.get_or_init(equations);
-        (equations, equations.solve(self.design.misfit.clone()))
+    fn step(&self) -> Solution {
+        self.structure.start.solve(self.design.misfit.clone())
     }
 
     /// Degrees of freedom left by the estimable combinations. An influence brings an equation and an unknown.
@@ -84,7 +81,9 @@ impl<'a> Start<'a> {
 
     /// The linear fit: the residual of `Z - H X`.
     pub fn solve(self) -> Fit {
-        let (equations, step) = self.step();
+        let held = &self.structure.held;
+        let (equations, misfit) = held.equations(&self.design, &DVector::zeros(held.typical.len()), Hold::NULL);
+        let step = equations.solve(misfit);
         let parameters = self.data.model().parameters().len();
         let covariance = equations.covariance();
         let residuals = (self.data.observations().iter())
@@ -98,11 +97,12 @@ impl<'a> Start<'a> {
         Fit {
             values: step.x.rows(0, parameters).as_slice().to_vec(),
             deviations: step.x.rows_range(parameters..).as_slice().to_vec(),
+            point: step.x.as_slice().to_vec(),
             curved: DMatrix::zeros(covariance.nrows(), 0),
             covariance,
             chi_squared: whitened.norm_squared() + self.design.rest.powi(2),
             degrees_of_freedom: self.degrees_of_freedom(),
-            null_directions_held: self.structure.held.null_basis.ncols() > 0,
+            null_directions_held: held.holds(Hold::NULL),
             iterations: 1,
             termination: Termination::Linear,
             residuals,
@@ -121,12 +121,14 @@ type Place = (DVector<f64>, Vec<Linearisation>);
 pub(super) struct Search<'a> {
     start: Start<'a>,
     x: DVector<f64>,
+    /// Once the search has ended: `x`, or one linear step on from it where weak directions are held, without their hold.
+    estimates: DVector<f64>,
     linearisations: Vec<Linearisation>,
     /// Those at `x`, where the step to it has made them already.
     ahead: Option<Vec<Linearisation>>,
     design: Option<Design>,
-    /// Weight with which null directions are held: one over [`NULL_HOLD`], then 0 when released.
-    null_weight: f64,
+    /// What is held; null directions are released when the data keep them.
+    hold: Hold,
     iterations: usize,
     /// Length of the last step, in standard uncertainties.
     last_length: f64,
@@ -139,15 +141,15 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub fn from(start: Start<'a>) -> Self {
-        let null_weight = if start.structure.held.null_basis.ncols() > 0 { 1.0 / NULL_HOLD } else { 0.0 };
-        let Solution { x, whitened_length } = start.step().1;
+        let Solution { x, whitened_length } = start.step();
         Self {
             start,
+            estimates: x.clone(),
             x,
             linearisations: Vec::new(),
             ahead: None,
             design: None,
-            null_weight,
+            hold: Hold::ALL,
             iterations: 0,
             last_length: whitened_length,
             termination: None,
@@ -182,7 +184,8 @@ impl<'a> Search<'a> {
     /// One Gauss-Newton step, halved until chi^2 falls with the weights as they are.
     fn step(&mut self) -> Result<(), FitError> {
         let Some(design) = self.design.take() else { return Ok(()) };
-        let (equations, misfit) = self.start.structure.held.equations(&design, &self.x, self.null_weight);
+        let (equations, misfit) = self.start.structure.held.equations(&design, &self.x, self.hold);
+        let from = self.x.clone();
         let objective_norm = misfit.norm().hypot(design.rest);
         let step = equations.solve(misfit);
         // Of a sum of squares of readings that are known to a few units of their last place.
@@ -190,7 +193,8 @@ impl<'a> Search<'a> {
         let length = step.whitened_length;
         let next = length * (length / self.last_length).min(1.0);
         let has_converged = next <= CONVERGED + rounding && length <= LAST + rounding;
-        let has_settled = self.null_weight > 0.0 && length < SETTLED && length >= 0.5 * self.last_length;
+        let has_settled =
+            self.start.structure.held.holds(self.hold) && length < SETTLED && length >= 0.5 * self.last_length;
         self.last_length = length;
         if has_converged || has_settled {
             self.x += &step.x;
@@ -204,21 +208,34 @@ impl<'a> Search<'a> {
             self.termination = Some(Termination::Stalled);
         }
         if self.termination.is_some() {
-            let Start { data, structure, .. } = self.start;
-            self.curved = curvature::left_by(data, structure, self.null_weight, &self.x, &self.linearisations)?;
-            self.covariance = equations.covariance() + &self.curved * self.curved.transpose();
+            self.estimate(&design, &equations, &from)?;
         }
+        Ok(())
+    }
+
+    /// The estimates and their covariance by the last linearisation, that of `design` at the point `from`, with these equations.
+    fn estimate(&mut self, design: &Design, held: &LeastSquares, from: &DVector<f64>) -> Result<(), FitError> {
+        let Start { data, structure, .. } = self.start;
+        self.curved = curvature::left_by(data, structure, self.hold, &self.x, &self.linearisations)?;
+        let released = Hold { weak: false, ..self.hold };
+        let covariance = if structure.held.holds(Hold::WEAK) {
+            let (equations, misfit) = structure.held.equations(design, from, released);
+            self.estimates = from + equations.solve(misfit).x;
+            equations.covariance()
+        } else {
+            self.estimates = self.x.clone();
+            held.covariance()
+        };
+        self.covariance = covariance + &self.curved * self.curved.transpose();
         Ok(())
     }
 
     /// Releases the null directions, once, if the data keep them well within the hold.
     fn release_null_space(&mut self, equations: &LeastSquares) -> bool {
-        let null_basis = &self.start.structure.held.null_basis;
-        let free =
-            self.null_weight > 0.0 && (null_basis.transpose() * equations.inverse()).norm() < RELEASE_BELOW * NULL_HOLD;
-        if free {
-            self.null_weight = 0.0;
-        }
+        let held = &self.start.structure.held;
+        let free = held.holds(Hold { weak: false, ..self.hold })
+            && held.null_basis.tr_mul(&equations.inverse()).norm() < RELEASE_BELOW * NULL_HOLD;
+        self.hold.null &= !free;
         free
     }
 
@@ -238,7 +255,7 @@ impl<'a> Search<'a> {
     /// the shares of the priors and of the hold.
     fn objective(&self, x: &DVector<f64>, there: &[Linearisation]) -> Result<f64, FitError> {
         let structure = self.start.structure;
-        let held = structure.held.null_basis.transpose() * x.component_div(&structure.held.typical) * self.null_weight;
+        let held = structure.held.rows(self.hold) * x.component_div(&structure.held.typical);
         let residuals: Vec<_> =
             self.start.data.observations().iter().zip(there).map(|(o, l)| o.mean - l.reading).collect();
         Ok(self.chi_squared(&residuals, x)? + held.norm_squared())
@@ -249,25 +266,33 @@ impl<'a> Search<'a> {
     }
 
     /// The residuals at the last point, with the weights and the covariance of the last linearisation: on convergence
-    /// less than a thousandth of a standard uncertainty away.
+    /// less than a thousandth of a standard uncertainty away. Beyond the point the model is linear.
     fn into_fit(self) -> Result<Fit, FitError> {
-        let residuals = self.start.data.residuals(self.x.as_slice());
-        let parameters = self.start.data.model().parameters().len();
+        let Start { data, structure, .. } = self.start;
+        let mut residuals = data.residuals(self.x.as_slice());
+        if structure.held.holds(Hold::WEAK) {
+            let beyond = &self.estimates - &self.x;
+            for (residual, linearisation) in residuals.iter_mut().zip(&self.linearisations) {
+                *residual -= linearisation.by_unknowns().map(|(j, column)| column * beyond[j]).sum::<Vector3<f64>>();
+            }
+        }
+        let parameters = data.model().parameters().len();
         Ok(Fit {
-            values: self.x.rows(0, parameters).as_slice().to_vec(),
-            deviations: self.x.rows_range(parameters..).as_slice().to_vec(),
-            chi_squared: self.chi_squared(&residuals, &self.x)?,
+            values: self.estimates.rows(0, parameters).as_slice().to_vec(),
+            deviations: self.estimates.rows_range(parameters..).as_slice().to_vec(),
+            chi_squared: self.chi_squared(&residuals, &self.estimates)?,
+            point: self.x.as_slice().to_vec(),
             covariance: self.covariance,
             curved: self.curved,
             degrees_of_freedom: self.start.degrees_of_freedom(),
-            null_directions_held: self.null_weight > 0.0,
+            null_directions_held: structure.held.holds(Hold { weak: false, ..self.hold }),
             iterations: self.iterations,
             termination: self.termination.unwrap_or(Termination::IterationLimit),
             residuals,
-            observation_covariances: self.start.data.covariances(&self.linearisations),
-            observability: self.start.structure.observability.clone(),
-            of_data: self.start.structure.of_data.clone(),
-            priors: self.start.data.model().priors().to_vec(),
+            observation_covariances: data.covariances(&self.linearisations),
+            observability: structure.observability.clone(),
+            of_data: structure.of_data.clone(),
+            priors: data.model().priors().to_vec(),
         })
     }
 }

@@ -102,7 +102,7 @@ impl<'d> Calibration<'d> {
     /// the errors of its setting and rounding [m^2/s^4], and its reading [m/s^2].
     pub fn expected(&self, set_point: &SetPoint, covariance: &Matrix3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
         let at_parameters = self.data.model().linearise(set_point, self.fit.state());
-        let there = at_parameters.with_influences(&self.fit.unknowns());
+        let there = at_parameters.with_influences(self.fit.unknowns());
         (total_covariance(covariance, &there), there.reading)
     }
 

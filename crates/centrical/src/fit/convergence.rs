@@ -37,12 +37,12 @@ impl Calibration<'_> {
         let mut triangle = DMatrix::from_diagonal(&of_priors.map_with_location(|j, _, prior| (prior + hold(j)).sqrt()));
         let (every, mut plateaus) = (observations.len().div_ceil(most.max(1)).max(1), 0);
         let mut checkpoints = Vec::new();
-        let linearisations = data.linearised(&x);
+        let linearisations = data.linearised(x);
         for (observations, linearisations) in observations.chunks(every).zip(linearisations.chunks(every)) {
             let mut stack = DMatrix::zeros(count + 3 * observations.len(), count);
             for (n, (observation, linearisation)) in observations.iter().zip(linearisations).enumerate() {
                 let readings = Readings::new(observation, linearisation)?;
-                global.equations_of(observation.set_point, &readings, &x).fill(&mut stack, count + 3 * n);
+                global.equations_of(observation.set_point, &readings, x).fill(&mut stack, count + 3 * n);
             }
             stack.column_iter_mut().zip(sizes.iter()).for_each(|(mut column, size)| column *= *size);
             stack.rows_mut(0, count).copy_from(&triangle);

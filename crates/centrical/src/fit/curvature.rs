@@ -1,4 +1,4 @@
-//! What the curvature of the model leaves in the estimates along directions that priors alone determine.
+//! The curvature of the model: how far it is linear, and what is left of it in estimates along directions that priors alone determine.
 //!
 //! Along such a direction an estimate may be off by far more than elsewhere, and the readings answer with a square. With the
 //! covariance as a sum of independent directions, `C = sum_k d_k d_k^T`, the error of the estimate is `sum_k z_k d_k` of
@@ -12,11 +12,13 @@
 //! to the covariance of the estimates, whatever the directions by which it is written as a sum. Without them the joint
 //! covariance is far too narrow across the direction (test `joint_covariance_with_one_radius`).
 
+use std::cmp::Ordering;
+
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::assembly::Assembly;
 use super::data::Data;
-use super::structure::Structure;
+use super::structure::{Hold, Structure};
 use crate::linalg::least_squares::LeastSquares;
 use crate::model::whitening::Whitener;
 use crate::model::{FitError, Linearisation};
@@ -25,15 +27,18 @@ use crate::model::{FitError, Linearisation};
 /// hardly determine as well as those that they do not.
 const WIDE: f64 = 1e-2;
 
+/// A model that misses readings by less than this part of a standard uncertainty, all together, is linear.
+const LINEAR: f64 = 0.1;
+
 /// Most directions that are taken: products of two grow with the square of their number.
 const MOST: usize = 12;
 
-/// The columns whose squares add to the covariance at the unknowns `x` of a fit of `data`, whose null directions are held with
-/// `null_weight`; none where priors determine nothing by themselves.
+/// The columns whose squares add to the covariance at the unknowns `x` of a fit of `data`, whose directions are held by
+/// `hold`; none where priors determine nothing by themselves.
 pub(super) fn left_by(
     data: &Data,
     structure: &Structure,
-    null_weight: f64,
+    hold: Hold,
     x: &DVector<f64>,
     linearisations: &[Linearisation],
 ) -> Result<DMatrix<f64>, FitError> {
@@ -43,17 +48,30 @@ pub(super) fn left_by(
     }
     // The rows of the plateaus themselves, not those that a filter turned them into.
     let design = Assembly::Batch.design(data, x.as_slice(), linearisations)?;
-    let (equations, _) = structure.held.equations(&design, x, null_weight);
+    let (equations, _) = structure.held.equations(&design, x, hold);
     let directions = widest(&equations, &data.typical(), of_priors);
-    let missed = missed(data, x, &directions);
-    let mut whitened = DMatrix::zeros(3 * linearisations.len(), missed.len());
+    let missed = whitened(data, linearisations, &missed(data, x, &directions))?;
+    Ok(equations.unknowns(&equations.rotated(missed)))
+}
+
+/// Whether the model at `X = 0`, which has these linearisations, misses readings over the length of that direction.
+pub(super) fn departs(data: &Data, linearisations: &[Linearisation], x: &DVector<f64>) -> Result<bool, FitError> {
+    let missed = missed(data, &DVector::zeros(x.len()), std::slice::from_ref(x));
+    let length = whitened(data, linearisations, &missed[1..])?.norm();
+    // Also where the length is no number.
+    Ok(!matches!(length.partial_cmp(&LINEAR), Some(Ordering::Less)))
+}
+
+/// Columns of `3 n` readings [m/s^2], counted in standard uncertainties.
+fn whitened(data: &Data, linearisations: &[Linearisation], columns: &[DVector<f64>]) -> Result<DMatrix<f64>, FitError> {
+    let mut whitened = DMatrix::zeros(3 * linearisations.len(), columns.len());
     for (n, (observation, at)) in data.observations().iter().zip(linearisations).enumerate() {
         let whitener = Whitener::new(&observation.into(), at)?;
-        for (mut column, missed) in whitened.column_iter_mut().zip(&missed) {
-            column.fixed_rows_mut::<3>(3 * n).copy_from(&whitener.apply(&missed.fixed_rows::<3>(3 * n).into_owned()));
+        for (mut of_all, column) in whitened.column_iter_mut().zip(columns) {
+            of_all.fixed_rows_mut::<3>(3 * n).copy_from(&whitener.apply(&column.fixed_rows::<3>(3 * n).into_owned()));
         }
     }
-    Ok(equations.unknowns(&equations.rotated(whitened)))
+    Ok(whitened)
 }
 
 /// The widest independent directions of the covariance, `least` of them or more, unknowns counted in their typical magnitudes.

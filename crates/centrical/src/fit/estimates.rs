@@ -25,6 +25,8 @@ pub struct Fit {
     pub(super) values: Vec<f64>,
     /// Estimates of the influences, in their standard uncertainties.
     pub(super) deviations: Vec<f64>,
+    /// Where the model was linearised last and holds: the estimates themselves, unless weak directions are held.
+    pub(super) point: Vec<f64>,
     /// Of the parameters, then the influences.
     pub(super) covariance: DMatrix<f64>,
     /// What the curvature of the model along directions that priors alone determine leaves in the estimates: columns of the
@@ -76,7 +78,7 @@ impl Fit {
     /// The point in parameter space at which the fit stands, lost combinations included: for prediction of
     /// readings, never as estimates.
     pub fn state(&self) -> &[f64] {
-        &self.values
+        &self.point[..self.values.len()]
     }
 
     /// Estimates of the influences on the experiment, in standard uncertainties and in the model's order, each with the
@@ -93,8 +95,8 @@ impl Fit {
     }
 
     /// Where the fit stands: the parameters, then the influences.
-    pub(super) fn unknowns(&self) -> Vec<f64> {
-        self.values.iter().chain(&self.deviations).copied().collect()
+    pub(super) fn unknowns(&self) -> &[f64] {
+        &self.point
     }
 
     /// What the experiment sees.

@@ -17,9 +17,9 @@ use super::filter::innovation::{Innovation, Unexplained};
 use super::global::{Attitude, PlateauEquations};
 use super::linearised::Linearised;
 use super::past::Past;
-use super::structure::Held;
+use super::structure::{Held, Hold};
 use crate::linalg::least_squares::LeastSquares;
-use crate::model::{FitError, Kind, MeasurementModel, NULL_HOLD, Observation};
+use crate::model::{FitError, Kind, MeasurementModel, Observation};
 use crate::observability::Observability;
 
 /// A point is close enough when the last step was below this many standard uncertainties: what the step after it would
@@ -292,7 +292,7 @@ impl<'m> Follower<'m> {
         let newcomer = newcomer.map(|newcomer| past.linearised(newcomer)).transpose()?;
         let (newcomer, y) = (newcomer.map(|newcomer| past.equations_of(&newcomer)), global.part(x));
         let design = global.with_priors(past.design(newcomer.as_ref(), &y), &y);
-        let (equations, misfit) = held.equations(&design, &y, 1.0 / NULL_HOLD);
+        let (equations, misfit) = held.equations(&design, &y, Hold::NULL);
         let attitude_at_zero = at_zero.and_then(|plateau| plateau.attitude);
         let attitudes = past.at_zero().attitudes().iter().chain(&attitude_at_zero);
         let of_attitudes: usize = attitudes.map(|attitude| attitude.unknown_before).sum();

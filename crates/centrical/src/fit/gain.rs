@@ -8,10 +8,10 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use super::assembly::Assembly;
 use super::data::Data;
 use super::estimates::Fit;
-use super::structure::Structure;
+use super::structure::{Hold, Structure};
 use crate::linalg::least_squares::LeastSquares;
 use crate::model::whitening::Whitener;
-use crate::model::{FitError, Linearisation, NULL_HOLD};
+use crate::model::{FitError, Linearisation};
 
 /// The factored design at the estimate of a fit.
 #[derive(Debug, Clone)]
@@ -33,12 +33,12 @@ impl Gain {
     /// Gain of the fit of `data`, whose design has that structure.
     pub(super) fn of(data: &Data, structure: &Structure, fit: &Fit) -> Result<Self, FitError> {
         let at = fit.unknowns();
-        let linearisations = data.linearised(&at);
-        let design = Assembly::Batch.design(data, &at, &linearisations)?;
+        let linearisations = data.linearised(at);
+        let design = Assembly::Batch.design(data, at, &linearisations)?;
         let pairs = data.observations().iter().zip(&linearisations);
         let whiteners = pairs.map(|(o, l)| Whitener::new(&o.into(), l)).collect::<Result<_, _>>()?;
-        let null_weight = if fit.null_directions_held { 1.0 / NULL_HOLD } else { 0.0 };
-        let (equations, misfit) = structure.held.equations(&design, &DVector::from_vec(at), null_weight);
+        let hold = Hold { null: fit.null_directions_held, weak: false };
+        let (equations, misfit) = structure.held.equations(&design, &DVector::from_column_slice(at), hold);
         let (parameters, priors) = (data.model().parameters().len(), data.model().priors().len());
         let basis = equations.basis(3 * data.observations().len());
         // What a last step would take up would pass for much of a column that the unknowns follow all but wholly.

@@ -1,16 +1,18 @@
 //! The structure of a design: rank and null space, which hold for any number of fits of one experiment.
 
-use std::sync::OnceLock;
-
 use nalgebra::{DMatrix, DVector};
 
 use super::assembly::Assembly;
+use super::curvature;
 use super::data::Data;
 use super::design::Design;
 use crate::linalg::elimination::Own;
 use crate::linalg::least_squares::LeastSquares;
-use crate::model::{FitError, Linearisation, Prior};
+use crate::model::{FitError, Linearisation, NULL_HOLD, Prior};
 use crate::observability::Observability;
+
+/// Null directions are as wide as the hold, to rounding; a weak direction is wider by this factor.
+const WIDER: f64 = 1.001;
 
 /// What a design determines and what it loses, decided on `H` at `X = 0`. It depends on the plateaus and their weights,
 /// never on the readings, and holds for any number of fits of one experiment.
@@ -24,19 +26,36 @@ pub struct Structure {
     pub(super) held: Held,
     /// Of the observations at `X = 0`.
     pub(super) linearisations: Vec<Linearisation>,
-    /// The equations at `X = 0`, null directions held, factored when the first fit starts from them.
-    pub(super) start: OnceLock<LeastSquares>,
+    /// The equations at `X = 0`, all directions held that are, from which every fit starts.
+    pub(super) start: LeastSquares,
 }
 
-/// What holds the null directions of equations.
+/// What holds directions of equations that would run away.
 #[derive(Debug, Clone)]
 pub(super) struct Held {
     /// Unknowns that few equations contain.
     own: Vec<Own>,
     /// Orthonormal basis of the null space in typical units, `(p + q) x (p - rank)`.
     pub null_basis: DMatrix<f64>,
+    /// Orthonormal directions in typical units that the data determine, but only to where the model is no longer linear.
+    weak_basis: DMatrix<f64>,
     /// Typical magnitudes of the unknowns.
     pub typical: DVector<f64>,
+}
+
+/// Which directions are held about zero, with a standard deviation of [`NULL_HOLD`] typical magnitudes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Hold {
+    /// The null directions.
+    pub null: bool,
+    /// The weak ones: to find a point where the model can be linearised, never in an estimate.
+    pub weak: bool,
+}
+
+impl Hold {
+    pub const NULL: Self = Self { null: true, weak: false };
+    pub const WEAK: Self = Self { null: false, weak: true };
+    pub const ALL: Self = Self { null: true, weak: true };
 }
 
 impl Structure {
@@ -52,11 +71,16 @@ impl Structure {
     pub(super) fn by(assembly: Assembly, data: &Data) -> Result<(Self, Design), FitError> {
         let linearisations = data.linearised_at_zero();
         let design = assembly.design(data, &vec![0.0; data.unknowns()], &linearisations)?;
-        Ok((Self::decided(assembly, data, linearisations, &design), design))
+        Ok((Self::decided(assembly, data, linearisations, &design)?, design))
     }
 
     /// The structure decided on the equations at `X = 0`, those of the priors and influences among them.
-    fn decided(assembly: Assembly, data: &Data, linearisations: Vec<Linearisation>, design: &Design) -> Self {
+    fn decided(
+        assembly: Assembly,
+        data: &Data,
+        linearisations: Vec<Linearisation>,
+        design: &Design,
+    ) -> Result<Self, FitError> {
         let model = data.model();
         let (columns, influences) = (model.parameters().len(), model.influences().len());
         // The influences have proper distributions of their own: they take part in no null direction.
@@ -68,11 +92,8 @@ impl Structure {
         };
         let of_data = (!model.priors().is_empty()).then(|| with(&[]).0);
         let (observability, own) = with(model.priors());
-        let mut held = Held::new(&observability, own, data.typical());
-        if observability.lost() == 0 {
-            held.own = assembly.own(data, model.priors(), true);
-        }
-        Self { assembly, observability, of_data, held, linearisations, start: OnceLock::new() }
+        let (held, start) = Held::at_zero(assembly, data, &observability, own, &linearisations, design)?;
+        Ok(Self { assembly, observability, of_data, held, linearisations, start })
     }
 
     /// What the design determines.
@@ -91,30 +112,84 @@ impl Held {
     pub fn new(observability: &Observability, own: Vec<Own>, typical: DVector<f64>) -> Self {
         let mut null_basis = observability.null_basis().resize_vertically(typical.len(), 0.0);
         null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);
-        // What is eliminated is determined where all else is held.
-        for &j in own.iter().flat_map(|own| &own.columns) {
-            null_basis.row_mut(j).fill(0.0);
-        }
-        Self { own, null_basis: orthonormal(null_basis), typical }
+        let weak_basis = DMatrix::zeros(typical.len(), 0);
+        let mut held = Self { own, null_basis, weak_basis, typical };
+        held.null_basis = held.orthonormal(held.null_basis.clone());
+        held
     }
 
-    /// The whitened equations and their misfit, with one equation more for each null direction: its component is zero, with
-    /// weight `null_weight`.
-    pub fn equations(&self, design: &Design, x: &DVector<f64>, null_weight: f64) -> (LeastSquares, DVector<f64>) {
-        let (n, p, lost) = (design.rows.nrows(), design.rows.ncols(), self.null_basis.ncols());
-        let mut rows = DMatrix::zeros(n + lost, p);
+    /// The equations at `X = 0` with that `design`, and what holds them.
+    fn at_zero(
+        assembly: Assembly,
+        data: &Data,
+        observability: &Observability,
+        own: Vec<Own>,
+        linearisations: &[Linearisation],
+        design: &Design,
+    ) -> Result<(Self, LeastSquares), FitError> {
+        let zero = DVector::zeros(data.unknowns());
+        let mut held = Self::new(observability, own, data.typical());
+        if observability.lost() == 0 {
+            let all = Self { own: assembly.own(data, data.model().priors(), true), ..held.clone() };
+            let start = all.equations(design, &zero, Hold::ALL).0;
+            if start.inverse().norm() < NULL_HOLD {
+                return Ok((all, start));
+            }
+        }
+        held.weak_basis = held.weak(data, linearisations, design)?;
+        let start = held.equations(design, &zero, Hold::ALL).0;
+        Ok((held, start))
+    }
+
+    /// Directions that the data determine, to more than [`NULL_HOLD`] typical magnitudes, and along which the model departs from its
+    /// linearisation at `X = 0` within one standard uncertainty.
+    fn weak(&self, data: &Data, linearisations: &[Linearisation], design: &Design) -> Result<DMatrix<f64>, FitError> {
+        let (equations, _) = self.equations(design, &DVector::zeros(data.unknowns()), Hold::NULL);
+        let mut weak = DMatrix::zeros(data.unknowns(), 0);
+        for direction in equations.wider_than(WIDER * NULL_HOLD) {
+            if curvature::departs(data, linearisations, &direction.component_mul(&self.typical))? {
+                weak.extend(std::iter::once(direction));
+            }
+        }
+        Ok(self.orthonormal(weak))
+    }
+
+    /// Orthonormal basis of the span of directions in typical units, which are independent, without the unknowns that are
+    /// eliminated: these are determined where all else is held.
+    fn orthonormal(&self, mut directions: DMatrix<f64>) -> DMatrix<f64> {
+        for &j in self.own.iter().flat_map(|own| &own.columns) {
+            directions.row_mut(j).fill(0.0);
+        }
+        if directions.ncols() == 0 { directions } else { directions.qr().q() }
+    }
+
+    /// Whether it holds any direction.
+    pub fn holds(&self, hold: Hold) -> bool {
+        hold.null && self.null_basis.ncols() > 0 || hold.weak && self.weak_basis.ncols() > 0
+    }
+
+    /// The equations that hold directions, one each: its component in typical units is zero.
+    pub fn rows(&self, hold: Hold) -> DMatrix<f64> {
+        let bases = [(hold.null, &self.null_basis), (hold.weak, &self.weak_basis)];
+        let held: Vec<_> = bases.iter().filter(|(held, _)| *held).flat_map(|(_, basis)| basis.column_iter()).collect();
+        let mut rows = DMatrix::zeros(held.len(), self.typical.len());
+        for (mut row, direction) in rows.row_iter_mut().zip(held) {
+            row.copy_from(&(direction.transpose() * (1.0 / NULL_HOLD)));
+        }
+        rows
+    }
+
+    /// The whitened equations and their misfit, with one equation more for each direction that is held.
+    pub fn equations(&self, design: &Design, x: &DVector<f64>, hold: Hold) -> (LeastSquares, DVector<f64>) {
+        let held = self.rows(hold);
+        let (n, p, m) = (design.rows.nrows(), design.rows.ncols(), held.nrows());
+        let mut rows = DMatrix::zeros(n + m, p);
         rows.rows_mut(0, n).copy_from(&design.rows);
         rows.column_iter_mut().zip(self.typical.iter()).for_each(|(mut column, typical)| column *= *typical);
-        let held = self.null_basis.transpose() * null_weight;
-        let mut misfit = DVector::zeros(n + lost);
+        let mut misfit = DVector::zeros(n + m);
         misfit.rows_mut(0, n).copy_from(&design.misfit);
-        misfit.rows_mut(n, lost).copy_from(&(-&held * x.component_div(&self.typical)));
-        rows.rows_mut(n, lost).copy_from(&held);
+        misfit.rows_mut(n, m).copy_from(&(-&held * x.component_div(&self.typical)));
+        rows.rows_mut(n, m).copy_from(&held);
         (LeastSquares::eliminating(&self.own, rows, self.typical.clone()), misfit)
     }
-}
-
-/// Orthonormal basis of the span of the columns, which are independent.
-fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
-    if columns.ncols() == 0 { columns } else { columns.qr().q() }
 }

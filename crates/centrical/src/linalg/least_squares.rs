@@ -94,6 +94,17 @@ impl LeastSquares {
         self.in_sizes(&DMatrix::identity(self.columns(), self.columns()))
     }
 
+    /// Principal directions of the covariance whose standard uncertainty, in sizes of the unknowns, is above a limit, and as long
+    /// as it; the unknowns that are eliminated follow the others.
+    pub fn wider_than(&self, limit: f64) -> Vec<DVector<f64>> {
+        let svd = self.r.clone().svd(false, true);
+        let Some(directions) = svd.v_t else { return Vec::new() };
+        let pairs = svd.singular_values.iter().zip(directions.row_iter());
+        let wide = pairs.filter(|(s, _)| **s * limit < 1.0).map(|(s, direction)| direction.transpose() / *s);
+        let none = DMatrix::zeros(self.elimination.columns(), 1);
+        wide.map(|d| self.elimination.completed(&none, DMatrix::from_columns(&[d])).column(0).into_owned()).collect()
+    }
+
     /// Covariance of the solution for errors of `b` of unit variance.
     pub fn covariance(&self) -> DMatrix<f64> {
         let root = self.root();

@@ -110,7 +110,7 @@ impl Task {
     }
 
     fn effort(&self, certify: bool) -> Effort {
-        let usual = Effort::usual(self.candidates.len());
+        let usual = Effort::usual(&self.candidates);
         match self.time {
             _ if certify => Effort::CERTIFIED,
             Some(_) => usual,

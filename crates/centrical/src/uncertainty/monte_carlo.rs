@@ -219,7 +219,7 @@ impl<'a> Laboratory<'a> {
     }
 
     fn judge(&self, fit: &Fit, truth: &[f64]) -> Option<Run> {
-        let errors: Vec<f64> = self.determined.iter().map(|&j| fit.state()[j] - truth[j]).collect();
+        let errors = self.determined.iter().map(|&j| Some(fit.value(j)? - truth[j])).collect::<Option<Vec<f64>>>()?;
         let covariance = fit.covariance_of(&self.determined)?;
         let converged = matches!(fit.termination, Termination::Converged | Termination::Linear);
         let run = Run {

@@ -387,7 +387,7 @@ fn large_plans_are_certified() {
         let candidates = large(8, &[30.0, 60.0, 120.0]);
         let criterion = criterion(number, &candidates.scenarios[0].model);
         let plan =
-            best_for_time(&candidates, &criterion, time * 3600.0, Effort::usual(candidates.len()), &unwatched).unwrap();
+            best_for_time(&candidates, &criterion, time * 3600.0, Effort::usual(&candidates), &unwatched).unwrap();
         assert!(schedule_is_sorted(&plan.schedule, &candidates));
         // The continuous design within 0.2 % of the optimum; the schedule, where there is more time to fill than set-ups take,
         // within 0.2 % of it; and of the best on any mountings within 1 % of the uncertainty.
@@ -616,12 +616,10 @@ fn least_times_for_goals_are_below_all_that_keep_them() {
 fn plans_of_little_time_see_what_they_are_to_see() {
     let candidates = large(8, &[30.0, 60.0]);
     let criterion = Criterion::Reading(RANGE);
-    let plan =
-        best_for_time(&candidates, &criterion, 2.4 * 3600.0, Effort::usual(candidates.len()), &unwatched).unwrap();
+    let plan = best_for_time(&candidates, &criterion, 2.4 * 3600.0, Effort::usual(&candidates), &unwatched).unwrap();
     println!("{:.2e} {:.2e}, {} nodes", plan.gap(), plan.rounding(), plan.nodes);
     assert!((1.0 + plan.gap()).sqrt() < 1.1, "{}", plan.gap());
-    let more =
-        best_for_time(&candidates, &criterion, 2.6 * 3600.0, Effort::usual(candidates.len()), &unwatched).unwrap();
+    let more = best_for_time(&candidates, &criterion, 2.6 * 3600.0, Effort::usual(&candidates), &unwatched).unwrap();
     assert!(more.criterion < plan.criterion && more.bound < plan.bound);
 }
 
@@ -681,7 +679,7 @@ fn no_usual_plan_is_below_the_bound() {
     let mut compared = 0;
     for hours in [3.4, 4.0, 5.5, 7.0] {
         let time = hours * 3600.0;
-        let plan = best_for_time(&candidates, &criterion, time, Effort::usual(candidates.len()), &unwatched).unwrap();
+        let plan = best_for_time(&candidates, &criterion, time, Effort::usual(&candidates), &unwatched).unwrap();
         let Some((schedule, uniform)) = candidates.uniform(&criterion, time).unwrap() else { continue };
         assert!(schedule.time <= time, "{hours} h: {}", schedule.time);
         assert!(schedule.visits.iter().all(|visit| candidates.durations.contains(&visit.duration)));

@@ -132,8 +132,10 @@ fn optional_groups_are_recovered() {
         }
         for (j, parameter) in model.parameters().iter().enumerate() {
             if let Some(value) = fit.value(j) {
-                let error = (value - x[j]).abs() / parameter.typical;
-                assert!(error < 1e-6, "{extensions:?} {}: {error:e}", parameter.name);
+                // What is known to many typical magnitudes only is estimated where the model was linearised.
+                let size = parameter.typical.max(fit.standard_uncertainty(j).unwrap());
+                let error = (value - x[j]).abs() / size;
+                assert!(error < 1e-5, "{extensions:?} {}: {error:e}", parameter.name);
             }
         }
     }

@@ -18,9 +18,10 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// Some seconds' worth: fewer nodes where there are more candidates.
-    pub fn usual(candidates: usize) -> Self {
-        Self { nodes: (300_000 / candidates.max(1)).clamp(20, 1000), ..Self::CERTIFIED }
+    /// Some seconds' worth: fewer nodes where there are more candidates in more set-ups.
+    pub fn usual(candidates: &Candidates) -> Self {
+        let size = candidates.len() * candidates.set_ups();
+        Self { nodes: (3_600_000 / size.max(1)).clamp(20, 1000), ..Self::CERTIFIED }
     }
 
     /// Until every set of mountings is decided on. The gap that remains is a matter of whole visits.

@@ -10,24 +10,46 @@ use std::collections::BTreeMap;
 
 use super::problem::Problem;
 
+/// Sets that the searches for the cheapest look at, all together: their number grows exponentially with the number of set-ups.
+const SETS: usize = 500_000;
+
+/// Useless sets that are kept.
+const USELESS: usize = 200;
+
 /// The least cost of set-ups, with the sets of them that have been valued for it.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct SetUpBound {
     /// Largest useless sets.
     useless: Vec<Vec<bool>>,
     /// Logarithm of the criterion with everything on a set.
     values: BTreeMap<Vec<bool>, f64>,
+    /// Sets that may still be looked at.
+    left: usize,
+}
+
+impl Default for SetUpBound {
+    fn default() -> Self {
+        Self { useless: Vec::new(), values: BTreeMap::new(), left: SETS }
+    }
 }
 
 impl SetUpBound {
     /// Least set-up time [s] of a schedule whose criterion has a logarithm below `value`: all of `set_up` are
-    /// among them and only `open` ones. `None` if there is no such schedule. `value` may not rise from call to call.
+    /// among them and only `open` ones. `None` if there is no such schedule. `value` may not rise from call to call. Where the effort is
+    /// spent, `set_up` alone is counted, which is less.
     pub fn least(&mut self, problem: &Problem, set_up: &[bool], open: &[bool], value: f64) -> Option<f64> {
         loop {
-            let mut cheapest = Cheapest { problem, open, useless: &self.useless, time: f64::INFINITY, set: None };
+            let left = self.left;
+            let mut cheapest = Cheapest { problem, open, useless: &self.useless, time: f64::INFINITY, set: None, left };
             cheapest.seek(set_up.to_vec(), vec![false; open.len()]);
-            let (time, set) = (cheapest.time, cheapest.set?);
-            if self.value(problem, &set) < value {
+            let Cheapest { time, set, left, .. } = cheapest;
+            self.left = left;
+            if left == 0 {
+                return Some(problem.candidates.set_up_time(set_up));
+            }
+            let set = set?;
+            // The cheapest set that no known useless one holds costs no more than the one that is sought.
+            if self.value(problem, &set) < value || self.useless.len() == USELESS {
                 return Some(time);
             }
             self.useless.push(enlarged(problem, set, value));
@@ -60,15 +82,18 @@ struct Cheapest<'a> {
     useless: &'a [Vec<bool>],
     time: f64,
     set: Option<Vec<bool>>,
+    /// Sets that may still be looked at.
+    left: usize,
 }
 
 impl Cheapest<'_> {
     /// Goes through all sets that hold `set` and nothing of `closed`, dearer ones left out.
     fn seek(&mut self, set: Vec<bool>, mut closed: Vec<bool>) {
         let time = self.problem.candidates.set_up_time(&set);
-        if time >= self.time {
+        if time >= self.time || self.left == 0 {
             return;
         }
+        self.left -= 1;
         let is_missed = |useless: &&Vec<bool>| set.iter().zip(*useless).all(|(used, useless)| !used || *useless);
         let Some(missed) = self.useless.iter().find(is_missed) else {
             (self.time, self.set) = (time, Some(set));
