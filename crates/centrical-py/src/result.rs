@@ -134,7 +134,7 @@ impl CalibrationResult {
             let named = |objection: &session::ResultObjection| {
                 let name = serde_json::to_value(ObjectionName::from(objection)).ok();
                 let name = name.as_ref().and_then(|name| name.as_str()).unwrap_or_default().to_owned();
-                let screen = verdict_text(std::slice::from_ref(objection));
+                let screen = verdict_text(std::slice::from_ref(objection), true);
                 let sentence = screen.lines(usize::MAX / 2, usize::MAX).into_iter().next();
                 (name, sentence.map_or_else(String::new, |line| line.rest.trim().to_owned()))
             };
@@ -145,7 +145,7 @@ impl CalibrationResult {
     /// The verdict and the tables of the terminal, in lines of `width` characters.
     fn text(&self, width: usize) -> PyResult<String> {
         guarded(|| {
-            let mut screen = verdict_text(&self.result.objections());
+            let mut screen = verdict_text(&self.result.objections(), self.result.is_checked());
             screen.gap();
             screen.add(terminal_table(&self.result));
             Ok(lines(&screen, width))

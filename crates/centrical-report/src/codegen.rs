@@ -24,13 +24,13 @@ use crate::language::Language;
 /// What the first comment says of a result.
 pub fn heading(result: &CalibrationResult) -> Vec<String> {
     let session = &result.session;
-    let serial = if session.unit_serial.is_empty() { String::new() } else { format!(" No. {}", session.unit_serial) };
+    let calibrated = if session.date.is_empty() { String::new() } else { format!(", calibrated {}", session.date) };
     let axes = result.axes.as_ref().map(|axes| {
         let name = (Language::English.messages().words.axes)(&axes.name);
         format!("Specific forces in the {name}; readings and range in the axes of the newtonometers.")
     });
     let lines = vec![
-        format!("Compensation of {}{serial}, calibrated {}.", session.unit_model, session.date),
+        format!("Compensation of {}{calibrated}.", session.unit()),
         session.title.clone(),
         format!("Made by {} {}; not to be edited.", result.program.name, result.program.version),
     ];

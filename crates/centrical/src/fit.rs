@@ -11,6 +11,10 @@
 //! typical magnitudes, which is released as soon as the traces themselves keep them; whatever doubt the
 //! lost combinations leave in the estimable parameters is in the covariance of those.
 //!
+//! **Weak directions.** What remains of a short rank may be determined to hundreds of typical magnitudes only, and the model is not linear
+//! so far. Directions beyond [`NULL_HOLD`](crate::NULL_HOLD) along which it is not are held as well, to find a point where it can be
+//! linearised. The estimates are one linear step on from there, without that hold: it informs none of them.
+//!
 //! **Priors** of the model are rows of the design like any other; the fit says what rests on them.
 
 mod assembly;
@@ -19,6 +23,7 @@ mod calibration;
 mod convergence;
 mod curvature;
 mod data;
+mod departure;
 mod design;
 mod estimates;
 /// The same estimates by a filter over plateaus, with the states that the order of the experiments asks for.

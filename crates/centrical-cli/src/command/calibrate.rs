@@ -135,7 +135,7 @@ pub fn report(
     unit: Option<&UnitStatement>,
     written: Option<&Path>,
 ) -> Screen {
-    let mut screen = verdict_text(objections);
+    let mut screen = verdict_text(objections, result.is_checked());
     if let Some(unit) = unit {
         screen.add(unit_text(unit));
     }

@@ -116,7 +116,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let objections = result.objections();
     let is_within = is_within_limits(unit.as_ref());
     let text = || {
-        let mut screen = if objections.is_empty() { Screen::default() } else { verdict_text(&objections) };
+        let mut screen =
+            if objections.is_empty() { Screen::default() } else { verdict_text(&objections, result.is_checked()) };
         screen.add(unit.as_ref().filter(|_| !is_within).map(unit_text).unwrap_or_default());
         screen
     };

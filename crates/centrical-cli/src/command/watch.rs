@@ -126,7 +126,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         WatchEnd::Complete(result) => {
             let objections = result.objections();
             let file = arguments.out.join("result.json");
-            let mut screen = verdict_text(&objections);
+            let mut screen = verdict_text(&objections, result.is_checked());
             screen.gap();
             screen.add(terminal_table(&result));
             screen.gap();

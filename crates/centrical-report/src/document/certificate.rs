@@ -8,7 +8,7 @@ use centrical_session::{
 use super::axes::axes;
 use super::conformity::{conformity_table, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Picture, Row, Section, Table};
-use super::drift::drift_facts;
+use super::drift::{drift_facts, steadiness_note};
 use super::objection::objection;
 use super::reading_error::{error_note, error_table};
 use super::rests_on::{self, counts_as_exact, rests_on_sentence};
@@ -204,7 +204,7 @@ fn drift(result: &CalibrationResult, language: Language) -> Vec<Block> {
     if facts.is_empty() {
         return Vec::new();
     }
-    let note = Block::paragraph(messages.steadiness_note);
+    let note = Block::Paragraph(steadiness_note(result, messages));
     vec![Block::heading(messages.steadiness, 13), note, Block::facts(facts)]
 }
 

@@ -5,7 +5,7 @@ use centrical_session::{
 };
 
 use crate::evaluation::{interpolated, newtonometer, not_used};
-use crate::language::Language;
+use crate::language::{Language, Messages};
 use crate::number::MINUTE;
 
 /// A name and what it stands for.
@@ -24,6 +24,12 @@ pub(super) fn drift_facts(result: &CalibrationResult, language: Language) -> Vec
         left_out(&mut facts, result, language);
     }
     facts
+}
+
+/// What the facts are.
+pub(super) fn steadiness_note(result: &CalibrationResult, messages: &Messages) -> String {
+    let tilt = result.tilt.as_ref().map(|_| messages.tilt_note);
+    [messages.steadiness_note].into_iter().chain(tilt).collect::<Vec<_>>().join(" ")
 }
 
 fn drifts(facts: &mut Vec<Fact>, drift: &DriftSummary, language: Language) {

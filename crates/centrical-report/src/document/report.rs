@@ -5,7 +5,7 @@ use centrical_session::{CalibrationResult, UnitHistoryReport, ValiditySummary};
 use super::axes::axes;
 use super::conformity::{judged_in_words, rule};
 use super::content::{Align, Block, Document, Margins, Opening, Section, Table, TableKind, Tone};
-use super::drift::drift_facts;
+use super::drift::{drift_facts, steadiness_note};
 use super::objection::{objection, pattern, rival};
 use super::reading_error::{error_note, error_table, headline_table};
 use super::rests_on::{all_rests_on, rests_on};
@@ -84,8 +84,9 @@ fn is_of_first_layer(figure: &Figure) -> bool {
 fn verdicts(result: &CalibrationResult, unit: Option<&UnitStatement>, language: Language) -> [Section; 2] {
     let messages = language.messages();
     let objections = result.objections();
+    let good = if result.is_checked() { messages.verdict_good } else { messages.verdict_unchecked };
     let mut blocks = if objections.is_empty() {
-        vec![Block::heading(messages.acceptable, 4), Block::paragraph(messages.verdict_good)]
+        vec![Block::heading(messages.acceptable, 4), Block::paragraph(good)]
     } else {
         let reasons = objections.iter().map(|reason| objection(reason, language)).collect();
         let heading = Block::heading(messages.not_acceptable, 4);
@@ -265,7 +266,7 @@ fn drift(result: &CalibrationResult, language: Language) -> Vec<Block> {
     if facts.is_empty() {
         return Vec::new();
     }
-    let note = Block::Note(messages.steadiness_note.to_owned());
+    let note = Block::Note(steadiness_note(result, messages));
     vec![Block::heading(messages.steadiness, 4), note, Block::facts(facts)]
 }
 

@@ -1,5 +1,7 @@
 //! Errors of the unit's readings on the plateaus, before and after compensation.
 
+use std::collections::HashSet;
+
 use centrical::uncertainty::Compensated;
 use centrical_session::{CalibrationResult, PlateauSummary};
 use nalgebra::{Matrix3, Vector3};
@@ -24,15 +26,22 @@ pub(crate) struct ReadingError {
 /// Errors on every plateau; `None` if a coefficient of the error model is not determined.
 pub(crate) fn reading_errors(result: &CalibrationResult) -> Option<Vec<ReadingError>> {
     let compensated = compensated(result)?;
-    result.plateaus.iter().map(|plateau| reading_error(plateau, &compensated)).collect()
+    let of_rests: HashSet<usize> = result.rests().map(|rest| rest.mounting).collect();
+    let error = |plateau: &PlateauSummary| reading_error(plateau, of_rests.contains(&plateau.mounting), &compensated);
+    result.plateaus.iter().map(error).collect()
 }
 
-fn reading_error(plateau: &PlateauSummary, compensated: &Compensated) -> Option<ReadingError> {
+fn reading_error(plateau: &PlateauSummary, is_rest: bool, compensated: &Compensated) -> Option<ReadingError> {
     let force = Vector3::from(plateau.specific_force?);
     let residual = Vector3::from(plateau.residual);
     // A residual is small, so the inverse of the error model is that of its gain.
     let to_force = compensated.gain(&force).try_inverse()?;
-    let noise = to_force * matrix(&plateau.covariance) * to_force.transpose();
+    let mut noise = to_force * matrix(&plateau.covariance) * to_force.transpose();
+    if is_rest {
+        // Across the force a rest that trembles changes its attitude, which is estimated with it.
+        let along = force.normalize();
+        noise = along * (along.transpose() * noise * along) * along.transpose();
+    }
     Some(ReadingError {
         force,
         before: Vector3::from(plateau.mean) - force,

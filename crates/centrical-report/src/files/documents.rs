@@ -198,7 +198,7 @@ fn with_attachment(certificate: Document, dcc: Option<&str>) -> Document {
 /// The result before an adjustment, which has to be of the same unit, and the laboratory has to say what it adjusted.
 fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Result<CalibrationResult, Error> {
     let before = CalibrationResult::read(file)?;
-    let unit = |result: &CalibrationResult| format!("{} {}", result.session.unit_model, result.session.unit_serial);
+    let unit = |result: &CalibrationResult| result.session.unit();
     let refuse = |found: String, expected: String| Err(Error::content(file, Place::Whole, found, expected));
     if unit(&before) != unit(after) {
         return refuse(format!("a result of {}", unit(&before)), format!("one of {}", unit(after)));

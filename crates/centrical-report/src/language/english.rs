@@ -11,6 +11,8 @@ pub(crate) const ENGLISH: Messages = Messages {
     not_acceptable: "Calibration not acceptable",
     verdict_good: "The result can be used as it stands: the fit converged, the residuals agree with the stated \
         uncertainties, and every parameter of the instrument is determined.",
+    verdict_unchecked: "The result can be used as far as its statements hold: the fit converged, and every parameter of \
+        the instrument is determined. But no reading is redundant: nothing checks the stated uncertainties.",
     verdict_bad: "The result must not be used as it stands:",
     serial: "Serial number",
     not_given: "not given",
@@ -62,9 +64,10 @@ pub(crate) const ENGLISH: Messages = Messages {
     patterns_found: "patterns in the residuals",
     worst_mounting: "Worst of the mountings, each predicted from all others",
     steadiness: "Steadiness",
-    steadiness_note: "How the readings moved within plateaus and over the session, and the tilt of the axis of \
-        rotation by the once-per-revolution term, which is not fitted, against the fitted one. With standard \
-        uncertainties; what comes by chance less often than once in a thousand is said to be there.",
+    steadiness_note: "How the readings moved within plateaus and over the session, with standard uncertainties; what \
+        comes by chance less often than once in a thousand is said to be there.",
+    tilt_note: "The once-per-revolution term, which is not fitted, gives the tilt of the axis of rotation beside the \
+        fitted one.",
     drift_over_plateau: "Drift over a plateau, mean",
     drift_over_session: "Drift over the session",
     plateaus_drift: "plateaus drift",
@@ -313,10 +316,10 @@ pub(crate) const ENGLISH: Messages = Messages {
     rests_on_reading: "Error of a compensated reading",
     not_shown: "not shown at any size",
     rests_on_sentence: "They presuppose that effects are absent. Below the sizes stated, this session would have shown an effect with a \
-        probability of less than 80 %. The three that would do most harm",
+        probability of less than 80 %; where a typical size is stated, it would have shown none. The three that would do most harm",
     below: "below",
     would_not_show: "it would not show; that size moves",
-    would_never_show: "it would not show at any size; a typical size moves",
+    would_never_show: "no size of it would show; a typical size moves",
     by: "by",
     uncertainties_and_reading: "standard uncertainties and a compensated reading by",
     presupposed: "The stated uncertainties presuppose a rigid arm, a constant temperature of the unit, and speeds whose errors \

@@ -378,11 +378,13 @@ fn rivals(screen: &mut Screen, validity: &ValiditySummary) {
     }
 }
 
-/// The verdict in a line, or one for each objection; said again in a last line below a text that is longer than a screen.
-pub fn verdict_text(objections: &[ResultObjection]) -> Screen {
+/// The verdict in a line, or one for each objection; said again below a text that is longer than a screen. `is_checked`: whether any reading is
+/// redundant.
+pub fn verdict_text(objections: &[ResultObjection], is_checked: bool) -> Screen {
     let mut screen = Screen::default();
     if objections.is_empty() {
-        let words = "no check raised an objection";
+        let unchecked = "but no reading is redundant: nothing checks the stated uncertainties";
+        let words = if is_checked { "no check raised an objection" } else { unchecked };
         screen.marked(Emphasis::Acceptable, "ACCEPTABLE", words);
         screen.close(Emphasis::Acceptable, "ACCEPTABLE", words);
         return screen;

@@ -1,6 +1,6 @@
 //! The choice of the error model as text for the terminal.
 
-use centrical::uncertainty::Selection;
+use centrical::uncertainty::{FittedCandidate, Selection};
 
 use super::rivals::changes_for;
 use super::screen::{Emphasis, Screen};
@@ -12,6 +12,9 @@ const SHOWN: usize = 12;
 
 /// Terms that are listed by name: more of them are counted.
 const NAMED: usize = 12;
+
+/// Candidates whose BIC differs by less fit alike.
+const ALIKE: f64 = 2.0;
 
 /// How the candidates that add to the stated model are named.
 const STATED: &str = "as stated";
@@ -51,10 +54,23 @@ fn recommendation(screen: &mut Screen, selection: &Selection) {
     if !best.rivals.is_empty() {
         let changes = changes_for(&best.rivals);
         screen.say(2, &format!("in experiment.toml, under [model]: {changes}"));
+        let alike = alike(selection, best);
+        if !alike.is_empty() {
+            let names = alike.join(", ");
+            screen.sentence(2, 4, &format!("the data hardly tell it from {names}, and each gives other estimates: find by other means which it is"));
+        }
     }
     for reason in reasons(selection) {
         screen.say(2, &reason);
     }
+}
+
+/// Other additions with as many unknowns and about as low a BIC.
+fn alike(selection: &Selection, best: &FittedCandidate) -> Vec<String> {
+    let is_alike = |other: &&FittedCandidate| {
+        other.name != best.name && other.rank == best.rank && other.converged && other.bic - best.bic < ALIKE
+    };
+    selection.candidates.iter().filter(is_alike).map(|other| format!("\"{}\"", other.name)).collect()
 }
 
 /// The candidates, the recommended one first, then by their BIC.
@@ -138,7 +154,7 @@ fn reasons(selection: &Selection) -> Vec<String> {
     }
     if let Some(test) = &best.against {
         reasons.push(format!(
-            "its {} over \"{}\" would all be zero with a probability of {}",
+            "it has {} over \"{}\"; so large a gain comes by chance with a probability of {}",
             counted(test.further, "further unknown"),
             selection.candidates[test.nested].name,
             probability(test.probability)

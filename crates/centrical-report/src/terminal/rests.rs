@@ -60,8 +60,9 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
         screen.sentence(2, 4, &text);
     }
     // The size of gravity is the same for a triad and its mirror image.
-    if known.is_empty() && !result.model.has_arm() {
-        screen.sentence(2, 4, "gravity shows neither the sign of an axis nor which column is which: check them");
+    if !result.model.has_arm() && !result.attitudes_show_columns() {
+        let shows = if known.is_empty() { "gravity shows" } else { "these attitudes, in any order, show" };
+        screen.sentence(2, 4, &format!("{shows} neither the sign of an axis nor which column is which: check them"));
     }
     next_attitude(screen, result);
 }

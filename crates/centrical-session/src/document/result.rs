@@ -7,6 +7,7 @@ mod budget_and_checks;
 mod error_terms;
 mod file;
 mod from_calibration;
+mod known_attitudes;
 mod next_attitude;
 mod rivals;
 mod schema;

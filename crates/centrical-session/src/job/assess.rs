@@ -53,7 +53,7 @@ pub struct Assessment {
 /// # Errors
 /// [`Error`] naming the file, the place, what was found and what was expected.
 pub fn assess(session: &Session, request: &AssessmentRequest, progress: OnProgress) -> Result<Assessment, Error> {
-    let problem = Problem::of(session, progress)?;
+    let problem = Problem::as_stated(session, progress)?;
     of_problem(problem, &session.title, request).map_err(|source| Error::fit(&session.file, source))
 }
 

@@ -1,5 +1,6 @@
 //! The whole job for one session: what the command, a fleet's worker and a notebook all call.
 
+use centrical::uncertainty::BetweenRests;
 use centrical::{Calibration, Data, FitError, MeasurementModel, OnProgress, advance};
 
 use super::reduce::reduce;
@@ -27,6 +28,23 @@ impl Problem {
         let (session, reduced) = reduce(session, progress)?;
         let model = reduced.model(&session)?;
         Ok(Self { model, reduced })
+    }
+
+    /// The same with the uncertainties that its calibration states: of rests alone with what the residuals cannot exclude.
+    ///
+    /// # Errors
+    /// As [`Problem::of`]; [`Error::Fit`].
+    pub fn as_stated(session: &Session, progress: OnProgress) -> Result<Self, Error> {
+        let (session, reduced) = reduce(session, progress)?;
+        if session.experiment.has_arm() {
+            return Ok(Self { model: reduced.model(&session)?, reduced });
+        }
+        let (_, between) = by_noise(&session, &reduced, Method::Exact, progress, between_rests(progress))?;
+        let (session, reduced) = match between {
+            Some(between) => with(&between, &session, &reduced),
+            None => (session.into_owned(), reduced),
+        };
+        Ok(Self { model: reduced.model(&session)?, reduced })
     }
 }
 
@@ -104,17 +122,28 @@ pub fn calibrate_reduced(
     method: Method,
     progress: OnProgress,
 ) -> Result<CalibrationResult, Error> {
-    let between = |calibration: &Calibration, result: &CalibrationResult| {
+    let (result, between) = by_noise(session, reduced, method, progress, between_rests(progress))?;
+    let Some(between) = between else { return Ok(result) };
+    let (session, reduced) = with(&between, session, reduced);
+    let (result, ()) = by_noise(&session, &reduced, method, progress, |_, _| Ok(()))?;
+    Ok(CalibrationResult { between_rests: Some(BetweenRestsSummary::from(between)), ..result })
+}
+
+/// What is between rests alone that are acceptable by their own noise: with the scatter added to it, a poor fit would pass.
+fn between_rests(
+    progress: OnProgress,
+) -> impl FnOnce(&Calibration, &CalibrationResult) -> Result<Option<BetweenRests>, FitError> {
+    move |calibration, result| {
         let is_judged = result.validity.is_some() && result.objections().is_empty();
         if is_judged { calibration.between_rests(&|()| progress(0)) } else { Ok(None) }
-    };
-    let (result, between) = by_noise(session, reduced, method, progress, between)?;
-    let Some(between) = between else { return Ok(result) };
-    // The rests were judged by their own noise: with the scatter added to it, a poor fit would pass.
+    }
+}
+
+/// A session and its plateaus with what is between rests.
+fn with(between: &BetweenRests, session: &Session, reduced: &Reduced) -> (Session, Reduced) {
     let mut session = session.clone();
     session.type_b = between.stated_beside(session.type_b);
-    let (result, ()) = by_noise(&session, &reduced.clone().scattered(&between), method, progress, |_, _| Ok(()))?;
-    Ok(CalibrationResult { between_rests: Some(BetweenRestsSummary::from(between)), ..result })
+    (session, reduced.clone().scattered(between))
 }
 
 /// The calibration by the noise of the plateaus, and what is asked of it beside.

@@ -27,10 +27,11 @@ pub fn compare_results(
     request: ComparisonRequest,
 ) -> Result<ComparisonReport, Error> {
     if !request.other_units
-        && let Some((file, other)) = results.iter().find(|(_, result)| unit(result) != unit(results[0].1))
+        && let Some((file, other)) =
+            results.iter().find(|(_, result)| result.session.unit() != results[0].1.session.unit())
     {
-        let expected = format!("a result of {}, or --other-units", unit(results[0].1));
-        return Err(Error::content(file, Place::Whole, format!("a result of {}", unit(other)), expected));
+        let expected = format!("a result of {}, or --other-units", results[0].1.session.unit());
+        return Err(Error::content(file, Place::Whole, format!("a result of {}", other.session.unit()), expected));
     }
     let consecutive = (1..results.len()).map(|n| [n - 1, n]);
     let ends = (results.len() > 2).then(|| [0, results.len() - 1]);
@@ -47,7 +48,7 @@ fn pair_of(results: &[(&Path, &CalibrationResult)], pair: [usize; 2], years: Opt
         name.clear();
     }
     let comparison = compare(&first.of_unit(), &second_unit);
-    let same_unit = unit(first) == unit(second);
+    let same_unit = first.session.unit() == second.session.unit();
     let years = years.or_else(|| years_between(first, second)).filter(|years| *years != 0.0);
     PairComparison {
         first: pair[0],
@@ -70,8 +71,4 @@ fn years_between(first: &CalibrationResult, second: &CalibrationResult) -> Optio
 fn terms_missing(of: &CalibrationResult, other: &CalibrationResult) -> Vec<String> {
     let is_missing = |term: &&TermSummary| !other.model.error_model.contains(term);
     of.model.error_model.iter().filter(is_missing).map(|term| term.name.clone()).collect()
-}
-
-fn unit(result: &CalibrationResult) -> String {
-    format!("{}, serial {}", result.session.unit_model, result.session.unit_serial)
 }

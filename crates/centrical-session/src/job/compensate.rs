@@ -9,7 +9,9 @@ use centrical_table::{Rows, Stamps, refuse_inputs};
 use rayon::prelude::*;
 
 use super::axes::Axes;
-use crate::document::{CalibrationResult, CompensatedFiles, CompensationReport, FirstReading, ReadingsBeyond};
+use crate::document::{
+    CalibrationResult, CompensatedFiles, CompensationReport, FirstReading, OutputSummary, ReadingsBeyond,
+};
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::RecordWriter;
@@ -50,7 +52,7 @@ pub struct CompensationRequest {
     pub record: PathBuf,
     /// File for the specific forces.
     pub out: PathBuf,
-    /// The session that says columns and units of the record.
+    /// The session that says columns and units of the record; if none, readings are in the unit of the calibration's.
     pub session: Option<PathBuf>,
     /// Largest specific force on each axis [m/s^2]; `None` for what the calibration allows.
     pub range: Option<f64>,
@@ -103,7 +105,7 @@ pub fn compensate(request: &CompensationRequest, progress: OnProgress) -> Result
             inputs.extend(session.files().into_iter().map(Path::to_owned));
             session.columns
         }
-        None => Columns::default(),
+        None => result.output.as_ref().map_or_else(Columns::default, OutputSummary::columns),
     };
     refuse_inputs(std::slice::from_ref(&request.out), &inputs)?;
     let calibrated = Calibrated { limit: result.calibrated_readings(), is_demanded: request.within_calibration };

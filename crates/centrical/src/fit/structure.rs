@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::assembly::Assembly;
-use super::curvature;
 use super::data::Data;
+use super::departure::departs;
 use super::design::Design;
 use crate::linalg::elimination::Own;
 use crate::linalg::least_squares::LeastSquares;
@@ -147,7 +147,7 @@ impl Held {
         let (equations, _) = self.equations(design, &DVector::zeros(data.unknowns()), Hold::NULL);
         let mut weak = DMatrix::zeros(data.unknowns(), 0);
         for direction in equations.wider_than(WIDER * NULL_HOLD) {
-            if curvature::departs(data, linearisations, &direction.component_mul(&self.typical))? {
+            if departs(data, linearisations, &direction.component_mul(&self.typical))? {
                 weak.extend(std::iter::once(direction));
             }
         }

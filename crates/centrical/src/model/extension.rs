@@ -23,6 +23,8 @@ pub enum Extension {
     RadiusScale,
     /// One scale of the square of all speeds.
     SpeedScale,
+    /// Local gravity.
+    Gravity,
     /// Elastic turn of the arm's end, three for all positions.
     ArmTurn(Law),
     /// Radius of each seat but the first.
@@ -58,7 +60,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 24] = [
+    pub const NAMED: [(&'static str, Self); 25] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -67,6 +69,7 @@ impl Extension {
         ("seat-stretch-load", Self::SeatStretch(Law::Load)),
         ("radius-scale", Self::RadiusScale),
         ("speed-scale", Self::SpeedScale),
+        ("gravity", Self::Gravity),
         ("arm-turn-speed", Self::ArmTurn(Law::Speed)),
         ("arm-turn-load", Self::ArmTurn(Law::Load)),
         ("seat-radius", Self::SeatRadius),
@@ -122,6 +125,7 @@ impl Extension {
             Self::SpeedScale => {
                 vec![effect("speed_scale".to_owned(), "1", Group::SpeedScale, Effect::SpeedScale, 1e-3)]
             }
+            Self::Gravity => vec![effect("gravity".to_owned(), "m/s^2", Group::Gravity, Effect::Gravity, 1e-3)],
             Self::ArmTurn(law) => three(|axis| {
                 let name = format!("arm_turn_{}_{}", law.name(), axis + 1);
                 per_law(name, Group::ArmTurn, law, Effect::ArmTurn { law, axis })

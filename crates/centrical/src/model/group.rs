@@ -39,6 +39,8 @@ pub enum Group {
     RadiusScale,
     /// Common scale of all speeds.
     SpeedScale,
+    /// Error of the local gravity.
+    Gravity,
     /// Elastic turn of the arm's end.
     ArmTurn,
     /// Turn of the unit while spinning.
@@ -57,7 +59,7 @@ pub enum Group {
 
 impl Group {
     /// All groups.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::Bias,
         Self::Scale,
         Self::Misalignment,
@@ -76,6 +78,7 @@ impl Group {
         Self::ArmStretch,
         Self::RadiusScale,
         Self::SpeedScale,
+        Self::Gravity,
         Self::ArmTurn,
         Self::SpinTurn,
         Self::Seat,
@@ -106,6 +109,7 @@ impl Group {
             Self::ArmStretch => "arm stretch",
             Self::RadiusScale => "scale of radii",
             Self::SpeedScale => "scale of speed",
+            Self::Gravity => "gravity",
             Self::ArmTurn => "turn of the arm's end",
             Self::SpinTurn => "turn while spinning",
             Self::Seat => "seat",

@@ -91,6 +91,7 @@ impl Rival {
                 Extension::SeatStretch(Law::Load) => "R0_1 kappa Omega^2 |R0_1|, by seat",
                 Extension::RadiusScale => "P D R0",
                 Extension::SpeedScale => "d f / d ln Omega^2",
+                Extension::Gravity => "d f / d g",
                 Extension::ArmTurn(Law::Speed) => "P tau Omega^2",
                 Extension::ArmTurn(Law::Load) => "P tau Omega^2 |R0_1|",
                 Extension::SeatRadius => "P D e_1, by seat",
@@ -124,7 +125,8 @@ impl Rival {
                 Extension::ArmStretch(_)
                 | Extension::SeatStretch(_)
                 | Extension::RadiusScale
-                | Extension::SpeedScale => "IEEE Std 836",
+                | Extension::SpeedScale
+                | Extension::Gravity => "IEEE Std 836",
                 Extension::ArmTurn(_)
                 | Extension::SeatRadius
                 | Extension::SeatLateral

@@ -55,12 +55,23 @@ impl Whitener {
 }
 
 /// `C + d d^T + r^2 E` [m^2/s^4]: the covariance of the mean with the errors of what was set and of the plateau's rounding.
+pub(crate) fn total_covariance(mean: &Matrix3<f64>, at: &Linearisation) -> Matrix3<f64> {
+    let set = noise_covariance(mean, at) + at.setting_error * at.setting_error.transpose();
+    if at.rounding > 0.0 { set + Matrix3::from_diagonal_element(at.rounding * at.rounding) } else { set }
+}
+
+/// `C`, the covariance of the mean as the fit takes it [m^2/s^4].
 ///
 /// Where only gravity shows the attitude, `C` is `(n^T C n) E`, with the normal `n`. The two unknowns of the attitude follow the mean across
 /// `n`, whatever its variance there. A hand trembles across: taken for an error, that would let the fit turn the attitude by as much, to where
 /// the sphere of readings bends towards the mean.
-pub(crate) fn total_covariance(mean: &Matrix3<f64>, at: &Linearisation) -> Matrix3<f64> {
-    let own = at.normal.map_or(*mean, |n| Matrix3::from_diagonal_element(n.dot(&(mean * n))));
-    let set = own + at.setting_error * at.setting_error.transpose();
-    if at.rounding > 0.0 { set + Matrix3::from_diagonal_element(at.rounding * at.rounding) } else { set }
+pub(crate) fn noise_covariance(mean: &Matrix3<f64>, at: &Linearisation) -> Matrix3<f64> {
+    at.normal.map_or(*mean, |n| Matrix3::from_diagonal_element(n.dot(&(mean * n))))
+}
+
+/// `L` of that covariance, `C = L L^T` [m/s^2].
+pub(crate) fn noise_factor(weight: &Weight, at: &Linearisation) -> Result<Matrix3<f64>, FitError> {
+    let Weight { set_point, covariance } = weight;
+    let factor = noise_covariance(covariance, at).cholesky().map(|factor| factor.l());
+    factor.ok_or(FitError::Covariance { set_point: *set_point, diagonal: covariance.diagonal().into() })
 }

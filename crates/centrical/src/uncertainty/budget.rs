@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, Vector3};
 
 use super::coverage::{Degrees, effective_degrees_of_freedom};
 use crate::fit::{Calibration, Fit, Gain};
+use crate::model::whitening::noise_factor;
 use crate::model::{FitError, MeasurementModel, Observation, Source};
 
 /// A parameter is affected by the null space when that leaves more than this part of its variance.
@@ -67,7 +68,7 @@ impl Calibration<'_> {
         let mut contributions = Vec::new();
         for source in Source::ALL {
             let own = match source {
-                Source::Noise => gain.apply(&noise(observations)?),
+                Source::Noise => gain.apply(&noise(gain, observations)?),
                 Source::PlateauSpeed => gain.apply(&settings(gain, model, observations, false)),
                 Source::RestAngle => gain.apply(&settings(gain, model, observations, true)),
                 Source::Resolution => gain.apply(&rounding(gain)),
@@ -213,10 +214,10 @@ fn total(contributions: &[Contribution], p: usize) -> DMatrix<f64> {
 type Changes = Vec<(usize, Vector3<f64>)>;
 
 /// The columns of the Cholesky factors of the covariances of the means.
-fn noise(observations: &[Observation]) -> Result<Changes, FitError> {
+fn noise(gain: &Gain, observations: &[Observation]) -> Result<Changes, FitError> {
     let mut changes = Vec::with_capacity(3 * observations.len());
-    for (n, observation) in observations.iter().enumerate() {
-        let factor = observation.noise_factor()?;
+    for (n, (observation, at)) in observations.iter().zip(gain.linearisations()).enumerate() {
+        let factor = noise_factor(&observation.into(), at)?;
         changes.extend(factor.column_iter().map(|column| (n, column.into_owned())));
     }
     Ok(changes)

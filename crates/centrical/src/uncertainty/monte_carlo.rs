@@ -11,6 +11,7 @@ use super::budget::Budget;
 use super::comparison::weighted_square;
 use super::coverage::{Degrees, chi_squared_tail, coverage_factor};
 use crate::fit::{Calibration, Data, Fit, Structure, Termination};
+use crate::model::whitening::noise_factor;
 use crate::model::{FitError, MeasurementModel, Observation, SetPoint};
 use crate::progress::{OnProgress, advance};
 use crate::statistics::Random;
@@ -146,7 +147,8 @@ impl<'a> Laboratory<'a> {
         let calibration = Calibration::exact(&perfect)?;
         let (budget, fit) = (calibration.budget()?, calibration.fit());
         let determined: Vec<usize> = (0..truth.len()).filter(|&j| fit.value(j).is_some()).collect();
-        let noise_factors = observations.iter().map(Observation::noise_factor).collect::<Result<_, _>>()?;
+        let pairs = observations.iter().zip(calibration.gain()?.linearisations());
+        let noise_factors = pairs.map(|(o, at)| noise_factor(&o.into(), at)).collect::<Result<_, _>>()?;
         Ok(Self {
             data,
             truth,

@@ -11,7 +11,7 @@ use super::holm::holm;
 use super::rivals::Rivals;
 use super::rivals::Suspect;
 use super::rivals::columns::Columns;
-use super::validity::f_tail;
+use super::validity::chance_of_explaining;
 use crate::fit::Calibration;
 use crate::model::{Experiment, FitError, Rival, SetPoint};
 
@@ -103,8 +103,7 @@ impl Calibration<'_> {
                     continue;
                 }
                 let statistic = along * along / square;
-                let rest = (chi_squared - statistic).max(0.0);
-                let probability = f_tail(statistic / (rest / left as f64), 1, left);
+                let probability = chance_of_explaining(statistic, 1, chi_squared - statistic, left);
                 let (amplitude, standard_uncertainty) = (along / square, 1.0 / square.sqrt());
                 let length = columns.lengths[0];
                 list.push(Pattern {

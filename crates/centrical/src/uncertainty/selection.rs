@@ -68,9 +68,9 @@ pub struct NestedTest {
 /// The candidates and what follows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selection {
-    /// In the order of the candidates.
+    /// In the order of the candidates, without rivals that the data determine nothing of.
     pub candidates: Vec<FittedCandidate>,
-    /// Index of the candidate recommended: the lowest BIC of those that converged.
+    /// Index of the candidate recommended: the lowest BIC of those that converged, the simplest of those alike.
     pub recommended: usize,
     /// The optional terms one by one: those of the recommended model, then those that richer candidates have beyond it.
     pub terms: Vec<TermVerdict>,
@@ -193,6 +193,7 @@ fn fits<'c>(
 
 /// Compares the fits.
 fn conclude(fits: &[(&Candidate, Calibration)]) -> Result<Selection, FitError> {
+    let fits = with_further_unknowns(fits);
     let mut fitted: Vec<FittedCandidate> = fits
         .iter()
         .map(|(candidate, calibration)| candidate_fitted(candidate, calibration))
@@ -231,12 +232,29 @@ fn bic(fit: &Fit, plateaus: usize) -> f64 {
     fit.chi_squared + fit.observability().rank() as f64 * (3.0 * plateaus as f64).ln()
 }
 
-/// Test of candidate `n` against the largest one whose unknowns are all among its own.
-fn nested_test(candidates: &[&Candidate], fitted: &[FittedCandidate], n: usize) -> Option<NestedTest> {
+/// The candidates whose unknowns are a part of those of candidate `n`, and those before it that have the same.
+fn nested_in(candidates: &[&Candidate], n: usize) -> Vec<usize> {
     let names = |m: usize| candidates[m].model.parameters().iter().map(|p| p.name.as_str()).collect::<HashSet<_>>();
     let own = names(n);
-    let is_nested = |m: &usize| fitted[*m].rank < fitted[n].rank && names(*m).is_subset(&own);
-    let nested = (0..fitted.len()).filter(is_nested).max_by_key(|&m| fitted[m].rank)?;
+    let is_part = |m: &usize| names(*m).is_subset(&own) && (*m < n || names(*m).len() < own.len());
+    (0..candidates.len()).filter(is_part).collect()
+}
+
+/// The fits without those of rivals that the data determine nothing of: they fit as well as the model without the rival.
+fn with_further_unknowns<'f, 'c>(
+    fits: &'f [(&'c Candidate, Calibration<'c>)],
+) -> Vec<&'f (&'c Candidate, Calibration<'c>)> {
+    let candidates: Vec<&Candidate> = fits.iter().map(|(candidate, _)| *candidate).collect();
+    let rank = |n: usize| fits[n].1.fit().observability().rank();
+    let determines_more = |n: usize| nested_in(&candidates, n).iter().all(|&m| rank(m) < rank(n));
+    let is_kept = |n: &usize| candidates[*n].rivals.is_empty() || determines_more(*n);
+    (0..fits.len()).filter(is_kept).map(|n| &fits[n]).collect()
+}
+
+/// Test of candidate `n` against the largest one nested in it that determines less.
+fn nested_test(candidates: &[&Candidate], fitted: &[FittedCandidate], n: usize) -> Option<NestedTest> {
+    let determines_less = |m: &usize| fitted[*m].rank < fitted[n].rank;
+    let nested = nested_in(candidates, n).into_iter().filter(determines_less).max_by_key(|&m| fitted[m].rank)?;
     let further = fitted[n].rank - fitted[nested].rank;
     let left = fitted[n].degrees_of_freedom;
     let f =

@@ -13,7 +13,7 @@ use statrs::function::beta::beta_reg;
 
 use super::coverage::chi_squared_tail;
 use crate::fit::{Calibration, Data};
-use crate::model::FitError;
+use crate::model::{FitError, Observation};
 use crate::progress::{OnProgress, advance, unwatched};
 
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
@@ -63,7 +63,7 @@ pub struct Prediction {
     /// the readings of squared difference over variance plus `ln` of the variance, in units of the noise. The lower the
     /// better: predictions that are wrong cost, and those that say little.
     pub score: f64,
-    /// Probability of so large a statistic by chance (F test); 1 when nothing is redundant.
+    /// Probability of so large a statistic by chance ([`chance_of_explaining`]); 1 when nothing is redundant.
     pub probability: f64,
 }
 
@@ -101,6 +101,16 @@ impl Calibration<'_> {
             plateaus: (0..observations.len()).map(|n| blocks.plateau(n, observations[n].set_point)).collect(),
             mountings: mountings.collect(),
         })
+    }
+
+    /// chi^2 of a fit of the same data whose noise has `times` the variance. What is stated of attitudes and speeds stays.
+    ///
+    /// # Errors
+    /// [`FitError`] when numbers overflow.
+    pub fn chi_squared_of_noise(&self, times: f64) -> Result<f64, FitError> {
+        let scaled = |o: &Observation| Observation { covariance: o.covariance * times, ..*o };
+        let data = Data::new(self.data().model(), self.data().observations().iter().map(scaled).collect())?;
+        Ok(Calibration::exact(&data)?.fit().chi_squared)
     }
 }
 
@@ -168,6 +178,13 @@ pub fn f_tail(f: f64, m: usize, n: usize) -> f64 {
     if f.is_infinite() { 0.0 } else { beta_reg(0.5 * n, 0.5 * m, n / (n + m * f)) }
 }
 
+/// Probability that `m` combinations explain that much of chi^2 by chance, where `n` others leave `rest`: the larger of that by the stated
+/// variances and that by the scatter of the others. A scatter below what is stated does not say of what too much is stated.
+pub fn chance_of_explaining(statistic: f64, m: usize, rest: f64, n: usize) -> f64 {
+    let f = (statistic / m as f64) / (rest.max(0.0) / n as f64);
+    f_tail(f, m, n).max(chi_squared_tail(statistic, m))
+}
+
 /// Whitened residuals, and the basis whose products are the hat matrix.
 struct Blocks<'g> {
     residuals: DVector<f64>,
@@ -207,8 +224,8 @@ impl Blocks<'_> {
         }
         score += statistic;
         let left = self.degrees_of_freedom.saturating_sub(degrees_of_freedom);
-        let f = (statistic / degrees_of_freedom as f64) / ((self.chi_squared - statistic).max(0.0) / left as f64);
-        Prediction { statistic, degrees_of_freedom, score, probability: f_tail(f, degrees_of_freedom, left) }
+        let probability = chance_of_explaining(statistic, degrees_of_freedom, self.chi_squared - statistic, left);
+        Prediction { statistic, degrees_of_freedom, score, probability }
     }
 }
 

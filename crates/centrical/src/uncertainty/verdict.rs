@@ -49,8 +49,8 @@ pub struct Findings<P, Q, R, S> {
     pub chi_squared: f64,
     /// Its degrees of freedom.
     pub degrees_of_freedom: usize,
-    /// Variance of the residuals at most, over the one stated: 1 where the noise is known ([`Rests`](crate::reduction::Rests)).
-    pub noise_at_most: f64,
+    /// chi^2 with the strongest noise that is not excluded ([`Rests`](crate::reduction::Rests)); `None` where the noise is known.
+    pub of_strongest_noise: Option<f64>,
     /// Plateaus that stand out, each with its family-wise probability, the most outlying first.
     pub outlying: Vec<(P, f64)>,
     /// The rival that explains most and those which the data cannot tell from it, each with its family-wise probability.
@@ -101,7 +101,7 @@ pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P
         iterations,
         chi_squared,
         degrees_of_freedom,
-        noise_at_most,
+        of_strongest_noise,
         outlying,
         rivals,
         patterns,
@@ -119,7 +119,7 @@ pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P
     if rivals.iter().any(|(_, probability)| is_beyond(*probability)) {
         objections.push(Objection::LeftOut(rivals.into_iter().map(|(rival, _)| rival).collect()));
     }
-    let chance = chance_of_residuals(chi_squared, degrees_of_freedom, noise_at_most);
+    let chance = chance_of_residuals(chi_squared, degrees_of_freedom, of_strongest_noise);
     if is_beyond(chance) {
         objections.push(Objection::Residuals { chi_squared, degrees_of_freedom, chance });
     }
@@ -139,9 +139,9 @@ pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P
     objections
 }
 
-/// Probability of so large a chi^2 by chance. Noise that is not known has the variance `noise_at_most` times the stated one at most,
+/// Probability of so large a chi^2 by chance. Noise that is not known is no stronger than that by which chi^2 is `of_strongest_noise`,
 /// but for a chance of [`EXCLUDED`]: the largest probability over all noise that is not excluded, plus that chance (Berger and Boos 1994).
-pub fn chance_of_residuals(chi_squared: f64, degrees_of_freedom: usize, noise_at_most: f64) -> f64 {
-    let of_noise = |most: f64| chi_squared_tail(chi_squared / most, degrees_of_freedom);
-    if noise_at_most > 1.0 { (of_noise(noise_at_most) + EXCLUDED).min(1.0) } else { of_noise(1.0) }
+pub fn chance_of_residuals(chi_squared: f64, degrees_of_freedom: usize, of_strongest_noise: Option<f64>) -> f64 {
+    let chance = |chi_squared| chi_squared_tail(chi_squared, degrees_of_freedom);
+    of_strongest_noise.map_or_else(|| chance(chi_squared), |least| (chance(least) + EXCLUDED).min(1.0))
 }

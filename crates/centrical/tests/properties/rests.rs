@@ -421,7 +421,8 @@ pub fn judged_record(made: &Made, radius: Option<f64>) -> Judged {
     let level = Level::Objection;
     let shown = Rivals::of(&calibration, &unwatched).unwrap().suspects(level.probability()).shown;
     let fit = calibration.fit();
-    let chance = chance_of_residuals(fit.chi_squared, fit.degrees_of_freedom, found.noise_at_most);
+    let of_strongest_noise = calibration.chi_squared_of_noise(found.noise_at_most).unwrap();
+    let chance = chance_of_residuals(fit.chi_squared, fit.degrees_of_freedom, Some(of_strongest_noise));
     let is_by_noise = level.is_passed_by(calibration.validity().unwrap().probability);
     let is_refused = !shown.is_empty() || level.is_passed_by(chance);
     let of_noise = squared_error(&model, calibration.fit(), made.truth);

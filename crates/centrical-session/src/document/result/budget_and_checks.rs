@@ -46,6 +46,9 @@ pub struct ValiditySummary {
     /// verdict takes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_at_most: Option<f64>,
+    /// chi^2 of the fit with noise as strong as that, and what is stated of attitudes as it stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of_strongest_noise: Option<f64>,
     /// Plateaus that stand out at a family-wise error of 5 % (Bonferroni), the most outlying first.
     pub outlying: Vec<OutlyingPlateau>,
     /// Each mounting predicted from all others.
@@ -179,7 +182,9 @@ impl ValiditySummary {
             None => calibration.patterns()?,
         };
         let checks = Self::new(experiment, &calibration.validity()?, &patterns);
-        Ok(Self { noise_at_most, rivals_tested: suspects.tested, rivals: RivalSummary::all(&suspects), ..checks })
+        let of_strongest_noise = noise_at_most.map(|times| calibration.chi_squared_of_noise(times)).transpose()?;
+        let (rivals_tested, rivals) = (suspects.tested, RivalSummary::all(&suspects));
+        Ok(Self { noise_at_most, of_strongest_noise, rivals_tested, rivals, ..checks })
     }
 
     /// The checks of a fit in the form of the file.
@@ -211,6 +216,7 @@ impl ValiditySummary {
         Self {
             probability: validity.probability,
             noise_at_most: None,
+            of_strongest_noise: None,
             outlying,
             mountings: validity.mountings.iter().map(|m| prediction(m.mounting, &m.prediction)).collect(),
             patterns_tested: patterns.len(),

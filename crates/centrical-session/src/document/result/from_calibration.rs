@@ -18,6 +18,7 @@ use super::schema::{
 use super::speeds::SpeedsSummary;
 use crate::document::steadiness::{DriftSummary, TiltSummary};
 use crate::experiment::{OutputUnit, Session};
+use crate::record::{Columns, Scale};
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
 
 impl CalibrationResult {
@@ -104,6 +105,16 @@ impl SessionSummary {
             text: session.text.clone(),
         }
     }
+
+    /// The unit as messages name it.
+    pub fn unit(&self) -> String {
+        match (self.unit_model.as_str(), self.unit_serial.as_str()) {
+            ("", "") => "a unit without a name".to_owned(),
+            (model, "") => format!("{model}, without a serial number"),
+            ("", serial) => format!("serial {serial}"),
+            (model, serial) => format!("{model}, serial {serial}"),
+        }
+    }
 }
 
 impl OutputSummary {
@@ -117,6 +128,16 @@ impl OutputSummary {
             scale: [0, 1, 2].map(|axis| written(1.0 / columns[axis].scale.factor)),
             bias: [0, 1, 2].map(|axis| columns[axis].scale.offset),
         })
+    }
+
+    /// Columns of a record in that unit.
+    pub(crate) fn columns(&self) -> Columns {
+        let mut columns = Columns::default();
+        for (axis, column) in columns.f.iter_mut().enumerate() {
+            column.unit.clone_from(&self.unit);
+            column.scale = Scale { offset: self.bias[axis], factor: 1.0 / self.scale[axis] };
+        }
+        columns
     }
 }
 

@@ -25,7 +25,7 @@ impl CalibrationResult {
             iterations: self.fit.iterations,
             chi_squared: self.fit.chi_squared,
             degrees_of_freedom: self.fit.degrees_of_freedom,
-            noise_at_most: self.validity.as_ref().and_then(|validity| validity.noise_at_most).unwrap_or(1.0),
+            of_strongest_noise: self.of_strongest_noise(),
             outlying: outlying.map(|p| (format!("{}:{}", p.mounting, p.index + 1), p.probability)).collect(),
             rivals: rivals.map(|rival| (rival.clone(), rival.probability)).collect(),
             patterns: patterns.map(|pattern| (pattern.clone(), pattern.probability)).collect(),
@@ -34,9 +34,20 @@ impl CalibrationResult {
         })
     }
 
+    /// chi^2 with the strongest noise of rests that is not excluded. Older programs wrote no more than how strong it is.
+    fn of_strongest_noise(&self) -> Option<f64> {
+        let validity = self.validity.as_ref()?;
+        validity.of_strongest_noise.or_else(|| Some(self.fit.chi_squared / validity.noise_at_most?))
+    }
+
+    /// Whether any reading is redundant: without one nothing checks the stated uncertainties.
+    pub fn is_checked(&self) -> bool {
+        self.fit.degrees_of_freedom > 0
+    }
+
     /// Whether chi^2 is smaller than chance allows: the stated uncertainties are too large then.
     pub fn chi_squared_is_small(&self) -> bool {
-        let checked = self.validity.as_ref().filter(|_| self.fit.degrees_of_freedom > 0);
+        let checked = self.validity.as_ref().filter(|_| self.is_checked());
         checked.is_some_and(|validity| Level::Real.is_passed_by(1.0 - validity.probability))
     }
 }

@@ -5,7 +5,7 @@ use super::columns::Seen;
 use crate::model::{Parameter, Rival};
 use crate::uncertainty::coverage::chi_squared_tail;
 use crate::uncertainty::holm::holm;
-use crate::uncertainty::validity::f_tail;
+use crate::uncertainty::validity::chance_of_explaining;
 use crate::uncertainty::verdict::Level;
 
 /// A rival and what the residuals say of it.
@@ -20,7 +20,7 @@ pub struct RivalTest {
     pub statistic: f64,
     /// Number of its combinations that the data see.
     pub degrees_of_freedom: usize,
-    /// Probability of so large a statistic by chance, for this rival alone (F test).
+    /// Probability of so large a statistic by chance, for this rival alone, by what is stated and by the residuals' own scatter.
     pub probability: f64,
     /// The same, family-wise over all rivals tested (Holm).
     pub family_wise: f64,
@@ -83,8 +83,7 @@ impl Rivals<'_> {
         let rank = suspect.seen.rank();
         let statistic = suspect.statistic();
         let left = fit.degrees_of_freedom.saturating_sub(rank);
-        let rest = (fit.chi_squared - statistic).max(0.0);
-        let probability = f_tail((statistic / rank as f64) / (rest / left as f64), rank, left);
+        let probability = chance_of_explaining(statistic, rank, fit.chi_squared - statistic, left);
         RivalTest {
             rival: suspect.rival,
             sizes: sizes(suspect),
