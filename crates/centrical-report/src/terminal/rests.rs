@@ -5,6 +5,9 @@ use centrical_session::{CalibrationResult, MICRO_G, PlateauSummary};
 use super::screen::Screen;
 use crate::number::{counted, two_digits};
 
+/// A lag that a filter or a recorder may well have [s].
+const LAG: f64 = 0.1;
+
 /// How many rests there are, how long they are, and how well the size of gravity is met in them.
 pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
     let rests: Vec<&PlateauSummary> = result.rests().collect();
@@ -49,6 +52,12 @@ pub(super) fn rests(screen: &mut Screen, result: &CalibrationResult) {
             100.0 * turning.share,
             two_digits(1e3 * turning.radius),
             two_digits(turning.acceleration / MICRO_G)
+        );
+        screen.sentence(2, 4, &text);
+        // The size of a force that turns at a rate w is shortened by (w tau)^2 / 2 where readings lag by tau.
+        let shortened = two_digits(0.5 * (turning.rate * LAG).powi(2) / 1e-6);
+        let text = format!(
+            "readings that lag by {LAG} s would be too small by {shortened} ppm at that rate; no uncertainty holds that"
         );
         screen.sentence(2, 4, &text);
     }

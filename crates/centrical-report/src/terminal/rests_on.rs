@@ -1,6 +1,6 @@
 //! What a result rests on, as text for the terminal.
 
-use centrical::{Extension, Rival};
+use centrical::{Extension, Extra, Rival};
 use centrical_session::RestsOn;
 
 use super::rivals::changes_for;
@@ -34,6 +34,10 @@ fn protection(effect: &RestsOn) -> String {
     let change = effect.rival().map(|rival| changes_for(&[rival])).unwrap_or_default();
     if let Some(Rival::Effect(Extension::OneMounting(_, mounting))) = effect.rival() {
         return format!("protect: mount the unit again as in mounting {}", mounting + 1);
+    }
+    // A step of the reading has no inverse at no force.
+    if let Some(Rival::Terms(Extra::Jump)) = effect.rival() {
+        return format!("protect: state {bound} under [uncertainty]");
     }
     match effect.price_as_unknown {
         Some(price) if price < CHEAP => {
