@@ -54,18 +54,20 @@ impl Study {
     }
 
     fn rest_angles(&self) -> Condition {
-        let turns = self.read().filter(|s| s.is_rest()).map(|s| s.angle.rem_euclid(std::f64::consts::TAU));
+        let is_meant = |s: &SetPoint| s.is_rest() && self.is_on_arm(s);
+        let turns = self.read().filter(|s| is_meant(s)).map(|s| s.angle.rem_euclid(std::f64::consts::TAU));
         let angles = distinct(turns);
         // The angle that is read most is the one that a poorer experiment would keep.
-        let kept = angles.iter().copied().max_by_key(|a| self.read().filter(|s| at_angle(s, *a)).count());
+        let kept =
+            angles.iter().copied().max_by_key(|a| self.read().filter(|s| is_meant(s) && at_angle(s, *a)).count());
         let is_met = angles.len() >= 2;
         Condition {
             requirement: "plateaus at rest at two or more angles about the rotation axis",
-            found: format!("{} angles at rest", angles.len()),
+            found: counted(angles.len(), "angle at rest", "angles at rest"),
             is_met,
             need: self.need(
                 is_met,
-                &[&|s| s.is_rest() && !kept.is_some_and(|a| at_angle(s, a))],
+                &[&|s| is_meant(s) && !kept.is_some_and(|a| at_angle(s, a))],
                 new_angle(self).as_slice(),
             ),
         }
@@ -89,14 +91,18 @@ impl Study {
 
     fn radii(&self) -> Condition {
         let radius = |s: &SetPoint| self.model().experiment().arm_of(s).x.abs();
-        let radii = distinct(self.read().map(radius));
+        let radii = distinct(self.read().filter(|s| self.is_on_arm(s)).map(radius));
         let largest = radii.iter().copied().fold(0.0, f64::max);
         let is_met = radii.len() >= 2;
         Condition {
             requirement: "two or more distances from the rotation axis, with a known difference",
-            found: format!("{} radii", radii.len()),
+            found: counted(radii.len(), "radius", "radii"),
             is_met,
-            need: self.need(is_met, &[&|s| radius(s) < 0.999 * largest], new_radius(self).as_slice()),
+            need: self.need(
+                is_met,
+                &[&|s| self.is_on_arm(s) && radius(s) < 0.999 * largest],
+                new_radius(self).as_slice(),
+            ),
         }
     }
 
@@ -110,7 +116,7 @@ impl Study {
         let is_met = speeds.len() >= 2;
         Condition {
             requirement: "several constant speeds with a load of ten times gravity or more",
-            found: format!("{} such speeds", speeds.len()),
+            found: counted(speeds.len(), "such speed", "such speeds"),
             is_met,
             need: self.need(
                 is_met,
@@ -139,6 +145,11 @@ impl Study {
             is_met: missing.is_empty(),
             need: self.need(missing.is_empty(), &removals, &additions),
         }
+    }
+
+    /// Whether a plateau is on the arm, and no rest beside it.
+    fn is_on_arm(&self, set_point: &SetPoint) -> bool {
+        !self.model().experiment().position_of(set_point).is_free
     }
 
     /// Whether the experiment needs a condition: what it loses without any one of the sets of plateaus that meet it,
@@ -205,6 +216,10 @@ impl Study {
         let id = new_id(&self.model().experiment().positions);
         Some(Addition::Position(Position::on_arm(id.clone(), p_zy, id)))
     }
+}
+
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }
 
 fn axes_text(missing: &[usize]) -> String {

@@ -439,6 +439,19 @@ fn remedies_of_rests_are_attitudes() {
     assert!(study.reasons().iter().all(|reason| reason.sentence(&study).contains("other attitudes would")));
 }
 
+/// Rests beside the arm are at no radius and at no angle of the arm: conditions on these stay unmet.
+#[test]
+fn rests_beside_the_arm_meet_no_condition_of_the_arm() {
+    let mut one_radius = experiment(AxisOneUp, PairRelation::Common, &[1.0]);
+    one_radius.set_points.retain(|set_point| !set_point.is_rest() || set_point.angle < 1.0);
+    let model = kozlov(with_rests(one_radius, &faces()));
+    let count = model.experiment().set_points.len();
+    let weights = (0..count).map(|set_point| Weight { set_point, covariance: Matrix3::identity() * NOISE * NOISE });
+    let conditions = Study::at_zero(model, weights.collect()).unwrap().conditions();
+    let found: Vec<(&str, bool)> = conditions.iter().map(|c| (c.found.as_str(), c.is_met)).collect();
+    assert_eq!((found[0], found[2]), (("1 angle at rest", false), ("1 radius", false)), "{found:?}");
+}
+
 /// What the budget says of a change of bias is what rests do to the estimates that were read with another bias.
 #[test]
 fn a_change_of_bias_is_what_a_refit_shows() {
