@@ -6,7 +6,7 @@ use super::degrees_of_freedom::degrees_of_freedom;
 use super::error::NoiseError;
 use super::estimator::Estimator;
 use super::phase::Phase;
-use super::power_law::PowerLaw;
+use super::power_law::{FollowedLaw, PowerLaw};
 use crate::progress::{OnProgress, Watch};
 
 /// One point of a stability plot.
@@ -28,7 +28,7 @@ pub struct Deviation {
     pub degrees_of_freedom: f64,
     /// Power law that the bias and the degrees of freedom hold for.
     pub law: PowerLaw,
-    /// Whether the power law was identified at this tau; else it is that of the next shorter tau, white at worst.
+    /// Whether enough points were left to look for the power law at this tau; else it is that of the next shorter tau.
     pub is_identified: bool,
     /// Expected variance of the estimator over the true one; the variance was divided by it.
     pub bias: f64,
@@ -38,9 +38,9 @@ pub struct Deviation {
 /// (0.683 for one standard deviation).
 ///
 /// The true variance is within `edf s^2 / chi^2_(1-p) .. edf s^2 / chi^2_p`, p = (1 - confidence) / 2 [SP 1065,
-/// eq. 45]. Degrees of freedom and bias follow from the power law identified at each tau; gaps cost freedom in
-/// proportion to the terms they cost. Factors too long for the record are left out of the answer.
-/// `progress` is asked again and again.
+/// eq. 45]. Degrees of freedom and bias follow from the power law, which is that of the next shorter tau unless
+/// another is shown, white at first; gaps cost freedom in proportion to the terms they cost. Factors too long for the
+/// record are left out of the answer. `progress` is asked again and again.
 ///
 /// # Errors
 /// [`NoiseError::BadConfidence`], or [`NoiseError::Stopped`].
@@ -58,13 +58,12 @@ pub fn deviations(
     factors.sort_unstable();
     factors.dedup();
     let watch = Watch::new(progress);
-    let mut law = PowerLaw::White;
+    let mut followed = FollowedLaw::new(estimator.order());
     let mut deviations = Vec::with_capacity(factors.len());
     for m in factors {
         let raw = watch.found(estimator.watched_variance(phase, m, &watch))?;
         let Some(raw) = raw else { continue };
-        let identified = PowerLaw::identify(phase, m, estimator.order());
-        law = identified.unwrap_or(law);
+        let (law, is_identified) = followed.at(phase, m);
         let points = phase.points().len();
         let bias = bias(estimator, law, m, points);
         let share = raw.terms as f64 / raw.possible as f64;
@@ -80,7 +79,7 @@ pub fn deviations(
             terms: raw.terms,
             degrees_of_freedom: freedom,
             law,
-            is_identified: identified.is_some(),
+            is_identified,
             bias,
         });
     }

@@ -54,21 +54,7 @@ impl PowerLaw {
     /// `None` with fewer than 30 points left, or if they do not vary.
     /// Source: Riley and Greenhall, "Power law noise identification using the lag 1 autocorrelation", EFTF 2004.
     pub fn identify(phase: &Phase, m: usize, order: usize) -> Option<Self> {
-        const FEWEST: usize = 30;
-        let mut z: Vec<f64> = phase.points().iter().step_by(m.max(1)).copied().collect();
-        if z.len() < FEWEST {
-            return None;
-        }
-        remove_quadratic(&mut z);
-        for differences in 0..=order {
-            let r_1 = lag_1_autocorrelation(&z)?;
-            let rho = r_1 / (1.0 + r_1);
-            if rho < 0.25 || differences == order {
-                return Some(Self::nearest(2.0 - 2.0 * rho - 2.0 * differences as f64, order));
-            }
-            z = z.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        }
-        None
+        exponent(phase, m, order).map(|(alpha, _)| Self::nearest(alpha, order))
     }
 
     /// The power law next to a fractional alpha, among those for which the estimator of that order converges.
@@ -81,6 +67,73 @@ impl PowerLaw {
             .min_by(|a, b| apart(a).total_cmp(&apart(b)))
             .unwrap_or(Self::White)
     }
+}
+
+/// The power law by which bias and degrees of freedom are taken, followed from tau to tau.
+///
+/// The autocorrelation of few points is uncertain: white readings look like phase noise in a fifth of the records at
+/// 30 points, and phase noise would give them a hundred times their degrees of freedom. The law is therefore that
+/// of the shorter tau until the autocorrelation shows another at two standard deviations. It never turns from a
+/// reading's noise to a phase's: in a sum of power laws the largest alpha rules the shortest tau.
+#[derive(Debug)]
+pub(super) struct FollowedLaw {
+    law: PowerLaw,
+    order: usize,
+    /// The octave to be looked at next.
+    octave: usize,
+}
+
+impl FollowedLaw {
+    /// White until another law is shown, for an estimator of differences of that order.
+    pub fn new(order: usize) -> Self {
+        Self { law: PowerLaw::White, order, octave: 1 }
+    }
+
+    /// The law at averaging factor `m`, not less than that of the last call, and whether it could be looked for there.
+    /// All octaves up to `m` are looked at, so that the law does not depend on the factors asked for.
+    pub fn at(&mut self, phase: &Phase, m: usize) -> (PowerLaw, bool) {
+        while self.octave < m {
+            self.look(phase, self.octave);
+            self.octave *= 2;
+        }
+        let is_identified = self.look(phase, m);
+        (self.law, is_identified)
+    }
+
+    fn look(&mut self, phase: &Phase, m: usize) -> bool {
+        /// Standard deviations that show another law.
+        const SHOWN: f64 = 2.0;
+        let Some((alpha, uncertainty)) = exponent(phase, m, self.order) else { return false };
+        let reach = SHOWN * uncertainty;
+        let near = f64::from(self.law.alpha()).clamp(alpha - reach, alpha + reach);
+        let law = PowerLaw::nearest(near, self.order);
+        let is_first = m == 1;
+        self.law = if is_first { law } else { law.min(self.law.max(PowerLaw::White)) };
+        true
+    }
+}
+
+/// Fractional alpha by the lag-1 autocorrelation, as [`PowerLaw::identify`] says, and its standard uncertainty.
+fn exponent(phase: &Phase, m: usize, order: usize) -> Option<(f64, f64)> {
+    const FEWEST: usize = 30;
+    let mut z: Vec<f64> = phase.points().iter().step_by(m.max(1)).copied().collect();
+    if z.len() < FEWEST {
+        return None;
+    }
+    remove_quadratic(&mut z);
+    for differences in 0..=order {
+        let r_1 = lag_1_autocorrelation(&z)?;
+        let rho = r_1 / (1.0 + r_1);
+        if rho < 0.25 || differences == order {
+            let alpha = 2.0 - 2.0 * rho - 2.0 * differences as f64;
+            // Bartlett's variance of r_1 for noise correlated over one lag, and d alpha / d r_1 = 2 / (1 + r_1)^2.
+            let r = r_1.clamp(-0.5, 0.5);
+            let variance = (1.0 - 3.0 * r * r + 4.0 * r.powi(4)) / z.len() as f64;
+            return Some((alpha, 2.0 * variance.sqrt() / (1.0 + r).powi(2)));
+        }
+        z = z.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    }
+    None
 }
 
 /// `sum (z_i - mean)(z_(i+1) - mean) / sum (z_i - mean)^2`; `None` for a constant.

@@ -18,6 +18,7 @@ mod measurement;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of samples from lengths of time")]
 mod mistakes;
 mod noise;
+mod noise_intervals;
 mod noise_source;
 mod observability;
 mod plan;
