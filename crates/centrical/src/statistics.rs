@@ -4,4 +4,4 @@ mod random;
 mod robust;
 
 pub(crate) use random::Random;
-pub(crate) use robust::{MAD, PIECE, cut, median, watched_median, whole};
+pub(crate) use robust::{MAD, PIECE, cut, median, spread, watched_median, whole};

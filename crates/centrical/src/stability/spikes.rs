@@ -1,13 +1,13 @@
 //! Spikes: readings that differ from their neighbours by more than noise.
 
 use crate::progress::{OnProgress, Stopped, advance};
-use crate::statistics::{MAD, PIECE, cut, watched_median};
+use crate::statistics::{PIECE, cut, spread, watched_median};
 
 /// Marks the spikes among evenly spaced readings as missing (NaN) and returns their number.
 ///
 /// A reading is compared with the median of the two on either side of it, which one more spike among them does not
 /// move. The limit is what fewer than one in twenty records of good readings exceed anywhere, `sqrt(2 ln 20 n)` robust
-/// standard deviations, and a digit for rounding. Noise slower than a few samples does not enter the comparison, and
+/// standard deviations, which allow for the last digit. Noise slower than a few samples does not enter the comparison, and
 /// so is not cut. `progress` is asked again and again.
 ///
 /// # Errors
@@ -20,7 +20,7 @@ pub fn leave_out_spikes(readings: &mut [f64], progress: OnProgress<()>) -> Resul
         residuals.extend(next.map(|i| readings[i] - median_of_neighbours(readings, i)));
     }
     let mut sizes: Vec<f64> = residuals.iter().filter(|r| r.is_finite()).map(|r| r.abs()).collect();
-    let limit = cut(sizes.len()) * MAD * watched_median(&mut sizes, progress)? + last_digit(readings);
+    let limit = cut(sizes.len()) * spread(watched_median(&mut sizes, progress)?, last_digit(readings));
     let mut spikes = 0;
     for (reading, residual) in readings.iter_mut().zip(&residuals) {
         if residual.abs() > limit {
@@ -56,6 +56,7 @@ fn median_of_neighbours(readings: &[f64], i: usize) -> f64 {
 mod tests {
     use super::leave_out_spikes;
     use crate::progress::unwatched;
+    use crate::statistics::Random;
 
     #[test]
     fn spikes_go_and_the_rest_stays() {
@@ -68,6 +69,23 @@ mod tests {
         assert_eq!(leave_out_spikes(&mut readings, &unwatched), Ok(4));
         let missing: Vec<usize> = (0..2000).filter(|i| readings[*i].is_nan()).collect();
         assert_eq!(missing, [0, 500, 501, 700, 1999]);
+    }
+
+    /// Steps from a tenth to ten of the standard deviation: no good reading goes, and a spike of ten steps and noises does.
+    #[test]
+    fn rounded_noise_has_no_spikes() {
+        for step in [0.1, 0.2, 0.3, 0.45, 0.5, 0.7, 1.0, 1.3, 1.5, 2.0, 2.5, 3.0, 5.0, 7.0, 10.0] {
+            for place in [0.1, 0.25, 0.4] {
+                let mut random = Random::stream(5, 0);
+                let mut readings: Vec<f64> =
+                    (0..12_000).map(|_| (random.normal() / step + place).round() * step).collect();
+                assert_eq!(leave_out_spikes(&mut readings, &unwatched), Ok(0), "steps of {step}, {place}");
+                if readings.iter().any(|reading| *reading != 0.0) {
+                    readings[700] += 10.0 * (1.0 + step);
+                    assert_eq!(leave_out_spikes(&mut readings, &unwatched), Ok(1), "steps of {step}, {place}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -57,6 +57,14 @@ pub(crate) fn cut(n: usize) -> f64 {
     (2.0 * (20.0 * n as f64).ln()).sqrt()
 }
 
+/// Robust standard deviation of readings whose last digit is `step`, by the median size of their deviations.
+///
+/// The median of rounded sizes is rounded, too: half a step is added, so that it is no smaller than that of the noise. Steps of
+/// twice the noise leave half the deviations zero.
+pub(crate) fn spread(median_size: f64, step: f64) -> f64 {
+    MAD * (median_size + 0.5 * step)
+}
+
 /// The whole part of a number of blocks, cells or revolutions; zero of a negative number.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 pub(crate) fn whole(number: f64) -> usize {
