@@ -63,7 +63,7 @@ pub use reader::{Extent, TableReader, estimate_rows, text_form};
 pub use rows::{Rows, to_scale};
 pub use source::{Source, SourceReader};
 pub use stamp::{StampKind, Stamps};
-pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm};
+pub use text::{DecimalSign, Index, Reread, StampColumn, TextEncoding, TextForm, unit_of_word};
 pub use write::{
     ClaimedFolder, Decimals, Outputs, TableFormat, TableWriter, TypedWriter, abandon_files, claim_folder,
     create_folder, parquet_bytes, refuse_inputs, write_stream, write_table, write_whole,

@@ -83,6 +83,9 @@ fn summary(file: &Path, draft: &Draft) -> Screen {
     for entry in &draft.fill_in {
         screen.say(2, &format!("line {}: {}: {}", entry.line, entry.key, entry.reason));
     }
+    for file in &draft.unused {
+        screen.say(2, &format!("not used: {file}"));
+    }
     screen.say(0, &format!("Then: centrical calibrate {}", file.display()));
     screen
 }

@@ -5,6 +5,7 @@ mod calibrate;
 mod compensate;
 mod history;
 mod init;
+mod init_headers;
 mod json;
 #[cfg(unix)]
 mod killed;

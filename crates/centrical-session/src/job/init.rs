@@ -6,6 +6,7 @@
 //! the square of the speed is the radius.
 
 mod attitude;
+mod column_names;
 mod draft;
 mod experiment_text;
 mod file_roles;
@@ -33,7 +34,7 @@ use crate::error::{Error, Place};
 /// [`Error`] when a file cannot be read, when none is a record, or when the tumble is of another unit of readings;
 /// [`Error::Stopped`].
 pub fn init(request: &InitRequest, progress: OnProgress) -> Result<Draft, Error> {
-    let groups = file_roles::groups(&request.inputs)?;
+    let (groups, unused) = file_roles::groups(&request.inputs)?;
     if groups.is_empty() {
         let inputs = request.inputs.first().map_or(Path::new("."), PathBuf::as_path);
         let expected = "a table with a time and three readings, as text, Parquet, Arrow, NumPy, MATLAB or TDMS";
@@ -41,5 +42,5 @@ pub fn init(request: &InitRequest, progress: OnProgress) -> Result<Draft, Error>
     }
     let mountings = groups.into_iter().map(|group| sighting::sight(group, progress)).collect::<Result<Vec<_>, _>>()?;
     let tumbled = request.tumble.as_deref().map(Tumbled::read).transpose()?;
-    experiment_text::draft(&mountings, tumbled.as_ref(), request)
+    experiment_text::draft(&mountings, tumbled.as_ref(), &unused, request)
 }

@@ -39,6 +39,11 @@ pub(super) fn unit(text: &str) -> Option<&'static str> {
     WORDS.iter().find(|(_, spellings)| spellings.contains(&text.as_str())).map(|(unit, _)| *unit)
 }
 
+/// The unit that a word of a file names, `1/min` or `м/с²`, in the spelling of settings.
+pub fn unit_of_word(word: &str) -> Option<&'static str> {
+    unit(word)
+}
+
 /// The unit that bytes of a file name in any encoding: a row of units is too short to show which it is.
 pub(super) fn unit_in_any(text: &[u8]) -> Option<&'static str> {
     let encodings = [TextEncoding::Utf8].into_iter().chain(TextEncoding::OF_BYTES);

@@ -3,6 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use centrical_table::harmless_line;
+
 use crate::document::{DraftReport, LineToFillIn};
 
 /// A drafted file.
@@ -14,6 +16,8 @@ pub struct Draft {
     pub fill_in: Vec<FillIn>,
     /// Number of guesses.
     pub guesses: usize,
+    /// Files that are not used, and why.
+    pub unused: Vec<String>,
 }
 
 /// A line that only a person can complete.
@@ -49,6 +53,21 @@ impl Draft {
     /// A line that the files show.
     pub(super) fn found(&mut self, line: &str, how: &str) {
         let _ = writeln!(self.text, "{line}  # FOUND: {how}");
+    }
+
+    /// A line that the files show; or one that is likely, for the reason of the guess.
+    pub(super) fn shown(&mut self, guess: Option<&str>, line: &str, how: &str) {
+        match guess {
+            Some(why) => self.guess(line, why),
+            None => self.found(line, how),
+        }
+    }
+
+    /// A file that is not used, and why: one line, whatever its name holds.
+    pub(super) fn unused(&mut self, file: &str) {
+        let file = harmless_line(file);
+        let _ = writeln!(self.text, "# NOT USED: {file}");
+        self.unused.push(file.into_owned());
     }
 
     /// A line that is likely.

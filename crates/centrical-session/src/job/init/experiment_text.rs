@@ -5,8 +5,9 @@ use std::path::Path;
 use centrical_table::{ColumnName, DecimalSign, TextForm};
 
 use super::attitude::{Attitude, attitude};
+use super::column_names::Label;
 use super::draft::{Draft, UNKNOWN};
-use super::file_roles::{FileColumns, Label};
+use super::file_roles::{FileColumns, Unused};
 use super::output_unit::OutputUnit;
 use super::path_text::relative;
 use super::raw::{Extremes, Raw};
@@ -37,11 +38,16 @@ struct Findings {
 pub(super) fn draft(
     mountings: &[SeenMounting],
     tumbled: Option<&Tumbled>,
+    unused: &[Unused],
     request: &InitRequest,
 ) -> Result<Draft, Error> {
     let findings = Findings::of(mountings, tumbled)?;
     let mut draft = Draft::default();
     heading(&mut draft, mountings);
+    for Unused { path, reason } in unused {
+        draft.unused(&format!("{}: {reason}", relative(path, &request.folder)));
+    }
+    draft.line("");
     session(&mut draft, tumbled);
     unit(&mut draft, &findings.unit, tumbled);
     machine(&mut draft);
@@ -122,7 +128,6 @@ fn heading(draft: &mut Draft, mountings: &[SeenMounting]) {
     if let Some(rate) = mountings.iter().find_map(|m| m.rate) {
         draft.line(&format!("# {} records, {rate:.4} samples per second in the first.", mountings.len()));
     }
-    draft.line("");
 }
 
 fn session(draft: &mut Draft, tumbled: Option<&Tumbled>) {
@@ -156,17 +161,22 @@ fn unit(draft: &mut Draft, unit: &OutputUnit, tumbled: Option<&Tumbled>) {
     }
     match unit {
         OutputUnit::Named(name @ ("m/s^2" | "g")) => {
-            draft.found(&format!("output_unit = \"{name}\""), "the unit beside the names");
+            draft.found(&format!("output_unit = \"{name}\""), "the unit in the header");
         }
+        OutputUnit::Unnamed => draft.guess("output_unit = \"m/s^2\"", "no file names the unit, and no rest shows it"),
         OutputUnit::ByGravity(name @ ("m/s^2" | "g"), norm) => {
             draft.guess(&format!("output_unit = \"{name}\""), &format!("the readings at rest are {norm:.3} long"));
         }
         OutputUnit::Named(_) | OutputUnit::ByGravity(..) => draft.line("output_unit = \"m/s^2\""),
         OutputUnit::Raw { name, unit, coarse } => {
-            let how = "the unit beside the names, or readings at rest that are no gravity in m/s^2, g or mg";
+            let how = "the unit in the header, or readings at rest that are no gravity in m/s^2, g or mg";
             draft.guess(&format!("output_unit = \"{unit}\""), how);
             match tumbled {
-                Some(tumbled) => draft.found(&tumbled.raw_line(name), &tumbled.how()),
+                Some(tumbled) => {
+                    let how =
+                        format!("{}; scales of reversed axes are negative, which gravity does not show", tumbled.how());
+                    draft.found(&tumbled.raw_line(name), &how);
+                }
                 None => raw(draft, name, coarse.as_ref()),
             }
         }
@@ -223,7 +233,7 @@ fn columns(draft: &mut Draft, mountings: &[SeenMounting], unit: &OutputUnit) {
     let telemetry = mountings.iter().find_map(|m| m.group.telemetry.as_ref());
     draft.line("[columns]");
     match &records[0].time {
-        Some(label) => draft.found(&format!("time = {}", written(label, "s")), "time"),
+        Some(label) => draft.shown(label.guess, &format!("time = {}", written(label, "s")), "time"),
         None => {
             draft.fill_in("[columns] time", "time = { rate = \"?\" }", "such as \"1 kHz\": the records have no time");
         }
@@ -241,7 +251,8 @@ fn columns(draft: &mut Draft, mountings: &[SeenMounting], unit: &OutputUnit) {
         Some(unit) => format!("{{ column = {}, unit = \"{unit}\" }}", column(&label.column)),
         None => column(&label.column),
     };
-    draft.found(&format!("f = [{}]", readings.iter().map(name).collect::<Vec<_>>().join(", ")), "the three readings");
+    let line = format!("f = [{}]", readings.iter().map(name).collect::<Vec<_>>().join(", "));
+    draft.shown(readings.iter().find_map(|label| label.guess), &line, "the three readings");
     if let Some(telemetry) = telemetry {
         of_telemetry(draft, telemetry, records[0].time.as_ref());
     }
@@ -250,13 +261,13 @@ fn columns(draft: &mut Draft, mountings: &[SeenMounting], unit: &OutputUnit) {
 
 fn of_telemetry(draft: &mut Draft, telemetry: &FileColumns, of_records: Option<&Label>) {
     if let Some(time) = telemetry.time.as_ref().filter(|time| Some(*time) != of_records) {
-        draft.found(&format!("telemetry_time = {}", written(time, "s")), "time of the telemetry");
+        draft.shown(time.guess, &format!("telemetry_time = {}", written(time, "s")), "time of the telemetry");
     }
     if let Some(speed) = &telemetry.speed {
         let line = format!("speed = {}", column(&speed.column));
-        draft.found(&line, "speed");
+        draft.shown(speed.guess.filter(|_| speed.unit.is_none()), &line, "speed");
         if let Some(unit) = speed.unit {
-            draft.found(&format!("speed_unit = \"{unit}\""), "the unit beside its name");
+            draft.shown(speed.guess, &format!("speed_unit = \"{unit}\""), "the unit in the header");
         } else {
             draft.guess("speed_unit = \"rad/s\"", "the file names no unit; \"rpm\" and \"deg/s\" are others");
         }
@@ -310,7 +321,7 @@ fn positions(draft: &mut Draft, attitudes: &[Option<Attitude>], six: bool) -> Ve
         });
         draft.line("[[position]]");
         draft.line(&format!("id = \"{}\"", k + 1));
-        draft.found(&format!("axes = \"{}\"", attitude.axes()), "gravity at rest, pull at speed");
+        draft.found(&format!("axes = \"{}\"", attitude.axes()), "gravity at rest, pull at speed, if the unit is right-handed and no axis reversed: the readings do not show it");
         let letter = char::from(b'A' + u8::try_from(pair % 26).unwrap_or(0));
         draft.guess(&format!("pair = \"{letter}\""), "positions with the same axis upwards share the errors of place");
         draft.line("");

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use centrical_table::{ColumnName, Extent, Field, Rule, TableReader, TextForm, text_form};
 
+use super::column_names::{Label, What, what};
 use crate::error::Error;
-use crate::quantity::Dimension;
 
 /// Folders are searched to this depth.
 const DEPTH: usize = 3;
@@ -28,39 +28,67 @@ pub(super) struct Group {
 }
 
 /// A file and the columns of it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct FileColumns {
     pub path: PathBuf,
     pub form: Option<TextForm>,
     pub time: Option<Label>,
     pub readings: Vec<Label>,
     pub speed: Option<Label>,
+    /// Whether its readings are named as those of a gyroscope often are: `gx`, `gy`, `gz`.
+    is_like_gyroscope: bool,
 }
 
-/// A column, and its unit if the file names it.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Label {
-    pub column: ColumnName,
-    pub unit: Option<&'static str>,
+/// A file that is not used, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Unused {
+    pub path: PathBuf,
+    pub reason: String,
 }
 
-/// The mountings that the files are of, in the natural order of their names.
-pub(super) fn groups(inputs: &[PathBuf]) -> Result<Vec<Group>, Error> {
+/// The mountings that the files are of, in the natural order of their names, and the files that are not used.
+pub(super) fn groups(inputs: &[PathBuf]) -> Result<(Vec<Group>, Vec<Unused>), Error> {
     let mut paths = Vec::new();
     for input in inputs {
         collect(input, DEPTH, true, &mut paths)?;
     }
     paths.sort_by(|a, b| natural(a, b));
     paths.dedup();
-    let mut files = Vec::new();
+    let (mut files, mut unused) = (Vec::new(), Vec::new());
     for path in paths {
-        files.extend(columns_of(path)?);
+        match columns_of(path)? {
+            Ok(file) => files.push(file),
+            Err(file) => unused.push(file),
+        }
     }
     let (records, telemetry): (Vec<_>, Vec<_>) = files.into_iter().partition(|file| !file.readings.is_empty());
-    let mut groups: Vec<Group> =
-        joined(records).into_iter().map(|records| Group { records, telemetry: None }).collect();
-    pair(&mut groups, telemetry);
-    Ok(groups)
+    let (gyroscopes, others): (Vec<_>, Vec<_>) = records.into_iter().partition(|file| file.is_like_gyroscope);
+    let records = if others.is_empty() {
+        gyroscopes
+    } else {
+        let reason = "found rates of turn by the names of its columns, expected readings or the speed of the arm";
+        unused.extend(gyroscopes.into_iter().map(|file| file.unused(reason)));
+        others
+    };
+    let (joined, apart) = joined(records);
+    let reason = |file: &FileColumns| {
+        let names = file.form.as_ref().map_or(String::new(), |form| format!(" in columns {}", form.names.join(", ")));
+        format!("found one reading{names}, expected three, or two more files whose names differ in the axis")
+    };
+    unused.extend(apart.into_iter().map(|file| {
+        let reason = reason(&file);
+        file.unused(&reason)
+    }));
+    let mut groups: Vec<Group> = joined.into_iter().map(|records| Group { records, telemetry: None }).collect();
+    let reason = "found a speed, expected a record of the same name or number";
+    unused.extend(pair(&mut groups, telemetry).into_iter().map(|file| file.unused(reason)));
+    Ok((groups, unused))
+}
+
+impl FileColumns {
+    fn unused(self, reason: &str) -> Unused {
+        Unused { path: self.path, reason: reason.to_owned() }
+    }
 }
 
 fn collect(path: &Path, depth: usize, is_named: bool, paths: &mut Vec<PathBuf>) -> Result<(), Error> {
@@ -86,21 +114,29 @@ fn collect(path: &Path, depth: usize, is_named: bool, paths: &mut Vec<PathBuf>) 
     Ok(())
 }
 
-/// The columns of a file; none if it is neither a record nor telemetry.
-fn columns_of(path: PathBuf) -> Result<Option<FileColumns>, Error> {
-    match text_form(&path)? {
-        Some(form) => Ok(Some(of_text(path, form)).filter(|file| file.speed.is_some() || !file.readings.is_empty())),
-        None => Ok(of_binary(&path)),
-    }
+/// The columns of a file; or why it is neither a record nor telemetry.
+fn columns_of(path: PathBuf) -> Result<Result<FileColumns, Unused>, Error> {
+    let Some(form) = text_form(&path)? else {
+        let reason = "found no table of text, expected columns t, f1, f2, f3 or t, omega of other tables";
+        return Ok(of_binary(&path).ok_or_else(|| Unused { path, reason: reason.to_owned() }));
+    };
+    let names = match form.names.join(", ") {
+        names if names.is_empty() => format!("{} columns without names", form.first_row.len()),
+        names => format!("columns {names}"),
+    };
+    let file = of_text(path, form);
+    let is_used = file.speed.is_some() || !file.readings.is_empty();
+    let expected = "a time and three readings, or a time and a speed such as \"speed (rpm)\"";
+    Ok(if is_used { Ok(file) } else { Err(file.unused(&format!("found {names}, expected {expected}"))) })
 }
 
 /// Columns by their names and units; without a header by their number.
 fn of_text(path: PathBuf, form: TextForm) -> FileColumns {
     let unit = |index: usize| form.units.get(index).copied().flatten();
-    let mut file = FileColumns { path, form: None, time: None, readings: Vec::new(), speed: None };
+    let mut file = FileColumns { path, ..FileColumns::default() };
     let stamps = form.stamps.map(|stamps| stamps.column);
     if form.names.is_empty() {
-        let numbered = |index: usize| Label { column: ColumnName::Number(index + 1), unit: None };
+        let numbered = Label::numbered;
         let count = form.first_row.len();
         match count {
             2 => (file.time, file.speed) = (Some(numbered(0)), Some(numbered(1))),
@@ -109,16 +145,21 @@ fn of_text(path: PathBuf, form: TextForm) -> FileColumns {
             _ => {}
         }
     }
+    let mut rates = Vec::new();
     for (index, name) in form.names.iter().enumerate() {
-        let label = Label { column: ColumnName::Name(name.clone()), unit: unit(index) };
+        let label = Label::of_text(name, unit(index));
         match what(name, label.unit) {
             _ if stamps == Some(index) && file.time.is_none() => file.time = Some(label),
             What::Time if file.time.is_none() => file.time = Some(label),
             What::Speed if file.speed.is_none() => file.speed = Some(label),
+            What::Rate => rates.push(label),
             What::Reading => file.readings.push(label),
             _ => {}
         }
     }
+    file.form = Some(form);
+    take_time(&mut file);
+    take_rates(&mut file, rates);
     if file.readings.len() != 3 && file.speed.is_some() {
         // Telemetry with other columns beside the speed.
         file.readings.clear();
@@ -127,49 +168,45 @@ fn of_text(path: PathBuf, form: TextForm) -> FileColumns {
     if file.readings.len() == 2 {
         file.readings.clear();
     }
-    file.form = Some(form);
     file
 }
 
-/// What a column holds.
-enum What {
-    Time,
-    Speed,
-    Reading,
-    Other,
+/// A first column that rises from row to row, with others behind it, is the time by another name.
+fn take_time(file: &mut FileColumns) {
+    let enough = if file.speed.is_some() { 1 } else { 4 };
+    if file.time.is_none() && file.readings.len() >= enough && rises(&file.path, &file.readings[0].column) {
+        let guess = Some("the first column, which rises from row to row");
+        file.time = Some(Label { guess, ..file.readings.remove(0) });
+    }
 }
 
-/// What a column holds, by its unit, else by its name in English, German or Russian.
-fn what(name: &str, unit: Option<&str>) -> What {
-    let name = name.to_lowercase();
-    let word: String = name.chars().take_while(|c| !"([,".contains(*c)).collect::<String>().trim().to_owned();
-    let has = |words: &[&str]| words.iter().any(|part| word.contains(part));
-    if has(&["temp", "темп", "status", "flag", "marker", "humid", "press"])
-        || ["no", "n", "№", "index", "sample"].contains(&word.as_str())
-    {
-        return What::Other;
-    }
-    if let Some(unit) = unit {
-        if Dimension::Time.factor(unit).is_some() {
-            return What::Time;
-        } else if Dimension::Speed.factor(unit).is_some() {
-            return What::Speed;
-        } else if unit == "V" || Dimension::Acceleration.factor(unit).is_some() {
-            return What::Reading;
+/// Rates of turn: one is the speed where there is no other; three without a unit may be readings in g.
+fn take_rates(file: &mut FileColumns, rates: Vec<Label>) {
+    match rates.as_slice() {
+        [rate] if file.speed.is_none() && file.readings.len() != 3 => file.speed = Some(rate.clone()),
+        [_, _, _] if file.readings.is_empty() && file.speed.is_none() && rates.iter().all(|r| r.unit.is_none()) => {
+            file.is_like_gyroscope = true;
+            let guess = Some("their names may be those of a gyroscope, too");
+            file.readings = rates.into_iter().map(|label| Label { guess, ..label }).collect();
         }
+        _ => {}
     }
-    if has(&["time", "zeit", "врем", "stamp"]) || word == "t" {
-        What::Time
-    } else if has(&["omega", "ω", "speed", "rpm", "rate", "drehzahl", "об/мин", "скор", "оборот"]) {
-        What::Speed
-    } else {
-        What::Reading
-    }
+}
+
+/// Whether a column of a file rises in all of its first rows.
+fn rises(path: &Path, column: &ColumnName) -> bool {
+    /// Noise rises through as many rows by chance once in 10^13 files.
+    const ROWS: usize = 16;
+    let field = Field { name: column.clone(), expected: "a number".to_owned(), rule: Rule::Any };
+    let Ok(mut reader) = TableReader::open(path, Extent::Whole, &[field], "a table") else { return false };
+    let Ok(Some([rows, ..])) = reader.next_batch() else { return false };
+    let first = rows[0].len().min(1000);
+    first >= ROWS && rows[0][..first].windows(2).all(|pair| pair[1] > pair[0])
 }
 
 /// A table that is not text is asked for the usual names.
 fn of_binary(path: &Path) -> Option<FileColumns> {
-    let label = |name: &str| Label { column: ColumnName::Name(name.to_owned()), unit: None };
+    let label = Label::usual;
     let has = |names: &[&str]| {
         let field = |name: &&str| Field {
             name: ColumnName::Name((*name).to_owned()),
@@ -178,8 +215,7 @@ fn of_binary(path: &Path) -> Option<FileColumns> {
         };
         TableReader::open(path, Extent::Whole, &names.iter().map(field).collect::<Vec<_>>(), "a table").is_ok()
     };
-    let none =
-        FileColumns { path: path.to_owned(), form: None, time: Some(label("t")), readings: Vec::new(), speed: None };
+    let none = FileColumns { path: path.to_owned(), time: Some(label("t")), ..FileColumns::default() };
     if has(&["t", "f1", "f2", "f3"]) {
         let speed = has(&["t", "omega"]).then(|| label("omega"));
         return Some(FileColumns { readings: ["f1", "f2", "f3"].map(label).to_vec(), speed, ..none });
@@ -187,8 +223,9 @@ fn of_binary(path: &Path) -> Option<FileColumns> {
     has(&["t", "omega"]).then(|| FileColumns { speed: Some(label("omega")), ..none })
 }
 
-/// Records by mounting: files of one newtonometer each, named alike but for the axis, belong together.
-fn joined(records: Vec<FileColumns>) -> Vec<Vec<FileColumns>> {
+/// Records by mounting: files of one newtonometer each, named alike but for the axis, belong together. Second, those that are
+/// left.
+fn joined(records: Vec<FileColumns>) -> (Vec<Vec<FileColumns>>, Vec<FileColumns>) {
     let mut groups: Vec<Vec<FileColumns>> = Vec::new();
     let mut by_stem: BTreeMap<(PathBuf, String), usize> = BTreeMap::new();
     for record in records {
@@ -208,17 +245,19 @@ fn joined(records: Vec<FileColumns>) -> Vec<Vec<FileColumns>> {
             }
         }
     }
-    groups.retain(|group| group.len() == 3 || group[0].readings.len() == 3);
-    groups
+    let (whole, apart): (Vec<_>, Vec<_>) =
+        groups.into_iter().partition(|group| group.len() == 3 || group[0].readings.len() == 3);
+    (whole, apart.into_iter().flatten().collect())
 }
 
-/// Telemetry to the mounting of the same number or name; in their order where there are as many.
-fn pair(groups: &mut [Group], telemetry: Vec<FileColumns>) {
+/// Telemetry to the mounting of the same number or name; in their order where there are as many. Returns what is left.
+fn pair(groups: &mut [Group], telemetry: Vec<FileColumns>) -> Vec<FileColumns> {
     for group in groups.iter_mut() {
         if group.records[0].speed.is_some() {
             group.telemetry = Some(group.records[0].clone());
         }
     }
+    let mut left = Vec::new();
     let in_order = telemetry.len() == groups.len();
     for (index, file) in telemetry.into_iter().enumerate() {
         let same = |group: &Group| {
@@ -227,10 +266,12 @@ fn pair(groups: &mut [Group], telemetry: Vec<FileColumns>) {
                 || last_number(record).is_some() && last_number(record) == last_number(&file.path)
         };
         let place = groups.iter().position(same).or(in_order.then_some(index));
-        if let Some(group) = place.map(|place| &mut groups[place]).filter(|group| group.telemetry.is_none()) {
-            group.telemetry = Some(file);
+        match place.map(|place| &mut groups[place]).filter(|group| group.telemetry.is_none()) {
+            Some(group) => group.telemetry = Some(file),
+            None => left.push(file),
         }
     }
+    left
 }
 
 /// The name without its endings.

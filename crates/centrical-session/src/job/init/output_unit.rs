@@ -13,7 +13,13 @@ use crate::quantity::Dimension;
 pub(super) enum OutputUnit {
     Named(&'static str),
     ByGravity(&'static str, f64),
-    Raw { name: &'static str, unit: &'static str, coarse: Option<Raw> },
+    /// No file names it, and no rest shows it.
+    Unnamed,
+    Raw {
+        name: &'static str,
+        unit: &'static str,
+        coarse: Option<Raw>,
+    },
 }
 
 impl OutputUnit {
@@ -22,10 +28,11 @@ impl OutputUnit {
         let mut labels = mountings.iter().flat_map(|m| &m.group.records).flat_map(|file| &file.readings);
         match labels.find_map(|label| label.unit) {
             Some("V") => return Self::Raw { name: "volts", unit: "V", coarse: Raw::by_gravity(extremes) },
+            Some("counts") => return Self::Raw { name: "counts", unit: "counts", coarse: Raw::by_gravity(extremes) },
             Some(unit) => return Self::Named(unit),
             None => {}
         }
-        let Some(seen) = extremes.iter().flatten().next() else { return Self::Named("m/s^2") };
+        let Some(seen) = extremes.iter().flatten().next() else { return Self::Unnamed };
         let norm = seen.rest.iter().map(|f| f * f).sum::<f64>().sqrt();
         let is_near = |unit: &&str| {
             let factor = Dimension::Acceleration.factor(unit).unwrap_or(f64::NAN);
@@ -42,7 +49,7 @@ impl OutputUnit {
         let is_same = match self {
             Self::Raw { unit: "counts", .. } => tumbled.output_unit == Output::Counts,
             Self::Raw { .. } => tumbled.output_unit == Output::Volts,
-            Self::Named(_) | Self::ByGravity(..) => tumbled.output_unit == Output::Acceleration,
+            Self::Named(_) | Self::ByGravity(..) | Self::Unnamed => tumbled.output_unit == Output::Acceleration,
         };
         match self {
             _ if !is_same => {
@@ -54,13 +61,14 @@ impl OutputUnit {
                 *coarse = Some(tumbled.raw);
                 Ok(())
             }
-            Self::Named(_) | Self::ByGravity(..) => Ok(()),
+            Self::Named(_) | Self::ByGravity(..) | Self::Unnamed => Ok(()),
         }
     }
 
     fn name(&self) -> &'static str {
         match self {
             Self::Named(unit) | Self::ByGravity(unit, _) | Self::Raw { unit, .. } => unit,
+            Self::Unnamed => "m/s^2",
         }
     }
 
@@ -70,6 +78,7 @@ impl OutputUnit {
             Self::Named(unit) | Self::ByGravity(unit, _) => {
                 Dimension::Acceleration.factor(unit).map(|factor| Raw { scale: [1.0 / factor; 3], bias: [0.0; 3] })
             }
+            Self::Unnamed => Some(Raw { scale: [1.0; 3], bias: [0.0; 3] }),
             Self::Raw { coarse, .. } => *coarse,
         }
     }

@@ -6,7 +6,8 @@ use centrical::reduction::{SteadyStretch, steady_stretches};
 use centrical::{OnProgress, advance};
 use centrical_table::ColumnName;
 
-use super::file_roles::{FileColumns, Group, Label};
+use super::column_names::Label;
+use super::file_roles::{FileColumns, Group};
 use super::raw::Extremes;
 use crate::error::Error;
 use crate::experiment::Folder;

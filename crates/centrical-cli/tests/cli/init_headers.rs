@@ -1,0 +1,113 @@
+//! `centrical init` on files of other headers: FOUND stands beside what they say, and nothing is left out without a word.
+
+use std::fs;
+
+use crate::session::Copy;
+
+/// The draft of the example, every header of its records and of its telemetry being these.
+fn drafted(records: &str, telemetry: &str) -> String {
+    let copy = Copy::new();
+    with_headers(&copy, records, telemetry);
+    draft(&copy, &["records", "telemetry"])
+}
+
+fn with_headers(copy: &Copy, records: &str, telemetry: &str) {
+    for (part, header) in [("records", records), ("telemetry", telemetry)] {
+        for file in fs::read_dir(copy.session().join(part)).unwrap() {
+            let path = file.unwrap().path();
+            let text = fs::read_to_string(&path).unwrap();
+            let (_, rows) = text.split_once('\n').unwrap();
+            fs::write(&path, format!("{header}\n{rows}")).unwrap();
+        }
+    }
+}
+
+fn draft(copy: &Copy, parts: &[&str]) -> String {
+    let inputs: Vec<String> = parts.iter().map(|part| copy.session().join(part).display().to_string()).collect();
+    let arguments: Vec<&str> = std::iter::once("init").chain(inputs.iter().map(String::as_str)).collect();
+    let output = copy.run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[track_caller]
+fn assert_lines(draft: &str, lines: &[&str]) {
+    for line in lines {
+        assert!(draft.lines().any(|found| found.starts_with(line)), "{line} in {draft}");
+    }
+}
+
+#[test]
+fn the_unit_of_speed_stands_in_its_name() {
+    let cases = [
+        ("rpm", "speed_unit = \"rpm\"  # FOUND"),
+        ("RPM", "speed_unit = \"rpm\"  # FOUND"),
+        ("speed_rpm", "speed_unit = \"rpm\"  # FOUND"),
+        ("n [rpm]", "speed_unit = \"rpm\"  # FOUND"),
+        ("n 1/min", "speed_unit = \"rpm\"  # FOUND"),
+        ("deg/s", "speed_unit = \"deg/s\"  # FOUND"),
+        ("Hz", "speed_unit = \"Hz\"  # FOUND"),
+        ("обороты", "speed_unit = \"rpm\"  # GUESS"),
+        ("omega", "speed_unit = \"rad/s\"  # GUESS: the file names no unit"),
+    ];
+    for (name, line) in cases {
+        let draft = drafted("t,f1,f2,f3", &format!("t,{name}"));
+        assert_lines(&draft, &[line, &format!("speed = \"{name}\"  # FOUND")]);
+    }
+}
+
+#[test]
+fn time_and_units_of_readings_stand_in_their_names() {
+    let draft = drafted("ms,x_mg,y_mg,z_mg", "t,omega");
+    let readings = "f = [{ column = \"x_mg\", unit = \"mg\" }, { column = \"y_mg\", unit = \"mg\" }";
+    assert_lines(&draft, &["time = { column = \"ms\", unit = \"ms\" }  # FOUND", readings]);
+    let draft = drafted("t_ms,x,y,z", "t,omega");
+    assert_lines(
+        &draft,
+        &["time = { column = \"t_ms\", unit = \"ms\" }  # FOUND", "f = [\"x\", \"y\", \"z\"]  # FOUND"],
+    );
+    // By its name it could be anything: it rises.
+    let draft = drafted("clock,x_g,y_g,z_g", "t,omega");
+    assert_lines(&draft, &["time = \"clock\"  # GUESS: the first column", "output_unit = \"g\"  # FOUND"]);
+}
+
+#[test]
+fn a_unit_that_stands_nowhere_is_not_found() {
+    let copy = Copy::new();
+    let draft = draft(&copy, &["records"]);
+    assert_lines(&draft, &["output_unit = \"m/s^2\"  # GUESS: no file names the unit"]);
+}
+
+#[test]
+fn gyroscopes_are_no_newtonometers() {
+    let copy = Copy::new();
+    fs::write(copy.session().join("records/gyro_01.csv"), "t,gx,gy,gz\n0,1,2,3\n1,1,2,3\n").unwrap();
+    let draft = draft(&copy, &["records", "telemetry"]);
+    assert!(draft.lines().any(|line| line.contains("gyro_01.csv: found rates of turn")), "{draft}");
+    assert_lines(&draft, &["f = [\"f1\", \"f2\", \"f3\"]"]);
+    // Beside the readings, and in front of them.
+    let record = "t,gx,gy,gz,ax,ay,az\n0,9,9,9,1,2,3\n1,9,9,9,1,2,3\n2,9,9,9,1,2,3\n";
+    let copy = Copy::new();
+    let folder = copy.session().join("both");
+    fs::create_dir(&folder).unwrap();
+    fs::write(folder.join("m1.csv"), record).unwrap();
+    let draft = self::draft(&copy, &["both"]);
+    assert_lines(&draft, &["f = [\"ax\", \"ay\", \"az\"]"]);
+}
+
+#[test]
+fn files_that_are_not_used_are_named() {
+    let copy = Copy::new();
+    fs::write(copy.session().join("records/notes.csv"), "mounting,n\n1,5\n2,6\n").unwrap();
+    let draft = draft(&copy, &["records", "telemetry"]);
+    let line = draft.lines().find(|line| line.starts_with("# NOT USED: ")).unwrap();
+    assert!(line.contains("notes.csv: found one reading in columns mounting, n, expected three"), "{line}");
+    let line_of_axes = draft.lines().find(|line| line.starts_with("axes = ")).unwrap();
+    assert!(line_of_axes.contains("no axis reversed: the readings do not show it"), "{line_of_axes}");
+    // A speed in a column whose name does not say so.
+    let draft = drafted("t,f1,f2,f3", "t,n");
+    assert_eq!(
+        draft.matches(".csv: found columns t, n, expected a time and three readings, or a time and a speed").count(),
+        12
+    );
+}

@@ -1,0 +1,154 @@
+//! What a column holds, by its unit and its name in English, German or Russian.
+
+use centrical_table::{ColumnName, unit_of_word};
+
+use crate::quantity::Dimension;
+
+/// A column, and its unit if the file names it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Label {
+    pub column: ColumnName,
+    pub unit: Option<&'static str>,
+    /// Why column or unit are likely and not found.
+    pub guess: Option<&'static str>,
+}
+
+impl Label {
+    /// A column of a text with its name and the unit beside it; a name may hold the unit, too.
+    pub fn of_text(name: &str, unit: Option<&'static str>) -> Self {
+        let found = unit.or_else(|| unit_in_name(name));
+        let is_in_turns = has(&name.to_lowercase(), &["drehzahl", "оборот"]);
+        let turns = (found.is_none() && is_in_turns).then_some("rpm");
+        Self {
+            column: ColumnName::Name(name.to_owned()),
+            unit: found.or(turns),
+            guess: turns.map(|_| "revolutions by its name; \"rad/s\" and \"deg/s\" are others"),
+        }
+    }
+
+    /// A column of a text without a header.
+    pub fn numbered(index: usize) -> Self {
+        let guess = Some("no header names the columns; this is their usual order");
+        Self { column: ColumnName::Number(index + 1), unit: None, guess }
+    }
+
+    /// A column of a table that is asked for the usual names.
+    pub fn usual(name: &str) -> Self {
+        Self { column: ColumnName::Name(name.to_owned()), unit: None, guess: None }
+    }
+}
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum What {
+    Time,
+    Speed,
+    /// A rate of turn about an axis of the unit.
+    Rate,
+    Reading,
+    Other,
+}
+
+/// What a column holds, by its unit, else by its name.
+pub(super) fn what(name: &str, unit: Option<&str>) -> What {
+    let name = name.to_lowercase();
+    let word: String = name.chars().take_while(|c| !"([,".contains(*c)).collect::<String>().trim().to_owned();
+    let is_number_of_row = unit.is_none() && ["no", "n", "№", "index", "sample"].contains(&word.as_str());
+    if has(&word, &["temp", "темп", "status", "flag", "marker", "humid", "press"]) || is_number_of_row {
+        return What::Other;
+    }
+    let is_of = |dimension: Dimension| unit.is_some_and(|unit| dimension.factor(unit).is_some());
+    if is_of(Dimension::Time) {
+        What::Time
+    } else if is_of(Dimension::Acceleration) || unit == Some("V") {
+        What::Reading
+    } else if is_rate(&word) {
+        What::Rate
+    } else if is_of(Dimension::Speed) {
+        What::Speed
+    } else if has(&word, &["time", "zeit", "врем", "stamp"]) || word == "t" {
+        What::Time
+    } else if has(&word, &["omega", "ω", "speed", "rpm", "rate", "drehzahl", "об/мин", "скор", "оборот"])
+    {
+        What::Speed
+    } else {
+        What::Reading
+    }
+}
+
+fn has(word: &str, parts: &[&str]) -> bool {
+    parts.iter().any(|part| word.contains(part))
+}
+
+/// Whether a name is that of a gyroscope's axis: `gx`, `gyro_x`, `omega_x [deg/s]`.
+fn is_rate(word: &str) -> bool {
+    let axis = |c: char| c.is_ascii_whitespace() || "_-.".contains(c);
+    let begin = word.split(axis).next().unwrap_or_default();
+    let letters: String = word.chars().filter(|c| !axis(*c)).collect();
+    let stems = ["g", "gyr", "gyro", "w", "omega", "ω"];
+    let of_axis = letters.strip_suffix(['x', 'y', 'z']).is_some_and(|stem| stems.contains(&stem));
+    of_axis || ["gyr", "gyro"].contains(&begin)
+}
+
+/// The unit that a name holds: `x_mg`, `speed_rpm`, `n 1/min`, or no more than `deg/s`.
+fn unit_in_name(name: &str) -> Option<&'static str> {
+    let name = name.trim();
+    // Names such as `g` and `h` alone are those of quantities.
+    let alone = unit_of_word(name).filter(|unit| {
+        Dimension::Speed.factor(unit).is_some() || ["s", "ms", "us", "ns"].contains(unit) && name.len() > 1
+    });
+    let ends = name.match_indices(['_', ' ']).filter_map(|(place, _)| spelled_out(&name[place + 1..]));
+    let is_in_rpm = has(&name.to_lowercase(), &["rpm", "об/мин"]);
+    alone.or_else(|| ends.into_iter().next()).or(is_in_rpm.then_some("rpm"))
+}
+
+/// The unit at the end of a name, where `/` and `^` cannot stand.
+fn spelled_out(end: &str) -> Option<&'static str> {
+    match end {
+        "ms2" | "mps2" | "m_s2" | "mss" => Some("m/s^2"),
+        "radps" | "rads" | "rad_s" => Some("rad/s"),
+        "degps" | "deg_s" => Some("deg/s"),
+        // One letter in the case of its unit: `T_G` and `t_S` are others.
+        _ if end.len() == 1 => ["s", "g", "V"].into_iter().find(|unit| *unit == end),
+        _ => unit_of_word(end).filter(|unit| !["h", "min"].contains(unit)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_hold_units() {
+        let cases = [
+            ("rpm", Some("rpm"), What::Speed),
+            ("RPM", Some("rpm"), What::Speed),
+            ("speed_rpm", Some("rpm"), What::Speed),
+            ("n 1/min", Some("rpm"), What::Speed),
+            ("deg/s", Some("deg/s"), What::Speed),
+            ("Hz", Some("Hz"), What::Speed),
+            ("omega", None, What::Speed),
+            ("обороты", Some("rpm"), What::Speed),
+            ("n", None, What::Other),
+            ("ms", Some("ms"), What::Time),
+            ("t_ms", Some("ms"), What::Time),
+            ("t", None, What::Time),
+            ("x_mg", Some("mg"), What::Reading),
+            ("acc_x_m_s2", Some("m/s^2"), What::Reading),
+            ("ax_mps2", Some("m/s^2"), What::Reading),
+            ("f1_V", Some("V"), What::Reading),
+            ("x_counts", Some("counts"), What::Reading),
+            ("f1", None, What::Reading),
+            ("g", None, What::Reading),
+            ("gx", None, What::Rate),
+            ("gyro_x_dps", Some("deg/s"), What::Rate),
+            ("omega_z", None, What::Rate),
+        ];
+        for (name, unit, holds) in cases {
+            let label = Label::of_text(name, None);
+            assert_eq!((label.unit, what(name, label.unit)), (unit, holds), "{name}");
+        }
+        assert_eq!(what("gx", Some("m/s^2")), What::Reading);
+        assert_eq!(what("n", Some("rpm")), What::Speed);
+    }
+}
