@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use centrical_report::{Emphasis, Line, Screen};
-use centrical_session::{Error, harmless};
+use centrical_session::{Error, harmless, time_column};
 use console::{Style, Term};
 
 /// Lines and characters of a terminal that does not say how many it has, and of a pipe: what is written there does not depend on
@@ -29,6 +29,17 @@ pub fn show(screen: &Screen) -> Result<(), Error> {
 pub fn remark(screen: &Screen) {
     let text = drawn(screen, &Term::stderr(), console::colors_enabled_stderr());
     let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Remarks that the columns of time of these files are not used, beside a sampling rate that is.
+pub fn remark_unused_time<'a>(files: impl IntoIterator<Item = &'a Path>) {
+    for file in files {
+        if let Some(column) = time_column(file) {
+            let mut screen = Screen::default();
+            screen.say(0, &format!("{}: the time in column {column} is not used, --rate is", file.display()));
+            remark(&screen);
+        }
+    }
 }
 
 /// The lines of a text. Colour comes after what files say was made harmless.

@@ -31,7 +31,7 @@ pub use self::history::{
     read_limits, station_history, unit_history, unit_means, units_history,
 };
 pub use self::history::{add_result, add_results, check_store, collect_results, list_store, spelling, today};
-pub use self::init::{Draft, FillIn, InitRequest, init};
+pub use self::init::{Draft, FillIn, InitRequest, init, time_column};
 pub use self::models::select_model;
 pub use self::montecarlo::{MonteCarloCase, MonteCarloRequest};
 pub use self::noise::{NoiseRequest, Series, noise_of, noise_of_plateau};

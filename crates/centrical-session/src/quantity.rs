@@ -51,6 +51,24 @@ impl Quantity {
     }
 }
 
+/// Gravity on Earth with room to spare [m/s^2]: it is 9.76 to 9.84 m/s^2 at its surface.
+const GRAVITY: std::ops::RangeInclusive<f64> = 9.7..=9.9;
+
+impl Quantity {
+    /// Gravity at a place on Earth in SI.
+    ///
+    /// # Errors
+    /// If it is no acceleration, or none between 9.7 and 9.9 m/s^2.
+    pub fn gravity(&self) -> Result<f64, NotThatQuantity> {
+        let value = self.si(Dimension::Acceleration)?;
+        if GRAVITY.contains(&value) {
+            return Ok(value);
+        }
+        let expected = "gravity on Earth, 9.7 to 9.9 m/s^2, such as \"9.81523 m/s^2\"";
+        Err(NotThatQuantity { found: self.to_string(), expected: expected.to_owned() })
+    }
+}
+
 /// `"133.7 rpm"` or `"1 h 30 min"` in SI, or nothing.
 fn parse(text: &str, dimension: Dimension) -> Option<f64> {
     let text = text.trim();
@@ -174,6 +192,17 @@ mod tests {
                 let back = read(&dimension.written(value, unit).unwrap(), dimension).unwrap();
                 prop_assert!((back / value - 1.0).abs() <= 1.5 * f64::EPSILON, "{} for {}", back, value);
             }
+        }
+    }
+
+    #[test]
+    fn gravity_is_that_of_the_earth() {
+        for text in ["9.81523", "9.7 m/s^2", "9.9 m/s^2", "1 g", "980.665 Gal"] {
+            assert!(Quantity::Text(text.to_owned()).gravity().is_ok(), "{text}");
+        }
+        for text in ["98", "0", "-9.81", "9.69", "9.91 m/s^2", "9.81 g", "981 mGal"] {
+            let not = Quantity::Text(text.to_owned()).gravity().unwrap_err();
+            assert!(not.expected.starts_with("gravity on Earth, 9.7 to 9.9 m/s^2"), "{text}");
         }
     }
 

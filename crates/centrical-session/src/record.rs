@@ -1,6 +1,7 @@
 //! Records of the unit and telemetry of the centrifuge, in SI.
 
 mod columns;
+mod equal_columns;
 mod input;
 mod joined;
 mod overview;
@@ -12,6 +13,7 @@ mod writer;
 
 pub(crate) use self::columns::named_columns;
 pub use self::columns::{Column, Columns, Scale};
+pub(crate) use self::equal_columns::EqualColumns;
 pub use self::input::Input;
 pub use self::overview::RecordOverview;
 pub(crate) use self::passes::RecordFile;

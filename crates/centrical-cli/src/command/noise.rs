@@ -7,6 +7,7 @@ use centrical_session::{ColumnName, Error, Estimator, Folder, NoiseRequest, Plat
 
 use crate::given::{column_name, frequency, time};
 use crate::outcome::Outcome;
+use crate::output::remark_unused_time;
 use crate::printing::Printing;
 
 /// Analyse the noise of a record: deviations of the Allan family with intervals, spectrum, noise terms.
@@ -55,6 +56,9 @@ struct Estimators(Vec<Estimator>);
 
 /// Runs the command. Not acceptable: noise terms do not describe a column of readings.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    if arguments.rate.is_some() && !arguments.printing.quiet {
+        remark_unused_time([arguments.file.as_path()]);
+    }
     let (analysis, plateau) = noise_of(
         &NoiseRequest {
             file: arguments.file.clone(),

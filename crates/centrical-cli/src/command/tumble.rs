@@ -3,13 +3,14 @@
 mod arguments;
 mod hand_over;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use centrical_session::{Error, Method, Session, calibrate, claim_folder, tumble, unwatched};
 
 pub use self::arguments::Arguments;
 use self::hand_over::RESULT;
 use crate::outcome::Outcome;
+use crate::output::remark_unused_time;
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
@@ -22,6 +23,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 /// By records whose rests are still to be found.
 fn of_records(arguments: &Arguments) -> Result<Outcome, Error> {
     let request = arguments.request()?;
+    if request.rate.is_some() && !arguments.printing.quiet {
+        remark_unused_time(request.files.iter().map(PathBuf::as_path));
+    }
     let out = arguments.out.as_deref();
     let claim = out.map(claim_folder).transpose()?;
     arguments.refuse_inputs(request.inputs())?;

@@ -32,6 +32,7 @@ mod speeds;
 mod steadiness;
 mod trust;
 mod tumble;
+mod tumble_mistakes;
 mod watch;
 mod watched_rests;
 mod way_in;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical_report::{Language, write_all_documents};
 use centrical_session::{
-    Dimension, Error, Folder, MOST_DISTANT, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder,
+    Dimension, Error, Folder, MOST_DISTANT, Quantity, STANDARD_GRAVITY, StatedAttitudes, TumbleRequest, claim_folder,
     refuse_inputs,
 };
 use nalgebra::Vector3;
@@ -45,7 +45,7 @@ pub fn tumble(
 ) -> PyResult<CalibrationResult> {
     let [first, second, third] = readings;
     let [gravity, uncertainty] = gravity.map(|amount| Amount::optional(amount, "gravity", Dimension::Acceleration));
-    let (gravity, uncertainty) = (gravity?, uncertainty?);
+    let (gravity, uncertainty) = (on_earth(gravity?)?, uncertainty?);
     let anywhere = if gravity.is_some() { 0.0 } else { TumbleRequest::GRAVITY_ANYWHERE };
     let (mut files, mut folder) = (Vec::new(), Folder::default());
     for record in records {
@@ -84,6 +84,12 @@ pub fn tumble(
         Ok(tumble.result)
     })?;
     Ok(result.into())
+}
+
+/// Gravity at a place on Earth [m/s^2].
+fn on_earth(gravity: Option<f64>) -> PyResult<Option<f64>> {
+    let checked = gravity.map(|gravity| Quantity::Number(gravity).gravity()).transpose();
+    checked.map_err(|not| refused("gravity", not.to_string()))
 }
 
 /// A distance from an axis of rotation [m].

@@ -301,14 +301,7 @@ pub(crate) fn read_text(file: &Path) -> Result<String, Error> {
 fn site(file: &Path, table: &SiteTable) -> Result<Site, Error> {
     use std::f64::consts::FRAC_PI_2;
     let at = TomlPath::table(file, "site");
-    // Ten times the Earth's: anything above is a mistaken unit.
-    let gravity = at.bounded(
-        "gravity",
-        &table.gravity,
-        Dimension::Acceleration,
-        (f64::MIN_POSITIVE, 100.0),
-        "gravity above 0 and below 100 m/s^2",
-    )?;
+    let gravity = table.gravity.gravity().map_err(|not| at.unexpected("gravity", not.found, not.expected))?;
     let latitude =
         |l| at.bounded("latitude", l, Dimension::Angle, (-FRAC_PI_2, FRAC_PI_2), "a latitude from -90 deg to 90 deg");
     Ok(Site { gravity, latitude: table.latitude.as_ref().map(latitude).transpose()? })

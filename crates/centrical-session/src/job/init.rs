@@ -23,6 +23,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::OnProgress;
 
+pub use self::column_names::time_column;
 pub use self::draft::{Draft, FillIn};
 pub use self::request::InitRequest;
 use self::tumbled::Tumbled;

@@ -7,6 +7,7 @@ use centrical::{OnProgress, advance, unwatched};
 use centrical_table::{Extent, Index, Reread, Rows, Source, Stamps, TableLines, TableReader};
 
 use super::columns::{Column, Columns, Scale, fields};
+use super::equal_columns::EqualColumns;
 use super::joined::Joined;
 use super::units_found::StatedUnits;
 use crate::error::Error;
@@ -84,6 +85,8 @@ pub struct RecordReader {
     table: Tables,
     scales: Scales,
     units: StatedUnits,
+    /// Of one file with three readings, where it is asked.
+    equal: Option<EqualColumns>,
     /// Bytes that [`RecordReader::newly_read`] has returned.
     reported: u64,
 }
@@ -94,7 +97,9 @@ impl RecordReader {
     /// # Errors
     /// If it cannot be read.
     pub fn open(file: &Path, columns: &Columns) -> Result<Self, Error> {
-        Self::open_all(vec![Source::open(file, RECORD)?], Extent::Whole, columns)
+        let all = Self::open_all(vec![Source::open(file, RECORD)?], Extent::Whole, columns)?;
+        // Readings to be compensated are as they are.
+        Ok(Self { equal: None, ..all })
     }
 
     /// Reads the record in a source, or in three, one for each newtonometer.
@@ -109,9 +114,13 @@ impl RecordReader {
                 let joined = Box::new(Joined::open(sources, extent, columns)?);
                 // Each file's part has its own.
                 let units = StatedUnits::of([]);
-                Ok(Self { file, table: Tables::Three(joined), scales, units, reported: 0 })
+                Ok(Self { file, table: Tables::Three(joined), scales, units, equal: None, reported: 0 })
             }
-            Err(mut sources) => Self::with(sources.remove(0), extent, &of_record, columns.record_lines, RECORD),
+            Err(mut sources) => {
+                let one = Self::with(sources.remove(0), extent, &of_record, columns.record_lines, RECORD)?;
+                let names = columns.f.each_ref().map(|column| column.name.to_string());
+                Ok(Self { equal: Some(EqualColumns::of(names)), ..one })
+            }
         }
     }
 
@@ -125,7 +134,8 @@ impl RecordReader {
         let file = source.name().to_owned();
         let table = TableReader::new(source, extent, &fields(columns), expected, lines)?;
         let units = StatedUnits::of(columns.iter().copied());
-        Ok(Self { file, table: Tables::One(Box::new(table)), scales: Scales::of(columns), units, reported: 0 })
+        let (table, scales) = (Tables::One(Box::new(table)), Scales::of(columns));
+        Ok(Self { file, table, scales, units, equal: None, reported: 0 })
     }
 
     /// The next rows: columns of time [s] and of readings [m/s^2] ([`stretch`]), several sets of them, to be worked on where they
@@ -135,17 +145,22 @@ impl RecordReader {
     ///
     /// # Errors
     /// If the file cannot be read, has no rows, lacks a column, or a value is not finite; if time runs
-    /// backwards; if the file names other units than those of the columns.
+    /// backwards; if the file names other units than those of the columns; at the end, if two readings of a session are the same.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
         let is_over = match &mut self.table {
             Tables::One(table) => table.next_batch()?.is_none(),
             Tables::Three(joined) => joined.next_batch()? == 0,
         };
         if is_over {
+            self.equal.as_ref().map_or(Ok(()), |equal| equal.refuse(&self.file))?;
             return Ok(None);
         }
         if let Tables::One(table) = &self.table {
             self.units.check(&self.file, table)?;
+        }
+        if let Some(equal) = &mut self.equal {
+            // Before the scales, which may differ.
+            self.table.batch().iter().for_each(|rows| equal.see([&rows[1], &rows[2], &rows[3]]));
         }
         Ok(Some(self.scales.apply_to(self.table.batch())))
     }

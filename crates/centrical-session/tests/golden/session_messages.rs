@@ -130,8 +130,16 @@ fn site() {
             r#""abc""#,
             r#"[site], gravity: found "abc", expected an acceleration such as "9.81523 m/s^2" or a number in m/s^2 (units: m/s^2, m/s2, mm/s^2, g, mg, ug, Gal, mGal)"#,
         ),
-        (r#""9.81523 m/s^2""#, "0", r"[site], gravity: found 0.0, expected gravity above 0 and below 100 m/s^2"),
-        (r#""9.81523 m/s^2""#, "-9.81", r"[site], gravity: found -9.81, expected gravity above 0 and below 100 m/s^2"),
+        (
+            r#""9.81523 m/s^2""#,
+            "0",
+            r#"[site], gravity: found 0.0, expected gravity on Earth, 9.7 to 9.9 m/s^2, such as "9.81523 m/s^2""#,
+        ),
+        (
+            r#""9.81523 m/s^2""#,
+            "-9.81",
+            r#"[site], gravity: found -9.81, expected gravity on Earth, 9.7 to 9.9 m/s^2, such as "9.81523 m/s^2""#,
+        ),
         (r#""9.81523 m/s^2""#, "nan", r"[site], gravity: found NaN, expected a finite number"),
         (r#""9.81523 m/s^2""#, r#""inf g""#, r#"[site], gravity: found "inf g", expected a finite number"#),
         (r#""55.7 deg""#, "90.5", r"[site], latitude: found 90.5, expected a latitude from -90 deg to 90 deg"),

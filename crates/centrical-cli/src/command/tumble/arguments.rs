@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use centrical_session::{
-    ColumnName, Dimension, Error, Folder, MOST_DISTANT, NotThatQuantity, Place, STANDARD_GRAVITY, StatedAttitudes,
-    TumbleRequest,
+    ColumnName, Dimension, Error, Folder, MOST_DISTANT, NotThatQuantity, Place, Quantity, STANDARD_GRAVITY,
+    StatedAttitudes, TumbleRequest,
 };
 
 use crate::command::report::Documents;
@@ -31,7 +31,7 @@ pub struct Arguments {
     #[arg(long)]
     unit: Option<String>,
     /// Gravity at the place, such as "9.81523 m/s^2" [default: 9.80665 m/s^2, uncertain by 0.02 m/s^2]
-    #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
+    #[arg(long, value_name = "QUANTITY", value_parser = gravity)]
     gravity: Option<f64>,
     /// Standard uncertainty of gravity [default: 0.02 m/s^2, or 0 for a gravity that is given]
     #[arg(long, value_name = "QUANTITY", value_parser = acceleration)]
@@ -137,6 +137,10 @@ fn distance(text: &str) -> Result<f64, String> {
     let distance = quantity(text, Dimension::Length).map_err(|not| not.to_string())?;
     let is_distance = (0.0..=MOST_DISTANT).contains(&distance);
     if is_distance { Ok(distance) } else { Err(format!("found {text}, expected a distance of 0 to {MOST_DISTANT} m")) }
+}
+
+fn gravity(text: &str) -> Result<f64, NotThatQuantity> {
+    Quantity::Text(text.to_owned()).gravity()
 }
 
 fn acceleration(text: &str) -> Result<f64, NotThatQuantity> {

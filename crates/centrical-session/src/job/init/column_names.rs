@@ -1,6 +1,8 @@
 //! What a column holds, by its unit and its name in English, German or Russian.
 
-use centrical_table::{ColumnName, unit_of_word};
+use std::path::Path;
+
+use centrical_table::{ColumnName, text_form, unit_of_word};
 
 use crate::quantity::Dimension;
 
@@ -74,6 +76,14 @@ pub(super) fn what(name: &str, unit: Option<&str>) -> What {
     } else {
         What::Reading
     }
+}
+
+/// The column that holds the time of a table as text, by its header; none where there is none, or no header.
+pub fn time_column(file: &Path) -> Option<String> {
+    let form = text_form(file).ok()??;
+    let unit = |index: usize| form.units.get(index).copied().flatten();
+    let is_time = |(index, name): &(usize, &String)| what(name, Label::of_text(name, unit(*index)).unit) == What::Time;
+    form.names.iter().enumerate().find(is_time).map(|(_, name)| name.clone())
 }
 
 fn has(word: &str, parts: &[&str]) -> bool {

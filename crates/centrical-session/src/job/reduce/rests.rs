@@ -27,6 +27,11 @@ pub(crate) fn find_rests(records: &[RestRecord], file: &Path, progress: OnProgre
     let count: usize = rests.means.iter().map(Vec::len).sum();
     if count < 2 {
         let stretches = if count == 1 { "stretch" } else { "stretches" };
+        if let Some(still) = without_noise(records) {
+            let found = format!("the same three readings in {still} of 100 neighbouring samples");
+            let expected = "readings with their noise: not stuck, and not simulated without noise";
+            return Err(Error::content(file, Place::Whole, found, expected));
+        }
         let found = format!("{count} {stretches} in which the unit rests");
         let expected = if records.iter().any(|record| record.turning_radius.is_some()) {
             "a unit that is turned, left alone for a second or more, and turned again; or slow rotation through attitudes that show all coefficients"
@@ -36,6 +41,18 @@ pub(crate) fn find_rests(records: &[RestRecord], file: &Path, progress: OnProgre
         return Err(Error::content(file, Place::Whole, found, expected));
     }
     Ok(rests)
+}
+
+/// Hundredths of the samples that repeat all three readings of the one before, if these are more than half: rests are told by
+/// their noise.
+fn without_noise(records: &[RestRecord]) -> Option<usize> {
+    let (mut repeated, mut all) = (0, 0);
+    for [x, y, z] in records.iter().map(|record| record.samples.f_z) {
+        let is_same = |k: &usize| x[*k] == x[k - 1] && y[*k] == y[k - 1] && z[*k] == z[k - 1];
+        repeated += (1..x.len()).filter(is_same).count();
+        all += x.len().saturating_sub(1);
+    }
+    (2 * repeated > all).then(|| 100 * repeated / all)
 }
 
 /// Root mean square of the sizes of rests [m/s^2].

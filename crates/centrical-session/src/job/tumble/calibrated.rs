@@ -17,7 +17,7 @@ use crate::job::calibrate::calibrate_reduced;
 use crate::job::noise::Series;
 use crate::job::reduce::find_rests;
 use crate::quantity::Dimension;
-use crate::record::{Input, RECORD, Scale, named_columns};
+use crate::record::{EqualColumns, Input, RECORD, Scale, named_columns};
 use crate::reduced::{Reduced, ReducedPlateau, rest_rows};
 
 /// A calibration by rests.
@@ -62,7 +62,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         turns(request, &means)?;
     }
     if coarse.is_none() {
-        has_unit(request, &means)?;
+        has_unit(request, &rests)?;
     }
     let known = (request.attitudes.as_ref()).map(|stated| stated.of_rests(&means, &first(request))).transpose()?;
     let text = session_text(request, coarse.as_ref(), &rests);
@@ -129,7 +129,11 @@ fn record(request: &TumbleRequest, file: &Path, progress: OnProgress) -> Result<
         progress,
     )?;
     let mut columns = series.columns.into_iter().map(|(_, _, values)| values);
-    Ok(Record { t: series.t, f_z: std::array::from_fn(|_| columns.next().unwrap_or_default()) })
+    let record = Record { t: series.t, f_z: std::array::from_fn(|_| columns.next().unwrap_or_default()) };
+    let mut equal = EqualColumns::of(request.readings.each_ref().map(ToString::to_string));
+    equal.see(record.as_slice().f_z);
+    equal.refuse(file)?;
+    Ok(record)
 }
 
 /// The rests of the records, and the arcs if they count.

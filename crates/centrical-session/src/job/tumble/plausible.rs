@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use centrical::reduction::Record;
+use centrical::reduction::{Record, Rests};
 use nalgebra::Vector3;
 
 use super::request::TumbleRequest;
@@ -34,20 +34,25 @@ pub(super) fn answers(request: &TumbleRequest, record: &Record, file: &Path) -> 
 }
 
 /// # Errors
-/// If rests of these mean forces [m/s^2] are no longer than gravity is, or not as long.
-pub(super) fn has_unit(request: &TumbleRequest, means: &[Vector3<f64>]) -> Result<(), Error> {
-    let size = mean_size(means);
+/// If the rests of a record [m/s^2] are longer or shorter than gravity is: each record is judged by its own.
+pub(super) fn has_unit(request: &TumbleRequest, rests: &Rests) -> Result<(), Error> {
+    let sizes = rests.means.iter().map(|means| {
+        let means: Vec<Vector3<f64>> = means.iter().map(|rest| rest.mean).collect();
+        (!means.is_empty()).then(|| mean_size(&means))
+    });
+    let sizes: Vec<(&PathBuf, f64)> =
+        request.files.iter().zip(sizes).filter_map(|(file, size)| Some((file, size?))).collect();
     let is_gravity = |size: f64| is_of_gravity(size, request.gravity);
-    if is_gravity(size) {
-        return Ok(());
-    }
+    let Some((file, size)) = sizes.iter().find(|(_, size)| !is_gravity(*size)) else { return Ok(()) };
     let factor = |unit: &str| Dimension::Acceleration.factor(unit);
     let as_written = size / factor(&request.unit).unwrap_or(1.0);
     let likely = UNITS.into_iter().find(|unit| factor(unit).is_some_and(|factor| is_gravity(as_written * factor)));
     let found = format!("rests of {as_written:.4} {} on average", request.unit);
     let unit = likely.unwrap_or("counts");
-    let expected = format!("rests of gravity, {:.5} m/s^2; --unit {unit} would fit", request.gravity);
-    Err(Error::content(&first(request), Place::Whole, found, expected))
+    let others =
+        if sizes.iter().any(|(_, size)| is_gravity(*size)) { "to this record alone: all need one unit" } else { "" };
+    let expected = format!("rests of gravity, {:.5} m/s^2; --unit {unit} would fit {others}", request.gravity);
+    Err(Error::content(file, Place::Whole, found, expected.trim_end()))
 }
 
 /// # Errors
