@@ -38,7 +38,7 @@ fn the_record_in_another_unit_is_named() {
     for order in [[&good, &in_g], [&in_g, &good]] {
         let message = refused(&copy, &[order[0], order[1], "--gravity", "9.81523"]);
         assert!(message.contains("b.csv: found rests of 1.00"), "{message}");
-        assert!(message.contains("--unit g would fit to this record alone"), "{message}");
+        assert!(message.contains("--unit g would fit this record alone"), "{message}");
     }
 }
 

@@ -50,7 +50,7 @@ pub(super) fn has_unit(request: &TumbleRequest, rests: &Rests) -> Result<(), Err
     let found = format!("rests of {as_written:.4} {} on average", request.unit);
     let unit = likely.unwrap_or("counts");
     let others =
-        if sizes.iter().any(|(_, size)| is_gravity(*size)) { "to this record alone: all need one unit" } else { "" };
+        if sizes.iter().any(|(_, size)| is_gravity(*size)) { "this record alone: all need one unit" } else { "" };
     let expected = format!("rests of gravity, {:.5} m/s^2; --unit {unit} would fit {others}", request.gravity);
     Err(Error::content(file, Place::Whole, found, expected.trim_end()))
 }
