@@ -29,6 +29,24 @@ fn assess_tells_budget_validity_and_prediction() {
     }
 }
 
+/// A bound of an effect that grows is its size at a load or a speed, or that of one unit of it.
+#[test]
+fn bounds_are_stated_at_a_load_or_a_speed() {
+    let parameters = |stated: &str| {
+        let copy = Copy::new();
+        copy.edit("experiment.toml", |text| format!("{text}\n[uncertainty]\n{stated}\n"));
+        let told = text(&run(&["calibrate", copy.session().to_str().unwrap(), "--json"]));
+        let result: Value = serde_json::from_str(&told).unwrap();
+        result["budget"]["combined"].clone()
+    };
+    let per_g = parameters("arm_turn_load = \"0.003 urad/g\"");
+    let [a, b] = [per_g, parameters("arm_turn_load = \"0.3 urad at 100 g\"")]
+        .map(|combined| combined.as_array().unwrap().iter().filter_map(Value::as_f64).collect::<Vec<f64>>());
+    assert!(a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (a / b - 1.0).abs() < 1e-9));
+    let at_speed = parameters("spin_square = \"5 ug at 10 rev/s\"");
+    assert!(at_speed.as_array().unwrap().iter().any(Value::is_f64));
+}
+
 /// The same seed gives the same bytes on one thread and on three.
 #[test]
 fn montecarlo_repeats_itself() {

@@ -36,6 +36,13 @@ pub(crate) fn objection(objection: &ResultObjection, language: Language) -> Stri
             let said: Vec<String> = findings.iter().map(messages.words.speed_finding).collect();
             said.join("; ")
         }
+        Objection::Drift { chi_squared, degrees_of_freedom, chance } => {
+            let (chi_squared, chance) = (language.fixed(*chi_squared, 1), language.probability(*chance));
+            format!(
+                "{}: χ² = {chi_squared}, {} {degrees_of_freedom}, {} {chance}",
+                messages.readings_drift, messages.degrees_of_freedom, messages.chance
+            )
+        }
         Objection::NotDetermined(names) => format!("{}: {}", messages.lost_parameters, names.join(", ")),
     }
 }

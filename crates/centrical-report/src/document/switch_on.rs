@@ -69,7 +69,14 @@ fn sameness(history: &UnitHistoryReport, language: Language) -> String {
 /// Symbols of the selected parameters.
 fn named(history: &UnitHistoryReport, is_meant: impl Fn(&UnitParameter) -> bool, language: Language) -> String {
     let names: Vec<String> = history.parameters.iter().filter(|p| is_meant(p)).map(|p| symbol(&p.name)).collect();
-    if names.is_empty() { language.messages().none.to_owned() } else { names.join(", ") }
+    let messages = language.messages();
+    if !names.is_empty() {
+        names.join(", ")
+    } else if history.is_unexplained() {
+        messages.not_told_apart.to_owned()
+    } else {
+        messages.none.to_owned()
+    }
 }
 
 fn readings(history: &UnitHistoryReport, language: Language) -> Table {

@@ -67,6 +67,8 @@ pub enum ObjectionName {
     Patterns,
     /// The telemetry contradicts the schedule or the record.
     Speeds,
+    /// Readings drift over plateaus.
+    Drift,
     /// Coefficients of the error model are not determined.
     NotDetermined,
 }
@@ -81,6 +83,7 @@ impl ObjectionName {
             Self::Outlying => "outlying",
             Self::Patterns => "patterns",
             Self::Speeds => "speeds",
+            Self::Drift => "drift",
             Self::NotDetermined => "not-determined",
         }
     }
@@ -95,6 +98,7 @@ impl From<&ResultObjection> for ObjectionName {
             ResultObjection::Outlying(..) => Self::Outlying,
             ResultObjection::Patterns(..) => Self::Patterns,
             ResultObjection::Speeds(..) => Self::Speeds,
+            ResultObjection::Drift { .. } => Self::Drift,
             ResultObjection::NotDetermined(..) => Self::NotDetermined,
         }
     }

@@ -114,8 +114,11 @@ fn effects(
 /// A standard uncertainty in the unit of an effect's unknowns; of an effect that grows with a load or a speed, its value there:
 /// "0.3 urad at 100 g".
 fn bound(at: &TomlPath, key: &str, quantity: &Quantity, unknown: &Parameter) -> Result<f64, Error> {
-    let text = quantity.to_string();
-    let value = match (text.split_once(" at "), growth(unknown)) {
+    let at_a_place = match quantity {
+        Quantity::Text(text) => text.split_once(" at "),
+        Quantity::Number(_) => None,
+    };
+    let value = match (at_a_place, growth(unknown)) {
         (Some((size, place)), Some((of_size, of_place, power))) => {
             let [size, place] = [size, place].map(|part| Quantity::Text(part.trim().to_owned()));
             at.finite(key, &size, of_size)? / at.finite(key, &place, of_place)?.powi(power)
@@ -125,7 +128,7 @@ fn bound(at: &TomlPath, key: &str, quantity: &Quantity, unknown: &Parameter) -> 
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
-        Err(at.unexpected(key, text, "a standard uncertainty above 0"))
+        Err(at.unexpected(key, quantity.to_string(), "a standard uncertainty above 0"))
     }
 }
 

@@ -59,9 +59,15 @@ pub struct Findings<P, Q, R, S> {
     pub patterns: Vec<(Q, f64)>,
     /// Speeds that contradict the schedule, each with its family-wise probability.
     pub speeds: Vec<(S, f64)>,
+    /// chi^2 of the slopes of all plateaus, and their number, where records show them ([`PlateauDrift`](super::PlateauDrift)).
+    pub slopes: Option<(f64, usize)>,
     /// Names of the instrument's parameters that are not determined.
     pub not_determined: Vec<String>,
 }
+
+/// Variance of the slope of a plateau at most, over the one stated: noise that is slower than a plateau hardly shows within it, and doubles
+/// the variance where it is as strong as the white noise.
+const SLOW_NOISE: f64 = 3.0;
 
 /// An objection to a result.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,6 +96,15 @@ pub enum Objection<P, Q, R, S> {
     Patterns(Vec<Q>),
     /// The telemetry contradicts the schedule or the record.
     Speeds(Vec<S>),
+    /// Readings drift over plateaus by more than slow noise explains.
+    Drift {
+        /// chi^2 of the slopes.
+        chi_squared: f64,
+        /// Their number.
+        degrees_of_freedom: usize,
+        /// Probability of so large a chi^2.
+        chance: f64,
+    },
     /// Parameters of the instrument are not determined. Lost geometry alone is no objection.
     NotDetermined(Vec<String>),
 }
@@ -106,6 +121,7 @@ pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P
         rivals,
         patterns,
         speeds,
+        slopes,
         not_determined,
     } = findings;
     let is_beyond = |probability: f64| Level::Objection.is_passed_by(probability);
@@ -133,6 +149,12 @@ pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P
     if !speeds.is_empty() {
         objections.push(Objection::Speeds(speeds));
     }
+    if let Some((chi_squared, degrees_of_freedom)) = slopes {
+        let chance = chi_squared_tail(chi_squared / SLOW_NOISE, degrees_of_freedom);
+        if is_beyond(chance) {
+            objections.push(Objection::Drift { chi_squared, degrees_of_freedom, chance });
+        }
+    }
     if !not_determined.is_empty() {
         objections.push(Objection::NotDetermined(not_determined));
     }
@@ -144,4 +166,36 @@ pub fn objections<P, Q, R, S>(findings: Findings<P, Q, R, S>) -> Vec<Objection<P
 pub fn chance_of_residuals(chi_squared: f64, degrees_of_freedom: usize, of_strongest_noise: Option<f64>) -> f64 {
     let chance = |chi_squared| chi_squared_tail(chi_squared, degrees_of_freedom);
     of_strongest_noise.map_or_else(|| chance(chi_squared), |least| (chance(least) + EXCLUDED).min(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with_slopes(slopes: (f64, usize)) -> Vec<Objection<(), (), (), ()>> {
+        objections(Findings {
+            termination: Termination::Converged,
+            iterations: 3,
+            chi_squared: 275.0,
+            degrees_of_freedom: 275,
+            of_strongest_noise: None,
+            outlying: Vec::new(),
+            rivals: Vec::new(),
+            patterns: Vec::new(),
+            speeds: Vec::new(),
+            slopes: Some(slopes),
+            not_determined: Vec::new(),
+        })
+    }
+
+    /// Slow noise that triples the variance of slopes is no drift; what is beyond it is one.
+    #[test]
+    fn drift_is_beyond_slow_noise() {
+        for chi_squared in [250.0, 330.0, 900.0] {
+            assert_eq!(with_slopes((chi_squared, 288)), Vec::new(), "{chi_squared}");
+        }
+        for chi_squared in [1500.0, 2242.0] {
+            assert!(matches!(with_slopes((chi_squared, 288))[..], [Objection::Drift { .. }]), "{chi_squared}");
+        }
+    }
 }

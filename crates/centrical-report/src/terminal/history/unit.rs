@@ -89,11 +89,13 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
             chance(test.probability)
         );
         let (emphasis, mark) =
-            if test.probability < 0.01 { (Emphasis::Warning, "DIFFERS") } else { (Emphasis::Acceptable, "THE SAME") };
+            if report.differs() { (Emphasis::Warning, "DIFFERS") } else { (Emphasis::Acceptable, "THE SAME") };
         screen.marked(emphasis, mark, &words);
     }
     if report.sessions.len() < 3 {
         screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");
+    } else if report.is_unexplained() {
+        screen.marked(Emphasis::Warning, "FEW", "the calibrations are too few to tell a drift from scatter");
     }
 }
 

@@ -1,6 +1,7 @@
 //! One unit over its calibrations, as a document: schema `centrical-unit-history/1`.
 
 use centrical::Group;
+use centrical::uncertainty::Level;
 use serde::Serialize;
 
 use crate::document::json;
@@ -175,6 +176,16 @@ impl UnitHistoryReport {
     /// [`Error::Json`] when a value has no place in JSON.
     pub fn to_json(&self) -> Result<String, Error> {
         json::document(UNIT_HISTORY_SCHEMA, self)
+    }
+
+    /// Whether the calibrations differ by more than their stated uncertainties.
+    pub fn differs(&self) -> bool {
+        self.sameness.is_some_and(|test| Level::Disagreement.is_passed_by(test.probability))
+    }
+
+    /// Whether they differ, and are too few to say of any parameter that it scatters or drifts.
+    pub fn is_unexplained(&self) -> bool {
+        self.differs() && self.parameters.iter().all(|p| !p.scatters && !p.drifts)
     }
 
     /// The readings to show of each newtonometer: at rest, and the one least certain after a switch-on.
