@@ -13,7 +13,7 @@ pub(crate) struct ReadingError {
     pub force: Vector3<f64>,
     /// Mean reading less specific force.
     pub before: Vector3<f64>,
-    /// Compensated mean reading less specific force at the set speed.
+    /// Compensated mean reading less specific force at the set speed; of a rest beside the arm along the force alone.
     pub after: Vector3<f64>,
     /// The same less what the plateau's own speed error explains.
     pub speed_free: Vector3<f64>,
@@ -36,17 +36,16 @@ fn reading_error(plateau: &PlateauSummary, is_rest: bool, compensated: &Compensa
     let residual = Vector3::from(plateau.residual);
     // A residual is small, so the inverse of the error model is that of its gain.
     let to_force = compensated.gain(&force).try_inverse()?;
-    let mut noise = to_force * matrix(&plateau.covariance) * to_force.transpose();
-    if is_rest {
-        // Across the force a rest that trembles changes its attitude, which is estimated with it.
-        let along = force.normalize();
-        noise = along * (along.transpose() * noise * along) * along.transpose();
-    }
+    // Across the force a rest shows its attitude, by which it trembles and differs from what is stated.
+    let along = force.normalize();
+    let seen = if is_rest { along * along.transpose() } else { Matrix3::identity() };
+    let of_speed = if is_rest { Vector3::zeros() } else { of_speed(plateau, &residual) };
+    let noise = seen * to_force * matrix(&plateau.covariance) * to_force.transpose() * seen;
     Some(ReadingError {
         force,
         before: Vector3::from(plateau.mean) - force,
-        after: to_force * residual,
-        speed_free: to_force * (residual - of_speed(plateau, &residual)),
+        after: seen * to_force * residual,
+        speed_free: seen * to_force * (residual - of_speed),
         uncertainty: noise.diagonal().map(f64::sqrt),
         prediction: compensated.covariance(&force)?.diagonal().map(|variance| variance.max(0.0).sqrt()),
     })
