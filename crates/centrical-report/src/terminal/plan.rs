@@ -81,10 +81,10 @@ fn heading(screen: &mut Screen, report: &PlanReport) {
         screen.say(
             2,
             &format!(
-                "no plan of these candidates in this time is below {}: at most {} better ({} nodes over mountings)",
+                "no plan of these candidates in this time is below {}: at most {} better ({} over mountings)",
                 value(report, report.bound),
                 percent(1.0 - report.bound / report.value),
-                report.nodes
+                counted(report.nodes, "node")
             ),
         );
     }

@@ -93,9 +93,10 @@ impl<'s> Watch<'s> {
             Ok(more) if more.is_empty() => None,
             Ok(more) => {
                 let end = if hasty.is_complete() { ", and the schedule would be complete" } else { "" };
-                Some(format!("{changed} {} more plateaus would count as arrived{end}", more.len()))
+                let plateaus = if more.len() == 1 { "plateau" } else { "plateaus" };
+                Some(format!("{changed}, {} more {plateaus} would count as arrived{end}", more.len()))
             }
-            Err(error) => Some(format!("{changed} they would be refused: {error}")),
+            Err(error) => Some(format!("{changed}, they would be refused: {error}")),
         }
     }
 
