@@ -63,7 +63,7 @@ pub struct Prediction {
     /// the readings of squared difference over variance plus `ln` of the variance, in units of the noise. The lower the
     /// better: predictions that are wrong cost, and those that say little.
     pub score: f64,
-    /// Probability of so large a statistic by chance ([`chance_of_explaining`]); 1 when nothing is redundant.
+    /// Probability of so large a statistic by chance, by what is stated and by the scatter of the others; 1 when nothing is redundant.
     pub probability: f64,
 }
 
