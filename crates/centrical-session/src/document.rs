@@ -67,7 +67,7 @@ pub use self::result::{
     MountingPrediction, MountingSummary, NextAttitudeSummary, ObservabilitySummary, OutlyingPlateau, OutputSummary,
     ParameterEstimate, PatternSummary, PlateauSummary, PositionSummary, PriorSummary, Program, RestsOn,
     ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary,
-    StabilityCurve, TermSummary, ValiditySummary,
+    StabilityCurve, TermSummary, ValiditySummary, unit_name,
 };
 pub use self::series::{SERIES_SCHEMA, SeriesSummary};
 pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};

@@ -59,7 +59,7 @@ pub use document::{
     PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn,
     ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport,
     SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary,
-    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history,
+    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
 };
 pub use document::{
     BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, LeftOutSession, OutlyingUnit,

@@ -18,11 +18,7 @@ pub(crate) fn objection(objection: &ResultObjection, language: Language) -> Stri
         }
         Objection::LeftOut(rivals) => left_out(rivals, language),
         Objection::Residuals { chi_squared, degrees_of_freedom, chance } => {
-            let (chi_squared, chance) = (language.fixed(*chi_squared, 1), language.probability(*chance));
-            format!(
-                "{}: χ² = {chi_squared}, {} {degrees_of_freedom}, {} {chance}",
-                messages.residuals_too_large, messages.degrees_of_freedom, messages.chance
-            )
+            too_large(messages.residuals_too_large, (*chi_squared, *degrees_of_freedom, *chance), language)
         }
         Objection::Outlying(plateaus, chance) => {
             let chance = language.probability(*chance);
@@ -37,14 +33,20 @@ pub(crate) fn objection(objection: &ResultObjection, language: Language) -> Stri
             said.join("; ")
         }
         Objection::Drift { chi_squared, degrees_of_freedom, chance } => {
-            let (chi_squared, chance) = (language.fixed(*chi_squared, 1), language.probability(*chance));
-            format!(
-                "{}: χ² = {chi_squared}, {} {degrees_of_freedom}, {} {chance}",
-                messages.readings_drift, messages.degrees_of_freedom, messages.chance
-            )
+            too_large(messages.readings_drift, (*chi_squared, *degrees_of_freedom, *chance), language)
         }
         Objection::NotDetermined(names) => format!("{}: {}", messages.lost_parameters, names.join(", ")),
     }
+}
+
+/// A chi^2 with its degrees of freedom, and the probability of one as large.
+fn too_large(what: &str, (chi_squared, degrees_of_freedom, chance): (f64, usize, f64), language: Language) -> String {
+    let messages = language.messages();
+    let (chi_squared, chance) = (language.fixed(chi_squared, 1), language.probability(chance));
+    format!(
+        "{what}: χ² = {chi_squared}, {} {degrees_of_freedom}, {} {chance}",
+        messages.degrees_of_freedom, messages.chance
+    )
 }
 
 /// What the model leaves out: the rival that explains most, and those which the data cannot tell from it.

@@ -1,6 +1,6 @@
 //! Calibrations compared, as text for the terminal.
 
-use centrical_session::{ComparedResultSummary, ComparisonReport, PairComparison, customary};
+use centrical_session::{ComparedResultSummary, ComparisonReport, PairComparison, customary, unit_name};
 
 use super::screen::{Emphasis, Screen};
 use super::symbols::legend;
@@ -92,5 +92,5 @@ fn cautions(screen: &mut Screen, report: &ComparisonReport, pair: &PairCompariso
 }
 
 fn unit(result: &ComparedResultSummary) -> String {
-    format!("{}, serial {}", result.unit_model, result.unit_serial)
+    unit_name(&result.unit_model, &result.unit_serial)
 }

@@ -20,6 +20,7 @@ pub use self::between_rests::BetweenRestsSummary;
 pub use self::budget_and_checks::{
     BudgetSource, BudgetSummary, Follows, MountingPrediction, OutlyingPlateau, PatternSummary, ValiditySummary,
 };
+pub use self::from_calibration::unit_name;
 pub use self::next_attitude::NextAttitudeSummary;
 pub use self::rivals::{RestsOn, RivalSize, RivalSummary};
 pub use self::schema::{

@@ -26,8 +26,7 @@ impl Problem {
     /// [`Error`] naming the file, the place, what was found and what was expected.
     pub fn of(session: &Session, progress: OnProgress) -> Result<Self, Error> {
         let (session, reduced) = reduce(session, progress)?;
-        let model = reduced.model(&session)?;
-        Ok(Self { model, reduced })
+        Self::reduced(&session, reduced)
     }
 
     /// The same with the uncertainties that its calibration states: of rests alone with what the residuals cannot exclude.
@@ -37,14 +36,18 @@ impl Problem {
     pub fn as_stated(session: &Session, progress: OnProgress) -> Result<Self, Error> {
         let (session, reduced) = reduce(session, progress)?;
         if session.experiment.has_arm() {
-            return Ok(Self { model: reduced.model(&session)?, reduced });
+            return Self::reduced(&session, reduced);
         }
         let (_, between) = by_noise(&session, &reduced, Method::Exact, progress, between_rests(progress))?;
         let (session, reduced) = match between {
             Some(between) => with(&between, &session, &reduced),
             None => (session.into_owned(), reduced),
         };
-        Ok(Self { model: reduced.model(&session)?, reduced })
+        Self::reduced(&session, reduced)
+    }
+
+    fn reduced(session: &Session, reduced: Reduced) -> Result<Self, Error> {
+        Ok(Self { model: reduced.model(session)?, reduced })
     }
 }
 

@@ -2,6 +2,8 @@
 //!
 //! Both work by orthogonal factorisation of the whitened design, never by normal equations.
 
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::curvature;
@@ -82,16 +84,18 @@ impl<'a> Start<'a> {
     /// The linear fit: the residual of `Z - H X`.
     pub fn solve(self) -> Fit {
         let held = &self.structure.held;
-        let (equations, misfit) = held.equations(&self.design, &DVector::zeros(held.typical.len()), Hold::NULL);
-        let step = equations.solve(misfit);
+        let equations = if held.holds(Hold::WEAK) {
+            let zero = DVector::zeros(held.typical.len());
+            Cow::Owned(held.equations(&self.design, &zero, Hold::NULL).0)
+        } else {
+            Cow::Borrowed(&self.structure.start)
+        };
+        let step = equations.solve(self.design.misfit.clone());
         let parameters = self.data.model().parameters().len();
         let covariance = equations.covariance();
         let residuals = (self.data.observations().iter())
             .zip(&self.structure.linearisations)
-            .map(|(o, l)| {
-                let predicted: Vector3<f64> = l.by_unknowns().map(|(j, column)| column * step.x[j]).sum();
-                o.mean - l.reading - predicted
-            })
+            .map(|(o, l)| o.mean - l.reading - l.change(&step.x))
             .collect();
         let whitened = &self.design.misfit - &self.design.rows * &step.x;
         Fit {
@@ -217,9 +221,8 @@ impl<'a> Search<'a> {
     fn estimate(&mut self, design: &Design, held: &LeastSquares, from: &DVector<f64>) -> Result<(), FitError> {
         let Start { data, structure, .. } = self.start;
         self.curved = curvature::left_by(data, structure, self.hold, &self.x, &self.linearisations)?;
-        let released = Hold { weak: false, ..self.hold };
         let covariance = if structure.held.holds(Hold::WEAK) {
-            let (equations, misfit) = structure.held.equations(design, from, released);
+            let (equations, misfit) = structure.held.equations(design, from, self.hold.of_null());
             self.estimates = from + equations.solve(misfit).x;
             equations.covariance()
         } else {
@@ -233,7 +236,7 @@ impl<'a> Search<'a> {
     /// Releases the null directions, once, if the data keep them well within the hold.
     fn release_null_space(&mut self, equations: &LeastSquares) -> bool {
         let held = &self.start.structure.held;
-        let free = held.holds(Hold { weak: false, ..self.hold })
+        let free = held.holds(self.hold.of_null())
             && held.null_basis.tr_mul(&equations.inverse()).norm() < RELEASE_BELOW * NULL_HOLD;
         self.hold.null &= !free;
         free
@@ -273,7 +276,7 @@ impl<'a> Search<'a> {
         if structure.held.holds(Hold::WEAK) {
             let beyond = &self.estimates - &self.x;
             for (residual, linearisation) in residuals.iter_mut().zip(&self.linearisations) {
-                *residual -= linearisation.by_unknowns().map(|(j, column)| column * beyond[j]).sum::<Vector3<f64>>();
+                *residual -= linearisation.change(&beyond);
             }
         }
         let parameters = data.model().parameters().len();
@@ -285,7 +288,7 @@ impl<'a> Search<'a> {
             covariance: self.covariance,
             curved: self.curved,
             degrees_of_freedom: self.start.degrees_of_freedom(),
-            null_directions_held: structure.held.holds(Hold { weak: false, ..self.hold }),
+            null_directions_held: structure.held.holds(self.hold.of_null()),
             iterations: self.iterations,
             termination: self.termination.unwrap_or(Termination::IterationLimit),
             residuals,

@@ -94,23 +94,18 @@ impl Linearised {
 
     /// Length of the change of the readings with the unknowns, by the linearisation, in their standard uncertainties.
     pub fn change(&self, dx: &DVector<f64>) -> f64 {
-        (triangle(&self.sum).0 * self.linear(dx)).norm()
+        (triangle(&self.sum).0 * self.at.change(dx)).norm()
     }
 
     /// Norm of the residual at `x` less that of the linearisation, from which `x` is `dx` away, whitened by the triangle of `sum`.
     pub fn remainder(&self, sum: &Factor, model: &MeasurementModel, dx: &DVector<f64>, x: &DVector<f64>) -> f64 {
-        (triangle(sum).0 * (self.reading(model, x) - self.at.reading - self.linear(dx))).norm()
+        (triangle(sum).0 * (self.reading(model, x) - self.at.reading - self.at.change(dx))).norm()
     }
 
     /// Sum of squares of the whitened residuals of the exact model at `x`.
     pub fn squared(&self, model: &MeasurementModel, x: &DVector<f64>) -> f64 {
         let (triangle, misfit) = triangle(&self.sum);
         (misfit - triangle * (self.reading(model, x) - self.at.reading)).norm_squared() + self.rest()
-    }
-
-    /// The change of the reading with the unknowns, by the linearisation.
-    fn linear(&self, dx: &DVector<f64>) -> Vector3<f64> {
-        self.at.by_unknowns().map(|(unknown, change)| change * dx[unknown]).sum()
     }
 
     fn reading(&self, model: &MeasurementModel, x: &DVector<f64>) -> Vector3<f64> {

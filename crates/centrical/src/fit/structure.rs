@@ -56,6 +56,11 @@ impl Hold {
     pub const NULL: Self = Self { null: true, weak: false };
     pub const WEAK: Self = Self { null: false, weak: true };
     pub const ALL: Self = Self { null: true, weak: true };
+
+    /// The same without the weak directions.
+    pub fn of_null(self) -> Self {
+        Self { weak: false, ..self }
+    }
 }
 
 impl Structure {
@@ -112,10 +117,8 @@ impl Held {
     pub fn new(observability: &Observability, own: Vec<Own>, typical: DVector<f64>) -> Self {
         let mut null_basis = observability.null_basis().resize_vertically(typical.len(), 0.0);
         null_basis.row_iter_mut().zip(typical.iter()).for_each(|(mut row, typical)| row /= *typical);
-        let weak_basis = DMatrix::zeros(typical.len(), 0);
-        let mut held = Self { own, null_basis, weak_basis, typical };
-        held.null_basis = held.orthonormal(held.null_basis.clone());
-        held
+        let (null_basis, weak_basis) = (orthonormal(&own, null_basis), DMatrix::zeros(typical.len(), 0));
+        Self { own, null_basis, weak_basis, typical }
     }
 
     /// The equations at `X = 0` with that `design`, and what holds them.
@@ -148,19 +151,10 @@ impl Held {
         let mut weak = DMatrix::zeros(data.unknowns(), 0);
         for direction in equations.wider_than(WIDER * NULL_HOLD) {
             if departs(data, linearisations, &direction.component_mul(&self.typical))? {
-                weak.extend(std::iter::once(direction));
+                weak.extend([direction]);
             }
         }
-        Ok(self.orthonormal(weak))
-    }
-
-    /// Orthonormal basis of the span of directions in typical units, which are independent, without the unknowns that are
-    /// eliminated: these are determined where all else is held.
-    fn orthonormal(&self, mut directions: DMatrix<f64>) -> DMatrix<f64> {
-        for &j in self.own.iter().flat_map(|own| &own.columns) {
-            directions.row_mut(j).fill(0.0);
-        }
-        if directions.ncols() == 0 { directions } else { directions.qr().q() }
+        Ok(orthonormal(&self.own, weak))
     }
 
     /// Whether it holds any direction.
@@ -192,4 +186,13 @@ impl Held {
         rows.rows_mut(n, m).copy_from(&held);
         (LeastSquares::eliminating(&self.own, rows, self.typical.clone()), misfit)
     }
+}
+
+/// Orthonormal basis of the span of directions in typical units, which are independent, without the unknowns that are
+/// eliminated: these are determined where all else is held.
+fn orthonormal(own: &[Own], mut directions: DMatrix<f64>) -> DMatrix<f64> {
+    for &j in own.iter().flat_map(|own| &own.columns) {
+        directions.row_mut(j).fill(0.0);
+    }
+    if directions.ncols() == 0 { directions } else { directions.qr().q() }
 }

@@ -1,6 +1,6 @@
 //! The measurement model: an experiment, the unit's error model, and the unknowns that follow from the two.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DVector, Matrix3, Vector3};
 
 use super::effect::Effect;
 use super::error_model::ErrorModel;
@@ -59,6 +59,11 @@ impl Linearisation {
     /// Non-zero changes of `f'` by the unknowns of a fit: (index of the unknown, change).
     pub fn by_unknowns(&self) -> impl Iterator<Item = (usize, &Vector3<f64>)> {
         self.columns.iter().chain(&self.stated).map(|(unknown, change)| (*unknown, change))
+    }
+
+    /// The change of `f'` with the unknowns of a fit, by the linearisation.
+    pub(crate) fn change(&self, dx: &DVector<f64>) -> Vector3<f64> {
+        self.by_unknowns().map(|(unknown, change)| change * dx[unknown]).sum()
     }
 
     /// The linearisation at the influences of the unknowns `x` of a fit, which act linearly.

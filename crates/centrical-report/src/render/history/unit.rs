@@ -1,6 +1,6 @@
 //! The page of a unit.
 
-use centrical_session::{ParameterLimits, UnitHistoryReport};
+use centrical_session::{ParameterLimits, UnitHistoryReport, unit_name};
 
 use super::charts::StoreCharts;
 use super::frame::{opening, page, panels, text};
@@ -9,7 +9,7 @@ use crate::terminal::unit_history_text;
 
 /// The page of a unit with a history; with `limits` of its parameters in the drawings.
 pub fn history_unit_page(report: &UnitHistoryReport, limits: &ParameterLimits, charts: &StoreCharts) -> String {
-    let title = title(&report.unit_model, &report.unit_serial);
+    let title = unit_name(&report.unit_model, &report.unit_serial);
     let mut body = opening("Unit", &title);
     text(&mut body, &unit_history_text(report));
     body.push_str("<h2>Parameters over time</h2>\n");
@@ -20,10 +20,6 @@ pub fn history_unit_page(report: &UnitHistoryReport, limits: &ParameterLimits, c
 
 /// The page of a unit whose calibrations have no parameter in common.
 pub fn no_unit_history_page(unit_model: &str, unit_serial: &str) -> String {
-    let title = title(unit_model, unit_serial);
+    let title = unit_name(unit_model, unit_serial);
     page(&title, &(opening("Unit", &title) + "<p>Its calibrations have no parameter in common.</p>\n"))
-}
-
-fn title(unit_model: &str, unit_serial: &str) -> String {
-    format!("{unit_model}, serial {unit_serial}")
 }

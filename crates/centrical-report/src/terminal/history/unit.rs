@@ -2,7 +2,7 @@
 
 use centrical_session::{
     DueDate, LeftOutSession, MICRO_G, ReadingHistory, STANDARD_GRAVITY as G, UnitHistoryReport, UnitParameter,
-    customary,
+    customary, unit_name,
 };
 
 use super::chance::chance;
@@ -17,7 +17,7 @@ pub fn unit_history_text(report: &UnitHistoryReport) -> Screen {
     verdict(&mut screen, report);
     screen.gap();
     let UnitHistoryReport { unit_model, unit_serial, sessions, .. } = report;
-    screen.head("UNIT", &format!("{unit_model}, serial {unit_serial}: {}", counted(sessions.len(), "calibration")));
+    screen.head("UNIT", &format!("{}: {}", unit_name(unit_model, unit_serial), counted(sessions.len(), "calibration")));
     let mut table = Table::new(
         1,
         [("", Align::Left), ("date", Align::Left), ("station", Align::Left), ("", Align::Left), ("", Align::Words)],

@@ -46,7 +46,7 @@ pub struct ValiditySummary {
     /// verdict takes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_at_most: Option<f64>,
-    /// chi^2 of the fit with noise as strong as that, and what is stated of attitudes as it stands.
+    /// chi^2 of a fit with that noise, and with the stated uncertainties of attitudes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub of_strongest_noise: Option<f64>,
     /// Plateaus that stand out at a family-wise error of 5 % (Bonferroni), the most outlying first.

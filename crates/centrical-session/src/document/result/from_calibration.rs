@@ -108,12 +108,17 @@ impl SessionSummary {
 
     /// The unit as messages name it.
     pub fn unit(&self) -> String {
-        match (self.unit_model.as_str(), self.unit_serial.as_str()) {
-            ("", "") => "a unit without a name".to_owned(),
-            (model, "") => format!("{model}, without a serial number"),
-            ("", serial) => format!("serial {serial}"),
-            (model, serial) => format!("{model}, serial {serial}"),
-        }
+        unit_name(&self.unit_model, &self.unit_serial)
+    }
+}
+
+/// A unit of that model and serial number as messages name it; either may be empty.
+pub fn unit_name(model: &str, serial: &str) -> String {
+    match (model, serial) {
+        ("", "") => "a unit without a name".to_owned(),
+        (model, "") => format!("{model}, without a serial number"),
+        ("", serial) => format!("serial {serial}"),
+        (model, serial) => format!("{model}, serial {serial}"),
     }
 }
 

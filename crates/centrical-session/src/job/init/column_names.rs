@@ -78,7 +78,7 @@ pub(super) fn what(name: &str, unit: Option<&str>) -> What {
     }
 }
 
-/// The column that holds the time of a table as text, by its header; none where there is none, or no header.
+/// The column of time of a table as text, if its header names one.
 pub fn time_column(file: &Path) -> Option<String> {
     let form = text_form(file).ok()??;
     let unit = |index: usize| form.units.get(index).copied().flatten();

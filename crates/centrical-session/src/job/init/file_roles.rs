@@ -250,7 +250,7 @@ fn joined(records: Vec<FileColumns>) -> (Vec<Vec<FileColumns>>, Vec<FileColumns>
     (whole, apart.into_iter().flatten().collect())
 }
 
-/// Telemetry to the mounting of the same number or name; in their order where there are as many. Returns what is left.
+/// Telemetry to the mounting of the same number or name; in their order where there are as many. The telemetry of no mounting is returned.
 fn pair(groups: &mut [Group], telemetry: Vec<FileColumns>) -> Vec<FileColumns> {
     for group in groups.iter_mut() {
         if group.records[0].speed.is_some() {

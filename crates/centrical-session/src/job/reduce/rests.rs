@@ -43,8 +43,8 @@ pub(crate) fn find_rests(records: &[RestRecord], file: &Path, progress: OnProgre
     Ok(rests)
 }
 
-/// Hundredths of the samples that repeat all three readings of the one before, if these are more than half: rests are told by
-/// their noise.
+/// Hundredths of the samples that repeat all three readings of the one before, if these are more than half: it is noise that
+/// shows where a rest ends.
 fn without_noise(records: &[RestRecord]) -> Option<usize> {
     let (mut repeated, mut all) = (0, 0);
     for [x, y, z] in records.iter().map(|record| record.samples.f_z) {

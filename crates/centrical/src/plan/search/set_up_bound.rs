@@ -35,7 +35,7 @@ impl Default for SetUpBound {
 
 impl SetUpBound {
     /// Least set-up time [s] of a schedule whose criterion has a logarithm below `value`: all of `set_up` are
-    /// among them and only `open` ones. `None` if there is no such schedule. `value` may not rise from call to call. Where the effort is
+    /// among them and only `open` ones. `None` where no such schedule exists. `value` may not rise from call to call. Where the effort is
     /// spent, `set_up` alone is counted, which is less.
     pub fn least(&mut self, problem: &Problem, set_up: &[bool], open: &[bool], value: f64) -> Option<f64> {
         loop {
