@@ -72,7 +72,8 @@ pub use self::result::{
 pub use self::series::{SERIES_SCHEMA, SeriesSummary};
 pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};
 pub use self::steadiness::{
-    DriftSummary, LeftOutSummary, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary, TiltVerdict,
+    DriftSummary, LeftOutSummary, PlateauDriftVerdict, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary,
+    TiltVerdict,
 };
 pub(crate) use self::truth::{Written, WrittenSession, WrittenTumble, truth_json};
 pub use self::watch::{

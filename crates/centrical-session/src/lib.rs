@@ -55,11 +55,11 @@ pub use document::{
     HistoryEstimate, InnovationSummary, LeftOutSummary, LostCombination, Method, ModelSummary, MountingPrediction,
     MountingSummary, NOISE_SCHEMA, NextAttitudeSummary, NoiseAnalysis, OBSERVABILITY_SCHEMA, ObservabilityReport,
     ObservabilitySummary, ObservedParameter, OutlyingPlateau, OutputSummary, PairReport, ParameterEstimate,
-    PatternSummary, PlanReport, PlannedMounting, PlannedPlateau, PlateauSummary, PositionSummary, PredictedParameter,
-    PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport, RepeatedPlateau, RestsOn,
-    ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary, SessionTrend, SightReport,
-    SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject, TermSummary, TiltSummary,
-    TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
+    PatternSummary, PlanReport, PlannedMounting, PlannedPlateau, PlateauDriftVerdict, PlateauSummary, PositionSummary,
+    PredictedParameter, PredictionReport, PriorSummary, Program, ReadingNoise, ReasonReport, RemedyReport,
+    RepeatedPlateau, RestsOn, ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionDriftVerdict, SessionSummary,
+    SessionTrend, SightReport, SpeedDifference, SpeedFinding, SpeedsSummary, StabilityCurve, StepReport, Subject,
+    TermSummary, TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
 };
 pub use document::{
     BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, LeftOutSession, OutlyingUnit,

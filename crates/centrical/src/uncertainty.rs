@@ -39,7 +39,7 @@ pub use budget::{Budget, Contribution, Improvement};
 pub use comparison::{Comparison, Difference, Estimates, compare};
 pub use compensated::{Compensated, CurvePoint};
 pub use coverage::{Degrees, chi_squared_tail, coverage_factor, effective_degrees_of_freedom};
-pub use drift::{PlateauDrift, SessionDrift, Slope};
+pub use drift::{PlateauDrift, SessionDrift, Slope, slope_of_speed};
 pub use holm::family_wise;
 pub use monte_carlo::{Method, MonteCarlo, ParameterStatistics, Settings, WeightedSquare, monte_carlo};
 pub use pattern::{Pattern, Trend};

@@ -1,7 +1,8 @@
 //! What the documents say of drift and tilt, a name and a text each.
 
 use centrical_session::{
-    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, SessionDriftVerdict, TiltSummary, TiltVerdict,
+    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict, SessionDriftVerdict, TiltSummary,
+    TiltVerdict,
 };
 
 use crate::evaluation::{interpolated, newtonometer, not_used};
@@ -37,10 +38,15 @@ fn drifts(facts: &mut Vec<Fact>, drift: &DriftSummary, language: Language) {
     let per_minute = MINUTE / MICRO_G;
     let slopes = drift.slope.iter().zip(&drift.slope_uncertainty).enumerate();
     let slopes = slopes.map(|(i, (slope, u))| axis(i + 1, &language.plus_minus(per_minute * slope, per_minute * u)));
+    let over_plateaus = match drift.plateau_verdict() {
+        PlateauDriftVerdict::NotSeen => messages.no_drift,
+        PlateauDriftVerdict::WithinSpeed => messages.plateaus_drift_with_speed,
+        PlateauDriftVerdict::Seen => messages.plateaus_drift,
+    };
     let said = [
         with_unit(slopes, "ug/min", language),
         format!("χ² = {}; ν = {}", language.fixed(drift.chi_squared, 1), drift.degrees_of_freedom),
-        (if drift.plateaus_drift() { messages.plateaus_drift } else { messages.no_drift }).to_owned(),
+        over_plateaus.to_owned(),
     ];
     facts.push((messages.drift_over_plateau, said.join("; ")));
     if !drift.over_session.is_empty() {

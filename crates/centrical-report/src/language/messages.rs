@@ -62,6 +62,7 @@ pub(crate) struct Messages {
     pub drift_over_plateau: &'static str,
     pub drift_over_session: &'static str,
     pub plateaus_drift: &'static str,
+    pub plateaus_drift_with_speed: &'static str,
     pub readings_drift: &'static str,
     pub session_drifts: &'static str,
     pub no_drift: &'static str,

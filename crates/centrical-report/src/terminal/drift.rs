@@ -1,7 +1,8 @@
 //! How steady the readings were, as text for the terminal.
 
 use centrical_session::{
-    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, SessionDriftVerdict, TiltSummary, TiltVerdict,
+    CalibrationResult, DriftSummary, LeftOutSummary, MICRO_G, PlateauDriftVerdict, SessionDriftVerdict, TiltSummary,
+    TiltVerdict,
 };
 
 use super::screen::Screen;
@@ -41,7 +42,11 @@ fn over_plateaus(screen: &mut Screen, drift: &DriftSummary) {
         .map(|(slope, u)| with_uncertainty(MINUTE * slope / MICRO_G, MINUTE * u / MICRO_G))
         .map(|(slope, u)| format!("{slope} ± {u}"))
         .collect();
-    let verdict = if drift.plateaus_drift() { "plateaus drift" } else { "no drift seen" };
+    let verdict = match drift.plateau_verdict() {
+        PlateauDriftVerdict::NotSeen => "no drift seen",
+        PlateauDriftVerdict::WithinSpeed => "plateaus drift no more than their speeds may run",
+        PlateauDriftVerdict::Seen => "plateaus drift",
+    };
     screen.fact(
         "DRIFT",
         &format!(

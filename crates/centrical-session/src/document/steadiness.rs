@@ -3,6 +3,7 @@
 use centrical::reduction::LeftOut;
 use centrical::uncertainty::{
     Level, OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, chi_squared_tail, repeats,
+    slope_of_speed,
 };
 use centrical::{Calibration, FitError, Observation};
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,10 @@ pub struct DriftSummary {
     pub degrees_of_freedom: usize,
     /// Probability of so large a chi^2 without any drift.
     pub probability: f64,
+    /// The same sum of what the speed of each plateau leaves unexplained, by its measured slope and its stated uncertainty. Older programs
+    /// wrote none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beyond_speed: Option<f64>,
     /// Trend of the residuals with the order of the plateaus; empty where the unknowns follow it.
     pub over_session: Vec<SessionTrend>,
     /// Plateaus of one mounting that were run again.
@@ -112,6 +117,17 @@ pub enum TiltVerdict {
     Reversed,
 }
 
+/// What the slopes say of a drift over the plateaus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PlateauDriftVerdict {
+    /// No more than the noise explains.
+    NotSeen,
+    /// More than the noise explains, and no more than the speeds may run.
+    WithinSpeed,
+    /// More than both explain.
+    Seen,
+}
+
 /// What the residuals say of a drift over the session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SessionDriftVerdict {
@@ -169,9 +185,16 @@ impl TiltSummary {
 }
 
 impl DriftSummary {
-    /// Whether the plateaus drift.
-    pub fn plateaus_drift(&self) -> bool {
-        Level::Real.is_passed_by(self.probability)
+    /// What the slopes say of a drift over the plateaus.
+    pub fn plateau_verdict(&self) -> PlateauDriftVerdict {
+        let beyond_speed = |chi_squared| chi_squared_tail(chi_squared, self.degrees_of_freedom);
+        if !Level::Real.is_passed_by(self.probability) {
+            PlateauDriftVerdict::NotSeen
+        } else if Level::Real.is_passed_by(self.beyond_speed.map_or(self.probability, beyond_speed)) {
+            PlateauDriftVerdict::Seen
+        } else {
+            PlateauDriftVerdict::WithinSpeed
+        }
     }
 
     /// What the residuals say of a drift over the session, family-wise over the newtonometers (Bonferroni).
@@ -205,6 +228,7 @@ impl DriftSummary {
         let slopes = reduced.plateaus.iter().map(|plateau| plateau.steadiness.map(slope));
         let Some(slopes) = slopes.collect::<Option<Vec<Slope>>>() else { return Ok(None) };
         let drift = PlateauDrift::of(&slopes);
+        let beyond_speed = PlateauDrift::of(&beyond_speed(calibration, reduced, &slopes));
         let trends = calibration.drift_over_session()?;
         Ok(Some(Self {
             slope: drift.mean.slope.into(),
@@ -212,6 +236,7 @@ impl DriftSummary {
             chi_squared: drift.chi_squared,
             degrees_of_freedom: drift.degrees_of_freedom,
             probability: drift.probability,
+            beyond_speed: Some(beyond_speed.chi_squared),
             over_session: trends.into_iter().map(SessionTrend::from).collect(),
             repeats: repeated(calibration, reduced),
         }))
@@ -222,6 +247,21 @@ impl From<SessionDrift> for SessionTrend {
     fn from(SessionDrift { axis, change, standard_uncertainty, probability }: SessionDrift) -> Self {
         Self { axis: axis + 1, change, standard_uncertainty, probability }
     }
+}
+
+/// The slopes of all plateaus, less what their speeds explain.
+fn beyond_speed(calibration: &Calibration, reduced: &Reduced, slopes: &[Slope]) -> Vec<Slope> {
+    let model = calibration.data().model();
+    let experiment = model.experiment();
+    let beyond = |(n, slope): (usize, &Slope)| {
+        let set_point = &experiment.set_points[n];
+        let own = experiment.speed_uncertainty_of(set_point);
+        let Some([from, to]) = reduced.plateaus[n].window.filter(|_| own > 0.0) else { return *slope };
+        let by_log_speed = model.linearise(set_point, calibration.fit().state()).setting_error / own;
+        let measured = reduced.speeds.get(n).copied().flatten().and_then(|speed| speed.slope);
+        slope.beyond_speed(&by_log_speed, slope_of_speed(experiment.centrifuge.speed_uncertainty, to - from, measured))
+    };
+    slopes.iter().enumerate().map(beyond).collect()
 }
 
 fn repeated(calibration: &Calibration, reduced: &Reduced) -> Vec<RepeatedPlateau> {

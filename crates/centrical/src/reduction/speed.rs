@@ -13,6 +13,9 @@ pub struct MeasuredSpeed {
     pub degrees_of_freedom: usize,
     /// Part of the uncertainty that is the step of the reports: the same wherever the same speed is set.
     pub step_uncertainty: f64,
+    /// Slope over the plateau beyond the settling, and its standard uncertainty, relative to the speed [1/s];
+    /// `None` where the samples are too few.
+    pub slope: Option<[f64; 2]>,
 }
 
 /// The speeds of plateaus that were set to `set` [rad/s], any sign. Plateaus set alike have one variance of a sample: a
@@ -34,7 +37,8 @@ pub fn measured_speeds(set: &[f64], readings: &[Option<SpeedReading>]) -> Vec<Op
         let step_uncertainty = reading.resolution / 12.0_f64.sqrt() / reading.speed;
         let scatter = (variance * reading.gain).sqrt() / reading.speed;
         let uncertainty = scatter.hypot(step_uncertainty);
-        Some(MeasuredSpeed { speed: reading.speed, uncertainty, degrees_of_freedom, step_uncertainty })
+        let slope = reading.slope.map(|slope| slope.map(|slope| slope / reading.speed));
+        Some(MeasuredSpeed { speed: reading.speed, uncertainty, degrees_of_freedom, step_uncertainty, slope })
     };
     set.iter().zip(readings).map(measured).collect()
 }

@@ -16,6 +16,29 @@ pub struct Slope {
     pub standard_uncertainty: Vector3<f64>,
 }
 
+impl Slope {
+    /// The slope that a speed does not explain which runs over the plateau by `relative_slope`, with a standard uncertainty [1/s];
+    /// `by_log_speed` is the derivative of the reading by the logarithm of the speed [m/s^2].
+    #[must_use]
+    pub fn beyond_speed(&self, by_log_speed: &Vector3<f64>, [relative_slope, u]: [f64; 2]) -> Self {
+        Self {
+            slope: self.slope - by_log_speed * relative_slope,
+            standard_uncertainty: self
+                .standard_uncertainty
+                .zip_map(by_log_speed, |own, by_speed| own.hypot(by_speed * u)),
+        }
+    }
+}
+
+/// Relative slope of the speed over a plateau of a duration [s], and its standard uncertainty [1/s]: the speed may run from the middle to
+/// either end by its relative standard uncertainty, unless its `measured` slope says better (the posterior of both).
+pub fn slope_of_speed(uncertainty: f64, duration: f64, measured: Option<[f64; 2]>) -> [f64; 2] {
+    let stated = 2.0 * uncertainty / duration;
+    let Some([slope, u]) = measured.filter(|_| stated > 0.0) else { return [0.0, stated] };
+    let whole = stated.hypot(u);
+    [slope * (stated / whole).powi(2), stated * u / whole]
+}
+
 /// The slopes of all plateaus together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlateauDrift {
@@ -84,5 +107,26 @@ impl Calibration<'_> {
             .collect();
         trends.sort_by_key(|trend| trend.axis);
         Ok(trends)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A slope of the readings by the speed is explained where the speed is measured, excused as far as it is stated to run, and neither
+    /// where the speed is exact.
+    #[test]
+    fn the_slope_of_the_speed_is_measured_or_stated() {
+        let by_log_speed = Vector3::new(2e3, 0.0, 0.0);
+        let slope = Slope { slope: by_log_speed * 1e-6, standard_uncertainty: Vector3::repeat(1e-4) };
+        let left = |speed| PlateauDrift::of(&[slope.beyond_speed(&by_log_speed, speed)]).chi_squared;
+        let [exact, stated, measured] = [(0.0, Some([1e-6, 1e-9])), (1e-5, None), (1e-5, Some([1e-6, 1e-9]))]
+            .map(|(u, m)| slope_of_speed(u, 10.0, m));
+        assert!(exact == [0.0, 0.0] && stated[0] == 0.0 && (stated[1] - 2e-6).abs() < 1e-18, "{stated:?}");
+        assert!((left(exact) - 400.0).abs() < 1e-9 && (0.2..0.3).contains(&left(stated)) && left(measured) < 1e-6);
+        // A poor measurement says no more than the statement.
+        let [slope, uncertainty] = slope_of_speed(1e-5, 10.0, Some([1e-3, 1.0]));
+        assert!(slope < 1e-8 && (uncertainty - 2e-6).abs() < 1e-12);
     }
 }

@@ -59,7 +59,8 @@ pub struct Findings<P, Q, R, S> {
     pub patterns: Vec<(Q, f64)>,
     /// Speeds that contradict the schedule, each with its family-wise probability.
     pub speeds: Vec<(S, f64)>,
-    /// chi^2 of the slopes of all plateaus, and their number, where records show them ([`PlateauDrift`](super::PlateauDrift)).
+    /// chi^2 of the slopes of all plateaus beyond what their speeds explain, and their number, where records show them
+    /// ([`PlateauDrift`](super::PlateauDrift)).
     pub slopes: Option<(f64, usize)>,
     /// Names of the instrument's parameters that are not determined.
     pub not_determined: Vec<String>,
@@ -96,7 +97,7 @@ pub enum Objection<P, Q, R, S> {
     Patterns(Vec<Q>),
     /// The telemetry contradicts the schedule or the record.
     Speeds(Vec<S>),
-    /// Readings drift over plateaus by more than slow noise explains.
+    /// Readings drift over plateaus by more than slow noise and the speeds explain.
     Drift {
         /// chi^2 of the slopes.
         chi_squared: f64,

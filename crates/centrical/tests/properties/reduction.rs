@@ -3,7 +3,7 @@
 
 use centrical::reduction::{
     Averaging, NoiseModel, PlateauMean, Record, ReducedMounting, ReductionError, Survey, average, locate,
-    plateau_means, reduce,
+    measured_speeds, plateau_means, reduce,
 };
 use nalgebra::Vector3;
 
@@ -208,6 +208,28 @@ fn the_tail_of_the_settling_is_no_drift() {
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
         println!("{name}: {mean:.3}");
         assert!((mean - 1.0).abs() < 0.17, "{name}: {mean}");
+    }
+}
+
+/// A speed that runs by 1e-4 over its plateau is no settling: each mean is that of the middle, to a tenth of the run.
+/// The telemetry shows its slope to a twentieth or better, by reports to 1e-5 rad/s.
+#[test]
+fn a_speed_that_runs_is_no_settling() {
+    for (settling, length) in [(0.0, 30.0), (1e-4, 30.0), (0.0, 10.0)] {
+        let stream = Stream { settling: (settling, 0.4), running: 1e-4, lengths: vec![length; 6], ..Stream::default() };
+        let reduced = reduce(&stream.record(), Some(&stream.telemetry(0.0)), &stream.schedule()).unwrap();
+        assert_eq!(reduced.settling_time(), None, "{settling}, {length}");
+        for (k, mean) in plateau_means(&reduced, &NoiseModel::pool([&reduced])).iter().enumerate() {
+            let (error, run) = ((mean.mean - stream.truth(k)).norm(), 2e-4 * stream.truth(k).norm());
+            assert!(error < 0.1 * run + 5e-4, "{settling}, {length}, plateau {k}: {error} of {run}");
+        }
+        let speeds = measured_speeds(&stream.omegas, reduced.speed_readings());
+        for speed in speeds.into_iter().flatten() {
+            let [slope, uncertainty] = speed.slope.expect("hundreds of reports");
+            let error = slope - 1e-4 / length;
+            assert!(error.abs() < 5.0 * uncertainty + 1e-8 / length, "{settling}, {length}: {slope} {uncertainty}");
+            assert!(uncertainty < 0.05 * 1e-4 / length, "{settling}, {length}: {uncertainty}");
+        }
     }
 }
 

@@ -138,7 +138,8 @@ fn telemetry(random: &mut Random, off: impl Fn(usize, f64) -> f64) -> Vec<ShownS
             let noise = 1e-5;
             let error = SPEED_ERROR * random.normal() + noise * random.normal() + off(mounting, set);
             let speed = set * (1.0 + error);
-            let shown = MeasuredSpeed { speed, uncertainty: noise, degrees_of_freedom: 168, step_uncertainty: 0.0 };
+            let (uncertainty, degrees_of_freedom) = (noise, 168);
+            let shown = MeasuredSpeed { speed, uncertainty, degrees_of_freedom, step_uncertainty: 0.0, slope: None };
             ShownSpeed { set_point: n, mounting, set, shown }
         })
         .collect()

@@ -26,6 +26,8 @@ pub struct Stream {
     pub correlation: f64,
     /// Speed error at the end of a ramp, relative, and the time constant it fades with [s].
     pub settling: (f64, f64),
+    /// Relative change of the speed over each plateau, along a straight line about what was set.
+    pub running: f64,
     /// Once-per-revolution amplitude [m/s^2].
     pub tilt: f64,
     /// Share of samples with a spike on one axis.
@@ -59,6 +61,7 @@ impl Default for Stream {
             colour: (0.0, 1.0),
             correlation: 0.0,
             settling: (1e-3, 0.4),
+            running: 0.0,
             tilt: 3e-3,
             spikes: 0.0,
             gaps: 0.0,
@@ -119,7 +122,9 @@ impl Stream {
         if t <= windows[k][1] || k + 1 == windows.len() {
             let (amplitude, tau) = if k == 0 { (0.0, 1.0) } else { self.settling };
             let off = omega * amplitude * (-(t - windows[k][0]) / tau).exp();
-            return (omega + off, -off / tau);
+            let run = omega * self.running / self.lengths[k];
+            let middle = 0.5 * (windows[k][0] + windows[k][1]);
+            return (omega + off + run * (t - middle), run - off / tau);
         }
         // A cosine ramp: the drive starts and stops without a jerk.
         let (x, rise) = ((t - windows[k][1]) / self.ramp, self.omegas[k + 1] - omega);

@@ -30,7 +30,10 @@ impl CalibrationResult {
             rivals: rivals.map(|rival| (rival.clone(), rival.probability)).collect(),
             patterns: patterns.map(|pattern| (pattern.clone(), pattern.probability)).collect(),
             speeds: speeds.map(|finding| (finding.clone(), finding.probability())).collect(),
-            slopes: self.drift.as_ref().map(|drift| (drift.chi_squared, drift.degrees_of_freedom)),
+            slopes: self
+                .drift
+                .as_ref()
+                .map(|drift| (drift.beyond_speed.unwrap_or(drift.chi_squared), drift.degrees_of_freedom)),
             not_determined: terms.filter(is_lost).cloned().collect(),
         })
     }

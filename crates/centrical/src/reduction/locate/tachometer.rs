@@ -36,6 +36,9 @@ pub struct SpeedReading {
     pub degrees_of_freedom: usize,
     /// Step of the reports where their noise does not bridge it [rad/s]; 0 otherwise.
     pub resolution: f64,
+    /// Slope of the speed over the window beyond its settling, and its standard uncertainty [rad/s^2]; `None` where the samples are
+    /// too few.
+    pub slope: Option<[f64; 2]>,
 }
 
 /// Groups into which the samples of a plateau are collected: as long as possible for slow noise, and enough for its variance.
@@ -77,7 +80,9 @@ impl PulseTrain {
         let middle = 0.5 * (t[0] + t[t.len() - 1]);
         let mut columns = vec![t.iter().map(|t| t - middle).collect(), vec![1.0; t.len()]];
         columns.extend(settling(&t, window));
-        Fitted::of(&columns, &phases, 0.0)?.reading(0.0)
+        // A speed that runs by a slope `a` turns by `a t^2 / 2`.
+        let running: Vec<f64> = t.iter().map(|t| 0.5 * (t - middle).powi(2)).collect();
+        Fitted::of(&columns, &running, &phases, 0.0)?.reading(0.0, t[t.len() - 1] - t[0])
     }
 }
 
@@ -90,9 +95,9 @@ impl SpeedTrace {
             times.filter(is_number).map(|k| (self.t[k] + offset.seconds, self.omega[k])).unzip();
         let mut columns = vec![vec![1.0; t.len()]];
         columns.extend(settling(&t, window));
-        let fitted = Fitted::of(&columns, &omega, step)?;
+        let fitted = Fitted::of(&columns, &t, &omega, step)?;
         let is_bridged = fitted.deviation >= step;
-        fitted.reading(if is_bridged { 0.0 } else { step })
+        fitted.reading(if is_bridged { 0.0 } else { step }, t.last()? - t[0])
     }
 
     /// The step of the reports [rad/s]: the smallest difference between two of them.
@@ -130,11 +135,13 @@ struct Fitted {
     /// Variance of a sample by the scatter of groups, and its degrees of freedom.
     variance: f64,
     degrees_of_freedom: usize,
+    /// Coefficient of a further column, and its standard uncertainty.
+    further: Option<[f64; 2]>,
 }
 
 impl Fitted {
-    /// Fits `values`; a residual below `step` is no spike.
-    fn of(columns: &[Vec<f64>], values: &[f64], step: f64) -> Option<Self> {
+    /// Fits `values`; a residual below `step` is no spike. The column `further` is fitted to what the others leave.
+    fn of(columns: &[Vec<f64>], further: &[f64], values: &[f64], step: f64) -> Option<Self> {
         let mut kept: Vec<usize> = (0..values.len()).collect();
         // Spikes hide one another in a fit: a few rounds find them all. What a last round leaves is no spike but a misfit, which
         // the scatter of groups shows.
@@ -149,17 +156,20 @@ impl Fitted {
             let good: Vec<usize> = kept.iter().copied().filter(|k| residual(k).abs() <= limit).collect();
             if good.len() == kept.len() || round == ROUNDS {
                 let (variance, degrees_of_freedom) = scatter(&residuals, columns.len());
-                return Some(Self { value: coefficients[0], gain, deviation, variance, degrees_of_freedom });
+                let further = coefficient_beside(columns, further, &residuals, &kept);
+                return Some(Self { value: coefficients[0], gain, deviation, variance, degrees_of_freedom, further });
             }
             kept = good;
         }
         None
     }
 
-    fn reading(self, resolution: f64) -> Option<SpeedReading> {
-        let Self { value, gain, variance, degrees_of_freedom, .. } = self;
+    /// The reading over a window of a duration [s]; reports by steps may miss a slope by a step over the window.
+    fn reading(self, resolution: f64, duration: f64) -> Option<SpeedReading> {
+        let Self { value, gain, variance, degrees_of_freedom, further, .. } = self;
         let speed = value.abs();
-        let reading = SpeedReading { speed, sample_variance: variance, gain, degrees_of_freedom, resolution };
+        let slope = further.map(|[slope, u]| [slope * value.signum(), u.hypot(resolution / duration)]);
+        let reading = SpeedReading { speed, sample_variance: variance, gain, degrees_of_freedom, resolution, slope };
         (degrees_of_freedom > 0 && speed.is_finite() && variance.is_finite()).then_some(reading)
     }
 }
@@ -173,6 +183,18 @@ fn solve(columns: &[Vec<f64>], values: &[f64], kept: &[usize]) -> Option<(Vec<f6
     let cholesky = (kept.len() > n).then(|| normal.cholesky()).flatten()?;
     let inverse = cholesky.inverse();
     Some((cholesky.solve(&right).as_slice().to_vec(), inverse[(0, 0)]))
+}
+
+/// Coefficient of a column that is fitted to the residuals of a fit by others, and its standard uncertainty by their scatter about it.
+fn coefficient_beside(columns: &[Vec<f64>], column: &[f64], residuals: &[f64], kept: &[usize]) -> Option<[f64; 2]> {
+    let (of_others, _) = solve(columns, column, kept)?;
+    let beside = |k: &usize| column[*k] - columns.iter().zip(&of_others).map(|(c, x)| c[*k] * x).sum::<f64>();
+    let beside: Vec<f64> = kept.iter().map(beside).collect();
+    let square: f64 = beside.iter().map(|c| c * c).sum();
+    let coefficient = beside.iter().zip(residuals).map(|(c, r)| c * r).sum::<f64>() / square;
+    let about: Vec<f64> = beside.iter().zip(residuals).map(|(c, r)| r - coefficient * c).collect();
+    let (variance, degrees_of_freedom) = scatter(&about, columns.len() + 1);
+    (degrees_of_freedom > 0 && coefficient.is_finite()).then(|| [coefficient, (variance / square).sqrt()])
 }
 
 /// Variance of one sample from the means of groups, and its degrees of freedom.

@@ -3,7 +3,7 @@
 //! Block levels are fitted by a constant, the once-per-revolution term and, while spinning, the exponential end
 //! of the settling. A window is the longest stretch about the middle of a plateau that this fit describes to within the
 //! noise: it begins once the settling is exponential, and the remaining settling is fitted. Its time constant is a
-//! property of the drive, common to the mounting.
+//! property of the drive, common to the mounting. What straight lines describe better is drift: it stays in the readings.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -103,7 +103,7 @@ impl Search<'_> {
     }
 
     /// The time constant that explains most of the residuals of the spinning plateaus together. It is seen if it
-    /// explains more than its coefficients would of noise (Schwarz's criterion).
+    /// explains more than its coefficients would of noise (Schwarz's criterion), and more than a drift would.
     fn best_settling(&self) -> Option<Guess> {
         let spinning: Vec<usize> = (0..self.ranges.len()).filter(|k| self.schedule[*k].omega != 0.0).collect();
         let steady = spinning.par_iter().map(|k| {
@@ -124,7 +124,8 @@ impl Search<'_> {
         // Slow noise looks like settling in block residuals: the explained part counts less in proportion.
         let colour = steady.iter().map(|(fit, _)| fit.colour).sum::<f64>() / steady.len() as f64;
         let chance = colour.max(1.0) * coefficients as f64 * (blocks as f64).ln();
-        Some(Guess { time: ln_tau.exp(), seen: explained(ln_tau) > chance })
+        let by_drift: f64 = steady.iter().map(|(fit, _)| fit.explained_by_drift()).sum();
+        Some(Guess { time: ln_tau.exp(), seen: explained(ln_tau) > chance.max(by_drift) })
     }
 
     fn settling_of(&self, plateau: usize) -> Option<f64> {
@@ -271,37 +272,45 @@ impl Steady {
 
     /// The part of the residuals' sum of squares that a settling explains.
     fn explained_by(&self, settling: Settling) -> f64 {
-        widest(Explained { of: self, settling })
+        // Later values are negligible.
+        let shown = self.since.partition_point(|since| *since < FADED * settling.time);
+        let law: Vec<f64> = self.since[..shown].iter().map(|since| settling.value(*since)).collect();
+        self.explained_by_column(&law)
+    }
+
+    /// The part that a straight line explains.
+    fn explained_by_drift(&self) -> f64 {
+        self.explained_by_column(&self.since)
+    }
+
+    /// The part that a column explains, which is zero after its last value.
+    fn explained_by_column(&self, column: &[f64]) -> f64 {
+        widest(Explained { of: self, column })
     }
 }
 
-/// A settling to be tried on residuals.
+/// A column to be tried on residuals.
 struct Explained<'a> {
     of: &'a Steady,
-    settling: Settling,
+    column: &'a [f64],
 }
 
 impl WithSimd for Explained<'_> {
     type Output = f64;
 
-    /// `sum_k (c^T r_k)^2 / (c^T c - sum_j (q_j^T c)^2)`: the residuals are orthogonal to the design, and at least half of
-    /// the settling is, since it fades in a quarter of the plateau.
+    /// `sum_k (c^T r_k)^2 / (c^T c - sum_j (q_j^T c)^2)`: the residuals are orthogonal to the design, and at least a fourth of
+    /// a column's square is, since a settling fades in a quarter of the plateau, and a line has zero at its first block.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let Steady { since, q, residuals, .. } = self.of;
-        // Later values are negligible.
-        let n = since.partition_point(|since| *since < FADED * self.settling.time);
-        let mut column = vec![0.0; n];
-        for (value, since) in column.iter_mut().zip(since) {
-            *value = self.settling.value(*since);
-        }
-        let mut square = dot(simd, &column, &column);
+        let (Steady { q, residuals, .. }, column) = (self.of, self.column);
+        let n = column.len();
+        let mut square = dot(simd, column, column);
         for q in q {
-            square -= dot(simd, &q[..n], &column).powi(2);
+            square -= dot(simd, &q[..n], column).powi(2);
         }
         let mut explained = 0.0;
         for residuals in residuals {
-            explained += dot(simd, &column, &residuals[..n]).powi(2) / square;
+            explained += dot(simd, column, &residuals[..n]).powi(2) / square;
         }
         explained
     }
