@@ -7,8 +7,8 @@
 //!
 //! The second term is the remaining settling, the next two are the once-per-revolution term (tilt of the axis of
 //! rotation); at rest the mean is the only term. The noise is coloured, and one plateau is too short to show its
-//! colour: it is pooled over all plateaus of the session ([`NoiseModel`]), and then gives every mean its covariance
-//! ([`plateau_means`]).
+//! colour: it is pooled over all plateaus of the session, or over those of each speed where they differ ([`NoiseModel`]), and then
+//! gives every mean its covariance ([`plateau_means`]).
 //!
 //! Samples are taken with equal weight or rejected: spikes (off the fit by more than `sqrt(2 ln 20 n)` robust standard
 //! deviations of `n` samples), stuck readings, and readings that are not numbers. Fewer than one in twenty plateaus loses a good sample

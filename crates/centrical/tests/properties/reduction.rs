@@ -109,6 +109,24 @@ fn means_are_right_to_their_own_uncertainty() {
     }
 }
 
+/// Noise that grows with the speed, on all axes or along the force: means are right to their own uncertainty at each speed. Six sessions
+/// have 216 degrees of freedom a speed: 0.10, four times that. Of noise pooled over all speeds the slowest have 0.01 and the fastest 4.
+#[test]
+fn means_are_right_at_each_speed_where_the_noise_grows_with_it() {
+    let shaken = Stream { shaking: 5e-2, ..Stream::default() };
+    let jittery = Stream { jitter: 5e-5, ..Stream::default() };
+    for (name, stream) in [("shaken", shaken), ("jittery", jittery)] {
+        let mut sums = vec![0.0; stream.omegas.len()];
+        for seed in 30..36 {
+            for (stream, k, mean) in means(&session(&stream, seed)) {
+                sums[k] += chi_squared(stream, k, &mean) / (6.0 * 3.0 * MOUNTINGS as f64);
+            }
+        }
+        println!("{name}: {sums:.2?}");
+        assert!(sums.iter().all(|sum| (sum - 1.0).abs() < 0.4), "{name}: {sums:?}");
+    }
+}
+
 /// What the time constant of the settling is off by is no slow noise: the settling starts at ten thousand times the white
 /// noise, and the pooled density at zero frequency is that of the same noise without settling. Taken for noise it would
 /// raise it by a twentieth.

@@ -20,6 +20,10 @@ pub struct Stream {
     pub rate: f64,
     /// Standard deviation of the white noise of a sample [m/s^2].
     pub white: f64,
+    /// Standard deviation of white noise at 62.6 rad/s that grows with the square of the speed [m/s^2].
+    pub shaking: f64,
+    /// Standard deviation of white noise along the force, over the force.
+    pub jitter: f64,
     /// Standard deviation and correlation time of the first-order Markov noise [m/s^2], [s].
     pub colour: (f64, f64),
     /// Correlation of the Markov noise between the axes.
@@ -58,6 +62,8 @@ impl Default for Stream {
             ramp: 4.0,
             rate: 100.0,
             white: 2e-3,
+            shaking: 0.0,
+            jitter: 0.0,
             colour: (0.0, 1.0),
             correlation: 0.0,
             settling: (1e-3, 0.4),
@@ -145,6 +151,13 @@ impl Stream {
             let mut f = self.reading(force(omega, rate)) + self.tilt * turning(omega, angle);
             f += slow.next(&mut random);
             f += Vector3::from_fn(|_, _| self.white * random.normal());
+            if self.shaking > 0.0 {
+                let size = self.shaking * (omega / 62.6).powi(2);
+                f += Vector3::from_fn(|_, _| size * random.normal());
+            }
+            if self.jitter > 0.0 {
+                f += force(omega, rate) * (self.jitter * random.normal());
+            }
             if random.uniform() < self.spikes {
                 f[(3.0 * random.uniform()) as usize] += 50.0 * random.normal();
             }

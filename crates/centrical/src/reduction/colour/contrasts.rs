@@ -16,7 +16,10 @@ use crate::reduction::locate::TURNING;
 use crate::statistics::whole;
 
 /// Cosines of nearly the same frequency are pooled: groups per octave.
-const PER_OCTAVE: f64 = 4.0;
+pub const PER_OCTAVE: f64 = 4.0;
+
+/// The contrasts of one plateau, each with its group.
+pub struct OfPlateau(Vec<(usize, Contrast)>);
 
 /// A contrast of one plateau, scaled to unit variance under white noise of unit density.
 struct Contrast {
@@ -36,11 +39,11 @@ pub struct Group {
     pub gains: Vec<f64>,
 }
 
-/// The contrasts of all plateaus, grouped by frequency.
-pub fn grouped_contrasts(plateaus: &[&PlateauFit], times: &[f64]) -> Vec<Group> {
+/// The contrasts of each plateau.
+pub fn contrasts(plateaus: &[&PlateauFit], times: &[f64]) -> Vec<OfPlateau> {
     let longest = plateaus.iter().map(|plateau| plateau.cells.width).fold(0.0, f64::max);
     let cosines: Vec<(usize, Vec<f64>)> = half_periods().into_iter().map(|number| (number, cosine(number))).collect();
-    let of = |plateau: &&PlateauFit| -> Vec<(usize, Contrast)> {
+    let of = |plateau: &&PlateauFit| {
         let cells = &plateau.cells;
         let markov = Markov::new(times, cells.width);
         // The time constant of the settling is not final yet: its error is not noise.
@@ -53,12 +56,17 @@ pub fn grouped_contrasts(plateaus: &[&PlateauFit], times: &[f64]) -> Vec<Group> 
         };
         // The polynomials of an arc that turns absorb the lowest.
         let absorbed = if plateau.turns() { TURNING } else { 0 };
-        cosines.iter().filter(|(number, _)| *number > absorbed).filter_map(contrast).collect()
+        OfPlateau(cosines.iter().filter(|(number, _)| *number > absorbed).filter_map(contrast).collect())
     };
+    plateaus.par_iter().map(of).collect()
+}
+
+/// The contrasts of some plateaus, grouped by frequency, the lowest first.
+pub fn grouped<'a>(plateaus: impl IntoIterator<Item = &'a OfPlateau>) -> Vec<Group> {
     let mut groups = BTreeMap::new();
-    for (group, contrast) in plateaus.par_iter().map(of).collect::<Vec<_>>().into_iter().flatten() {
-        let empty = || Group { count: 0.0, power: Matrix3::zeros(), gains: vec![0.0; 1 + times.len()] };
-        groups.entry(group).or_insert_with(empty).add(&contrast);
+    for (group, contrast) in plateaus.into_iter().flat_map(|OfPlateau(contrasts)| contrasts) {
+        let empty = || Group { count: 0.0, power: Matrix3::zeros(), gains: vec![0.0; 1 + contrast.gains.len()] };
+        groups.entry(*group).or_insert_with(empty).add(contrast);
     }
     groups.into_values().map(Group::averaged).collect()
 }

@@ -1,6 +1,6 @@
 //! The likeliest densities of the components by the contrasts.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::contrasts::Group;
@@ -75,6 +75,20 @@ impl Fit {
             None => f64::NEG_INFINITY,
         };
         groups.iter().map(of).sum()
+    }
+
+    /// What the log-likelihood of other contrasts gains if these have noise of the same colour, and a scale of their own on each axis.
+    pub fn gain_by_scale(&self, groups: &[Group]) -> f64 {
+        let (mut count, mut squares) = (0.0, Vector3::zeros());
+        for group in groups {
+            let Some(factor) = self.covariance(group).cholesky() else { continue };
+            let Some(half) = factor.l().solve_lower_triangular(&group.power) else { continue };
+            let Some(whitened) = factor.l().solve_lower_triangular(&half.transpose()) else { continue };
+            count += group.count;
+            squares += whitened.diagonal() * group.count;
+        }
+        let of_axis = |square: f64| if square > 0.0 { square - 1.0 - square.ln() } else { 0.0 };
+        0.5 * count * squares.iter().map(|sum| of_axis(sum / count.max(1.0))).sum::<f64>()
     }
 
     /// `L_k` becomes the solution of `L A L = L_k B L_k`, `A = sum_j B_jk S_j^-1`, `B = sum_j B_jk S_j^-1 y_j y_j^T

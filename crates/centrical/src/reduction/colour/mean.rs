@@ -50,5 +50,5 @@ fn covariance_of_harmonic(plateau: &PlateauFit, noise: &NoiseModel) -> Matrix3<f
     if plateau.shape.omega == 0.0 {
         return Matrix3::zeros();
     }
-    noise.density(plateau.shape.omega / TAU) * (2.0 / (plateau.samples as f64 * plateau.cells.interval))
+    noise.density_on(plateau, plateau.shape.omega / TAU) * (2.0 / (plateau.samples as f64 * plateau.cells.interval))
 }

@@ -5,11 +5,14 @@
 //! of the readings with cosines of whole half-periods in the window, orthogonal to the fitted terms and to the time
 //! constant of the settling. They do not depend on these, and their expectation is known exactly.
 
+use std::collections::BTreeMap;
 use std::f64::consts::{SQRT_2, TAU};
 
 use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
 
-use super::contrasts::{Group, grouped_contrasts};
+use super::alike::{Alike, Class};
+use super::contrasts::{Group, OfPlateau, PER_OCTAVE, contrasts, grouped};
 use super::likelihood::{Fit, STEPS};
 use super::markov::{Markov, gain};
 use super::posterior::{Mixture, Power, posterior};
@@ -22,6 +25,8 @@ pub const EXCLUDED: f64 = 1e-5;
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseModel {
     components: Vec<Component>,
+    /// Where the noise of plateaus differs: what tells them apart, and the components of each class.
+    by_class: Option<(Alike, BTreeMap<Class, Vec<Component>>)>,
     /// Of rests: the part along the specific force, the third axis, by itself, in every direction alike.
     along: Option<Along>,
     /// Least variance of a sample on any plateau [m^2/s^4].
@@ -49,9 +54,16 @@ struct Component {
 impl NoiseModel {
     /// Estimates the noise from all plateaus of a session.
     ///
-    /// Components are added one by one, the likeliest first, as long as Schwarz's criterion accepts them.
+    /// Components are added one by one, the likeliest first, as long as Schwarz's criterion accepts them. By the same criterion the noise is
+    /// one for all plateaus, or that of each speed, or that of each speed and each axis of the force.
     pub fn pool<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> Self {
-        Self::of(&plateaus_of(mountings))
+        let plateaus = plateaus_of(mountings);
+        let times = correlation_times(&plateaus);
+        let contrasts = contrasts(&plateaus, &times);
+        let groups = grouped(&contrasts);
+        let Some(fit) = likeliest(&groups, &times, ENTRIES) else { return Self::of(Vec::new(), &plateaus) };
+        let by_class = noise_by_class(&fit, &groups, &plateaus, &contrasts, &times);
+        Self { by_class, ..Self::of(components(&fit, &times), &plateaus) }
     }
 
     /// Estimates the noise from rests in free attitudes, in the axes of each. Along the specific force it is estimated by itself:
@@ -63,16 +75,17 @@ impl NoiseModel {
         let still = plateaus.iter().copied().filter(|plateau| !plateau.turns()).chain(along);
         let still: Vec<&PlateauFit> = still.collect();
         let times = correlation_times(&still);
-        let groups = grouped_contrasts(&still, &times);
+        let groups = grouped(&contrasts(&still, &times));
         let along = groups.iter().map(Group::along).collect::<Vec<Group>>();
-        Self { along: Some(Along::of(&along, &times)), ..Self::of(&plateaus) }
+        let of_all = correlation_times(&plateaus);
+        let fit = likeliest(&grouped(&contrasts(&plateaus, &of_all)), &of_all, ENTRIES);
+        let all = fit.map_or_else(Vec::new, |fit| components(&fit, &of_all));
+        Self { along: Some(Along::of(&along, &times)), ..Self::of(all, &plateaus) }
     }
 
-    fn of(plateaus: &[&PlateauFit]) -> Self {
+    fn of(components: Vec<Component>, plateaus: &[&PlateauFit]) -> Self {
         let quietest = plateaus.iter().map(|plateau| plateau.variance).reduce(|a, b| a.inf(&b)).unwrap_or_default();
-        let times = correlation_times(plateaus);
-        // A density has six entries.
-        Self { components: components(&grouped_contrasts(plateaus, &times), &times, 6.0), along: None, quietest }
+        Self { components, by_class: None, along: None, quietest }
     }
 
     /// Variance of a sample on the quietest plateau [m^2/s^4]. Where the noise is below a digit, rounding shows its own spread
@@ -81,13 +94,20 @@ impl NoiseModel {
         self.quietest
     }
 
-    /// Two-sided spectral density at the frequency `f` [Hz]: `L_0 + sum_k L_k / (1 + (2 pi f tau_k)^2)` [m^2/s^4/Hz].
+    /// Two-sided spectral density at the frequency `f` [Hz], of all plateaus together: `L_0 + sum_k L_k / (1 + (2 pi f tau_k)^2)`
+    /// [m^2/s^4/Hz].
     pub fn density(&self, f: f64) -> Matrix3<f64> {
-        let of = |component: &Component| {
-            let x = component.correlation_time.map_or(0.0, |tau| TAU * f * tau);
-            component.density / (1.0 + x * x)
-        };
-        self.components.iter().map(of).sum()
+        density(&self.components, f)
+    }
+
+    /// The same on one plateau.
+    pub(super) fn density_on(&self, plateau: &PlateauFit, f: f64) -> Matrix3<f64> {
+        density(self.components_on(plateau), f)
+    }
+
+    fn components_on(&self, plateau: &PlateauFit) -> &[Component] {
+        let of_class = self.by_class.as_ref().and_then(|(alike, classes)| classes.get(&alike.class(plateau)));
+        of_class.unwrap_or(&self.components)
     }
 
     /// Covariance of a linear functional of the samples of a plateau. Of the arcs of slow rotation each counts as independent, with
@@ -98,7 +118,7 @@ impl NoiseModel {
         let of = |components: &[Component]| -> Matrix3<f64> {
             components.iter().map(|part| part.density * gain(time(part), weights, cells)).sum()
         };
-        let mut covariance = of(&self.components);
+        let mut covariance = of(self.components_on(plateau));
         if let Some(along) = &self.along {
             // Which way the axes across point is arbitrary: no noise goes with them and along.
             for axis in 0..2 {
@@ -137,11 +157,60 @@ fn plateaus_of<'a>(mountings: impl IntoIterator<Item = &'a ReducedMounting>) -> 
     mountings.into_iter().flat_map(|mounting| &mounting.plateaus).collect()
 }
 
-/// The components of the contrasts, added one by one as long as Schwarz's criterion accepts the `entries` of each.
-fn components(groups: &[Group], times: &[f64], entries: f64) -> Vec<Component> {
-    let contrasts: f64 = groups.iter().map(|group| group.count).sum();
+/// Entries of a density.
+const ENTRIES: f64 = 6.0;
+
+/// The noise of each class of plateaus, if it differs by more than Schwarz's criterion asks for from the `fit` of all contrasts together.
+fn noise_by_class(
+    fit: &Fit,
+    groups: &[Group],
+    plateaus: &[&PlateauFit],
+    contrasts: &[OfPlateau],
+    times: &[f64],
+) -> Option<(Alike, BTreeMap<Class, Vec<Component>>)> {
+    let penalty = 0.5 * count(groups).ln();
+    let criterion = |fit: &Fit| fit.likelihood - penalty * ENTRIES * fit.parts.len() as f64;
+    let of_all = criterion(fit);
+    let by_class = |alike: Alike| {
+        let classes = alike.classes(plateaus);
+        let grouped: Vec<Vec<Group>> =
+            classes.values().map(|class| grouped(class.iter().map(|index| &contrasts[*index]))).collect();
+        // Scales alone show whether the noise differs, over all frequencies or over the lowest: the fits take a hundred times longer.
+        let least = penalty * 3.0 * classes.len().saturating_sub(1) as f64;
+        let gain = |most: usize| grouped.iter().map(|of| fit.gain_by_scale(&of[..of.len().min(most)])).sum::<f64>();
+        if gain(usize::MAX).max(gain(LOWEST)) <= least {
+            return None;
+        }
+        let fits = grouped.par_iter().map(|groups| likeliest(groups, times, ENTRIES)).collect::<Option<Vec<Fit>>>()?;
+        let gain = fits.iter().map(criterion).sum::<f64>() - of_all;
+        let noise = classes.into_keys().zip(fits.iter().map(|fit| components(fit, times))).collect();
+        (gain > 0.0).then_some((gain, (alike, noise)))
+    };
+    let both = [Alike::Speed, Alike::SpeedAndForce].into_iter().filter_map(by_class);
+    both.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, noise)| noise)
+}
+
+/// Groups of the lowest three octaves, where a mean feels the noise.
+const LOWEST: usize = 3 * PER_OCTAVE as usize;
+
+fn count(groups: &[Group]) -> f64 {
+    groups.iter().map(|group| group.count).sum()
+}
+
+fn density(components: &[Component], f: f64) -> Matrix3<f64> {
+    let of = |component: &Component| {
+        let x = component.correlation_time.map_or(0.0, |tau| TAU * f * tau);
+        component.density / (1.0 + x * x)
+    };
+    components.iter().map(of).sum()
+}
+
+/// The fit of the contrasts by components, added one by one as long as Schwarz's criterion accepts the `entries` of each. `None` without
+/// contrasts.
+fn likeliest(groups: &[Group], times: &[f64], entries: f64) -> Option<Fit> {
+    let contrasts = count(groups);
     if contrasts == 0.0 {
-        return Vec::new();
+        return None;
     }
     let penalty = 0.5 * entries * contrasts.ln();
     let mut fit = Fit::white(groups);
@@ -154,6 +223,10 @@ fn components(groups: &[Group], times: &[f64], entries: f64) -> Vec<Component> {
         }
     }
     fit.climb(groups, STEPS.1);
+    Some(fit)
+}
+
+fn components(fit: &Fit, times: &[f64]) -> Vec<Component> {
     let part = |(time, density): &(usize, Matrix3<f64>)| Component {
         correlation_time: time.checked_sub(1).map(|time| times[time]),
         density: *density,
@@ -164,7 +237,7 @@ fn components(groups: &[Group], times: &[f64], entries: f64) -> Vec<Component> {
 impl Along {
     /// The posterior mean, if one Markov process at most is found beside white noise, and the likeliest components otherwise.
     fn of(groups: &[Group], times: &[f64]) -> Self {
-        let likeliest = components(groups, times, 1.0);
+        let likeliest = likeliest(groups, times, 1.0).map_or_else(Vec::new, |fit| components(&fit, times));
         let powers: Vec<Power> = groups.iter().map(Group::as_power).collect();
         let times = times.to_vec();
         let Some(posterior) = posterior(&powers, EXCLUDED) else {
