@@ -6,17 +6,20 @@
 //! `y_i = x_i^T beta + u_i + e_i`,  `u_i ~ N(0, tau^2)`,  `e_i ~ N(0, v_i)`.
 //!
 //! `Q(tau^2) = min_beta sum_i (y_i - x_i^T beta)^2 / (v_i + tau^2)` follows chi^2 with `nu = k - q` degrees of freedom at the true
-//! `tau^2`, exactly, and falls as `tau^2` grows. All that is said of `tau^2` solves `Q(tau^2) = c`: the estimate of R. C. Paule
+//! `tau^2`, exactly, and falls as `tau^2` grows. Errors `s ~ N(0, 1)` that some sessions share and others do not, as after a move to another
+//! station, change the values by `B s`: then `Q(tau^2) = min_(beta, s) sum_i (y_i - x_i^T beta - (B s)_i)^2 / (v_i + tau^2) + |s|^2`. All that is said of `tau^2` solves `Q(tau^2) = c`: the estimate of R. C. Paule
 //! and J. Mandel (J. Res. NBS 87, 1982) for `c = nu`; the interval of W. Viechtbauer (Statistics in Medicine 26, 2007) for quantiles of
 //! chi^2; the law of a forecast for all of them.
 
 use std::mem;
 
+use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::line::{Curve, Line};
 use super::quantiles::Quantiles;
-use super::series::Series;
+use super::series::{Point, Series};
+use crate::linalg::least_squares::LeastSquares;
 use crate::uncertainty::chi_squared_tail;
 
 /// The component of variance between sessions, beside the stated one.
@@ -82,7 +85,7 @@ impl Likely {
 
 /// `Q` of several series as a function of `tau^2`.
 struct Scatter<'a> {
-    used: Vec<&'a Series>,
+    used: Vec<(&'a Series, Option<DMatrix<f64>>)>,
     curve: Curve,
     degrees_of_freedom: usize,
     /// Room for weights: `Q` is asked for hundreds of times.
@@ -93,14 +96,20 @@ impl<'a> Scatter<'a> {
     fn of(series: &'a [Series], curve: Curve) -> Self {
         let is_used =
             |s: &&Series| degrees_of_freedom(s, curve).is_some() && Line::new(s.points(), curve, 0.0).is_some();
-        let used: Vec<&Series> = series.iter().filter(is_used).collect();
-        let nu = used.iter().filter_map(|s| degrees_of_freedom(s, curve)).sum();
+        let used: Vec<_> = series.iter().filter(is_used).map(|series| (series, series.shared_by_some())).collect();
+        let nu = used.iter().filter_map(|(series, _)| degrees_of_freedom(series, curve)).sum();
         Self { used, curve, degrees_of_freedom: nu, weights: Vec::new() }
     }
 
     fn misfit_and_fall(&mut self, tau: f64) -> (f64, f64) {
         let (mut misfit, mut fall) = (0.0, 0.0);
-        for series in &self.used {
+        for (series, shared) in &self.used {
+            if let Some(shared) = shared {
+                let (of_series, its_fall) = misfit_and_fall(series.points(), shared, self.curve, tau);
+                misfit += of_series;
+                fall += its_fall;
+                continue;
+            }
             let weights = mem::take(&mut self.weights);
             if let Some(line) = Line::with_room(weights, series.points(), self.curve, tau) {
                 misfit += line.misfit;
@@ -128,6 +137,32 @@ impl<'a> Scatter<'a> {
         }
         tau.is_finite().then_some(tau)
     }
+}
+
+/// `Q` and `-dQ / d tau^2` with errors that some sessions share: the errors are unknowns, each with an equation that says `0 +- 1`.
+fn misfit_and_fall(points: &[Point], shared: &DMatrix<f64>, curve: Curve, tau: f64) -> (f64, f64) {
+    let (k, q, m) = (points.len(), curve.unknowns(), shared.ncols());
+    let middle = points.iter().map(|p| p.time).sum::<f64>() / k as f64;
+    let weights: Vec<f64> = points.iter().map(|p| 1.0 / (p.variance + tau)).collect();
+    let design = DMatrix::from_fn(k, q + m, |i, j| match j {
+        0 => 1.0,
+        1 if q == 2 => points[i].time - middle,
+        _ => shared[(i, j - q)],
+    });
+    let whitened = DMatrix::from_fn(k + m, q + m, |i, j| {
+        if i < k { weights[i].sqrt() * design[(i, j)] } else { f64::from(u8::from(i - k + q == j)) }
+    });
+    let sizes = DVector::from_iterator(q + m, whitened.column_iter().map(|column| 1.0 / column.norm()));
+    let values = DVector::from_iterator(k, points.iter().zip(&weights).map(|(p, w)| w.sqrt() * p.value));
+    let solution = LeastSquares::new(whitened * DMatrix::from_diagonal(&sizes), sizes).solve(values).x;
+    let (fitted, errors) = (design * &solution, solution.rows(q, m).norm_squared());
+    let (mut misfit, mut fall) = (errors, 0.0);
+    for ((point, weight), fitted) in points.iter().zip(&weights).zip(fitted.iter()) {
+        let part = weight * (point.value - fitted).powi(2);
+        misfit += part;
+        fall += weight * part;
+    }
+    (misfit, fall)
 }
 
 /// `k - q`, if positive.

@@ -48,6 +48,18 @@ impl Series {
         &self.points
     }
 
+    /// Changes by the errors that some sessions share and others do not, as after a move to another station, `k x m`: what all share
+    /// moves no scatter.
+    pub(super) fn shared_by_some(&self) -> Option<DMatrix<f64>> {
+        let is_of_some = |column: &usize| {
+            let changes = self.shared.column(*column);
+            let count = changes.iter().filter(|change| **change != 0.0).count();
+            0 < count && count < changes.len()
+        };
+        let columns: Vec<usize> = (0..self.shared.ncols()).filter(is_of_some).collect();
+        (!columns.is_empty()).then(|| self.shared.select_columns(&columns))
+    }
+
     /// Variance that the common errors leave in `sum_i c_i y_i`.
     pub(super) fn shared_variance(&self, coefficients: &[f64]) -> f64 {
         let change =

@@ -17,7 +17,7 @@ pub struct SessionEstimates {
 /// Whether the unit was the same in all sessions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sameness {
-    /// `sum_i (x_i - mu)^T C_i^-1 (x_i - mu)` at the best common `mu`.
+    /// `sum_i (x_i - mu - B_i s)^T C_i^-1 (x_i - mu - B_i s) + |s|^2` at the best common `mu` and shared errors `s`.
     pub chi_squared: f64,
     /// `p (k - 1)`.
     pub degrees_of_freedom: usize,
@@ -26,9 +26,15 @@ pub struct Sameness {
 }
 
 /// The joint test of sessions with the same quantities; `None` below two sessions, or where a covariance is not positive definite.
-pub fn sameness(sessions: &[SessionEstimates]) -> Option<Sameness> {
+///
+/// `shared` has a matrix for each session: the changes of its quantities by errors that some sessions share, `p x m`, a column for each of `m`
+/// independent errors at one standard uncertainty, zero where a session does not have it. They are unknowns, each `0 +- 1`.
+pub fn sameness(sessions: &[SessionEstimates], shared: &[DMatrix<f64>]) -> Option<Sameness> {
     let p = sessions.first()?.values.len();
-    let (mut design, mut values) = (DMatrix::zeros(p * sessions.len(), p), DVector::zeros(p * sessions.len()));
+    let m = shared.first().map_or(0, DMatrix::ncols);
+    let rows = p * sessions.len();
+    let (mut design, mut values) = (DMatrix::zeros(rows + m, p + m), DVector::zeros(rows + m));
+    design.view_mut((rows, p), (m, m)).fill_with_identity();
     let sizes = sessions[0].covariance.diagonal().map(f64::sqrt);
     for (n, session) in sessions.iter().enumerate() {
         // Rows of C = D R D with the correlations R: `R = L L^T`, whitened by `L^-1 D^-1`.
@@ -37,10 +43,15 @@ pub fn sameness(sessions: &[SessionEstimates]) -> Option<Sameness> {
         let factor = correlation.cholesky()?.unpack();
         let unknowns = DMatrix::from_diagonal(&sizes.component_mul(&scale));
         let whitened = session.values.component_mul(&scale);
-        design.rows_mut(n * p, p).copy_from(&factor.solve_lower_triangular(&unknowns)?);
+        design.view_mut((n * p, 0), (p, p)).copy_from(&factor.solve_lower_triangular(&unknowns)?);
+        if let Some(shared) = shared.get(n) {
+            let scaled = DMatrix::from_diagonal(&scale) * shared;
+            design.view_mut((n * p, p), (p, m)).copy_from(&factor.solve_lower_triangular(&scaled)?);
+        }
         values.rows_mut(n * p, p).copy_from(&factor.solve_lower_triangular(&whitened)?);
     }
     let degrees_of_freedom = p * sessions.len().checked_sub(1).filter(|rest| *rest > 0)?;
+    let sizes = sizes.resize_vertically(p + m, 1.0);
     let chi_squared = LeastSquares::new(design, sizes).redundant(&values).norm_squared();
     let probability = chi_squared_tail(chi_squared, degrees_of_freedom);
     Some(Sameness { chi_squared, degrees_of_freedom, probability })

@@ -273,30 +273,59 @@ fn variance(combination: &[(usize, f64)], covariance: impl Fn(usize, usize) -> f
 /// The combination `sum_n c_n x_n` of named parameters in each of `calibrations`, in the order of time; `None` if one of them does not
 /// determine it. Errors of one source are common to the sessions of one station, those of priors to all.
 pub fn series(calibrations: &[&Calibrated], combination: &[(String, f64)], zero: Date, basis: Basis) -> Option<Series> {
-    let mut columns: BTreeMap<(&str, &str, usize), usize> = BTreeMap::new();
+    let mut errors = SharedErrors::default();
     let (mut points, mut changes) = (Vec::new(), Vec::new());
     for calibrated in calibrations {
         let at = |(name, c): &(String, f64)| Some((calibrated.place(name)?, *c));
         let places: Vec<(usize, f64)> = combination.iter().map(at).collect::<Option<_>>()?;
         let seen = calibrated.seen(basis);
         let (value, variance, shared) = seen.combined(&places);
-        let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
-        let row = seen.shared.iter().zip(shared).map(|(SharedInfluence { source, .. }, change)| {
-            let number = numbers.entry(source).or_default();
-            *number += 1;
-            let (next, station) = (columns.len(), if source == PRIORS { "" } else { &calibrated.station });
-            (*columns.entry((station, source, *number)).or_insert(next), change)
-        });
-        changes.push(row.collect::<Vec<(usize, f64)>>());
+        changes.push(errors.of(&calibrated.station, seen.shared).into_iter().zip(shared).collect::<Vec<_>>());
         points.push(Point { time: years(zero, calibrated.date), value, variance });
     }
-    let mut shared = DMatrix::zeros(points.len(), columns.len());
+    let mut shared = DMatrix::zeros(points.len(), errors.0.len());
     for (n, row) in changes.iter().enumerate() {
         for &(column, change) in row {
             shared[(n, column)] = change;
         }
     }
     Series::new(&points, &shared)
+}
+
+/// The independent errors that sessions share, numbered: those of one station, source and number within the source.
+#[derive(Default)]
+struct SharedErrors<'a>(BTreeMap<(&'a str, &'a str, usize), usize>);
+
+impl<'a> SharedErrors<'a> {
+    /// The number of each error of a session at `station`.
+    fn of(&mut self, station: &'a str, shared: &'a [SharedInfluence]) -> Vec<usize> {
+        let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
+        let number = |SharedInfluence { source, .. }: &'a SharedInfluence| {
+            let number = numbers.entry(source).or_default();
+            *number += 1;
+            let next = self.0.len();
+            *self.0.entry((if source == PRIORS { "" } else { station }, source, *number)).or_insert(next)
+        };
+        shared.iter().map(number).collect()
+    }
+}
+
+/// Changes of `names` in each of `calibrations` by the errors that some of them share and others do not, as after a move to another
+/// station: a column for each error.
+pub fn shared_by_some(calibrations: &[&Calibrated], names: &[String]) -> Vec<DMatrix<f64>> {
+    let mut errors = SharedErrors::default();
+    let numbers: Vec<Vec<usize>> =
+        calibrations.iter().map(|c| errors.of(&c.station, c.seen(Basis::Data).shared)).collect();
+    let count = |error: usize| numbers.iter().filter(|of| of.contains(&error)).count();
+    let of_some: Vec<usize> = (0..errors.0.len()).filter(|&error| count(error) < calibrations.len()).collect();
+    let changes = |(calibrated, numbers): (&&Calibrated, &Vec<usize>)| {
+        let shared = calibrated.seen(Basis::Data).shared;
+        DMatrix::from_fn(names.len(), of_some.len(), |i, column| {
+            let influence = numbers.iter().position(|number| *number == of_some[column]).map(|at| &shared[at]);
+            influence.zip(calibrated.place(&names[i])).map_or(0.0, |(influence, place)| influence.changes[place])
+        })
+    };
+    calibrations.iter().zip(&numbers).map(changes).collect()
 }
 
 /// One parameter, as a combination.

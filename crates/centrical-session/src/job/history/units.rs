@@ -1,6 +1,6 @@
 //! Units of one type beside each other.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use centrical::history::{
     Between, Curve, FEWEST_UNITS, Series, UnitSessions, batch_test, capability, distances, unit_trends,
@@ -49,8 +49,10 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
     for (parameter, chance) in parameters.iter_mut().zip(family_wise(&batches)) {
         parameter.batches_differ = chance < FAMILY;
     }
-    let by_parameter = by_parameter(units, &lasts, &names, &all);
-    let outlying = outlying(units, &lasts, &by_parameter);
+    let stations = by_station(units);
+    let by_parameter = by_parameter(&stations, &lasts, &names, &all);
+    let tested: Vec<&AtStation> = stations.iter().filter(|units| units.len() >= FEWEST_UNITS).collect();
+    let outlying = outlying(&tested, &lasts, &by_parameter);
     let findings = over_time(by_parameter);
     Some(UnitsHistoryReport {
         schema: UNITS_HISTORY_SCHEMA,
@@ -59,7 +61,7 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
         units: units.len(),
         sessions: all.len(),
         left_out: left_out.clone(),
-        is_tested: units.len() >= FEWEST_UNITS,
+        is_tested: !tested.is_empty(),
         is_sound: outlying.is_empty() && findings.is_empty() && !parameters.iter().any(|p| p.batches_differ),
         outlying,
         findings,
@@ -116,6 +118,20 @@ fn parameter(
     })
 }
 
+/// The sessions of units at one station, each unit by its number. Type B that these share would tell units of two stations apart.
+type AtStation<'a> = Vec<(usize, Vec<&'a Calibrated>)>;
+
+/// The sessions of `units`, station by station.
+fn by_station(units: &[Vec<Calibrated>]) -> Vec<AtStation<'_>> {
+    let mut stations: BTreeMap<&str, BTreeMap<usize, Vec<&Calibrated>>> = BTreeMap::new();
+    for (number, unit) in units.iter().enumerate() {
+        for calibrated in unit {
+            stations.entry(&calibrated.station).or_default().entry(number).or_default().push(calibrated);
+        }
+    }
+    stations.into_values().map(|units| units.into_iter().collect()).collect()
+}
+
 /// One parameter of all units over time.
 struct OfParameter {
     name: String,
@@ -125,55 +141,63 @@ struct OfParameter {
     findings: Vec<UnitFinding>,
 }
 
-/// All parameters. Values are as stated: priors, if there are any, draw all units in the same way.
+/// All parameters, each unit by its sessions at one station. Values are as stated: priors, if there are any, draw all units in the same way.
 fn by_parameter(
-    units: &[Vec<Calibrated>],
+    stations: &[AtStation],
     lasts: &[&Calibrated],
     names: &[String],
     all: &[&Calibrated],
 ) -> Vec<OfParameter> {
     let Some(zero) = all.iter().map(|c| c.date).min() else { return Vec::new() };
     let of_parameter = |name: &String| {
-        let of_unit = |(n, unit): (usize, &Vec<Calibrated>)| {
-            Some((n, series(&unit.iter().collect::<Vec<_>>(), &single(name), zero, Basis::Stated)?))
-        };
-        let (numbers, series): (Vec<usize>, Vec<Series>) = units.iter().enumerate().filter_map(of_unit).unzip();
+        let units = || stations.iter().flatten();
+        let of_unit =
+            |(n, unit): &(usize, Vec<&Calibrated>)| Some((*n, series(unit, &single(name), zero, Basis::Stated)?));
+        let (numbers, series): (Vec<usize>, Vec<Series>) = units().filter_map(of_unit).unzip();
         OfParameter {
             name: name.clone(),
-            is_known: series.len() == units.len(),
+            is_known: series.len() == units().count(),
             findings: findings(&numbers, &series, lasts, name),
         }
     };
     names.par_iter().map(of_parameter).collect()
 }
 
-/// Units whose robust distance no sound unit would have.
-fn outlying(units: &[Vec<Calibrated>], lasts: &[&Calibrated], by_parameter: &[OfParameter]) -> Vec<OutlyingUnit> {
+/// Units whose robust distance no sound unit of their station would have.
+fn outlying(stations: &[&AtStation], lasts: &[&Calibrated], by_parameter: &[OfParameter]) -> Vec<OutlyingUnit> {
     let names: Vec<&str> = by_parameter.iter().filter(|of| of.is_known).map(|of| of.name.as_str()).collect();
     if names.is_empty() {
         return Vec::new();
     }
-    let counts: Vec<usize> = units.iter().map(Vec::len).collect();
-    let places = Places::of(units.iter().flatten().map(|calibrated| &calibrated.parameters), &names);
-    let session = |unit: usize, t: usize| units[unit][t].stated_estimates(places.in_list(&units[unit][t].parameters));
-    let sessions = UnitSessions { counts: &counts, session: &session };
-    let Some(distances) = distances(&sessions, SEED) else { return Vec::new() };
-    let found = lasts.iter().zip(distances).filter(|(_, distance)| distance.probability < FAMILY);
-    let mut found: Vec<OutlyingUnit> = found
-        .map(|(unit, distance)| {
+    let at_station = |units: &&AtStation| -> Vec<OutlyingUnit> {
+        let counts: Vec<usize> = units.iter().map(|(_, sessions)| sessions.len()).collect();
+        let all = units.iter().flat_map(|(_, sessions)| sessions);
+        let places = Places::of(all.map(|calibrated| &calibrated.parameters), &names);
+        let session = |unit: usize, t: usize| {
+            let calibrated = units[unit].1[t];
+            calibrated.stated_estimates(places.in_list(&calibrated.parameters))
+        };
+        let sessions = UnitSessions { counts: &counts, session: &session };
+        let numbers = units.iter().map(|(number, _)| *number);
+        let distances = distances(&sessions, SEED).into_iter().flatten();
+        let found = numbers.zip(distances).map(|(number, distance)| {
             let mut scores: Vec<(String, f64)> =
                 names.iter().map(|&name| name.to_owned()).zip(distance.scores).collect();
             scores.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
             scores.truncate(3);
             OutlyingUnit {
-                unit_serial: unit.unit_serial.clone(),
+                unit_serial: lasts[number].unit_serial.clone(),
                 distance: distance.distance,
-                probability: distance.probability,
+                probability: (stations.len() as f64 * distance.probability).min(1.0),
                 most: scores,
             }
-        })
-        .collect();
+        });
+        found.filter(|unit| unit.probability < FAMILY).collect()
+    };
+    let mut found: Vec<OutlyingUnit> = stations.iter().flat_map(at_station).collect();
     found.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+    let mut named = BTreeSet::new();
+    found.retain(|unit| named.insert(unit.unit_serial.clone()));
     found
 }
 
