@@ -2,6 +2,7 @@
 
 mod axes;
 mod calibrate;
+mod comparisons;
 mod compensate;
 mod history;
 mod init;

@@ -19,8 +19,9 @@ pub fn comparison_text(report: &ComparisonReport) -> Screen {
     screen.gap();
     screen.head("COMPARISON", "difference ± standard uncertainty; E_n with expanded uncertainties, k = 2");
     for (n, result) in report.results.iter().enumerate() {
-        let ComparedResultSummary { file, title, date, .. } = result;
-        screen.say(2, &format!("{}  {file}: {}, {date}, {title}", n + 1, unit(result)));
+        let ComparedResultSummary { file, title, date, acceptable, .. } = result;
+        let verdict = if *acceptable { "" } else { "; NOT ACCEPTABLE" };
+        screen.say(2, &format!("{}  {file}: {}, {date}, {title}{verdict}", n + 1, unit(result)));
     }
     for pair in &report.comparisons {
         one_pair(&mut screen, report, pair);
@@ -84,6 +85,10 @@ fn cautions(screen: &mut Screen, report: &ComparisonReport, pair: &PairCompariso
             let words = format!("only the {which} has {}: other coefficients may differ for that", terms.join(", "));
             screen.marked(Emphasis::Warning, "DIFFERENT ERROR MODELS", &words);
         }
+    }
+    if !pair.by_priors_alone.is_empty() {
+        let words = format!("priors alone determine {}: they show no change", pair.by_priors_alone.join(", "));
+        screen.marked(Emphasis::Warning, "NOT COMPARED", &words);
     }
     if pair.differences.is_empty() {
         let words = "the two determine no coefficient in common";

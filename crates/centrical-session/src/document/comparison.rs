@@ -41,6 +41,8 @@ pub struct ComparedResultSummary {
     pub unit_model: String,
     /// Serial number of the unit.
     pub unit_serial: String,
+    /// Whether no check raised an objection.
+    pub acceptable: bool,
 }
 
 /// Two results, the second less the first.
@@ -56,11 +58,14 @@ pub struct PairComparison {
     pub only_in_first: Vec<String>,
     /// Coefficients of terms that only the second error model has.
     pub only_in_second: Vec<String>,
+    /// Coefficients that priors alone determine in one of the two: they show no change.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub by_priors_alone: Vec<String>,
     /// Years between the two, if they were given.
     pub years: Option<f64>,
     /// The coefficients that both determine.
     pub differences: Vec<DifferenceSummary>,
-    /// `d^T (C_1 + C_2)^-1 d` of all of them together; null where the sum is no covariance.
+    /// `d^T C^-1 d` of all of them together, with the covariance of the differences; null where the sum is no covariance.
     pub chi_squared: Option<f64>,
     /// Its degrees of freedom.
     pub degrees_of_freedom: usize,
@@ -80,11 +85,11 @@ pub struct DifferenceSummary {
     /// bias, scale, misalignment, ...
     #[serde(serialize_with = "crate::document::words::serialize")]
     pub group: Group,
-    /// Value in the first result.
+    /// Value in the first result, relative to the raw output of the second.
     pub first: Option<f64>,
     /// Value in the second result.
     pub second: Option<f64>,
-    /// Second less first.
+    /// Second less first, by the data alone where there are priors.
     pub difference: f64,
     /// Standard uncertainty of the difference.
     pub standard_uncertainty: f64,
@@ -108,6 +113,7 @@ impl ComparisonReport {
             date: result.session.date.clone(),
             unit_model: result.session.unit_model.clone(),
             unit_serial: result.session.unit_serial.clone(),
+            acceptable: result.objections().is_empty(),
         };
         let agree = comparisons.iter().all(|pair| pair.agree);
         Self {
@@ -129,17 +135,22 @@ impl ComparisonReport {
 }
 
 impl PairComparison {
-    /// The first two results with their `comparison`; whether they are of one unit and whether they agree is for the caller.
-    pub(crate) fn of([first, second]: [&CalibrationResult; 2], comparison: &Comparison, years: Option<f64>) -> Self {
-        let value = |result: &CalibrationResult, name: &str| result.parameter(name).and_then(|p| p.value);
+    /// The first two results with their `comparison` and `values`, as far as the second result and these know them; the rest is for the caller.
+    pub(crate) fn of(
+        second: &CalibrationResult,
+        comparison: &Comparison,
+        years: Option<f64>,
+        values: impl Fn(&str) -> [Option<f64>; 2],
+    ) -> Self {
         let summary = |d: &Difference| {
-            let parameter = first.parameter(&d.name);
+            let parameter = second.parameter(&d.name);
+            let [of_first, of_second] = values(&d.name);
             DifferenceSummary {
                 name: d.name.clone(),
                 unit: parameter.map_or_else(String::new, |p| p.unit.clone()),
                 group: parameter.map_or(Group::Bias, |p| p.group),
-                first: value(first, &d.name),
-                second: value(second, &d.name),
+                first: of_first,
+                second: of_second,
                 difference: d.difference,
                 standard_uncertainty: d.standard_uncertainty,
                 e_n: d.e_n,
@@ -154,6 +165,7 @@ impl PairComparison {
             same_unit: true,
             only_in_first: Vec::new(),
             only_in_second: Vec::new(),
+            by_priors_alone: Vec::new(),
             years,
             differences: comparison.differences.iter().map(summary).collect(),
             chi_squared: comparison.chi_squared,

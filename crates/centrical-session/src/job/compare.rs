@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
-use centrical::uncertainty::compare;
+use centrical::uncertainty::{Comparison, Estimates, compare};
+use nalgebra::{DMatrix, DVector};
 
+use super::history::{Calibrated, Kinds, other_output, shared_changes};
 use crate::document::{CalibrationResult, ComparisonReport, PairComparison, TermSummary};
 use crate::error::{Error, Place};
 use crate::quantity::Date;
@@ -18,10 +20,10 @@ pub struct ComparisonRequest {
 }
 
 /// Compares each result with the one before it, and the last of more than two with the first: the coefficients that both
-/// determine, of the terms that both error models have.
+/// determine, of the terms that both error models have. Errors that both sessions share cancel, and priors do not count, as in a history.
 ///
 /// # Errors
-/// [`Error`] when a result is of another unit than the first and the request does not allow it.
+/// [`Error`] when a result is of another unit than the first and the request does not allow it, or its raw output is in another unit.
 pub fn compare_results(
     results: &[(&Path, &CalibrationResult)],
     request: ComparisonRequest,
@@ -36,29 +38,66 @@ pub fn compare_results(
     let consecutive = (1..results.len()).map(|n| [n - 1, n]);
     let ends = (results.len() > 2).then(|| [0, results.len() - 1]);
     let pairs = consecutive.chain(ends).map(|pair| pair_of(results, pair, request.years));
-    Ok(ComparisonReport::new(results, pairs.collect()))
+    Ok(ComparisonReport::new(results, pairs.collect::<Result<_, _>>()?))
 }
 
-fn pair_of(results: &[(&Path, &CalibrationResult)], pair: [usize; 2], years: Option<f64>) -> PairComparison {
+/// The two of a pair, the first relative to the raw output of the second.
+fn pair_of(
+    results: &[(&Path, &CalibrationResult)],
+    pair: [usize; 2],
+    years: Option<f64>,
+) -> Result<PairComparison, Error> {
     let [first, second] = pair.map(|n| results[n].1);
     let [only_in_first, only_in_second] = [terms_missing(first, second), terms_missing(second, first)];
-    let mut second_unit = second.of_unit();
-    // A coefficient of the same name may belong to another term.
-    for name in second_unit.names.iter_mut().filter(|name| only_in_second.contains(name)) {
-        name.clear();
+    let mut kinds = Kinds::default();
+    let [mut a, b] = pair.map(|n| {
+        let (file, result) = results[n];
+        // Of a session without a day the day does not count.
+        let date = result.session.date.trim().parse().unwrap_or(Date { year: 1970, month: 1, day: 1 });
+        Calibrated::on(date, file.display().to_string(), result.row(&[]), &mut kinds)
+    });
+    if let (Some(of_first), Some(of_second)) = (&a.output, &b.output) {
+        if of_first.unit != of_second.unit {
+            return Err(other_output(results[pair[1]].0, &of_second.unit, &of_first.unit, &a.source));
+        }
+        let output = of_second.clone();
+        a.restate(&output);
     }
-    let comparison = compare(&first.of_unit(), &second_unit);
+    // A coefficient of the same name may belong to another term.
+    let is_common =
+        |name: &String| a.place(name).is_some() && b.place(name).is_some() && !only_in_second.contains(name);
+    let common: Vec<String> = second.model.error_model.iter().map(|term| term.name.clone()).filter(is_common).collect();
+    let is_by_priors = |name: &String| [&a, &b].iter().any(|c| c.place(name).is_some_and(|j| c.rests_on_priors(j)));
+    let (by_priors_alone, names): (Vec<String>, Vec<String>) = common.into_iter().partition(is_by_priors);
     let same_unit = first.session.unit() == second.session.unit();
     let years = years.or_else(|| years_between(first, second)).filter(|years| *years != 0.0);
-    PairComparison {
+    let comparison = differences(&[&a, &b], &names);
+    let value = |c: &Calibrated, name: &str| c.place(name).map(|place| c.values[place]);
+    Ok(PairComparison {
         first: pair[0],
         second: pair[1],
         same_unit,
         only_in_first,
         only_in_second,
+        by_priors_alone,
         agree: same_unit && comparison.agrees(),
-        ..PairComparison::of([first, second], &comparison, years)
-    }
+        ..PairComparison::of(second, &comparison, years, |name| [value(&a, name), value(&b, name)])
+    })
+}
+
+/// The differences of `names` by the data alone. What both sessions share cancels, as far as it changes both alike.
+fn differences(pair: &[&Calibrated; 2], names: &[String]) -> Comparison {
+    let changes = shared_changes(pair, names, |_| true);
+    let unlike = &changes[1] - &changes[0];
+    let own = |c: &Calibrated| c.own_estimates(names).unwrap_or_else(|| (DVector::zeros(0), DMatrix::zeros(0, 0)));
+    let [first, second] = pair.map(own);
+    let estimates = |(values, covariance): (DVector<f64>, DMatrix<f64>)| Estimates {
+        names: names.to_vec(),
+        values: values.as_slice().to_vec(),
+        covariance,
+    };
+    let second = (second.0, second.1 + &unlike * unlike.transpose());
+    compare(&estimates(first), &estimates(second))
 }
 
 /// Years between the dates of two sessions, if both are days.

@@ -18,14 +18,14 @@ mod units;
 
 pub use self::add::{add_result, add_results};
 pub use self::batches::read_batches;
-pub use self::calibrated::{Calibrated, CalibratedParameter};
+pub use self::calibrated::{Calibrated, CalibratedParameter, Kinds, shared_changes};
 pub use self::chart::{ChartLimits, ChartRequest, NoChart, RuleSet, chart};
 pub use self::check::{check_store, spelling, today};
 pub use self::comparable::ComparedUnits;
 pub use self::earlier::history_up_to;
 pub use self::limits::{ParameterLimits, read_limits};
 pub use self::list::list_store;
-pub use self::read::{by_unit, read_calibrations};
+pub use self::read::{by_unit, other_output, read_calibrations};
 pub use self::results::collect_results;
 pub use self::station::station_history;
 pub use self::unit::{UnitHistoryRequest, unit_history};

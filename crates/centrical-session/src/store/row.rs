@@ -123,6 +123,12 @@ pub struct Row {
     pub standard_uncertainties: Vec<f64>,
     /// Combined covariance, the lower triangle by rows; NaN where not estimable.
     pub covariance: Vec<f64>,
+    /// Unit of the raw output, empty of readings in m/s^2.
+    pub output_unit: String,
+    /// Nominal scale of each newtonometer [raw unit per m/s^2], and raw output of each at no specific force: three each, if any.
+    pub output_scale: Vec<f64>,
+    /// See `output_scale`.
+    pub output_bias: Vec<f64>,
     /// The error model.
     pub terms: Vec<RowTerm>,
     /// Whether the result says which influences are shared: not one of an older program.

@@ -1,7 +1,7 @@
 //! Two calibrations of one unit: differences over their uncertainties, drift, and a test of all of them together.
 //!
-//! The two are taken as independent. What they share, the same gravity or the same radii, cancels in the difference, whose
-//! uncertainty is then stated too large and never too small.
+//! The covariances are those of errors that the other calibration does not share: the same gravity or the same radii cancel in the
+//! difference.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,7 +15,7 @@ pub struct Estimates {
     pub names: Vec<String>,
     /// Values, SI.
     pub values: Vec<f64>,
-    /// Combined covariance, SI.
+    /// Covariance of the errors that the other calibration does not share, SI.
     pub covariance: DMatrix<f64>,
 }
 

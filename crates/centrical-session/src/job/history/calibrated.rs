@@ -2,6 +2,7 @@
 
 mod errors;
 mod kinds;
+mod output;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,7 +12,10 @@ use centrical_compensate::Term;
 use nalgebra::{DMatrix, DVector};
 
 use self::errors::OwnErrors;
+use self::kinds::Role;
 pub use self::kinds::{CalibratedParameter, Kinds, Places};
+pub use self::output::Output;
+use self::output::{Restated, in_changes, in_covariance, in_values};
 use super::of_data::{OfData, PRIORS};
 use crate::document::{PastSession, TermSummary};
 use crate::quantity::Date;
@@ -32,6 +36,8 @@ pub struct Calibrated {
     pub date: Date,
     /// Whether no check raised an objection.
     pub acceptable: bool,
+    /// The raw output that its coefficients are relative to, if it is raw.
+    pub output: Option<Output>,
     /// Its parameters; calibrations of one kind share them.
     pub parameters: Arc<Vec<CalibratedParameter>>,
     /// Estimates, SI; NaN where the data do not determine a parameter.
@@ -82,6 +88,11 @@ impl Calibrated {
     /// The calibration in a row of a store, or of a result that is called `source`; `None` if its session has no day for a date.
     pub fn of(source: String, row: Row, kinds: &mut Kinds) -> Option<Self> {
         let date = row.date.trim().parse().ok()?;
+        Some(Self::on(date, source, row, kinds))
+    }
+
+    /// The calibration in a row, as one of a day.
+    pub fn on(date: Date, source: String, row: Row, kinds: &mut Kinds) -> Self {
         let terms = row.terms.iter().map(|term| {
             let place = row.index(&term.name)?;
             let summary =
@@ -89,7 +100,8 @@ impl Calibrated {
             summary.with_coefficient(*row.values.get(place).filter(|value| value.is_finite())?).ok()
         });
         let of_data = OfData::of(&row);
-        Some(Self {
+        Self {
+            output: Output::of(&row),
             errors: None,
             of_data,
             source,
@@ -106,7 +118,49 @@ impl Calibrated {
             standard_uncertainties: row.standard_uncertainties,
             covariance: row.covariance,
             shared: row.shared,
-        })
+        }
+    }
+
+    /// The same with coefficients relative to another `output` of the same unit. Where the error model lacks a bias or a scale that other
+    /// nominal values ask for, the coefficients of the axis are not determined.
+    pub fn restate(&mut self, output: &Output) {
+        let Some(own) = self.output.as_ref().filter(|own| *own != output && own.unit == output.unit) else { return };
+        let has = |axis: usize, role: Role| self.parameters.iter().any(|p| p.coefficient == Some((axis, role)));
+        let is_possible = [0, 1, 2].map(|axis| {
+            let asks = |role| own.restated(output, axis, role).shift != 0.0 && !has(axis, role);
+            !asks(Role::Bias) && !asks(Role::Scale)
+        });
+        let restated = |p: &CalibratedParameter| match p.coefficient {
+            None => Restated { gain: 1.0, shift: 0.0 },
+            Some((axis, role)) if is_possible[axis] => own.restated(output, axis, role),
+            Some(_) => Restated { gain: f64::NAN, shift: 0.0 },
+        };
+        let restated: Vec<Restated> = self.parameters.iter().map(restated).collect();
+        let of_unit: Vec<Restated> = self
+            .parameters
+            .iter()
+            .zip(&restated)
+            .filter(|(p, _)| p.is_of_unit)
+            .map(|(_, restated)| *restated)
+            .collect();
+        in_values(&mut self.values, &restated);
+        in_changes(&mut self.standard_uncertainties, &restated);
+        in_covariance(&mut self.covariance, &restated);
+        self.shared.iter_mut().for_each(|influence| in_changes(&mut influence.changes, &restated));
+        if let Some(errors) = &mut self.errors {
+            in_changes(&mut errors.deviations, &of_unit);
+        }
+        if let Some(data) = &mut self.of_data {
+            in_values(&mut data.values, &restated);
+            in_covariance(&mut data.covariance, &restated);
+            data.shared.iter_mut().for_each(|influence| in_changes(&mut influence.changes, &restated));
+        }
+        let places: Vec<Option<usize>> =
+            self.terms.iter().flatten().map(|(name, _)| self.parameters.iter().position(|p| p.name == *name)).collect();
+        for ((_, term), place) in self.terms.iter_mut().flatten().zip(places) {
+            term.coefficient = place.map_or(f64::NAN, |place| self.values[place]);
+        }
+        self.output = Some(output.clone());
     }
 
     /// What a history says of it.
@@ -310,18 +364,22 @@ impl<'a> SharedErrors<'a> {
     }
 }
 
-/// Changes of `names` in each of `calibrations` by the errors that some of them share and others do not, as after a move to another
-/// station: a column for each error.
-pub fn shared_by_some(calibrations: &[&Calibrated], names: &[String]) -> Vec<DMatrix<f64>> {
+/// Changes of `names` in each of `calibrations` by the errors that sessions share, a column for each error; of those alone that as many
+/// sessions have as is `wanted`.
+pub fn shared_changes(
+    calibrations: &[&Calibrated],
+    names: &[String],
+    wanted: impl Fn(usize) -> bool,
+) -> Vec<DMatrix<f64>> {
     let mut errors = SharedErrors::default();
     let numbers: Vec<Vec<usize>> =
         calibrations.iter().map(|c| errors.of(&c.station, c.seen(Basis::Data).shared)).collect();
     let count = |error: usize| numbers.iter().filter(|of| of.contains(&error)).count();
-    let of_some: Vec<usize> = (0..errors.0.len()).filter(|&error| count(error) < calibrations.len()).collect();
+    let columns: Vec<usize> = (0..errors.0.len()).filter(|&error| wanted(count(error))).collect();
     let changes = |(calibrated, numbers): (&&Calibrated, &Vec<usize>)| {
         let shared = calibrated.seen(Basis::Data).shared;
-        DMatrix::from_fn(names.len(), of_some.len(), |i, column| {
-            let influence = numbers.iter().position(|number| *number == of_some[column]).map(|at| &shared[at]);
+        DMatrix::from_fn(names.len(), columns.len(), |i, column| {
+            let influence = numbers.iter().position(|number| *number == columns[column]).map(|at| &shared[at]);
             influence.zip(calibrated.place(&names[i])).map_or(0.0, |(influence, place)| influence.changes[place])
         })
     };

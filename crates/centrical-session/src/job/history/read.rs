@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::{OnProgress, advance};
 
-use super::calibrated::{Calibrated, Kinds};
+use super::calibrated::{Calibrated, Kinds, Output};
 use super::results::collect_results;
 use crate::document::CalibrationResult;
 use crate::error::{Error, Place, quoted};
@@ -35,7 +35,38 @@ pub fn read_calibrations(
     calibrations.sort_by(|a, b| {
         a.date.cmp(&b.date).then_with(|| a.unit().cmp(&b.unit())).then_with(|| a.source.cmp(&b.source))
     });
+    refuse_other_outputs(&calibrations)?;
+    restate(&mut calibrations);
     Ok(calibrations)
+}
+
+/// Refuses calibrations of one unit in counts and in volts: nothing says how many counts a volt is.
+fn refuse_other_outputs(calibrations: &[Calibrated]) -> Result<(), Error> {
+    let mut outputs: BTreeMap<(&str, &str), (&str, &str)> = BTreeMap::new();
+    for calibrated in calibrations {
+        let Some(output) = &calibrated.output else { continue };
+        let (unit, source) = *outputs.entry(calibrated.unit()).or_insert((&output.unit, &calibrated.source));
+        if unit != output.unit {
+            return Err(other_output(Path::new(&calibrated.source), &output.unit, unit, source));
+        }
+    }
+    Ok(())
+}
+
+/// The error of a calibration whose raw output is in another unit than that of another file.
+pub fn other_output(file: &Path, found: &str, expected: &str, of: &str) -> Error {
+    Error::content(file, Place::Whole, format!("raw output in {found}"), format!("{expected}, as in {of}"))
+}
+
+/// States all calibrations relative to the nominal output of the last one in the same raw unit.
+fn restate(calibrations: &mut [Calibrated]) {
+    let outputs = calibrations.iter().filter_map(|calibrated| calibrated.output.clone());
+    let last: BTreeMap<String, Output> = outputs.map(|output| (output.unit.clone(), output)).collect();
+    for calibrated in calibrations {
+        if let Some(last) = calibrated.output.as_ref().and_then(|output| last.get(&output.unit)) {
+            calibrated.restate(last);
+        }
+    }
 }
 
 /// The calibrations unit by unit, each in the order of time.

@@ -5,7 +5,7 @@ use centrical::uncertainty::{Compensated, family_wise};
 use centrical_compensate::Term;
 use nalgebra::{DMatrix, Vector3};
 
-use super::calibrated::{Basis, Calibrated, DAYS, Finder, series, shared_by_some, single, years};
+use super::calibrated::{Basis, Calibrated, DAYS, Finder, series, shared_changes, single, years};
 use super::comparable::Compared;
 use crate::document::{
     DueDate, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport, UnitParameter,
@@ -129,7 +129,9 @@ impl Job<'_> {
             Some(SessionEstimates { values, covariance })
         };
         let sessions: Vec<SessionEstimates> = self.own.iter().map(estimates).collect::<Option<_>>()?;
-        sameness(&sessions, &shared_by_some(self.own, &names)).map(|test| SamenessSummary {
+        // What all sessions share cancels; what some share does not, as after a move to another station.
+        let shared = shared_changes(self.own, &names, |count| count < self.own.len());
+        sameness(&sessions, &shared).map(|test| SamenessSummary {
             chi_squared: test.chi_squared,
             degrees_of_freedom: test.degrees_of_freedom,
             probability: test.probability,

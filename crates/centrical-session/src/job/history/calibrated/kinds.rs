@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use centrical::Group;
 
-use crate::store::Row;
+use crate::store::{Row, RowTerm};
 
 /// A parameter.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -18,6 +18,31 @@ pub struct CalibratedParameter {
     pub group: Group,
     /// Whether it belongs to the unit, and not to the machine or how the unit was mounted.
     pub is_of_unit: bool,
+    /// Newtonometer, 0 to 2, and role of a coefficient of the error model.
+    pub coefficient: Option<(usize, Role)>,
+}
+
+/// What a coefficient does to a reading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Role {
+    /// A constant.
+    Bias,
+    /// A part of the force on its own axis.
+    Scale,
+    /// Anything else.
+    Other,
+}
+
+/// Newtonometer and role of a term.
+fn coefficient(term: &RowTerm) -> Option<(usize, Role)> {
+    let axis = term.axis.checked_sub(1).filter(|axis| *axis < 3)?;
+    let own = [0, 1, 2].map(|of| u8::from(of == axis));
+    let role = match (term.powers, term.sign_of) {
+        ([0, 0, 0], None) => Role::Bias,
+        (powers, None) if powers == own => Role::Scale,
+        _ => Role::Other,
+    };
+    Some((axis, role))
 }
 
 /// The lists of parameters that were met: there are a few among thousands of calibrations.
@@ -31,12 +56,13 @@ impl Kinds {
             |n: usize| Group::ALL.into_iter().find(|group| row.groups.get(n).is_some_and(|name| group.name() == name));
         let parameter = |(n, name): (usize, &String)| {
             let group = group(n).unwrap_or(Group::Bias);
-            let is_of_unit = group == Group::ProofMass || row.terms.iter().any(|term| term.name == *name);
+            let term = row.terms.iter().find(|term| term.name == *name);
             CalibratedParameter {
                 name: name.clone(),
                 unit: row.units.get(n).cloned().unwrap_or_default(),
                 group,
-                is_of_unit,
+                is_of_unit: group == Group::ProofMass || term.is_some(),
+                coefficient: term.and_then(coefficient),
             }
         };
         let parameters = Arc::new(row.parameters.iter().enumerate().map(parameter).collect::<Vec<_>>());
