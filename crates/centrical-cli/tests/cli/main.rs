@@ -5,6 +5,7 @@ mod calibrate;
 mod comparisons;
 mod compensate;
 mod history;
+mod history_mistakes;
 mod init;
 mod init_headers;
 mod json;

@@ -113,7 +113,7 @@ fn stations_table(body: &mut String, stations: &[IndexedStation]) {
             report.units,
             report.first,
             report.last,
-            verdict(report.is_steady, "steady", "not steady"),
+            report.is_steady.map_or_else(not_tested, |is_steady| verdict(is_steady, "steady", "not steady")),
             Escaped(&changed.join(", ")),
             signals(*has_signals),
         );
@@ -123,6 +123,11 @@ fn stations_table(body: &mut String, stations: &[IndexedStation]) {
 
 fn verdict(is_good: bool, good: &str, bad: &str) -> String {
     if is_good { format!("<td class=\"good\">{good}</td>") } else { format!("<td class=\"bad\">{bad}</td>") }
+}
+
+/// No test, no colour.
+fn not_tested() -> String {
+    "<td>not tested</td>".to_owned()
 }
 
 /// A signal may be false: it has no colour.

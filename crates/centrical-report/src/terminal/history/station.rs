@@ -11,12 +11,27 @@ use crate::terminal::table::{Align, Cell, Table};
 /// A station over its sessions.
 pub fn station_history_text(report: &StationHistoryReport) -> Screen {
     let mut screen = Screen::default();
-    let (emphasis, mark, words) = if report.is_steady {
-        (Emphasis::Acceptable, "STEADY", "no parameter of the machine drifts or has changed")
-    } else {
-        (Emphasis::NotAcceptable, "NOT STEADY", "the parameters are marked below; family-wise 5 %")
-    };
-    screen.marked(emphasis, mark, words);
+    let untested = report.parameters.iter().filter(|p| p.probability.is_none()).count();
+    match report.is_steady {
+        Some(true) if untested == 0 => {
+            screen.marked(Emphasis::Acceptable, "STEADY", "no parameter of the machine drifts or has changed");
+        }
+        Some(true) => {
+            screen.marked(Emphasis::Acceptable, "STEADY", "no parameter that is tested drifts or has changed");
+        }
+        Some(false) => {
+            screen.marked(Emphasis::NotAcceptable, "NOT STEADY", "the parameters are marked below; family-wise 5 %");
+        }
+        None => {}
+    }
+    if untested > 0 || report.is_steady.is_none() {
+        let words = match report.is_steady {
+            None => "the sessions do not show whether the machine is steady".to_owned(),
+            Some(_) => format!("{} not tested", counted(untested, "parameter")),
+        };
+        let words = format!("{words}: a test takes eight sessions that count, on different days");
+        screen.marked(Emphasis::Warning, "FEW", &words);
+    }
     screen.gap();
     let name = if report.station.is_empty() { "without a name" } else { &report.station };
     let counts = format!("{} of {}", counted(report.sessions, "session"), counted(report.units, "unit"));
@@ -43,7 +58,7 @@ pub fn station_history_text(report: &StationHistoryReport) -> Screen {
             slope.map_or_else(Cell::default, |(slope, u)| estimate(slope, u)),
             p.change.map_or_else(String::new, |change| two_digits(factor * change)).into(),
             p.changed_after.map_or_else(String::new, |day| day.to_string()).into(),
-            p.probability.map_or_else(|| "too few".to_owned(), chance).into(),
+            p.probability.map_or_else(|| "not tested".to_owned(), chance).into(),
             if p.changes { "CHANGES" } else { "" }.into(),
         ]);
     }

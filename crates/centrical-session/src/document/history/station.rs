@@ -28,8 +28,8 @@ pub struct StationHistoryReport {
     pub first: Date,
     /// Last day.
     pub last: Date,
-    /// Whether no parameter of the machine changed.
-    pub is_steady: bool,
+    /// Whether no parameter of the machine changed; null where the sessions test none.
+    pub is_steady: Option<bool>,
     /// The parameters of the machine.
     pub parameters: Vec<StationParameter>,
 }

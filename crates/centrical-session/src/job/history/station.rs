@@ -40,6 +40,7 @@ pub fn station_history(calibrations: &[impl Borrow<Calibrated>]) -> Option<Stati
     for (parameter, chance) in parameters.iter_mut().zip(family_wise(&chances)) {
         parameter.changes = parameter.probability.is_some() && chance < FAMILY;
     }
+    let is_tested = parameters.iter().any(|p| p.probability.is_some());
     Some(StationHistoryReport {
         schema: STATION_HISTORY_SCHEMA,
         program: Program::this(),
@@ -48,7 +49,7 @@ pub fn station_history(calibrations: &[impl Borrow<Calibrated>]) -> Option<Stati
         units: units.len(),
         first,
         last,
-        is_steady: !parameters.iter().any(|p| p.changes),
+        is_steady: is_tested.then(|| !parameters.iter().any(|p| p.changes)),
         parameters,
     })
 }
