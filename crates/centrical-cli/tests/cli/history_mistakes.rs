@@ -88,3 +88,19 @@ fn a_machine_that_is_not_tested_is_not_called_steady() {
     assert!(text.contains("NOT STEADY") && code == 1, "{text}");
     assert_eq!(results.document(&["station", "."])["is_steady"], false);
 }
+
+#[test]
+fn the_median_of_an_even_number_of_units_is_the_mean_of_both_middle_ones() {
+    let results = Results::new();
+    for (serial, bias) in [("a", 6e-3), ("b", 0.0), ("c", 5e-3), ("d", 1e-3), ("e", 9e-3)] {
+        results.add(serial, serial, "2024-01-01", |result| set(result, "df_1", bias));
+    }
+    for (units, median) in [("abcde", 5e-3), ("abcd", 3e-3), ("bd", 5e-4)] {
+        let units: Vec<&str> = units.split("").filter(|unit| !unit.is_empty()).collect();
+        let document = results.document(&[&["units"], units.as_slice()].concat());
+        let parameters = document["parameters"].as_array().unwrap();
+        let found =
+            parameters.iter().find(|parameter| parameter["name"] == "df_1").unwrap()["median"].as_f64().unwrap();
+        assert!((found - median).abs() < 1e-15, "{units:?}: {found}");
+    }
+}

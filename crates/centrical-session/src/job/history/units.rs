@@ -109,7 +109,7 @@ fn parameter(
         mean,
         deviation,
         least: sorted[0],
-        median: sorted[sorted.len() / 2],
+        median: 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]),
         largest: sorted[sorted.len() - 1],
         capability,
         batch_probability: batch_test(&batches.values().cloned().collect::<Vec<_>>()).map(|test| test.probability),
