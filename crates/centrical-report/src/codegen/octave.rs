@@ -9,11 +9,15 @@ use super::vectors;
 /// The function file.
 pub(super) fn function(model: &Model) -> String {
     let row = |reading: &str, f: &str| format!("    {reading}, {f}");
+    let raw = match model.output {
+        Some(_) => model.of_raw(raw::OCTAVE_SOURCE, &Octave),
+        None => raw::OCTAVE_WITHOUT.to_owned(),
+    };
     model
         .fill(include_str!("compensate.m.in"), &Octave)
         .replace("@axes@", &model.in_axes(axes::OCTAVE, "", &Octave))
         .replace("@raw_help@", &model.of_raw(raw::OCTAVE_HELP, &Octave))
-        .replace("@raw@", &model.of_raw(raw::OCTAVE_SOURCE, &Octave))
+        .replace("@raw@", &raw)
         .replace("@raw_test@", &model.of_raw(raw::OCTAVE_TEST, &Octave))
         .replace("@vectors@", &vectors::rows(model, &Octave, row))
         .replace("@outside@", &vectors::outside(model, &Octave))

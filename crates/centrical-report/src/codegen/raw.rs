@@ -37,10 +37,14 @@ pub(super) const OCTAVE_HELP: &str = "
 % f = centrical_compensate(raw, 'raw') takes the raw output of the unit, in @raw_unit@.";
 
 /// Statements of the function in Octave.
-pub(super) const OCTAVE_SOURCE: &str = "
-  if nargin > 1 && strcmp(kind, 'raw')
-    reading = bsxfun(@rdivide, bsxfun(@minus, reading, [@raw_bias@]), [@raw_scale@]);
-  end";
+pub(super) const OCTAVE_SOURCE: &str = "    if ~strcmp(kind, 'raw')
+      refuse_kind(kind, '''raw'' for raw output, or readings in m/s^2 alone');
+    end
+    reading = bsxfun(@rdivide, bsxfun(@minus, reading, [@raw_bias@]), [@raw_scale@]);";
+
+/// The same for a unit without raw output of its own.
+pub(super) const OCTAVE_WITHOUT: &str =
+    "    refuse_kind(kind, 'readings in m/s^2 alone: this unit has no other output');";
 
 /// A part of the self-test in Octave.
 pub(super) const OCTAVE_TEST: &str = "
@@ -59,14 +63,15 @@ RAW_BIAS = (@raw_bias@)  # Nominal bias, raw unit.
 
 def compensate_raw(raw):
     \"\"\"Specific force of the raw output of the unit, in RAW_UNIT.\"\"\"
+    raw = _three(raw)
     return compensate([(raw[i] - RAW_BIAS[i]) / RAW_SCALE[i] for i in range(3)])
 
 
 def compensate_raw_array(raw):
-    \"\"\"Specific forces of raw output, an array (n, 3), in RAW_UNIT. Needs NumPy.\"\"\"
+    \"\"\"Specific forces of raw output, an array (n, 3), in RAW_UNIT; NaN as of compensate_array. Needs NumPy.\"\"\"
     import numpy
 
-    return compensate_array((numpy.asarray(raw, dtype=float) - RAW_BIAS) / RAW_SCALE)
+    return compensate_array((_rows(raw, numpy) - RAW_BIAS) / RAW_SCALE)
 
 ";
 

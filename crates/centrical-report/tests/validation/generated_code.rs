@@ -223,6 +223,47 @@ fclose(file);
 if any(outside != any(isnan(f), 2)), exit(1); end
 "#;
 
+/// What is no matrix of readings, and a second argument that is not 'raw', end in an error that says so; integers and single precision count
+/// as double. `is_raw` says whether the unit has raw output.
+const OCTAVE_REFUSALS: &str = r#"
+function said = message(varargin)
+  said = "";
+  try
+    centrical_compensate(varargin{:});
+  catch problem
+    said = problem.message;
+  end
+end
+function expect(said, part)
+  if isempty(strfind(said, part)), error('found "%s", expected "%s"', said, part); end
+end
+expect(message([10; 20; 30]), "found a double array of 3 x 1, expected real numbers, N x 3");
+expect(message([]), "found a double array of 0 x 0, expected");
+expect(message(ones(2, 3, 2)), "found a double array of 2 x 3 x 2, expected");
+expect(message("abc"), "found a char array of 1 x 3, expected");
+expect(message([1i 2 3]), "expected real numbers");
+if is_raw, among = "'raw'"; else among = "readings in m/s^2 alone"; end
+expect(message([1 2 3], "Raw"), ["found 'Raw', expected " among]);
+expect(message([1 2 3], "volts"), ["found 'volts', expected " among]);
+expect(message([1 2 3], 1), "found a second argument of class double, expected");
+if ~is_raw, expect(message([1 2 3], "raw"), "found 'raw', expected readings in m/s^2 alone"); end
+if any(centrical_compensate(int16([10 20 30])) ~= centrical_compensate([10 20 30])), error("integers"); end
+f = centrical_compensate(single([1000.5 -20.25 30.125]));
+if ~isa(f, "double") || any(f ~= centrical_compensate([1000.5 -20.25 30.125])), error("single precision"); end
+"#;
+
+#[test]
+fn octave_refuses_what_is_no_reading() {
+    if !has("octave-cli") {
+        return;
+    }
+    for (output, is_raw) in [(None, "is_raw = false;"), (Some(counts()), "is_raw = true;")] {
+        let folder = generate_for(&kozlov(), output.as_ref(), None);
+        fs::write(folder.path().join("main.m"), format!("{is_raw}\n{OCTAVE_REFUSALS}")).unwrap();
+        run(Command::new("octave-cli").args(["--no-init-file", "main.m"]).current_dir(&folder), "");
+    }
+}
+
 #[test]
 fn octave() {
     if !has("octave-cli") {
@@ -278,7 +319,7 @@ fn counts() -> OutputSummary {
 const NUMPY_MAIN: &str = r#"
 import sys
 import numpy
-from centrical_compensate import RAW_BIAS, RAW_SCALE, compensate_array, compensate_raw, compensate_raw_array, self_test
+from centrical_compensate import RAW_BIAS, RAW_SCALE, compensate, compensate_array, compensate_raw, compensate_raw_array, self_test
 
 self_test()
 readings = numpy.loadtxt(sys.stdin)
@@ -288,6 +329,23 @@ for f, of_raw in zip(compensate_array(readings), compensate_raw_array(raw)):
     print("outside" if numpy.isnan(f).any() else " ".join(map(repr, map(float, f))))
 assert numpy.allclose(compensate_raw(raw[1]), compensate_array(readings)[1], rtol=1e-9)
 assert compensate_array(readings[:0]).shape == (0, 3)
+# A row of single precision counts as the same numbers in double.
+single, raw_single = readings[1].astype(numpy.float32), raw[1].astype(numpy.float32)
+assert compensate(single) == compensate([float(x) for x in single]) and isinstance(compensate(single)[0], float)
+assert compensate_raw(raw_single) == compensate_raw([float(x) for x in raw_single])
+for four in (compensate, compensate_raw):
+    try:
+        four((1.0, 2.0, 3.0, 4.0))
+    except ValueError as error:
+        assert "found 4 numbers, expected 3" in str(error)
+    else:
+        sys.exit(1)
+# A row of which one number is masked has no specific force.
+for array, of in ((readings, compensate_array), (raw, compensate_raw_array), (numpy.rint(raw).astype(int), compensate_raw_array)):
+    mask = [[True, False, False], [False, False, False]]
+    found = of(numpy.ma.masked_array(array[1:3], mask=mask))
+    assert type(found) is numpy.ndarray and numpy.isnan(found[0]).all()
+    assert (found[1] == of(array[2:3])[0]).all()
 try:
     compensate_array(readings.T)
 except ValueError:
