@@ -113,6 +113,28 @@ fn names_of_any_characters_are_written() {
     assert_eq!((serial_of("again"), serial_of("tumbled")), (serial.into(), serial.into()));
 }
 
+/// The model goes into the session of the rests and into the draft that begins from it, and a session states its own.
+#[test]
+fn the_model_of_the_unit_is_stated() {
+    let copy = Copy::new();
+    let gravity = ["--gravity", "9.81523"];
+    let named = ["--model", "TA-200", "--serial", "0001", "--out", "tumbled"];
+    let output = copy.run(&[&["tumble", &example("record.csv")][..], &gravity, &named].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(copy.run(&["calibrate", "tumbled", "--out", "again"]).status.code(), Some(0));
+    for folder in ["tumbled", "again"] {
+        let session = json(&copy.out().join(folder).join("result.json"))["session"].clone();
+        assert_eq!((&session["unit_model"], &session["unit_serial"]), (&"TA-200".into(), &"0001".into()), "{folder}");
+    }
+    let records = copy.session().join("records");
+    let drafted = copy.run(&["init", records.to_str().unwrap(), "--tumble", "tumbled", "--out", "draft.toml"]);
+    let draft = fs::read_to_string(copy.out().join("draft.toml")).unwrap_or_else(|_| panic!("{}", said(&drafted)));
+    assert!(draft.contains("model = \"TA-200\"  # FOUND"), "{draft}");
+    let refused = copy.run(&["tumble", "tumbled", "--model", "TA-200"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said(&refused).contains("found --model beside a session, expected the same in its experiment file"));
+}
+
 /// Stated attitudes, in any order, show the case besides; the folder keeps them with their rests.
 #[test]
 fn known_attitudes_show_the_case() {

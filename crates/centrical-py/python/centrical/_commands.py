@@ -70,6 +70,7 @@ def tumble(
     attitude_uncertainty: Quantity | None = None,
     turning_radius: Quantity | None = None,
     terms: Iterable[str] | None = None,
+    model: str = "",
     serial: str = "",
     date: str = "",
     out: Path | None = None,
@@ -96,6 +97,8 @@ def tumble(
         ``"50 mm"``.
     terms
         Of the error model, as in ``experiment.toml``; bias, scale and misalignment by default.
+    model, serial, date
+        Of the unit and of the records: histories are of one model and serial number.
     out
         A folder for ``result.json``, the rests as a session, the report and its plots.
     """
@@ -121,6 +124,7 @@ def tumble(
                 known,
                 turning_radius,
                 given,
+                model,
                 serial,
                 date,
                 out,

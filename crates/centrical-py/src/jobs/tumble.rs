@@ -38,6 +38,7 @@ pub fn tumble(
     attitudes: Option<(Attitudes, Option<Amount>)>,
     turning_radius: Option<Amount>,
     terms: Option<Vec<String>>,
+    model: String,
     serial: String,
     date: String,
     out: Option<PathBuf>,
@@ -65,6 +66,7 @@ pub fn tumble(
         attitudes: None,
         turning_radius: distance(turning_radius)?,
         terms: terms.unwrap_or_else(|| TumbleRequest::USUAL_TERMS.map(str::to_owned).to_vec()),
+        model,
         serial,
         date,
     };

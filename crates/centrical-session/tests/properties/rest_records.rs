@@ -31,6 +31,7 @@ fn tumbled(folder: &Path, attitudes: Option<StatedAttitudes>) -> CalibrationResu
         attitudes,
         turning_radius: None,
         terms: TumbleRequest::USUAL_TERMS.map(str::to_owned).to_vec(),
+        model: String::new(),
         serial: String::new(),
         date: String::new(),
     };

@@ -130,6 +130,7 @@ fn request(file: &str, has_time: bool, readings: [ColumnName; 3], unit: &str, gr
         attitudes: None,
         turning_radius: None,
         terms: TumbleRequest::USUAL_TERMS.map(str::to_owned).to_vec(),
+        model: String::new(),
         serial: String::new(),
         date: String::new(),
     }

@@ -49,6 +49,9 @@ pub struct Arguments {
     /// Terms of the error model, as in experiment.toml
     #[arg(long, value_name = "TERMS", value_delimiter = ',', default_values_t = TumbleRequest::USUAL_TERMS.map(str::to_owned))]
     pub terms: Vec<String>,
+    /// Model of the unit
+    #[arg(long)]
+    model: Option<String>,
     /// Serial number of the unit
     #[arg(long)]
     serial: Option<String>,
@@ -88,6 +91,7 @@ impl Arguments {
                 .transpose()?,
             turning_radius: self.turning_radius,
             terms: self.terms.clone(),
+            model: self.model.clone().unwrap_or_default(),
             serial: self.serial.clone().unwrap_or_default(),
             date: self.date.clone().unwrap_or_default(),
         })
@@ -104,6 +108,7 @@ impl Arguments {
             ("--gravity-uncertainty", self.gravity_uncertainty.is_some()),
             ("--attitudes", self.attitudes.is_some()),
             ("--turning-radius", self.turning_radius.is_some()),
+            ("--model", self.model.is_some()),
             ("--serial", self.serial.is_some()),
             ("--date", self.date.is_some()),
         ];

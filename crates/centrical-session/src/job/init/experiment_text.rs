@@ -153,6 +153,9 @@ fn session(draft: &mut Draft, tumbled: Option<&Tumbled>) {
 
 fn unit(draft: &mut Draft, unit: &OutputUnit, tumbled: Option<&Tumbled>) {
     draft.line("[unit]");
+    if let Some(tumbled) = tumbled.filter(|tumbled| !tumbled.model.is_empty()) {
+        draft.found(&format!("model = {}", toml_text(&tumbled.model)), &tumbled.how());
+    }
     if let Some(tumbled) = tumbled.filter(|tumbled| !tumbled.serial.is_empty()) {
         draft.found(&format!("serial = {}", toml_text(&tumbled.serial)), &tumbled.how());
     } else {

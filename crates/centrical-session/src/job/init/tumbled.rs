@@ -13,6 +13,8 @@ use crate::settings::toml_text;
 pub(super) struct Tumbled {
     /// The folder, as it is named.
     folder: String,
+    /// Its model, empty if none is stated.
+    pub model: String,
     /// Its serial number, empty if none is stated.
     pub serial: String,
     /// What it puts out.
@@ -42,6 +44,7 @@ impl Tumbled {
         let scale = |axis: usize| session.columns.f[axis].scale;
         Ok(Self {
             folder: folder.display().to_string(),
+            model: session.unit_model.clone(),
             serial: session.unit_serial.clone(),
             output_unit: session.output_unit,
             raw: Raw { scale: [0, 1, 2].map(|j| 1.0 / scale(j).factor), bias: [0, 1, 2].map(|j| scale(j).offset) },

@@ -31,6 +31,8 @@ pub struct TumbleRequest {
     pub turning_radius: Option<f64>,
     /// Terms of the error model, as in `[model]`.
     pub terms: Vec<String>,
+    /// Model of the unit; empty if it is not stated.
+    pub model: String,
     /// Serial number of the unit.
     pub serial: String,
     /// Date of the records, as written.

@@ -27,7 +27,12 @@ pub(super) fn session_text(request: &TumbleRequest, coarse: Option<&CoarseScale>
     line(format!("[session]\ntitle = {title}\ndate = {}\n", toml_text(&request.date)));
     line(format!("[site]\ngravity = \"{:?} m/s^2\"\n", request.gravity));
     line(format!("[uncertainty]\ngravity = \"{:?} m/s^2\"\n", request.gravity_uncertainty));
-    line(format!("[unit]\nserial = {}", toml_text(&request.serial)));
+    line("[unit]".to_owned());
+    // An empty name names nothing: without one the file is as it was.
+    if !request.model.is_empty() {
+        line(format!("model = {}", toml_text(&request.model)));
+    }
+    line(format!("serial = {}", toml_text(&request.serial)));
     match coarse {
         Some(CoarseScale { scale, bias }) => {
             let (key, unit) = if request.unit == "V" { ("volts", "V") } else { ("counts", "counts") };
