@@ -110,6 +110,35 @@ fn a_series_gives_the_table_of_its_sessions_also_after_a_kill() {
     assert_eq!(list(folder.path(), &["killed"]).len(), 8);
 }
 
+/// A session that failed is listed as failed until it succeeds, with its last message alone, and does not count as a calibration.
+#[test]
+fn a_session_that_succeeds_is_no_longer_listed_as_failed() {
+    let (folder, names) = sessions(2);
+    let file = folder.path().join(&names[1]).join("experiment.toml");
+    let broken = fs::read_to_string(&file).unwrap();
+    let head = || {
+        let listed = run(folder.path(), &["history", "list", "out", "--check"]);
+        String::from_utf8_lossy(&listed.stdout).lines().next().unwrap().to_owned()
+    };
+    let verdicts = || {
+        let listed = list(folder.path(), &["out"]);
+        listed.iter().map(|line| line["status"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(series(folder.path(), &names, "out").output().unwrap().status.code(), Some(2));
+    assert_eq!(head(), "CALIBRATIONS  1 calibration, 1 failed session");
+    fs::write(&file, broken.replace("broken\n", "also = broken\n")).unwrap();
+    assert_eq!(series(folder.path(), &names, "out").output().unwrap().status.code(), Some(2));
+    assert_eq!(head(), "CALIBRATIONS  1 calibration, 1 failed session");
+    fs::write(&file, broken.replace("broken\n", "")).unwrap();
+    assert!(series(folder.path(), &names, "out").output().unwrap().status.success());
+    assert_eq!(head(), "CALIBRATIONS  2 calibrations, 0 failed sessions");
+    assert_eq!(verdicts(), ["done", "done"]);
+    let pages = run(folder.path(), &["history", "page", "out", "--out", "pages"]);
+    assert!(pages.status.success(), "{pages:?}");
+    let index = fs::read_to_string(folder.path().join("pages/index.html")).unwrap();
+    assert!(index.contains("<p>2 calibrations, 0 failed sessions</p>"));
+}
+
 /// An input that the command would replace or remove is refused, by whatever name, and stays as it was.
 #[test]
 fn what_is_read_is_not_written() {
@@ -223,7 +252,9 @@ fn mistakes_in_a_store_are_found() {
         result["session"]["date"] = json!(date);
         result["session"]["title"] = json!(name);
         if let Some(hash) = hash {
-            result["inputs"][0]["sha256"] = json!(hash.repeat(64));
+            for (n, input) in result["inputs"].as_array_mut().unwrap().iter_mut().enumerate() {
+                input["sha256"] = json!(format!("{}{n:02}", hash.repeat(62)));
+            }
         }
         fs::create_dir(folder.path().join(name)).unwrap();
         fs::write(folder.path().join(name).join("result.json"), result.to_string()).unwrap();

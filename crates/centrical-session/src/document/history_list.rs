@@ -19,7 +19,7 @@ pub struct HistoryList {
     pub program: Program,
     /// Folder of the store, as it was given.
     pub store: String,
-    /// The calibrations by unit and day.
+    /// The calibrations by unit and day, and sessions that failed and have no later row.
     pub calibrations: Vec<HistoryLine>,
     /// What may not be meant, if the store was checked.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -101,6 +101,11 @@ impl HistoryList {
             calibrations,
             doubts: None,
         }
+    }
+
+    /// Number of sessions without a result.
+    pub fn failed(&self) -> usize {
+        self.calibrations.iter().filter(|line| line.status == Status::Failed).count()
     }
 
     /// The text of the document.

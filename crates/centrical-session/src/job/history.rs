@@ -13,6 +13,7 @@ mod of_data;
 mod read;
 mod results;
 mod station;
+mod superseded;
 mod unit;
 mod units;
 

@@ -13,6 +13,7 @@ use centrical::{OnProgress, Stopped};
 use centrical_table::{Outputs, claim_folder};
 
 use self::ledger::Ledger;
+pub use self::ledger::last_rows;
 pub use self::request::SeriesRequest;
 use self::table::write_tables;
 use self::workers::Workers;

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use centrical_session::{HistoryLine, HistoryList, StationHistoryReport, UnitsHistoryReport};
 
 use super::frame::{PageKind, page};
+use crate::number::counted;
 use crate::plot::Escaped;
 
 /// A model of units in the list of models.
@@ -32,10 +33,12 @@ pub fn history_index(
     stations: &[IndexedStation],
     has_page: impl Fn(&str) -> bool,
 ) -> String {
-    let count = list.calibrations.len();
+    let failed = list.failed();
     let mut body = format!(
-        "<header><p class=\"kind\">Calibrations</p><h1>{}</h1><p>{count} calibrations</p></header>\n",
-        Escaped(&list.store)
+        "<header><p class=\"kind\">Calibrations</p><h1>{}</h1><p>{}, {}</p></header>\n",
+        Escaped(&list.store),
+        counted(list.calibrations.len() - failed, "calibration"),
+        counted(failed, "failed session")
     );
     models_table(&mut body, models);
     stations_table(&mut body, stations);

@@ -1,6 +1,6 @@
 //! The calibrations of a store as text for the terminal.
 
-use centrical_session::{DoubtKind, HistoryLine, HistoryList, Status};
+use centrical_session::{DoubtKind, HistoryLine, HistoryList};
 
 use crate::number::counted;
 use crate::terminal::screen::{Emphasis, Screen};
@@ -9,8 +9,9 @@ use crate::terminal::table::{Align, Table};
 /// A line for each calibration, by unit and day.
 pub fn history_list_text(list: &HistoryList) -> Screen {
     let mut screen = Screen::default();
-    let failed = list.calibrations.iter().filter(|line| line.status == Status::Failed).count();
-    screen.head("CALIBRATIONS", &format!("{}, {failed} failed", counted(list.calibrations.len(), "calibration")));
+    let failed = list.failed();
+    let calibrations = counted(list.calibrations.len() - failed, "calibration");
+    screen.head("CALIBRATIONS", &format!("{calibrations}, {}", counted(failed, "failed session")));
     let columns = [
         ("date", Align::Left),
         ("model", Align::Left),

@@ -7,11 +7,14 @@ use std::time::SystemTime;
 
 use centrical::OnProgress;
 use centrical_table::Source;
+use serde::Deserialize;
 
+use super::superseded::without_superseded;
 use crate::document::{Doubt, DoubtKind, HistoryList};
 use crate::error::{Error, ErrorKind};
 use crate::record::Input;
-use crate::store::{Row, Selection, Status, Store};
+use crate::settings::{from_json, read_result};
+use crate::store::{Row, Selection, Status, Store, sha256};
 
 /// Days from 1970-01-01; a day more, since a station may be east of here.
 pub fn today() -> i64 {
@@ -34,10 +37,11 @@ pub fn check_store(
     let rows = store.rows(selection, progress)?.collect::<Result<Vec<_>, _>>()?;
     let done: Vec<&Row> = rows.iter().filter(|row| row.status == Status::Done).collect();
     let mut doubts = two_spellings(&done);
-    doubts.extend(twice(&done));
+    let Copies { doubts: of_copies, measured } = Copies::read(&store, &done, progress)?;
+    doubts.extend(twice(&done, &measured));
     doubts.extend(done.iter().filter_map(|row| day(row, today)));
-    doubts.extend(copies(&store, &done, progress)?);
-    let mut list = HistoryList::new(&folder.display().to_string(), rows);
+    doubts.extend(of_copies);
+    let mut list = HistoryList::new(&folder.display().to_string(), without_superseded(folder, rows)?);
     list.doubts = Some(doubts);
     Ok(list)
 }
@@ -76,27 +80,37 @@ const LOOKALIKES: [(char, char); 12] = [
     ('х', 'x'),
 ];
 
-/// Results of the same inputs, and results of one unit of the same day from other inputs.
-fn twice(rows: &[&Row]) -> Vec<Doubt> {
-    let mut by_inputs: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
+/// Results of the same files, and results of one unit of the same day from other files. A result whose `measured` is known is of the same files as
+/// another with the same: a session that is copied under another title differs in its experiment file alone.
+fn twice(rows: &[&Row], measured: &BTreeMap<&str, String>) -> Vec<Doubt> {
+    let mut by_files: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
     let mut by_day: BTreeMap<(&str, &str, i64), Vec<&Row>> = BTreeMap::new();
     for row in rows {
-        by_inputs.entry(&row.inputs).or_default().push(row);
+        by_files.entry(&row.inputs).or_default().push(row);
+        if let Some(measured) = measured.get(row.key.as_str()) {
+            by_files.entry(measured).or_default().push(row);
+        }
         if let Some(day) = row.day {
             by_day.entry((&row.unit_model, &row.unit_serial, day)).or_default().push(row);
         }
     }
-    let same_inputs = by_inputs.iter().filter(|(inputs, rows)| !inputs.is_empty() && rows.len() > 1);
-    let same_day = by_day.values().filter(|rows| rows.iter().any(|row| row.inputs != rows[0].inputs));
-    let doubt = |kind| {
-        move |rows: &Vec<&Row>| {
-            let mut keys: Vec<String> = rows.iter().map(|row| row.key.clone()).collect();
-            keys.sort();
-            Doubt { kind, of: keys }
-        }
+    let is_same = |a: &Row, b: &Row| {
+        let of = |row: &Row| measured.get(row.key.as_str());
+        a.inputs == b.inputs || of(a).is_some_and(|files| of(b) == Some(files))
     };
-    let same_inputs = same_inputs.map(|(_, rows)| rows).map(doubt(DoubtKind::SameInputs));
-    same_inputs.chain(same_day.map(doubt(DoubtKind::SameDay))).collect()
+    let same_files = by_files.iter().filter(|(files, rows)| !files.is_empty() && rows.len() > 1);
+    let same_files: BTreeSet<Vec<String>> = same_files.map(|(_, rows)| keys(rows)).collect();
+    let is_part = |group: &[String], of: &[String]| group.len() < of.len() && group.iter().all(|key| of.contains(key));
+    let whole = same_files.iter().filter(|group| !same_files.iter().any(|other| is_part(group, other)));
+    let same_day = by_day.values().filter(|rows| rows.iter().any(|row| !is_same(row, rows[0]))).map(|rows| keys(rows));
+    let doubt = |kind| move |of| Doubt { kind, of };
+    whole.cloned().map(doubt(DoubtKind::SameInputs)).chain(same_day.map(doubt(DoubtKind::SameDay))).collect()
+}
+
+fn keys(rows: &[&Row]) -> Vec<String> {
+    let mut keys: Vec<String> = rows.iter().map(|row| row.key.clone()).collect();
+    keys.sort();
+    keys
 }
 
 fn day(row: &Row, today: i64) -> Option<Doubt> {
@@ -108,21 +122,52 @@ fn day(row: &Row, today: i64) -> Option<Doubt> {
     Some(Doubt { kind, of: vec![row.key.clone()] })
 }
 
-/// Copies that are missing or not as they were added. A store that keeps none has none to miss.
-fn copies(store: &Store, rows: &[&Row], progress: OnProgress) -> Result<Vec<Doubt>, Error> {
-    let mut doubts = Vec::new();
-    if !store.keeps_results() {
-        return Ok(doubts);
+/// What the copies of results say.
+struct Copies<'a> {
+    /// Copies that are missing or not as they were added. A store that keeps none has none to miss.
+    doubts: Vec<Doubt>,
+    /// Of what was measured, the hashes of the files in one text, by the key of the result; experiment files are not in it.
+    measured: BTreeMap<&'a str, String>,
+}
+
+/// The files of a result.
+#[derive(Deserialize)]
+struct Files {
+    inputs: Vec<Input>,
+}
+
+impl<'a> Copies<'a> {
+    fn read(store: &Store, rows: &[&'a Row], progress: OnProgress) -> Result<Self, Error> {
+        let mut found = Self { doubts: Vec::new(), measured: BTreeMap::new() };
+        if !store.keeps_results() {
+            return Ok(found);
+        }
+        for row in rows {
+            let file = store.result_file(&row.key);
+            let copy = Source::open(&file, COPY).map_err(Error::from);
+            let kind = match copy.and_then(|copy| Input::of(Path::new(""), &copy, progress)) {
+                Ok(copy) if copy.sha256 == row.key => {
+                    let files: Files = from_json(&file, 1, &read_result(&file, COPY)?, COPY)?;
+                    found.measured.extend(measured(files.inputs).map(|measured| (row.key.as_str(), measured)));
+                    continue;
+                }
+                Ok(_) => DoubtKind::Changed,
+                Err(error) if error.kind() == ErrorKind::Missing => DoubtKind::Missing,
+                Err(error) => return Err(error),
+            };
+            found.doubts.push(Doubt { kind, of: vec![row.key.clone()] });
+        }
+        Ok(found)
     }
-    for row in rows {
-        let copy = Source::open(&store.result_file(&row.key), "the copy of a result").map_err(Error::from);
-        let kind = match copy.and_then(|copy| Input::of(Path::new(""), &copy, progress)) {
-            Ok(copy) if copy.sha256 == row.key => continue,
-            Ok(_) => DoubtKind::Changed,
-            Err(error) if error.kind() == ErrorKind::Missing => DoubtKind::Missing,
-            Err(error) => return Err(error),
-        };
-        doubts.push(Doubt { kind, of: vec![row.key.clone()] });
-    }
-    Ok(doubts)
+}
+
+/// What a copy is expected to be.
+const COPY: &str = "the copy of a result";
+
+/// The hashes of files that are no experiment file, whatever their names and order; `None` if there are no others.
+fn measured(files: Vec<Input>) -> Option<String> {
+    let is_measured = |file: &Input| !file.path.to_ascii_lowercase().ends_with(".toml");
+    let mut hashes: Vec<String> = files.into_iter().filter(is_measured).map(|file| file.sha256).collect();
+    hashes.sort();
+    (!hashes.is_empty()).then(|| sha256(hashes.concat().as_bytes()))
 }

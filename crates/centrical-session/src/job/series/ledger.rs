@@ -15,6 +15,7 @@ use centrical_table::{Source, write_whole};
 use serde::{Deserialize, Serialize};
 
 use super::one::Done;
+use super::request::LEDGER;
 use crate::document::Method;
 use crate::error::Error;
 use crate::record::Input;
@@ -50,6 +51,16 @@ struct Known {
     /// Time of change since 1970 [ns].
     modified: u64,
     sha256: String,
+}
+
+/// The key of the last row of each session of the series that was written into `folder`, by the name of the session; none without a series.
+///
+/// # Errors
+/// [`Error`] when the lines of the series cannot be read.
+pub fn last_rows(folder: &Path) -> Result<BTreeMap<String, String>, Error> {
+    let text = text_of(&folder.join(LEDGER))?;
+    let entries = whole_lines(&text).filter_map(|line| serde_json::from_str::<Entry>(line).ok());
+    Ok(entries.map(|entry| (entry.session, entry.key)).collect())
 }
 
 impl Ledger {

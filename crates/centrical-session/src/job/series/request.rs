@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use crate::document::Method;
 
+/// File with what became of each session, in the folder of the series.
+pub(super) const LEDGER: &str = "series.jsonl";
+
 /// What is done with the sessions of a series.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SeriesRequest {
@@ -22,7 +25,7 @@ pub struct SeriesRequest {
 impl SeriesRequest {
     /// What became of each session.
     pub(super) fn ledger(&self) -> PathBuf {
-        self.out.join("series.jsonl")
+        self.out.join(LEDGER)
     }
 
     /// The table of the rows.

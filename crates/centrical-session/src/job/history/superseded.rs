@@ -1,0 +1,21 @@
+//! Failures of sessions that a series has done again since.
+
+use std::path::Path;
+
+use crate::error::Error;
+use crate::job::series::last_rows;
+use crate::store::{Row, Status};
+
+/// The rows of the store in `folder` without failures whose session has a later row: a store never takes a row away.
+///
+/// # Errors
+/// [`Error`] when the lines of a series in the folder cannot be read.
+pub fn without_superseded(folder: &Path, mut rows: Vec<Row>) -> Result<Vec<Row>, Error> {
+    if rows.iter().any(|row| row.status == Status::Failed) {
+        let last = last_rows(folder)?;
+        // A failure has its session for a title.
+        let is_last = |row: &Row| last.get(&row.title).is_none_or(|key| *key == row.key);
+        rows.retain(|row| row.status == Status::Done || is_last(row));
+    }
+    Ok(rows)
+}
