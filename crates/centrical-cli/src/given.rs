@@ -17,6 +17,12 @@ pub fn frequency(text: &str) -> Result<f64, String> {
     if rate > 0.0 { Ok(rate) } else { Err(format!("found {text:?}, expected a rate above zero")) }
 }
 
+/// A largest error [m/s^2].
+pub fn largest_error(text: &str) -> Result<f64, String> {
+    let error = quantity(text, Dimension::Acceleration).map_err(|wrong| wrong.to_string())?;
+    if error > 0.0 { Ok(error) } else { Err(format!("found {text:?}, expected an acceleration above zero")) }
+}
+
 /// A time [s].
 pub fn time(text: &str) -> Result<f64, NotThatQuantity> {
     quantity(text, Dimension::Time)

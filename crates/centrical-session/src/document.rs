@@ -39,10 +39,10 @@ pub use self::compensation::{COMPENSATION_SCHEMA, CompensationReport, FirstReadi
 pub use self::documents::{DOCUMENTS_SCHEMA, DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
 pub use self::draft::{DRAFT_SCHEMA, DraftReport, LineToFillIn};
 pub use self::history::{
-    BatchSummary, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, LeftOutSession, OutlyingUnit,
-    PastSession, ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter,
-    UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter,
-    UnitsHistoryReport, UnitsParameter,
+    BatchSummary, BatchWithoutUnit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, LeftOutSession,
+    OutlyingUnit, PastSession, ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport,
+    StationParameter, UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport,
+    UnitParameter, UnitsHistoryReport, UnitsParameter,
 };
 pub use self::history_list::{Doubt, DoubtKind, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList};
 pub use self::models::{CandidateSummary, MODELS_SCHEMA, ModelsReport, NestedTestSummary, TermSupport};

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use centrical_report::{PagesRequest, write_history_pages};
 use centrical_session::{Error, unwatched};
 
-use crate::command::compensate::acceleration;
+use crate::given::largest_error;
 use crate::outcome::Outcome;
 use crate::output::print;
 
@@ -32,7 +32,7 @@ pub struct Arguments {
 #[derive(Debug, Clone, clap::Args)]
 pub struct PageOptions {
     /// Of a store: largest error of a compensated reading, for the due dates: '300 ug'
-    #[arg(long, value_parser = acceleration)]
+    #[arg(long, value_parser = largest_error)]
     limit: Option<f64>,
     /// Of a store: file with limits of parameters ([decision]), for Cp, Cpk and the drawings
     #[arg(long, value_name = "FILE")]

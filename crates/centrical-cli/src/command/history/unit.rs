@@ -6,7 +6,7 @@ use centrical_report::{unit_history_plots, unit_history_text, write_plots};
 use centrical_session::{Calibrated, Date, Depth, Error, ParameterLimits, UnitHistoryRequest, by_unit, unit_history};
 
 use super::choice::Choice;
-use crate::command::compensate::acceleration;
+use crate::given::largest_error;
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 
@@ -20,7 +20,7 @@ pub struct Arguments {
     #[command(flatten)]
     choice: Choice,
     /// Largest error of a compensated reading, for the due date: '300 ug'
-    #[arg(short, long, value_parser = acceleration)]
+    #[arg(short, long, value_parser = largest_error)]
     limit: Option<f64>,
     /// Day of the forecasts [default: a year after the last calibration]
     #[arg(short, long, value_name = "DAY")]
@@ -41,6 +41,9 @@ pub struct Arguments {
     printing: Printing,
 }
 
+/// Units that a message names.
+const SHOWN: usize = 8;
+
 /// Runs the command. Exit code 1 when a reading may be beyond its limit already.
 pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let choice = &arguments.choice;
@@ -55,11 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         (by_unit(choice.read(Depth::Whole)?), Vec::new())
     };
     let [calibrations] = own.as_slice() else {
-        let serials =
-            own.iter().take(8).map(|unit| format!("\"{}\"", unit[0].unit_serial)).collect::<Vec<_>>().join(", ");
-        return Err(
-            choice.refuse(format!("{} units: {serials}", own.len()), "calibrations of one, by --serial and --model")
-        );
+        return Err(choice.refuse(several(&own), "calibrations of one, by --serial and --model"));
     };
     let same_model = |unit: &Vec<Calibrated>| unit.first().is_some_and(|c| c.unit_model == calibrations[0].unit_model);
     let others: Vec<_> = others.into_iter().filter(same_model).collect();
@@ -77,4 +76,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     arguments.printing.show(|| unit_history_text(&report), || report.to_json())?;
     Ok(Outcome::acceptable(report.is_acceptable()))
+}
+
+/// Units by model and serial number: either may be empty, and tell two units apart.
+fn several(units: &[Vec<Calibrated>]) -> String {
+    let named = |unit: &Vec<Calibrated>| format!("model {:?} serial {:?}", unit[0].unit_model, unit[0].unit_serial);
+    let listed = units.iter().take(SHOWN).map(named).collect::<Vec<_>>().join(", ");
+    let more = if units.len() > SHOWN { format!(" and {} more", units.len() - SHOWN) } else { String::new() };
+    format!("{} units: {listed}{more}", units.len())
 }

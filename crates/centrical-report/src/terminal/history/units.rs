@@ -1,6 +1,6 @@
 //! Units of one type beside each other.
 
-use centrical_session::{UnitFindingKind, UnitsHistoryReport, customary};
+use centrical_session::{BatchWithoutUnit, UnitFindingKind, UnitsHistoryReport, customary};
 
 use super::chance::chance;
 use super::unit::left_out;
@@ -32,6 +32,7 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
         let words = format!("and {} more", counted(report.left_out.len() - SHOWN, "calibration"));
         screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
     }
+    without_unit(&mut screen, report);
     for unit in &report.outlying {
         let most = unit.most.iter().map(|(name, score)| format!("{name} {score:+.1}")).collect::<Vec<_>>().join(", ");
         let words = format!(
@@ -90,4 +91,26 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
     screen.table(table);
     legend(&mut screen, report.parameters.iter().map(|p| (p.name.as_str(), p.group)));
     screen
+}
+
+/// Serial numbers of the batches that no unit has: those near one by itself, the others together.
+fn without_unit(screen: &mut Screen, report: &UnitsHistoryReport) {
+    let quoted = |serials: &[String]| {
+        let listed: Vec<String> = serials.iter().take(SHOWN).map(|serial| format!("{serial:?}")).collect();
+        let more = if serials.len() > SHOWN { format!(" and {} more", serials.len() - SHOWN) } else { String::new() };
+        format!("{}{more}", listed.join(", "))
+    };
+    let (near, other): (Vec<&BatchWithoutUnit>, Vec<_>) =
+        report.without_unit.iter().partition(|of| !of.near.is_empty());
+    for of in near.iter().take(SHOWN) {
+        let words =
+            format!("no unit has the serial {:?} of the batches, expected {}?", of.unit_serial, quoted(&of.near));
+        screen.marked(Emphasis::Warning, "NO UNIT", &words);
+    }
+    let others = near.into_iter().skip(SHOWN).chain(other).map(|of| of.unit_serial.clone());
+    let others: Vec<String> = others.collect();
+    if !others.is_empty() {
+        let words = format!("no unit has these serials of the batches: {}", quoted(&others));
+        screen.marked(Emphasis::Warning, "NO UNIT", &words);
+    }
 }

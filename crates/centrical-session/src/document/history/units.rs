@@ -35,8 +35,20 @@ pub struct UnitsHistoryReport {
     pub outlying: Vec<OutlyingUnit>,
     /// Units that drift, or scatter more than the others.
     pub findings: Vec<UnitFinding>,
+    /// Serial numbers with a batch that no unit has.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub without_unit: Vec<BatchWithoutUnit>,
     /// The parameters that all calibrations compared determine.
     pub parameters: Vec<UnitsParameter>,
+}
+
+/// A serial number that has a batch, and no unit.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct BatchWithoutUnit {
+    /// The serial number.
+    pub unit_serial: String,
+    /// Units whose serial numbers differ from it in spaces, hyphens, case, or Cyrillic for Latin letters alone.
+    pub near: Vec<String>,
 }
 
 /// A unit that is not like the others: family-wise 5 %.

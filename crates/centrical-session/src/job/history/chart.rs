@@ -49,6 +49,8 @@ pub enum NoChart {
         /// How many there should be.
         expected: usize,
     },
+    /// Values of the acceptable sessions are equal: they have no limits.
+    Equal(usize),
 }
 
 impl NoChart {
@@ -56,7 +58,8 @@ impl NoChart {
     pub fn found(&self) -> String {
         match self {
             Self::Unknown(name) => format!("no session that determines {name}"),
-            Self::TooFew { found, .. } => format!("{found} acceptable sessions with values that differ"),
+            Self::TooFew { found, .. } => counted(*found),
+            Self::Equal(found) => format!("{} with one value in all", counted(*found)),
         }
     }
 
@@ -65,11 +68,19 @@ impl NoChart {
         match self {
             Self::Unknown(_) => "the name of a parameter in the results".to_owned(),
             Self::TooFew { expected, .. } => {
-                format!("{expected} for the limits, fewer by --accepted, or stated limits")
+                format!("{} for the limits, fewer by --accepted, or stated limits", (*expected).max(FEWEST))
             }
+            Self::Equal(_) => "values that scatter, or stated limits by --centre and --deviation".to_owned(),
         }
     }
 }
+
+fn counted(sessions: usize) -> String {
+    format!("{sessions} acceptable session{}", if sessions == 1 { "" } else { "s" })
+}
+
+/// Sessions with a range between them.
+const FEWEST: usize = 2;
 
 /// Weight of the newest value, and limits in standard deviations: one false signal in 370 values.
 const EWMA: (f64, f64) = (0.2, 2.86);
@@ -96,8 +107,10 @@ pub fn chart(
         ChartLimits::Accepted(expected) => {
             let acceptable = of.iter().zip(&values).filter(|((c, _), _)| c.acceptable).map(|(_, value)| *value);
             let accepted: Vec<f64> = acceptable.take(expected).collect();
-            let control = Control::of(&accepted).filter(|_| accepted.len() == expected);
-            (control.ok_or(NoChart::TooFew { found: accepted.len(), expected })?, accepted.len())
+            if accepted.len() < expected.max(FEWEST) {
+                return Err(NoChart::TooFew { found: accepted.len(), expected });
+            }
+            (Control::of(&accepted).ok_or(NoChart::Equal(accepted.len()))?, accepted.len())
         }
     };
     let ranges = moving_ranges(&values);

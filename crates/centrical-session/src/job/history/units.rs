@@ -9,12 +9,13 @@ use centrical::uncertainty::family_wise;
 use rayon::prelude::*;
 
 use super::calibrated::{Basis, Calibrated, Finder, Places, series, single};
+use super::check::spelling;
 use super::comparable::ComparedUnits;
 use super::limits::ParameterLimits;
 use super::unit::common_names;
 use crate::document::{
-    BatchSummary, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind,
-    UnitsHistoryReport, UnitsParameter,
+    BatchSummary, BatchWithoutUnit, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA, UnitFinding,
+    UnitFindingKind, UnitsHistoryReport, UnitsParameter,
 };
 
 /// What is asked of units.
@@ -65,6 +66,7 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
         is_sound: outlying.is_empty() && findings.is_empty() && !parameters.iter().any(|p| p.batches_differ),
         outlying,
         findings,
+        without_unit: without_unit(&request.batches, &lasts),
         parameters,
     })
 }
@@ -240,6 +242,24 @@ fn summary(batch: &str, values: &[f64]) -> BatchSummary {
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     let deviation = (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt());
     BatchSummary { batch: batch.to_owned(), units: values.len(), mean, deviation }
+}
+
+/// Serial numbers with a batch that no unit has, those first that look like one.
+fn without_unit(batches: &BTreeMap<String, String>, lasts: &[&Calibrated]) -> Vec<BatchWithoutUnit> {
+    let serials: BTreeSet<&str> = lasts.iter().map(|unit| unit.unit_serial.as_str()).collect();
+    let mut by_spelling: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for serial in &serials {
+        by_spelling.entry(spelling(serial)).or_default().push((*serial).to_owned());
+    }
+    let without = batches.keys().filter(|serial| !serials.contains(serial.as_str()));
+    let mut without: Vec<BatchWithoutUnit> = without
+        .map(|serial| BatchWithoutUnit {
+            unit_serial: serial.clone(),
+            near: by_spelling.get(&spelling(serial)).cloned().unwrap_or_default(),
+        })
+        .collect();
+    without.sort_by_key(|of| of.near.is_empty());
+    without
 }
 
 /// The values of each batch of units, by its name.
