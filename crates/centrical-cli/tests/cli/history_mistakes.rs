@@ -104,3 +104,109 @@ fn the_median_of_an_even_number_of_units_is_the_mean_of_both_middle_ones() {
         assert!((found - median).abs() < 1e-15, "{units:?}: {found}");
     }
 }
+
+#[test]
+fn a_limit_above_zero_is_asked_for() {
+    let results = Results::new();
+    for (name, date) in [("a", "2023-01-01"), ("b", "2024-01-01")] {
+        results.add(name, "0001", date, |_| {});
+    }
+    for limit in ["0 ug", "-5 ug"] {
+        let of_page = format!("--limit={limit}");
+        for arguments in [&["unit", ".", &of_page][..], &["page", ".", "--out", "pages", &of_page]] {
+            let (code, _, message) = results.run(arguments);
+            assert_eq!(code, 2, "{arguments:?}");
+            let said = format!("found \"{limit}\", expected an acceleration above zero");
+            assert!(message.contains(&said), "{message}");
+        }
+    }
+}
+
+/// Values without a scatter have no limits, which is not a want of sessions.
+#[test]
+fn a_chart_says_why_it_has_no_limits() {
+    let results = Results::new();
+    for n in 0..3 {
+        results.add(&n.to_string(), "0001", &format!("202{n}-01-01"), |_| {});
+    }
+    let message = |accepted: &str| results.run(&["chart", "df_1", ".", "--accepted", accepted]).2;
+    let equal = "found 3 acceptable sessions with one value in all, expected values that scatter, or stated limits";
+    assert!(message("3").contains(equal), "{}", message("3"));
+    let few = "found 3 acceptable sessions, expected 4 for the limits, fewer by --accepted, or stated limits";
+    assert!(message("4").contains(few), "{}", message("4"));
+    let one = "found 1 acceptable session, expected 2 for the limits";
+    assert!(message("1").contains(one), "{}", message("1"));
+}
+
+#[test]
+fn a_batch_without_a_unit_is_named_with_the_unit_that_looks_like_it() {
+    let results = Results::new();
+    for serial in ["TA-1", "TA-2", "TA-3"] {
+        results.add(serial, serial, "2024-01-01", |_| {});
+    }
+    let batches = |text: &str| fs::write(results.path().join("batches.csv"), text).unwrap();
+    batches("serial,batch\nta1,a\nTA-2,a\nTA-3,b\nTA-9,b\n");
+    let arguments = ["units", ".", "--batches", "batches.csv"];
+    let expected = json!([{ "unit_serial": "ta1", "near": ["TA-1"] }, { "unit_serial": "TA-9", "near": [] }]);
+    assert_eq!(results.document(&arguments)["without_unit"], expected);
+    let (_, text, _) = results.run(&arguments);
+    assert!(text.contains("NO UNIT  no unit has the serial \"ta1\" of the batches, expected \"TA-1\"?"), "{text}");
+    assert!(text.contains("NO UNIT  no unit has these serials of the batches: \"TA-9\""), "{text}");
+    batches("serial,batch\nTA-1,a\nTA-2,a\nTA-3,b\n");
+    assert_eq!(results.document(&arguments)["without_unit"], Value::Null);
+    assert!(!results.run(&arguments).1.contains("NO UNIT"));
+}
+
+/// A copy of a session differs in its experiment file alone; another session of the day has other records.
+#[test]
+fn a_session_under_another_title_is_of_the_same_files() {
+    let results = Results::new();
+    let experiment =
+        |hash: &'static str| move |result: &mut Value| result["inputs"][0]["sha256"] = json!(hash.repeat(64));
+    results.add("a", "0001", "2024-01-01", experiment("a"));
+    results.add("b", "0001", "2024-01-01", experiment("b"));
+    results.add("c", "0002", "2024-05-01", experiment("c"));
+    results.add("d", "0001", "2024-01-01", |result| {
+        result["inputs"][0]["sha256"] = json!("d".repeat(64));
+        result["inputs"][1]["sha256"] = json!("e".repeat(64));
+    });
+    let doubts = |store: &str, option: &[&str]| {
+        assert_eq!(results.run(&[&["add", store, "a", "b", "c", "d"], option].concat()).0, 0);
+        let document = results.document(&["list", store, "--check"]);
+        let found = document["doubts"].as_array().unwrap().clone();
+        found.iter().map(|d| (d["kind"].clone(), d["of"].as_array().unwrap().len())).collect::<Vec<_>>()
+    };
+    assert_eq!(first()["inputs"][0]["path"], "experiment.toml");
+    assert_eq!(doubts("store", &[]), [(json!("same-inputs"), 3), (json!("same-day"), 3)]);
+    // Rows alone do not have the hashes of records.
+    assert_eq!(doubts("rows", &["--rows-only"]), [(json!("same-day"), 3)]);
+}
+
+/// A serial number alone does not tell two units apart.
+#[test]
+fn several_units_are_named_by_model_and_serial() {
+    let results = Results::new();
+    results.add("a", "0001", "2023-01-01", |_| {});
+    results.add("b", "0001", "2024-01-01", |result| result["session"]["unit_model"] = json!(""));
+    let (code, _, message) = results.run(&["unit", "."]);
+    assert_eq!(code, 2);
+    let said = "found 2 units: model \"\" serial \"0001\", model \"TA-200\" serial \"0001\", expected";
+    assert!(message.contains(said), "{message}");
+}
+
+/// Calibrations that scatter less than they state leave no interval of zeros in a certificate.
+#[test]
+fn a_certificate_has_no_interval_of_zeros() {
+    let results = Results::new();
+    for n in 0..8 {
+        results.add(&n.to_string(), "0001", &format!("201{n}-01-01"), |_| {});
+    }
+    let result = results.path().join("7/result.json");
+    let mut report = centrical();
+    report.arg("report").arg(&result).args(["--html", "report.html", "--past", "."]).current_dir(results.path());
+    let made = report.output().unwrap();
+    assert!(made.status.success(), "{made:?}");
+    let text = fs::read_to_string(results.path().join("report.html")).unwrap();
+    assert!(text.contains("0 (scatter less than stated)"), "no such cell");
+    assert!(!text.contains("(0.0 \u{2026} 0.0)"));
+}

@@ -93,11 +93,16 @@ fn readings(history: &UnitHistoryReport, language: Language) -> Table {
     ];
     let row = |r: &ReadingHistory| {
         let [low, high] = r.between_interval.map(|u| micro_g(u, language));
+        // Where the calibrations scatter less than nearly all would that state such uncertainties, the interval has no length.
+        let interval = match r.between_interval {
+            [_, 0.0] => messages.less_than_stated.to_owned(),
+            _ => format!("{low} … {high}"),
+        };
         vec![
             r.axis.to_string(),
             force(r, language),
             micro_g(r.stated, language),
-            format!("{} ({low} … {high})", micro_g(r.between, language)),
+            format!("{} ({interval})", micro_g(r.between, language)),
             micro_g(r.after_switch_on, language),
         ]
     };
@@ -105,7 +110,7 @@ fn readings(history: &UnitHistoryReport, language: Language) -> Table {
 }
 
 fn micro_g(u: f64, language: Language) -> String {
-    language.significant(u / MICRO_G, 2)
+    if u == 0.0 { "0".to_owned() } else { language.significant(u / MICRO_G, 2) }
 }
 
 fn force(reading: &ReadingHistory, language: Language) -> String {

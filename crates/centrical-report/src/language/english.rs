@@ -336,6 +336,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     switch_on_note: "Standard uncertainties of a compensated reading: by this calibration, the standard deviation between \
         calibrations with its interval of 95 %, and both together. For each newtonometer: at zero force, and where both \
         together are largest.",
+    less_than_stated: "scatter less than stated",
     calibrations_of_unit: "Calibrations of the unit",
     calibrations_left_out: "others, which do not determine the same parameters",
     same_unit: "Agreement of the calibrations",

@@ -272,6 +272,8 @@ pub(crate) struct Messages {
     pub switch_on: &'static str,
     pub switch_on_text: &'static str,
     pub switch_on_note: &'static str,
+    /// Of a scatter without an interval, in brackets.
+    pub less_than_stated: &'static str,
     pub calibrations_of_unit: &'static str,
     pub calibrations_left_out: &'static str,
     pub same_unit: &'static str,
