@@ -273,10 +273,23 @@ def test_history(program, store, tmp_path):
     assert ct.history(store, "station").to_json() == program("history", "station", store)
 
 
+def test_results_in_memory_are_added(example, tmp_path):
+    result = ct.calibrate(example)
+    result.to_json(tmp_path / "result.json")
+    assert ct.add_to_store(tmp_path / "store", result) == (1, 0)
+    assert ct.add_to_store(tmp_path / "store", [tmp_path / "result.json", result]) == (0, 2)
+    copy = next((tmp_path / "store" / "results").iterdir())
+    assert copy.read_bytes() == (tmp_path / "result.json").read_bytes()
+    assert ct.add_to_store(tmp_path / "rows", [result], rows_only=True) == (1, 0)
+    assert not (tmp_path / "rows" / "results").exists()
+
+
 def test_what_a_history_is_not_asked(store):
     for wrong, said in (
         (lambda: ct.history(store, "years"), 'of: found \'years\', expected "list"'),
         (lambda: ct.history(store, "station", limit=1.0), "limit: found it for 'station', expected it for 'unit' alone"),
+        (lambda: ct.history(store, limit=0.0), "limit: found 0 m/s^2, expected one above zero"),
+        (lambda: ct.write_pages(store, "pages", limit="-1 ug"), "limit: found "),
         (lambda: ct.history(store, check=True), "check: found it for 'unit', expected it for 'list' alone"),
         (lambda: ct.history([], "unit"), "results: found none, expected a store"),
         (lambda: ct.history([store, store], "list"), "results: found 2, expected one store"),

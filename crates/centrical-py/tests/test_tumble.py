@@ -83,6 +83,12 @@ def test_what_is_no_record_of_rests():
         ct.tumble(RECORD, readings=["f1", "f2"])
 
 
+def test_the_model_of_the_unit_is_stated(tmp_path):
+    named = {"model": "TA-200", "serial": "0001", "date": "2026-11-23"}
+    session = ct.tumble(RECORD, gravity="9.81523 m/s^2", **named).document.session
+    assert (session.unit_model, session.unit_serial, session.date) == ("TA-200", "0001", "2026-11-23")
+
+
 def test_a_draft_takes_a_tumble(program, tmp_path):
     ct.tumble(RECORD, gravity="9.81523 m/s^2", out=tmp_path / "tumbled")
     draft = ct.init("examples/ta-200/records", tumble=tmp_path / "tumbled")

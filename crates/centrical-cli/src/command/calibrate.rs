@@ -85,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         result.write(file)?;
     }
     if let Some(store) = &arguments.store {
-        add_result(store, &result)?;
+        add_result(store, &result, false)?;
     }
     let issuer = laboratory.map(|file| read_issuer(file, &result)).transpose()?;
     if let Some(folder) = out {

@@ -9,6 +9,7 @@ from . import _native
 from ._document import Document
 from ._paths import paths
 from ._progress import Bar
+from ._result import Result
 
 if TYPE_CHECKING:
     from typing import Literal
@@ -16,15 +17,18 @@ if TYPE_CHECKING:
     from ._types import Path, Quantity
 
 
-def add_to_store(store: Path, results: Path | Iterable[Path], *, rows_only: bool = False) -> tuple[int, int]:
-    """Adds results, or folders of them, to a store, which is made if it is not there; how many were new, and how many known.
+def add_to_store(store: Path, results: Path | Result | Iterable[Path | Result], *, rows_only: bool = False) -> tuple[int, int]:
+    """Adds results, their files, or folders of them, to a store, which is made if it is not there; how many were new, how many known.
 
-    >>> written = ct.calibrate(example).to_json(folder / "result.json")
-    >>> ct.add_to_store(folder / "kept", folder / "result.json")
-    (1, 0)
+    >>> result = ct.calibrate(example)
+    >>> written = result.to_json(folder / "result.json")
+    >>> ct.add_to_store(folder / "kept", folder / "result.json"), ct.add_to_store(folder / "kept", [result])
+    ((1, 0), (0, 1))
     """
+    given = [results] if isinstance(results, Result) else paths(results)
+    natives = [result.native if isinstance(result, Result) else result for result in given]
     with Bar("adding") as shown:
-        return _native.add_to_store(store, paths(results), rows_only, shown)
+        return _native.add_to_store(store, natives, rows_only, shown)
 
 
 def history(

@@ -129,7 +129,7 @@ def calibrate(
     shown: _Shown,
 ) -> CalibrationResult: ...
 def add_failure(store: _Path, session: str, message: str, file: str, found: str, expected: str) -> bool: ...
-def add_to_store(store: _Path, results: Sequence[_Path], rows_only: bool, shown: _Shown) -> tuple[int, int]: ...
+def add_to_store(store: _Path, results: Sequence[CalibrationResult | _Path], rows_only: bool, shown: _Shown) -> tuple[int, int]: ...
 def history_list(store: _Path, chosen: _Chosen, check: bool) -> str: ...
 def history_unit(
     results: Sequence[_Path],
@@ -228,6 +228,7 @@ def tumble(
     attitudes: tuple[_Path | Sequence[Sequence[float]], _Quantity | None] | None,
     turning_radius: _Quantity | None,
     terms: Sequence[str] | None,
+    model: str,
     serial: str,
     date: str,
     out: _Path | None,

@@ -4,28 +4,54 @@ use std::path::PathBuf;
 
 use centrical_report::{PagesRequest, chart_plots, unit_history_plots, write_history_pages, write_plots};
 use centrical_session::{
-    ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Dimension, Error, Failure, ParameterLimits, Place, Row,
-    RuleSet, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest, add_results, by_unit, chart, check_store,
-    list_store, read_batches, read_calibrations, read_limits, station_history, today, unit_history, units_history,
+    Added, ChartLimits, ChartRequest, ComparedUnits, Date, Depth, Dimension, Error, Failure, ParameterLimits, Place,
+    Row, RuleSet, Selection, Store, UnitHistoryRequest, UnitsHistoryRequest, add_result, add_results, advance, by_unit,
+    chart, check_store, list_store, read_batches, read_calibrations, read_limits, station_history, today, unit_history,
+    units_history,
 };
 use pyo3::prelude::*;
 
 use crate::progress::{self, Shown};
+use crate::result::CalibrationResult;
 use crate::words::{Amount, one_of, refused};
 
 /// Model and serial number of the unit, and the station.
 type Chosen = (Option<String>, Option<String>, Option<String>);
+
+/// A result, or its file, or a folder of such files.
+#[derive(FromPyObject)]
+pub enum Given {
+    /// A result in memory.
+    Read(Py<CalibrationResult>),
+    /// A file or a folder.
+    File(PathBuf),
+}
 
 /// Adds results to a store: how many were new, how many known.
 #[pyfunction]
 pub fn add_to_store(
     py: Python,
     store: PathBuf,
-    results: Vec<PathBuf>,
+    results: Vec<Given>,
     rows_only: bool,
     shown: Shown,
 ) -> PyResult<(usize, usize)> {
-    let added = progress::run(py, &shown, |work| add_results(&store, &results, rows_only, &|count| work.count(count)))?;
+    let (mut files, mut read) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Given::File(file) => files.push(file),
+            Given::Read(result) => read.push(result),
+        }
+    }
+    let added = progress::run(py, &shown, |work| {
+        let mut added = add_results(&store, &files, rows_only, &|count| work.count(count))?;
+        for result in &read {
+            let of_one = add_result(&store, &result.get().result, rows_only)?;
+            added = Added { new: added.new + of_one.new, known: added.known + of_one.known };
+            advance(&|count| work.count(count), 1)?;
+        }
+        Ok(added)
+    })?;
     Ok((added.new, added.known))
 }
 
@@ -74,7 +100,7 @@ pub fn history_unit(
     if !(confidence > 0.5 && confidence < 1.0) {
         return Err(refused("confidence", format!("found {confidence}, expected a number between 0.5 and 1")));
     }
-    let limit = Amount::optional(limit, "limit", Dimension::Acceleration)?;
+    let limit = largest_error(limit)?;
     let day = |day: String| {
         let refuse = |_| refused("until", format!("found {day:?}, expected a day such as 2026-10-05"));
         day.parse::<Date>().map_err(refuse)
@@ -177,9 +203,18 @@ pub fn history_pages(
     batches: Option<PathBuf>,
     accepted: usize,
 ) -> PyResult<usize> {
-    let limit = Amount::optional(limit, "limit", Dimension::Acceleration)?;
+    let limit = largest_error(limit)?;
     let request = PagesRequest { limit, laboratory, batches, accepted };
     progress::run(py, &None, |work| write_history_pages(&store, &out, &request, &|done| work.advance(done)))
+}
+
+/// The largest error of a compensated reading [m/s^2].
+fn largest_error(limit: Option<Amount>) -> PyResult<Option<f64>> {
+    let limit = Amount::optional(limit, "limit", Dimension::Acceleration)?;
+    match limit.filter(|limit| *limit <= 0.0) {
+        Some(wrong) => Err(refused("limit", format!("found {wrong} m/s^2, expected one above zero"))),
+        None => Ok(limit),
+    }
 }
 
 fn selection(depth: Depth, (unit_model, unit_serial, station): Chosen) -> Selection {

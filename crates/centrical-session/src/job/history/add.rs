@@ -51,12 +51,12 @@ pub fn add_results(
     Ok(added)
 }
 
-/// Adds one result that was just made, as its file has it, to the store in `folder`.
+/// Adds one result that is in memory, as its file has it, to the store in `folder`.
 ///
 /// # Errors
 /// As [`Store::add`].
-pub fn add_result(folder: &Path, result: &CalibrationResult) -> Result<Added, Error> {
+pub fn add_result(folder: &Path, result: &CalibrationResult, rows_only: bool) -> Result<Added, Error> {
     let text = result.to_json()?;
     let row = result.row(text.as_bytes());
-    Store::create(folder)?.add_with_results(vec![(row, Some(text.into_bytes()))], &unwatched)
+    Store::create(folder)?.add_with_results(vec![(row, (!rows_only).then(|| text.into_bytes()))], &unwatched)
 }
