@@ -75,7 +75,7 @@ fn what_both_share_cancels() {
     let reduced = centrical().args(["reduce", example.to_str().unwrap(), "--out"]).arg(&session).arg("-q").output();
     assert!(reduced.unwrap().status.success());
     let file = session.join("experiment.toml");
-    let text = fs::read_to_string(&file).unwrap() + "\n[uncertainty]\ngravity = \"0.001 m/s^2\"\n";
+    let text = fs::read_to_string(&file).unwrap() + "\n[uncertainty]\ngravity = \"0.001 m/s^2\"\nradius = \"0.5 mm\"\n";
     fs::write(&file, text).unwrap();
     let result = json(folder.path(), &["calibrate", "session", "--json"]);
     let mut changed = result.clone();

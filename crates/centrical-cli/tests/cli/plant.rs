@@ -338,6 +338,16 @@ fn a_calibration_with_fewer_parameters_is_left_out() {
     let shown = String::from_utf8(run(folder, &[&["history"], ask.as_slice()].concat()).stdout).unwrap();
     assert!(shown.contains("INCOMPLETE  2022-03-02"), "{shown}");
 
+    // A last calibration that lacks them says so, and up to which force its days hold.
+    let last = folder.join("plant/0001/3/result.json");
+    let whole = fs::read(&last).unwrap();
+    without(&last, "G1_");
+    let (unit, _) = history(folder, &ask);
+    assert!(unit["not_in_last"].as_array().unwrap().contains(&json!("G1_11")), "{unit}");
+    let shown = String::from_utf8(run(folder, &[&["history"], ask.as_slice()].concat()).stdout).unwrap();
+    assert!(shown.contains("NOT IN LAST") && shown.contains("µg up to"), "{shown}");
+    fs::write(&last, whole).unwrap();
+
     // Where only the last has them, the others are compared by what they have, and no day is promised.
     for session in [0, 2] {
         without(&folder.join(format!("plant/0001/{session}/result.json")), "G1_");

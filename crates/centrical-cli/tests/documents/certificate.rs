@@ -148,6 +148,7 @@ fn adjustment_and_decision() {
     let mut before: serde_json::Value = serde_json::from_str(&before).unwrap();
     let bias = before["parameters"].as_array_mut().unwrap().iter_mut().find(|p| p["name"] == "df_1").unwrap();
     bias["value"] = (2.0 * bias["value"].as_f64().unwrap()).into();
+    before["session"]["date"] = "2026-10-04".into();
     fs::write(folder.path().join("before.json"), before.to_string()).unwrap();
     let report = |arguments: &[&str]| {
         let mut command = program::centrical();
@@ -159,11 +160,20 @@ fn adjustment_and_decision() {
     has(
         &both,
         &[
+            ("d, when", "Calibration before the adjustment: 2026-10-04."),
             ("d, before and after", "Before adjustment, ± U After adjustment, ± U"),
             ("d, what was adjusted", "df₁ −7.9049 ± 0.0040 −3.9524 ± 0.0040 mg"),
             ("d, what was not", "df₂ −10.157 ± 0.020 −10.157 ± 0.020 mg"),
         ],
     );
+    // Its own calibration, or a later one, is not the one before.
+    for (date, expected) in [("2026-10-05", "found the result itself"), ("2026-10-06", "expected one of 2026-10-05")] {
+        before["session"]["date"] = date.into();
+        fs::write(folder.path().join("before.json"), before.to_string()).unwrap();
+        let refused = report(&["laboratory.toml"]);
+        let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(refused.status.code() == Some(2) && message.contains(expected), "{message}");
+    }
     let unsaid = report(&[example("laboratory.toml").to_str().unwrap()]);
     let message = String::from_utf8_lossy(&unsaid.stderr).into_owned();
     assert!(unsaid.status.code() == Some(2) && message.contains("[item] adjustment"), "{message}");

@@ -272,7 +272,10 @@ fn adjustment(
     let (messages, adjustment) = (language.messages(), laboratory.item.adjustment.as_deref());
     let mut blocks =
         vec![Block::heading(messages.adjustment, 9), Block::paragraph(adjustment.unwrap_or(messages.no_adjustment))];
-    blocks.extend(before.map(|before| Block::Table(results_before(result, before, language))));
+    if let Some(before) = before {
+        blocks.push(Block::Paragraph(calibration_before(before, language)));
+        blocks.push(Block::Table(results_before(result, before, language)));
+    }
     if let Some(errors) = error_table(result, language) {
         if adjustment.is_none() {
             blocks.push(Block::paragraph(messages.errors_of_readings));
@@ -294,6 +297,19 @@ fn presupposed(result: &CalibrationResult, language: Language) -> String {
         format!(" {}: {}.", messages.rests_on_sentence, worst.join("; "))
     };
     format!("{}{effects}", rests_on::presupposed(result, language))
+}
+
+/// The day of the calibration before an adjustment, and the objections to it.
+fn calibration_before(before: &CalibrationResult, language: Language) -> String {
+    let messages = language.messages();
+    let day = before.session.date.parse().map_or_else(|_| before.session.date.clone(), |day| language.date(day));
+    let reasons: Vec<String> = before.objections().iter().map(|reason| objection(reason, language)).collect();
+    let verdict = if reasons.is_empty() {
+        String::new()
+    } else {
+        format!(". {}: {}", messages.not_acceptable, reasons.join("; "))
+    };
+    format!("{}: {day}{verdict}.", messages.calibrated_before_adjustment)
 }
 
 /// The parameters of the instrument before its adjustment and after.

@@ -56,7 +56,11 @@ fn calibrations(history: &UnitHistoryReport, language: Language) -> String {
         0 => String::new(),
         count => format!("; {}: {count}", language.messages().calibrations_left_out),
     };
-    format!("{}{}{left_out}", history.sessions.len(), ends.unwrap_or_default())
+    let refused = match history.sessions.iter().filter(|session| !session.acceptable).count() {
+        0 => String::new(),
+        count => format!("; {}: {count}", language.messages().calibrations_not_acceptable),
+    };
+    format!("{}{}{refused}{left_out}", history.sessions.len(), ends.unwrap_or_default())
 }
 
 fn sameness(history: &UnitHistoryReport, language: Language) -> String {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use centrical::MeasurementModel;
 use centrical_session::{
-    Axes, CalibrationResult, Error, Laboratory, Limitable, NoiseAnalysis, Place, UnknownUnit, claim_folder,
+    Axes, CalibrationResult, Date, Error, Laboratory, Limitable, NoiseAnalysis, Place, UnknownUnit, claim_folder,
     create_folder, history_up_to, read_history, refuse_inputs, write_whole,
 };
 
@@ -202,6 +202,15 @@ fn before(file: &Path, after: &CalibrationResult, laboratory: &Laboratory) -> Re
     let refuse = |found: String, expected: String| Err(Error::content(file, Place::Whole, found, expected));
     if unit(&before) != unit(after) {
         return refuse(format!("a result of {}", unit(&before)), format!("one of {}", unit(after)));
+    }
+    if before.session == after.session && before.inputs == after.inputs {
+        return refuse("the result itself".to_owned(), "a result from before the adjustment".to_owned());
+    }
+    let day = |result: &CalibrationResult| result.session.date.parse::<Date>().ok();
+    if let (Some(earlier), Some(later)) = (day(&before), day(after))
+        && earlier > later
+    {
+        return refuse(format!("a session of {earlier}"), format!("one of {later} or earlier"));
     }
     if laboratory.item.adjustment.is_none() {
         let expected = "[item] adjustment in the laboratory's file, what was adjusted between the two calibrations";

@@ -208,6 +208,7 @@ pub(crate) const ENGLISH: Messages = Messages {
         JCGM 100 (GUM) and EA-4/02. 1 g = 9.80665 m/s².",
     adjustment: "Before and after adjustment",
     before_adjustment: "Before adjustment, ± U",
+    calibrated_before_adjustment: "Calibration before the adjustment",
     after_adjustment: "After adjustment, ± U",
     no_adjustment: "The unit was not adjusted or repaired.",
     errors_of_readings: "Readings as received carry the error “before”; compensated with the parameters above they carry the \
@@ -338,6 +339,7 @@ pub(crate) const ENGLISH: Messages = Messages {
         together are largest.",
     less_than_stated: "scatter less than stated",
     calibrations_of_unit: "Calibrations of the unit",
+    calibrations_not_acceptable: "not acceptable, of these",
     calibrations_left_out: "others, which do not determine the same parameters",
     same_unit: "Agreement of the calibrations",
     parameters_scatter: "More scatter than stated",

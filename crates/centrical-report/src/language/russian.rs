@@ -207,6 +207,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
         1 g = 9,80665 м/с².",
     adjustment: "До и после юстировки",
     before_adjustment: "До юстировки, ± U",
+    calibrated_before_adjustment: "Калибровка до юстировки",
     after_adjustment: "После юстировки, ± U",
     no_adjustment: "Прибор не юстировался и не ремонтировался.",
     errors_of_readings: "Показания в состоянии поставки имеют погрешность «до»; скомпенсированные по приведённым \
@@ -335,6 +336,7 @@ pub(crate) const RUSSIAN: Messages = Messages {
         наибольшие.",
     less_than_stated: "разброс меньше указанного",
     calibrations_of_unit: "Калибровки прибора",
+    calibrations_not_acceptable: "из них не приняты",
     calibrations_left_out: "прочие, не определяющие тех же параметров",
     same_unit: "Согласие калибровок",
     parameters_scatter: "Разброс больше указанного",

@@ -44,7 +44,10 @@ pub fn unit_history_text(report: &UnitHistoryReport) -> Screen {
 
 fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
     let percent = percent(report.coverage);
-    let within = |limit: f64| format!("within {} µg with a probability of {percent}", two_digits(limit / MICRO_G));
+    let within = |limit: f64| {
+        let range = format!("{:.0} g", report.range / G);
+        format!("within {} µg up to {range} with a probability of {percent}", two_digits(limit / MICRO_G))
+    };
     match (&report.due, report.limit, report.due_after) {
         (Some(due), Some(limit), _) if report.is_acceptable() => {
             let within = within(limit);
@@ -80,6 +83,11 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
     if !report.not_compared.is_empty() {
         let words = format!("not determined before the last calibration: {}", short_list(&report.not_compared));
         screen.marked(Emphasis::Warning, "NOT COMPARED", &words);
+    }
+    if !report.not_in_last.is_empty() {
+        let words =
+            format!("the last calibration does not determine {}, as earlier ones do", short_list(&report.not_in_last));
+        screen.marked(Emphasis::Warning, "NOT IN LAST", &words);
     }
     if let Some(test) = report.sameness {
         let words = format!(

@@ -32,6 +32,11 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
         let words = format!("and {} more", counted(report.left_out.len() - SHOWN, "calibration"));
         screen.marked(Emphasis::Warning, "INCOMPLETE", &words);
     }
+    if report.not_acceptable > 0 {
+        let words =
+            format!("{} with an objection count as the others do", counted(report.not_acceptable, "calibration"));
+        screen.marked(Emphasis::Warning, "NOT ACCEPTABLE", &words);
+    }
     without_unit(&mut screen, report);
     for unit in &report.outlying {
         let most = unit.most.iter().map(|(name, score)| format!("{name} {score:+.1}")).collect::<Vec<_>>().join(", ");

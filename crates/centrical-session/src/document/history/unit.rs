@@ -58,6 +58,9 @@ pub struct UnitHistoryReport {
     /// Parameters of the last calibration that the others do not determine.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_compared: Vec<String>,
+    /// Parameters that earlier calibrations determine and the last one does not.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_in_last: Vec<String>,
     /// Whether parameters may drift.
     pub trend: bool,
     /// Probability of all intervals.
@@ -74,7 +77,8 @@ pub struct UnitHistoryReport {
     pub range: f64,
     /// Largest error of a compensated reading [m/s^2], if one was given.
     pub limit: Option<f64>,
-    /// Whether a reading compensated by the last calibration is within the limit on the day after it; null without a due date.
+    /// Whether a reading compensated by the last calibration is within the limit on the day after it; null without a limit, and where some
+    /// readings are not determined and none is beyond.
     pub is_within: Option<bool>,
     /// The first due date of all readings; null where some are not determined, unless one is overdue.
     pub due: Option<DueDate>,

@@ -24,6 +24,8 @@ pub struct UnitsHistoryReport {
     pub units: usize,
     /// Number of their calibrations that are compared.
     pub sessions: usize,
+    /// Number of these with an objection.
+    pub not_acceptable: usize,
     /// Calibrations that do not determine the same parameters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOutSession>,

@@ -80,6 +80,7 @@ pub fn unit_history(
         unit_serial: last.unit_serial.clone(),
         sessions: own.iter().map(|calibrated| calibrated.past()).collect(),
         left_out,
+        not_in_last: not_in(last, &own),
         not_compared: last.determined().map(str::to_owned).filter(|name| !names.contains(name)).collect(),
         trend,
         coverage: request.coverage,
@@ -89,7 +90,10 @@ pub fn unit_history(
         parameters,
         range: last.range,
         limit: request.limit,
-        is_within: due.as_ref().map(|due| due.date > last.date),
+        is_within: request
+            .limit
+            .filter(|_| are_all || due.is_some())
+            .map(|_| due.as_ref().is_none_or(|due| due.date > last.date)),
         due,
         due_after: request.limit.filter(|_| are_all).map(|_| last.date.after(HORIZON * DAYS)),
         readings,
@@ -98,6 +102,17 @@ pub fn unit_history(
 
 /// Family-wise level of what is called a change.
 const FAMILY: f64 = 0.05;
+
+/// Parameters of the unit that other `calibrations` determine and the last one does not.
+fn not_in(last: &Calibrated, calibrations: &[&Calibrated]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in calibrations.iter().flat_map(|calibrated| calibrated.determined()) {
+        if last.place(name).is_none() && !names.iter().any(|known| known == name) {
+            names.push(name.to_owned());
+        }
+    }
+    names
+}
 
 /// Parameters of the unit that all calibrations determine.
 pub fn common_names(calibrations: &[&Calibrated]) -> Vec<String> {

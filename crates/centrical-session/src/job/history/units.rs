@@ -61,6 +61,7 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
         unit_model: lasts[0].unit_model.clone(),
         units: units.len(),
         sessions: all.len(),
+        not_acceptable: all.iter().filter(|calibrated| !calibrated.acceptable).count(),
         left_out: left_out.clone(),
         is_tested: !tested.is_empty(),
         is_sound: outlying.is_empty() && findings.is_empty() && !parameters.iter().any(|p| p.batches_differ),

@@ -30,6 +30,7 @@ const PER_OCTAVE: f64 = 32.0;
 
 impl Alike {
     /// The class of a plateau.
+    #[expect(clippy::cast_possible_truncation)]
     pub fn class(self, plateau: &PlateauFit) -> Class {
         let omega = plateau.shape.omega.abs();
         let speed = (omega > 0.0).then(|| (omega.log2() * PER_OCTAVE).round() as i32);

@@ -16,7 +16,7 @@ use crate::reduction::locate::TURNING;
 use crate::statistics::whole;
 
 /// Cosines of nearly the same frequency are pooled: groups per octave.
-pub const PER_OCTAVE: f64 = 4.0;
+const PER_OCTAVE: f64 = 4.0;
 
 /// The contrasts of one plateau, each with its group.
 pub struct OfPlateau(Vec<(usize, Contrast)>);

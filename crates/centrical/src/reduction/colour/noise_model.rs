@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::alike::{Alike, Class};
-use super::contrasts::{Group, OfPlateau, PER_OCTAVE, contrasts, grouped};
+use super::contrasts::{Group, OfPlateau, contrasts, grouped};
 use super::likelihood::{Fit, STEPS};
 use super::markov::{Markov, gain};
 use super::posterior::{Mixture, Power, posterior};
@@ -190,8 +190,8 @@ fn noise_by_class(
     both.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, noise)| noise)
 }
 
-/// Groups of the lowest three octaves, where a mean feels the noise.
-const LOWEST: usize = 3 * PER_OCTAVE as usize;
+/// Groups of the lowest three octaves, four each, where a mean feels the noise.
+const LOWEST: usize = 12;
 
 fn count(groups: &[Group]) -> f64 {
     groups.iter().map(|group| group.count).sum()
