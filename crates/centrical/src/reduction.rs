@@ -29,6 +29,7 @@
 
 mod average;
 mod colour;
+mod copies;
 mod ellipsoid;
 mod error;
 mod locate;
@@ -46,6 +47,7 @@ mod turning;
 
 pub use average::{Averaging, PlateauFit, ReducedMounting, average};
 pub use colour::{EXCLUDED, NoiseModel, plateau_means};
+pub use copies::chance_of_likeness;
 pub use ellipsoid::{CoarseScale, coarse_scale};
 pub use error::{ReductionError, Stretch};
 pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate, locate_rests};

@@ -37,6 +37,38 @@ fn line(number: usize, to: &str, parts: &[&str]) {
     refused(&copy, &[&["m07.csv"], parts].concat());
 }
 
+/// The first record of the example with other rows.
+fn edited(row: impl Fn(&[f64]) -> String) -> Vec<String> {
+    let text = fs::read_to_string(crate::session::example().join("records/m01.csv")).unwrap();
+    let edited = |line: &str| match line.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>() {
+        Ok(cells) => row(&cells),
+        Err(_) => line.to_owned(),
+    };
+    text.lines().map(edited).collect()
+}
+
+/// A copy need not be one to the byte: without its end, by another clock, or rounded its means are the same but for a part of the noise.
+#[test]
+fn copies_of_a_record_are_found_by_their_means() {
+    let row = |cells: &[f64], shift: f64| format!("{},{},{},{}", cells[0] + shift, cells[1], cells[2], cells[3]);
+    let shortened = |lines: Vec<String>| lines[..lines.len() - 30].to_vec();
+    let copies = [
+        shortened(edited(|cells| row(cells, 0.0))),
+        edited(|cells| row(cells, 5.0)),
+        edited(|cells| format!("{},{:.3},{:.3},{:.3}", cells[0], cells[1], cells[2], cells[3])),
+    ];
+    for lines in copies {
+        let copy = Copy::new();
+        fs::write(copy.session().join("records/m13.csv"), lines.join("\n")).unwrap();
+        copy.edit("experiment.toml", |text| {
+            let mountings: Vec<&str> = text.split("[[mounting]]").collect();
+            let again = mountings[1].replace("records/m01.csv", "records/m13.csv");
+            format!("{text}\n[[mounting]]{again}")
+        });
+        refused(&copy, &["m13.csv", "found the readings of mounting 1, ", "two records have means so alike"]);
+    }
+}
+
 /// A record that was copied for another mounting, or named twice: its noise would count for half.
 #[test]
 fn readings_belong_to_one_mounting() {

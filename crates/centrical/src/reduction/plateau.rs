@@ -28,13 +28,15 @@ pub struct PlateauMean {
     pub mean: Vector3<f64>,
     /// Covariance of the mean [m^2/s^4].
     pub covariance: Matrix3<f64>,
+    /// Variance of the mean if its noise were white [m^2/s^4]; zero where the readings show rounding alone.
+    pub white_variance: Vector3<f64>,
     /// Once-per-revolution term: column 0 in phase with the start of the window, column 1 a quarter turn later [m/s^2].
     pub once_per_revolution: [Vector3<f64>; 2],
     /// How the unit turns, where it does so slowly: the mean reading is then that of a rest in the attitude of the arc.
     pub arc: Option<Arc>,
     /// Slope of the reading over the window [m/s^3]; zero where the unit turns. It does not enter the mean.
     pub drift: Vector3<f64>,
-    /// Standard uncertainty of the slope [m/s^3].
+    /// Standard uncertainty of the slope by the noise of all plateaus together [m/s^3].
     pub drift_uncertainty: Vector3<f64>,
     /// Covariance of either quadrature of the once-per-revolution term [m^2/s^4].
     pub once_per_revolution_covariance: Matrix3<f64>,

@@ -127,6 +127,18 @@ fn means_are_right_at_each_speed_where_the_noise_grows_with_it() {
     }
 }
 
+/// A speed that runs alike on all plateaus of a speed is a drift, and no noise of that speed: slopes are judged by the noise of all plateaus. By
+/// that of each speed their mean square is 8.4 in place of 12.9.
+#[test]
+fn what_drifts_at_each_speed_is_no_noise_of_it() {
+    let stream = Stream { running: 1e-4, lengths: vec![30.0; 6], settling: (0.0, 0.4), ..Stream::default() };
+    let square = |mean: &PlateauMean| mean.drift.component_div(&mean.drift_uncertainty).norm_squared() / 3.0;
+    let squares: Vec<f64> = means(&session(&stream, 40)).iter().map(|(_, _, mean)| square(mean)).collect();
+    let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+    println!("{mean:.1}");
+    assert!(mean > 10.5, "{mean}");
+}
+
 /// What the time constant of the settling is off by is no slow noise: the settling starts at ten thousand times the white
 /// noise, and the pooled density at zero frequency is that of the same noise without settling. Taken for noise it would
 /// raise it by a twentieth.

@@ -1,7 +1,10 @@
 //! Readings of two mountings at once: of a record that was copied or named twice the noise would count for half.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
+
+use centrical::reduction::{PlateauMean, chance_of_likeness};
+use centrical::uncertainty::Level;
 
 use crate::error::{Error, Place};
 use crate::experiment::Session;
@@ -29,6 +32,40 @@ pub(super) fn refuse_shared_readings(session: &Session, reduced: &Reduced) -> Re
             let found = format!("the readings of {}, {}", named(session, first), first.file.display());
             let expected = format!("readings of its own for {}", named(session, second));
             return Err(Error::content(second.file, Place::Whole, found, expected));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses records of one mounting whose means are more alike than the noise allows: copies that were trimmed, shifted or rounded. `means` by
+/// mounting. Among records of the same schedule, neighbours in the order of their largest mean are compared.
+pub(super) fn refuse_copies(session: &Session, means: &[Vec<PlateauMean>]) -> Result<(), Error> {
+    let experiment = &session.experiment;
+    let mut alike: BTreeMap<Vec<u64>, Vec<usize>> = BTreeMap::new();
+    for (number, mounting) in experiment.mountings.iter().enumerate().take(means.len()) {
+        let set_points = experiment.set_points.iter().filter(|set_point| set_point.mounting == number);
+        let schedule = set_points.flat_map(|set_point| [set_point.omega, set_point.angle].map(f64::to_bits));
+        let place = mounting.arm_y.iter().map(|r| r.to_bits());
+        let key = std::iter::once(mounting.position as u64).chain(place).chain(schedule);
+        alike.entry(key.collect()).or_default().push(number);
+    }
+    let pairs: usize = alike.values().map(|numbers| numbers.len() - 1).sum();
+    for mut numbers in alike.into_values() {
+        let size = |number: &usize| means[*number].iter().map(|mean| mean.mean.amax()).fold(0.0, f64::max);
+        numbers.sort_by(|a, b| size(a).total_cmp(&size(b)));
+        for pair in numbers.windows(2) {
+            let (first, second) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+            let chance = chance_of_likeness(&means[first], &means[second]).map(|chance| pairs as f64 * chance);
+            if let Some(chance) = chance.filter(|chance| Level::Objection.is_passed_by(*chance)) {
+                let file = |number: usize| session.mountings[number].record.as_deref().unwrap_or(&session.file);
+                let found = format!(
+                    "the readings of mounting {}, {}: two records have means so alike with a probability of {chance:.0e}",
+                    first + 1,
+                    file(first).display()
+                );
+                let expected = format!("readings of its own for mounting {}", second + 1);
+                return Err(Error::content(file(second), Place::Whole, found, expected));
+            }
         }
     }
     Ok(())

@@ -1,8 +1,9 @@
 //! All mountings of a session together: the noise of their records, the covariances of their means, the measured speeds.
 
-use centrical::reduction::{MeasuredSpeed, NoiseModel, ReducedMounting, measured_speeds, plateau_means};
+use centrical::reduction::{MeasuredSpeed, NoiseModel, PlateauMean, ReducedMounting, measured_speeds, plateau_means};
 
 use super::mounting::OfRecord;
+use super::own_readings::refuse_copies;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::RecordOverview;
@@ -18,7 +19,8 @@ pub(super) fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Redu
     let (reduced, records): (Vec<ReducedMounting>, Vec<RecordOverview>) =
         mountings.into_iter().map(|mounting| (mounting.reduced, mounting.overview)).unzip();
     let noise = NoiseModel::pool(&reduced);
-    let means = reduced.iter().flat_map(|mounting| plateau_means(mounting, &noise));
+    let means: Vec<Vec<PlateauMean>> = reduced.iter().map(|mounting| plateau_means(mounting, &noise)).collect();
+    refuse_copies(session, &means)?;
     let findings = |(m, interpolated): (&ReducedMounting, &Option<[u64; 3]>)| MountingFindings {
         settling_time: m.settling_time(),
         clock_offset: m.clock_offset(),
@@ -33,7 +35,7 @@ pub(super) fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Redu
     refuse_other_units(session, &speeds)?;
     Ok(Reduced {
         speeds,
-        plateaus: means.map(ReducedPlateau::from).collect(),
+        plateaus: means.into_iter().flatten().map(ReducedPlateau::from).collect(),
         mountings: reduced.iter().zip(&interpolated).map(findings).collect(),
         records,
         held_out: Vec::new(),

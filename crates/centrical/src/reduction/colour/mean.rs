@@ -20,7 +20,7 @@ pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) ->
     let drift = if plateau.turns() { Vector3::zeros() } else { drift };
     let (correction, of_correction) = step.effect(plateau);
     let covariance = |weights: &Weights| plateau.in_readings(&noise.covariance(weights, plateau));
-    let of_slope = covariance(&weights).diagonal();
+    let of_slope = plateau.in_readings(&noise.covariance_by_all(&weights, plateau)).diagonal();
     let of_noise = covariance(&plateau.cells.mean_weights());
     PlateauMean {
         window: plateau.window,
@@ -29,6 +29,7 @@ pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) ->
         left_out: plateau.left_out,
         mean: plateau.mean + correction,
         covariance: of_noise + of_correction + Matrix3::from_diagonal(&rounding),
+        white_variance: plateau.variance / plateau.samples.max(1) as f64,
         once_per_revolution: plateau.once_per_revolution,
         once_per_revolution_covariance: covariance_of_harmonic(plateau, noise),
         drift,

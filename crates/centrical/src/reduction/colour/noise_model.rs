@@ -113,12 +113,21 @@ impl NoiseModel {
     /// Covariance of a linear functional of the samples of a plateau. Of the arcs of slow rotation each counts as independent, with
     /// the noise at zero frequency: what they share is in their sums.
     pub(super) fn covariance(&self, weights: &Weights, plateau: &PlateauFit) -> Matrix3<f64> {
+        self.covariance_by(self.components_on(plateau), weights, plateau)
+    }
+
+    /// The same by the noise of all plateaus together. What drifts alike on all plateaus of a speed would count as their noise.
+    pub(super) fn covariance_by_all(&self, weights: &Weights, plateau: &PlateauFit) -> Matrix3<f64> {
+        self.covariance_by(&self.components, weights, plateau)
+    }
+
+    fn covariance_by(&self, components: &[Component], weights: &Weights, plateau: &PlateauFit) -> Matrix3<f64> {
         let cells = &plateau.cells;
         let time = |part: &Component| if plateau.turns() { None } else { part.correlation_time };
         let of = |components: &[Component]| -> Matrix3<f64> {
             components.iter().map(|part| part.density * gain(time(part), weights, cells)).sum()
         };
-        let mut covariance = of(self.components_on(plateau));
+        let mut covariance = of(components);
         if let Some(along) = &self.along {
             // Which way the axes across point is arbitrary: no noise goes with them and along.
             for axis in 0..2 {

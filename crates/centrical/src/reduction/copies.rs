@@ -1,0 +1,35 @@
+//! Records that are copies of each other, trimmed, shifted in time, resampled or rounded.
+//!
+//! Means of two records of one mounting differ by the noise of both at least; speeds and a second mounting of the unit add to that. Means of
+//! a copy differ by the noise of the samples that it lacks. So differences far below the noise are no chance. The noise of a mean is at most
+//! that of white noise, where it is blue as behind a sigma-delta converter, and at most what the session's noise gives it, where drift
+//! makes that too large: the smaller of both.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::plateau::PlateauMean;
+use crate::uncertainty::chi_squared_tail;
+
+/// Fewer differences are alike by chance.
+const FEWEST: usize = 6;
+
+/// Probability that means of two records of their own are so alike: the lower tail of chi^2 of their differences. `None` where the plateaus
+/// are not as many, or too few show noise.
+pub fn chance_of_likeness(one: &[PlateauMean], other: &[PlateauMean]) -> Option<f64> {
+    if one.len() != other.len() {
+        return None;
+    }
+    let squares = one.iter().zip(other).filter_map(|(a, b)| {
+        let covariance = noise(a) + noise(b);
+        let difference = a.mean - b.mean;
+        Some(difference.dot(&covariance.cholesky()?.solve(&difference)))
+    });
+    let (count, chi_squared) = squares.fold((0, 0.0), |(count, sum), square| (count + 3, sum + square));
+    (count >= FEWEST).then(|| 1.0 - chi_squared_tail(chi_squared, count))
+}
+
+/// The least noise that a mean can have.
+fn noise(plateau: &PlateauMean) -> Matrix3<f64> {
+    let white: Vector3<f64> = plateau.white_variance.component_div(&plateau.covariance.diagonal());
+    plateau.covariance * white.min().min(1.0)
+}
