@@ -25,7 +25,7 @@ fn rests_in_counts(folder: &Path, name: &str, date: &str, scale: f64, zero: f64)
         let mut cells = line.split(',');
         let time = cells.next().unwrap_or_default();
         let counts = cells.map(|cell| cell.trim().parse::<f64>().map(|f| format!("{:.0}", f * scale + zero)));
-        let counts: Vec<String> = counts.map(|counts| counts.unwrap_or_default()).collect();
+        let counts: Vec<String> = counts.map(Result::unwrap_or_default).collect();
         if n == 0 { "t,f1,f2,f3".to_owned() } else { format!("{time},{}", counts.join(",")) }
     });
     fs::write(folder.join(format!("{name}.csv")), lines.collect::<Vec<_>>().join("\n")).unwrap();
