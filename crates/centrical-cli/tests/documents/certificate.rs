@@ -174,6 +174,8 @@ fn adjustment_and_decision() {
         let message = String::from_utf8_lossy(&refused.stderr).into_owned();
         assert!(refused.status.code() == Some(2) && message.contains(expected), "{message}");
     }
+    before["session"]["date"] = "2026-10-04".into();
+    fs::write(folder.path().join("before.json"), before.to_string()).unwrap();
     let unsaid = report(&[example("laboratory.toml").to_str().unwrap()]);
     let message = String::from_utf8_lossy(&unsaid.stderr).into_owned();
     assert!(unsaid.status.code() == Some(2) && message.contains("[item] adjustment"), "{message}");

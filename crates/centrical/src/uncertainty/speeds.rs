@@ -86,7 +86,7 @@ pub fn speed_contradictions(speeds: &[ShownSpeed], stated: &StatedSpeeds) -> Vec
     let offset = common.as_ref().map(|common| common.difference);
     let mut off: Vec<usize> =
         (0..speeds.len()).filter(|n| Level::Reported.is_passed_by(tested.probability(*n, offset))).collect();
-    for extent in tested.extents(&off) {
+    for extent in tested.extents(&off, offset.unwrap_or(0.0)) {
         let group: Vec<usize> = off.iter().copied().filter(|n| tested.is_in(&extent, *n)).collect();
         found.push(tested.contradiction(extent, &group, offset));
         off.retain(|n| !group.contains(n));
@@ -166,18 +166,20 @@ impl<'a> Tested<'a> {
         family_wise(two_sided(deviation, degrees), self.family())
     }
 
-    /// What the plateaus that are off have in common: whole mountings first, then whole speeds, then the others.
-    fn extents(&self, off: &[usize]) -> Vec<Extent> {
+    /// What the plateaus that are off from the `common` difference have in common: whole mountings first, then whole speeds, then the others.
+    fn extents(&self, off: &[usize], common: f64) -> Vec<Extent> {
         if off.is_empty() {
             return Vec::new();
         }
-        if off.len() == self.speeds.len() {
+        // One cause moves speeds one way: those that are off either way have nothing in common.
+        let all_off = |is_of: &dyn Fn(&ShownSpeed) -> bool| {
+            let of: Vec<usize> = (0..self.speeds.len()).filter(|n| is_of(&self.speeds[*n])).collect();
+            let above = of.iter().filter(|n| self.difference[**n] > common).count();
+            !of.is_empty() && (above == 0 || above == of.len()) && of.iter().all(|n| off.contains(n))
+        };
+        if all_off(&|_| true) {
             return vec![Extent::All];
         }
-        let all_off = |is_of: &dyn Fn(&ShownSpeed) -> bool| {
-            let mut of = (0..self.speeds.len()).filter(|n| is_of(&self.speeds[*n])).peekable();
-            of.peek().is_some() && of.all(|n| off.contains(&n))
-        };
         let mut mountings: Vec<usize> = off.iter().map(|n| self.speeds[*n].mounting).collect();
         mountings.dedup();
         mountings.retain(|m| all_off(&|s| s.mounting == *m));

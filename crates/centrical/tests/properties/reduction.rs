@@ -127,6 +127,22 @@ fn means_are_right_at_each_speed_where_the_noise_grows_with_it() {
     }
 }
 
+/// Noise of one mounting, ten times that of the others: its means are right to their own uncertainty. Eight sessions have 144 degrees of
+/// freedom: 0.12, four times that. With the noise of all mountings the ratio is 9.
+#[test]
+fn a_noisy_mounting_has_its_own_noise() {
+    let mut sum = 0.0;
+    for seed in 60..68 {
+        let mut whole = session(&Stream::default(), seed);
+        let noisy = Stream { white: 2e-2, seed: 1000 * seed + 500, ..Stream::default() };
+        whole[4] = (noisy.clone(), reduced(&noisy));
+        let of_it = means(&whole).into_iter().filter(|(stream, ..)| stream.seed == noisy.seed);
+        sum += of_it.map(|(stream, k, mean)| chi_squared(stream, k, &mean)).sum::<f64>();
+    }
+    let ratio = sum / 144.0;
+    assert!((ratio - 1.0).abs() < 0.48, "{ratio}");
+}
+
 /// A speed that runs alike on all plateaus of a speed is a drift, and no noise of that speed: slopes are judged by the noise of all plateaus. By
 /// that of each speed their mean square is 8.4 in place of 12.9.
 #[test]

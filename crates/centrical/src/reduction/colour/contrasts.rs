@@ -6,14 +6,15 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::markov::{Markov, gain};
 use super::posterior::Power;
-use crate::reduction::average::{CELLS, PlateauFit};
+use crate::reduction::average::{CELLS, PlateauFit, Weights};
 use crate::reduction::locate::TURNING;
 use crate::statistics::whole;
+use crate::uncertainty::chi_squared_tail;
 
 /// Cosines of nearly the same frequency are pooled: groups per octave.
 const PER_OCTAVE: f64 = 4.0;
@@ -70,6 +71,31 @@ pub fn grouped<'a>(plateaus: impl IntoIterator<Item = &'a OfPlateau>) -> Vec<Gro
     }
     groups.into_values().map(Group::averaged).collect()
 }
+
+/// Scale of the noise of one plateau on each axis, over that of a model by which functionals have the `covariance`: of a noisy cable, or of one
+/// mounting. The lowest contrasts may hold a drift and do not count. What chance explains is 1.
+pub fn own_scale(plateau: &PlateauFit, covariance: impl Fn(&Weights) -> Matrix3<f64>) -> Vector3<f64> {
+    let numbers: Vec<usize> = half_periods().into_iter().filter(|number| *number > DRIFTS).collect();
+    let squares = numbers.iter().map(|number| {
+        let (weights, y) = plateau.cells.contrast(&cosine(*number));
+        (plateau.noise_axes * y)
+            .component_mul(&(plateau.noise_axes * y))
+            .component_div(&covariance(&weights).diagonal())
+    });
+    let sums: Vector3<f64> = squares.sum();
+    let count = numbers.len();
+    sums.map(|sum| {
+        let above = chi_squared_tail(sum, count);
+        let is_chance = above.min(1.0 - above) > BY_CHANCE;
+        if is_chance || !sum.is_finite() || sum <= 0.0 { 1.0 } else { (sum / count as f64).sqrt() }
+    })
+}
+
+/// Half-periods of contrasts that a drift over the plateau may reach.
+const DRIFTS: usize = 8;
+
+/// Probability of a scale that is taken to be one of its own, of a plateau like the others.
+const BY_CHANCE: f64 = 1e-6;
 
 /// All of the lowest, where a mean feels the noise, and eight an octave further up.
 fn half_periods() -> Vec<usize> {

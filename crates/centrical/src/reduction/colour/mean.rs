@@ -19,9 +19,9 @@ pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) ->
     let (weights, drift) = plateau.cells.slope(plateau.settling_rate().as_deref());
     let drift = if plateau.turns() { Vector3::zeros() } else { drift };
     let (correction, of_correction) = step.effect(plateau);
-    let covariance = |weights: &Weights| plateau.in_readings(&noise.covariance(weights, plateau));
-    let of_slope = plateau.in_readings(&noise.covariance_by_all(&weights, plateau)).diagonal();
-    let of_noise = covariance(&plateau.cells.mean_weights());
+    let own = Matrix3::from_diagonal(&noise.own_scale(plateau));
+    let of_slope = (own * plateau.in_readings(&noise.covariance_by_all(&weights, plateau)) * own).diagonal();
+    let of_noise = own * plateau.in_readings(&noise.covariance(&plateau.cells.mean_weights(), plateau)) * own;
     PlateauMean {
         window: plateau.window,
         samples: plateau.samples,

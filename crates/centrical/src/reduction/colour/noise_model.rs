@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::alike::{Alike, Class};
-use super::contrasts::{Group, OfPlateau, contrasts, grouped};
+use super::contrasts::{Group, OfPlateau, contrasts, grouped, own_scale};
 use super::likelihood::{Fit, STEPS};
 use super::markov::{Markov, gain};
 use super::posterior::{Mixture, Power, posterior};
@@ -103,6 +103,15 @@ impl NoiseModel {
     /// The same on one plateau.
     pub(super) fn density_on(&self, plateau: &PlateauFit, f: f64) -> Matrix3<f64> {
         density(self.components_on(plateau), f)
+    }
+
+    /// Scale of the noise of one plateau on each axis over that of the others of its class. The trembling of a hand is another on each rest, and
+    /// where readings show rounding alone, nothing shows the noise.
+    pub(super) fn own_scale(&self, plateau: &PlateauFit) -> Vector3<f64> {
+        if self.along.is_some() || plateau.variance.min() <= 0.0 {
+            return Vector3::repeat(1.0);
+        }
+        own_scale(plateau, |weights| self.covariance(weights, plateau))
     }
 
     fn components_on(&self, plateau: &PlateauFit) -> &[Component] {

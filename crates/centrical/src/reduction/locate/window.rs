@@ -274,43 +274,41 @@ impl Steady {
     fn explained_by(&self, settling: Settling) -> f64 {
         // Later values are negligible.
         let shown = self.since.partition_point(|since| *since < FADED * settling.time);
-        let law: Vec<f64> = self.since[..shown].iter().map(|since| settling.value(*since)).collect();
-        self.explained_by_column(&law)
+        widest(Explained { of: self, shown, law: |since| settling.value(since) })
     }
 
     /// The part that a straight line explains.
     fn explained_by_drift(&self) -> f64 {
-        self.explained_by_column(&self.since)
-    }
-
-    /// The part that a column explains, which is zero after its last value.
-    fn explained_by_column(&self, column: &[f64]) -> f64 {
-        widest(Explained { of: self, column })
+        widest(Explained { of: self, shown: self.since.len(), law: |since| since })
     }
 }
 
-/// A column to be tried on residuals.
-struct Explained<'a> {
+/// A law of time to be tried on the first residuals; it is zero after the `shown` ones.
+struct Explained<'a, L> {
     of: &'a Steady,
-    column: &'a [f64],
+    shown: usize,
+    law: L,
 }
 
-impl WithSimd for Explained<'_> {
+impl<L: Fn(f64) -> f64> WithSimd for Explained<'_, L> {
     type Output = f64;
 
     /// `sum_k (c^T r_k)^2 / (c^T c - sum_j (q_j^T c)^2)`: the residuals are orthogonal to the design, and at least a fourth of
     /// a column's square is, since a settling fades in a quarter of the plateau, and a line has zero at its first block.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let (Steady { q, residuals, .. }, column) = (self.of, self.column);
-        let n = column.len();
-        let mut square = dot(simd, column, column);
+        let (Steady { since, q, residuals, .. }, n) = (self.of, self.shown);
+        let mut column = vec![0.0; n];
+        for (value, since) in column.iter_mut().zip(since) {
+            *value = (self.law)(*since);
+        }
+        let mut square = dot(simd, &column, &column);
         for q in q {
-            square -= dot(simd, &q[..n], column).powi(2);
+            square -= dot(simd, &q[..n], &column).powi(2);
         }
         let mut explained = 0.0;
         for residuals in residuals {
-            explained += dot(simd, column, &residuals[..n]).powi(2) / square;
+            explained += dot(simd, &column, &residuals[..n]).powi(2) / square;
         }
         explained
     }
