@@ -10,8 +10,11 @@ mod posterior;
 mod rounding;
 mod settling;
 
+use rayon::prelude::*;
+
 use super::average::{PlateauFit, ReducedMounting};
 use super::plateau::PlateauMean;
+use contrasts::fast_cosines;
 use mean::mean;
 pub use noise_model::{EXCLUDED, NoiseModel};
 use settling::TimeStep;
@@ -19,9 +22,10 @@ use settling::TimeStep;
 /// The plateau means of a mounting in the order of the schedule, with their covariances under the session's noise.
 pub fn plateau_means(mounting: &ReducedMounting, noise: &NoiseModel) -> Vec<PlateauMean> {
     let step = TimeStep::estimate(&mounting.plateaus, noise);
+    let cosines = fast_cosines();
     let mean = |(plateau, speed): (&PlateauFit, &Option<f64>)| PlateauMean {
         measured_speed: *speed,
-        ..mean(plateau, noise, &step)
+        ..mean(plateau, noise, &step, &noise.own_scale(plateau, &cosines))
     };
-    mounting.plateaus.iter().zip(&mounting.speeds).map(mean).collect()
+    mounting.plateaus.par_iter().zip(&mounting.speeds).map(mean).collect()
 }

@@ -72,18 +72,24 @@ pub fn grouped<'a>(plateaus: impl IntoIterator<Item = &'a OfPlateau>) -> Vec<Gro
     groups.into_values().map(Group::averaged).collect()
 }
 
+/// Cosines that no drift over a plateau reaches.
+pub fn fast_cosines() -> Vec<Vec<f64>> {
+    half_periods().into_iter().filter(|number| *number > DRIFTS).map(cosine).collect()
+}
+
 /// Scale of the noise of one plateau on each axis, over that of a model by which functionals have the `covariance`: of a noisy cable, or of one
-/// mounting. The lowest contrasts may hold a drift and do not count. What chance explains is 1.
-pub fn own_scale(plateau: &PlateauFit, covariance: impl Fn(&Weights) -> Matrix3<f64>) -> Vector3<f64> {
-    let numbers: Vec<usize> = half_periods().into_iter().filter(|number| *number > DRIFTS).collect();
-    let squares = numbers.iter().map(|number| {
-        let (weights, y) = plateau.cells.contrast(&cosine(*number));
-        (plateau.noise_axes * y)
-            .component_mul(&(plateau.noise_axes * y))
-            .component_div(&covariance(&weights).diagonal())
+/// mounting. It is that of the contrasts with `cosines`; what chance explains is 1.
+pub fn own_scale(
+    plateau: &PlateauFit,
+    cosines: &[Vec<f64>],
+    covariance: impl Fn(&Weights) -> Matrix3<f64>,
+) -> Vector3<f64> {
+    let squares = cosines.iter().map(|cosine| {
+        let (weights, y) = plateau.cells.contrast(cosine);
+        let y = plateau.noise_axes * y;
+        y.component_mul(&y).component_div(&covariance(&weights).diagonal())
     });
-    let sums: Vector3<f64> = squares.sum();
-    let count = numbers.len();
+    let (sums, count): (Vector3<f64>, usize) = (squares.sum(), cosines.len());
     sums.map(|sum| {
         let above = chi_squared_tail(sum, count);
         let is_chance = above.min(1.0 - above) > BY_CHANCE;

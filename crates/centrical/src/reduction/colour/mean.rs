@@ -10,8 +10,8 @@ use super::settling::TimeStep;
 use crate::reduction::average::{PlateauFit, Weights};
 use crate::reduction::plateau::PlateauMean;
 
-/// The mean of a plateau.
-pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) -> PlateauMean {
+/// The mean of a plateau whose noise has a scale of its `own` on each axis.
+pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep, own: &Vector3<f64>) -> PlateauMean {
     let [cosine, sine] = plateau.once_per_revolution;
     let amplitude = cosine.zip_map(&sine, f64::hypot);
     let rounding = plateau.digit.zip_zip_map(&noise.quietest(), &amplitude, bias_variance);
@@ -19,7 +19,7 @@ pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep) ->
     let (weights, drift) = plateau.cells.slope(plateau.settling_rate().as_deref());
     let drift = if plateau.turns() { Vector3::zeros() } else { drift };
     let (correction, of_correction) = step.effect(plateau);
-    let own = Matrix3::from_diagonal(&noise.own_scale(plateau));
+    let own = Matrix3::from_diagonal(own);
     let of_slope = (own * plateau.in_readings(&noise.covariance_by_all(&weights, plateau)) * own).diagonal();
     let of_noise = own * plateau.in_readings(&noise.covariance(&plateau.cells.mean_weights(), plateau)) * own;
     PlateauMean {

@@ -107,11 +107,11 @@ impl NoiseModel {
 
     /// Scale of the noise of one plateau on each axis over that of the others of its class. The trembling of a hand is another on each rest, and
     /// where readings show rounding alone, nothing shows the noise.
-    pub(super) fn own_scale(&self, plateau: &PlateauFit) -> Vector3<f64> {
+    pub(super) fn own_scale(&self, plateau: &PlateauFit, cosines: &[Vec<f64>]) -> Vector3<f64> {
         if self.along.is_some() || plateau.variance.min() <= 0.0 {
             return Vector3::repeat(1.0);
         }
-        own_scale(plateau, |weights| self.covariance(weights, plateau))
+        own_scale(plateau, cosines, |weights| self.covariance(weights, plateau))
     }
 
     fn components_on(&self, plateau: &PlateauFit) -> &[Component] {
