@@ -232,6 +232,10 @@ impl Session {
             set_points: Vec::new(),
         };
         let error_model = terms::error_model(file, &form.model.error_model)?;
+        if let Some(change) = form.uncertainty.get("bias_change").filter(|_| form.tumble.is_empty()) {
+            let expected = "[[tumble]] rests, whose biases may differ by it from those on the arm";
+            return Err(TomlPath::table(file, "uncertainty").unexpected("bias_change", change.to_string(), expected));
+        }
         let path = |name: &Option<String>| name.as_ref().map(|name| folder.join(name));
         Ok(Self {
             file: file.to_owned(),

@@ -374,6 +374,16 @@ fn measured_speeds() {
     );
 }
 
+/// It bounds nothing between mountings.
+#[test]
+fn a_change_of_bias_needs_rests() {
+    assert_eq!(
+        message(spoiled(CENTRIFUGE, &format!("{CENTRIFUGE}\n\n[uncertainty]\nbias_change = \"50 ug\""))),
+        "experiment.toml, [uncertainty], bias_change: found \"50 ug\", expected [[tumble]] rests, whose biases may \
+         differ by it from those on the arm"
+    );
+}
+
 #[test]
 fn positions_of_a_pair() {
     let collision = spoiled("pair = \"A\"\n", "").replace("pair = \"A\"", "pair = \"1\"");
