@@ -1,7 +1,9 @@
-//! Robust statistics, and random numbers.
+//! Laws of chance, robust statistics, and random numbers.
 
+mod laws;
 mod random;
 mod robust;
 
+pub use laws::chi_squared_tail;
 pub(crate) use random::Random;
 pub(crate) use robust::{MAD, PIECE, cut, median, spread, watched_median, whole};

@@ -33,12 +33,13 @@ mod tilt;
 mod validity;
 mod verdict;
 
+pub use crate::statistics::chi_squared_tail;
 pub use axes::{ModelInAxes, ScaleForm};
 pub use between_rests::BetweenRests;
 pub use budget::{Budget, Contribution, Improvement};
 pub use comparison::{Comparison, Difference, Estimates, compare};
 pub use compensated::{Compensated, CurvePoint};
-pub use coverage::{Degrees, chi_squared_tail, coverage_factor, effective_degrees_of_freedom};
+pub use coverage::{Degrees, coverage_factor, effective_degrees_of_freedom};
 pub use drift::{PlateauDrift, SessionDrift, Slope, slope_of_speed};
 pub use holm::family_wise;
 pub use monte_carlo::{Method, MonteCarlo, ParameterStatistics, Settings, WeightedSquare, monte_carlo};

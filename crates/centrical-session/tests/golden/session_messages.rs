@@ -378,7 +378,7 @@ fn measured_speeds() {
 #[test]
 fn a_change_of_bias_needs_rests() {
     assert_eq!(
-        message(spoiled(CENTRIFUGE, &format!("{CENTRIFUGE}\n\n[uncertainty]\nbias_change = \"50 ug\""))),
+        message(spoiled("rotation = \"+3\"", "rotation = \"+3\"\n\n[uncertainty]\nbias_change = \"50 ug\"")),
         "experiment.toml, [uncertainty], bias_change: found \"50 ug\", expected [[tumble]] rests, whose biases may \
          differ by it from those on the arm"
     );

@@ -20,7 +20,7 @@ use super::line::{Curve, Line};
 use super::quantiles::Quantiles;
 use super::series::{Point, Series};
 use crate::linalg::least_squares::LeastSquares;
-use crate::uncertainty::chi_squared_tail;
+use crate::statistics::chi_squared_tail;
 
 /// The component of variance between sessions, beside the stated one.
 #[derive(Debug, Clone, PartialEq)]

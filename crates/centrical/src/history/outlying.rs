@@ -24,7 +24,7 @@ use self::means::UnitMeans;
 use self::rows::Rows;
 pub use self::sessions::UnitSessions;
 use crate::statistics::Random;
-use crate::uncertainty::chi_squared_tail;
+use crate::statistics::chi_squared_tail;
 
 /// One unit against the others.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::linalg::least_squares::LeastSquares;
-use crate::uncertainty::chi_squared_tail;
+use crate::statistics::chi_squared_tail;
 
 /// The estimates of one session.
 #[derive(Debug, Clone, PartialEq)]

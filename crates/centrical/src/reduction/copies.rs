@@ -8,7 +8,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::plateau::PlateauMean;
-use crate::uncertainty::chi_squared_tail;
+use crate::statistics::chi_squared_tail;
 
 /// Fewer differences are alike by chance.
 const FEWEST: usize = 6;

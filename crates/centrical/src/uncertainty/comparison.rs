@@ -5,8 +5,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::coverage::chi_squared_tail;
 use super::verdict::Level;
+use crate::statistics::chi_squared_tail;
 
 /// The estimates of one calibration that are determined.
 #[derive(Debug, Clone, PartialEq)]

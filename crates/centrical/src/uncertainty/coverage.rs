@@ -1,7 +1,6 @@
 //! From standard to expanded uncertainty: degrees of freedom and coverage factors (GUM, annex G).
 
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
-use statrs::function::gamma::gamma_ur;
 
 /// Degrees of freedom of a standard uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,15 +51,3 @@ fn nearly_normal(z: f64, nu: f64) -> f64 {
 
 /// Degrees beyond which the expansion has eight digits and more. The iteration for t loses digits there, and does not end beyond 1e7.
 const MANY: f64 = 1e3;
-
-/// Probability that chi^2 with `nu` degrees of freedom exceeds `chi_squared`; 1 without any degree, 0 if it is no finite
-/// number.
-pub fn chi_squared_tail(chi_squared: f64, nu: usize) -> f64 {
-    if nu == 0 || chi_squared <= 0.0 {
-        1.0
-    } else if chi_squared.is_finite() {
-        gamma_ur(0.5 * nu as f64, 0.5 * chi_squared)
-    } else {
-        0.0
-    }
-}

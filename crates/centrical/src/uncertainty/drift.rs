@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::coverage::chi_squared_tail;
 use super::pattern::Trend;
 use crate::fit::{Calibration, Termination};
 use crate::model::FitError;
+use crate::statistics::chi_squared_tail;
 
 /// Slope of the readings over one plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]

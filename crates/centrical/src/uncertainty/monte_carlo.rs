@@ -9,12 +9,13 @@ use rayon::prelude::*;
 
 use super::budget::Budget;
 use super::comparison::weighted_square;
-use super::coverage::{Degrees, chi_squared_tail, coverage_factor};
+use super::coverage::{Degrees, coverage_factor};
 use crate::fit::{Calibration, Data, Fit, Structure, Termination};
 use crate::model::whitening::noise_factor;
 use crate::model::{FitError, MeasurementModel, Observation, SetPoint};
 use crate::progress::{OnProgress, advance};
 use crate::statistics::Random;
+use crate::statistics::chi_squared_tail;
 
 /// What to draw, and how often.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::coverage::chi_squared_tail;
 use crate::model::{MeasurementModel, Observation};
+use crate::statistics::chi_squared_tail;
 
 /// A plateau against the first one of the same set point in the same mounting.
 #[derive(Debug, Clone, Copy, PartialEq)]

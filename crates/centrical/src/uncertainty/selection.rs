@@ -9,12 +9,12 @@ use std::collections::{HashMap, HashSet};
 use centrical_compensate::Monomial;
 use nalgebra::Vector3;
 
-use super::coverage::chi_squared_tail;
 use super::rivals::columns::Columns;
 use super::validity::f_tail;
 use crate::fit::{Calibration, Data, Fit, Termination};
 use crate::model::{ErrorModel, Extension, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
 use crate::progress::{OnProgress, advance};
+use crate::statistics::chi_squared_tail;
 
 /// A model that could be meant.
 #[derive(Debug, Clone, PartialEq)]

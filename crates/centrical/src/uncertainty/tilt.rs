@@ -11,9 +11,9 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Complex, Matrix2, Matrix3, Vector2, Vector3};
 
-use super::coverage::chi_squared_tail;
 use crate::fit::{Calibration, Fit};
 use crate::model::{ArmMotion, MeasurementModel};
+use crate::statistics::chi_squared_tail;
 
 /// The once-per-revolution term of a plateau.
 #[derive(Debug, Clone, Copy, PartialEq)]

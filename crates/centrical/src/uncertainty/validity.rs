@@ -11,10 +11,10 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use statrs::function::beta::beta_reg;
 
-use super::coverage::chi_squared_tail;
 use crate::fit::{Calibration, Data};
 use crate::model::{FitError, Observation};
 use crate::progress::{OnProgress, advance, unwatched};
+use crate::statistics::chi_squared_tail;
 
 /// A share of a reading below this is rounding: the reading is not redundant, nothing checks it.
 const REDUNDANT: f64 = 1e-8;

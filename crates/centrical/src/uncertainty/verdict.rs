@@ -2,8 +2,8 @@
 
 use crate::fit::Termination;
 
-use super::coverage::chi_squared_tail;
 use crate::reduction::EXCLUDED;
+use crate::statistics::chi_squared_tail;
 
 /// A level of probability: what is less probable by chance is not taken for chance.
 ///

@@ -13,8 +13,8 @@ use super::markov::{Markov, gain};
 use super::posterior::Power;
 use crate::reduction::average::{CELLS, PlateauFit, Weights};
 use crate::reduction::locate::TURNING;
+use crate::statistics::chi_squared_tail;
 use crate::statistics::whole;
-use crate::uncertainty::chi_squared_tail;
 
 /// Cosines of nearly the same frequency are pooled: groups per octave.
 const PER_OCTAVE: f64 = 4.0;

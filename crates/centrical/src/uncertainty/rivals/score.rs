@@ -3,7 +3,7 @@
 use super::catalogue::{Rivals, Suspect};
 use super::columns::Seen;
 use crate::model::{Parameter, Rival};
-use crate::uncertainty::coverage::chi_squared_tail;
+use crate::statistics::chi_squared_tail;
 use crate::uncertainty::holm::holm;
 use crate::uncertainty::validity::chance_of_explaining;
 use crate::uncertainty::verdict::Level;
