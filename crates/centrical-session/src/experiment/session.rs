@@ -232,7 +232,9 @@ impl Session {
             set_points: Vec::new(),
         };
         let error_model = terms::error_model(file, &form.model.error_model)?;
-        if let Some(change) = form.uncertainty.get("bias_change").filter(|_| form.tumble.is_empty()) {
+        // Rests of a plan may be among its candidates.
+        let has_rests = !form.tumble.is_empty() || form.candidates.is_some();
+        if let Some(change) = form.uncertainty.get("bias_change").filter(|_| !has_rests) {
             let expected = "[[tumble]] rests, whose biases may differ by it from those on the arm";
             return Err(TomlPath::table(file, "uncertainty").unexpected("bias_change", change.to_string(), expected));
         }

@@ -7,9 +7,12 @@
 //!
 //! `Q(tau^2) = min_beta sum_i (y_i - x_i^T beta)^2 / (v_i + tau^2)` follows chi^2 with `nu = k - q` degrees of freedom at the true
 //! `tau^2`, exactly, and falls as `tau^2` grows. Errors `s ~ N(0, 1)` that some sessions share and others do not, as after a move to another
-//! station, change the values by `B s`: then `Q(tau^2) = min_(beta, s) sum_i (y_i - x_i^T beta - (B s)_i)^2 / (v_i + tau^2) + |s|^2`. All that is said of `tau^2` solves `Q(tau^2) = c`: the estimate of R. C. Paule
-//! and J. Mandel (J. Res. NBS 87, 1982) for `c = nu`; the interval of W. Viechtbauer (Statistics in Medicine 26, 2007) for quantiles of
-//! chi^2; the law of a forecast for all of them.
+//! station, change the values by `B s`:
+//!
+//! `Q(tau^2) = min_(beta, s) sum_i (y_i - x_i^T beta - (B s)_i)^2 / (v_i + tau^2) + |s|^2`.
+//!
+//! All that is said of `tau^2` solves `Q(tau^2) = c`: the estimate of R. C. Paule and J. Mandel (J. Res. NBS 87, 1982) for `c = nu`; the
+//! interval of W. Viechtbauer (Statistics in Medicine 26, 2007) for quantiles of chi^2; the law of a forecast for all of them.
 
 use std::mem;
 
