@@ -340,7 +340,7 @@ for four in (compensate, compensate_raw):
         assert "found 4 numbers, expected 3" in str(error)
     else:
         sys.exit(1)
-# A row of which one number is masked has no specific force.
+# A row with one masked number has no specific force.
 for array, of in ((readings, compensate_array), (raw, compensate_raw_array), (numpy.rint(raw).astype(int), compensate_raw_array)):
     mask = [[True, False, False], [False, False, False]]
     found = of(numpy.ma.masked_array(array[1:3], mask=mask))

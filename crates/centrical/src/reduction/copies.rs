@@ -1,9 +1,9 @@
 //! Records that are copies of each other, trimmed, shifted in time, resampled or rounded.
 //!
 //! Means of two records of one mounting differ by the noise of both at least; speeds and a second mounting of the unit add to that. Means of
-//! a copy differ by the noise of the samples that it lacks. So differences far below the noise are no chance. The noise of a mean is at most
-//! that of white noise, where it is blue as behind a sigma-delta converter, and at most what the session's noise gives it, where drift
-//! makes that too large: the smaller of both.
+//! a copy differ by the noise of the samples that it lacks. So differences far below the noise are no chance. Either estimate of
+//! the noise of a mean may be too large: white noise, if the noise is blue as behind a sigma-delta converter; the noise of the session, if it holds
+//! a drift. The smaller one counts.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -14,8 +14,7 @@ use crate::fit::{Calibration, Data, Fit, Structure, Termination};
 use crate::model::whitening::noise_factor;
 use crate::model::{FitError, MeasurementModel, Observation, SetPoint};
 use crate::progress::{OnProgress, advance};
-use crate::statistics::Random;
-use crate::statistics::chi_squared_tail;
+use crate::statistics::{Random, chi_squared_tail};
 
 /// What to draw, and how often.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -116,8 +116,13 @@ pub(super) fn left_out(left_out: &LeftOutSession) -> String {
 
 /// The first names, and the number of the others.
 fn short_list(names: &[String]) -> String {
-    let first = names.iter().take(NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
-    if names.len() > NAMES { format!("{first} and {} more", names.len() - NAMES) } else { first }
+    first_of(names, NAMES)
+}
+
+/// The first `most` of `names`, and the number of the others.
+pub(super) fn first_of(names: &[String], most: usize) -> String {
+    let first = names.iter().take(most).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if names.len() > most { format!("{first} and {} more", names.len() - most) } else { first }
 }
 
 /// Names in a short list.

@@ -3,7 +3,7 @@
 use centrical_session::{BatchWithoutUnit, UnitFindingKind, UnitsHistoryReport, customary};
 
 use super::chance::chance;
-use super::unit::left_out;
+use super::unit::{first_of, left_out};
 use crate::number::{counted, with_uncertainty};
 use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::symbols::legend;
@@ -101,9 +101,7 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
 /// Serial numbers of the batches that no unit has: those near one by itself, the others together.
 fn without_unit(screen: &mut Screen, report: &UnitsHistoryReport) {
     let quoted = |serials: &[String]| {
-        let listed: Vec<String> = serials.iter().take(SHOWN).map(|serial| format!("{serial:?}")).collect();
-        let more = if serials.len() > SHOWN { format!(" and {} more", serials.len() - SHOWN) } else { String::new() };
-        format!("{}{more}", listed.join(", "))
+        first_of(&serials.iter().map(|serial| format!("{serial:?}")).collect::<Vec<String>>(), SHOWN)
     };
     let (near, other): (Vec<&BatchWithoutUnit>, Vec<_>) =
         report.without_unit.iter().partition(|of| !of.near.is_empty());

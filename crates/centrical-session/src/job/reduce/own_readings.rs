@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
+use centrical::Mounting;
 use centrical::reduction::{PlateauMean, chance_of_likeness};
 use centrical::uncertainty::Level;
 
@@ -41,13 +42,18 @@ pub(super) fn refuse_shared_readings(session: &Session, reduced: &Reduced) -> Re
 /// mounting. Among records of the same schedule, neighbours in the order of their largest mean are compared.
 pub(super) fn refuse_copies(session: &Session, means: &[Vec<PlateauMean>]) -> Result<(), Error> {
     let experiment = &session.experiment;
+    let place = |mounting: &Mounting| -> Vec<u64> {
+        std::iter::once(mounting.position as u64).chain(mounting.arm_y.iter().map(|r| r.to_bits())).collect()
+    };
+    let mut keys: Vec<Vec<u64>> = experiment.mountings.iter().take(means.len()).map(place).collect();
+    for set_point in &experiment.set_points {
+        if let Some(key) = keys.get_mut(set_point.mounting) {
+            key.extend([set_point.omega, set_point.angle].map(f64::to_bits));
+        }
+    }
     let mut alike: BTreeMap<Vec<u64>, Vec<usize>> = BTreeMap::new();
-    for (number, mounting) in experiment.mountings.iter().enumerate().take(means.len()) {
-        let set_points = experiment.set_points.iter().filter(|set_point| set_point.mounting == number);
-        let schedule = set_points.flat_map(|set_point| [set_point.omega, set_point.angle].map(f64::to_bits));
-        let place = mounting.arm_y.iter().map(|r| r.to_bits());
-        let key = std::iter::once(mounting.position as u64).chain(place).chain(schedule);
-        alike.entry(key.collect()).or_default().push(number);
+    for (number, key) in keys.into_iter().enumerate() {
+        alike.entry(key).or_default().push(number);
     }
     let pairs: usize = alike.values().map(|numbers| numbers.len() - 1).sum();
     for mut numbers in alike.into_values() {

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::reduction::average::PlateauFit;
 
-/// By what plateaus are told apart.
+/// What distinguishes plateaus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Alike {
     /// By their speeds.

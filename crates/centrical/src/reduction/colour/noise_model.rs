@@ -25,7 +25,7 @@ pub const EXCLUDED: f64 = 1e-5;
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseModel {
     components: Vec<Component>,
-    /// Where the noise of plateaus differs: what tells them apart, and the components of each class.
+    /// Where the noise of plateaus differs: what distinguishes them, and the components of each class.
     by_class: Option<(Alike, BTreeMap<Class, Vec<Component>>)>,
     /// Of rests: the part along the specific force, the third axis, by itself, in every direction alike.
     along: Option<Along>,
@@ -78,8 +78,7 @@ impl NoiseModel {
         let groups = grouped(&contrasts(&still, &times));
         let along = groups.iter().map(Group::along).collect::<Vec<Group>>();
         let of_all = correlation_times(&plateaus);
-        let fit = likeliest(&grouped(&contrasts(&plateaus, &of_all)), &of_all, ENTRIES);
-        let all = fit.map_or_else(Vec::new, |fit| components(&fit, &of_all));
+        let all = likeliest_components(&grouped(&contrasts(&plateaus, &of_all)), &of_all, ENTRIES);
         Self { along: Some(Along::of(&along, &times)), ..Self::of(all, &plateaus) }
     }
 
@@ -244,6 +243,11 @@ fn likeliest(groups: &[Group], times: &[f64], entries: f64) -> Option<Fit> {
     Some(fit)
 }
 
+/// The components of the likeliest fit; none without contrasts.
+fn likeliest_components(groups: &[Group], times: &[f64], entries: f64) -> Vec<Component> {
+    likeliest(groups, times, entries).map_or_else(Vec::new, |fit| components(&fit, times))
+}
+
 fn components(fit: &Fit, times: &[f64]) -> Vec<Component> {
     let part = |(time, density): &(usize, Matrix3<f64>)| Component {
         correlation_time: time.checked_sub(1).map(|time| times[time]),
@@ -255,7 +259,7 @@ fn components(fit: &Fit, times: &[f64]) -> Vec<Component> {
 impl Along {
     /// The posterior mean, if one Markov process at most is found beside white noise, and the likeliest components otherwise.
     fn of(groups: &[Group], times: &[f64]) -> Self {
-        let likeliest = likeliest(groups, times, 1.0).map_or_else(Vec::new, |fit| components(&fit, times));
+        let likeliest = likeliest_components(groups, times, 1.0);
         let powers: Vec<Power> = groups.iter().map(Group::as_power).collect();
         let times = times.to_vec();
         let Some(posterior) = posterior(&powers, EXCLUDED) else {

@@ -293,8 +293,8 @@ struct Explained<'a, L> {
 impl<L: Fn(f64) -> f64> WithSimd for Explained<'_, L> {
     type Output = f64;
 
-    /// `sum_k (c^T r_k)^2 / (c^T c - sum_j (q_j^T c)^2)`: the residuals are orthogonal to the design, and at least a fourth of
-    /// a column's square is, since a settling fades in a quarter of the plateau, and a line has zero at its first block.
+    /// `sum_k (c^T r_k)^2 / (c^T c - sum_j (q_j^T c)^2)`: the residuals are orthogonal to the design. So is a fourth of a column's square or
+    /// more: a settling fades in a quarter of the plateau, and a line is zero at its first block.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let (Steady { since, q, residuals, .. }, n) = (self.of, self.shown);
