@@ -109,13 +109,17 @@ fn means_are_right_to_their_own_uncertainty() {
     }
 }
 
-/// Noise that grows with the speed, on all axes or along the force: means are right to their own uncertainty at each speed. Six sessions
-/// have 216 degrees of freedom a speed: 0.10, four times that. Of noise pooled over all speeds the slowest have 0.01 and the fastest 4.
+/// Noise that grows with the speed, on all axes or along the force, or that one speed alone has: means are right to their own uncertainty at
+/// each speed. Six sessions have 216 degrees of freedom a speed: 0.10, four times that. Of noise pooled over all speeds the slowest have 0.01
+/// and the fastest 4. Where it is hundreds of times that of a rest, the rests were refused or held the start of a ramp.
 #[test]
 fn means_are_right_at_each_speed_where_the_noise_grows_with_it() {
     let shaken = Stream { shaking: 5e-2, ..Stream::default() };
     let jittery = Stream { jitter: 5e-5, ..Stream::default() };
-    for (name, stream) in [("shaken", shaken), ("jittery", jittery)] {
+    let shaken_hard = Stream { shaking: 1.0, ..Stream::default() };
+    let resonant = Stream { resonance: (44.0, 0.5), ..Stream::default() };
+    let all = [("shaken", shaken), ("jittery", jittery), ("shaken hard", shaken_hard), ("resonant", resonant)];
+    for (name, stream) in all {
         let mut sums = vec![0.0; stream.omegas.len()];
         for seed in 30..36 {
             for (stream, k, mean) in means(&session(&stream, seed)) {
@@ -468,6 +472,21 @@ fn a_missing_plateau_is_named_with_what_was_seen() {
     let taken: Vec<Option<usize>> = seen.iter().map(|stretch| stretch.plateau).collect();
     assert_eq!(taken, [0, 1, 2, 4, 5, 6].map(Some));
     assert!(error.to_string().starts_with("plateau 4 of 7 not found: looked for 36.000 rad/s"), "{error}");
+}
+
+/// By noise that is loud enough for the plateaus of a machine that shakes, a ramp through the missing one is steady too.
+#[test]
+fn a_plateau_that_is_missing_among_noisy_ones_is_refused() {
+    for seed in 0..10 {
+        let shaken = Stream { shaking: 1.0, seed, ..Stream::default() };
+        for missing in 1..5 {
+            let mut short = shaken.clone();
+            short.omegas.remove(missing);
+            short.lengths.pop();
+            let error = reduce(&short.record(), None, &shaken.schedule()).expect_err("one is not there");
+            assert!(matches!(error, ReductionError::PlateauNotFound { .. }), "without {missing}: {error}");
+        }
+    }
 }
 
 /// Forty loads of 5 g each: a unit 2 % off reads each of the upper ones as the next should.

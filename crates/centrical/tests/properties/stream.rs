@@ -22,6 +22,8 @@ pub struct Stream {
     pub white: f64,
     /// Standard deviation of white noise at 62.6 rad/s that grows with the square of the speed [m/s^2].
     pub shaking: f64,
+    /// Speed at which the machine resonates, and the standard deviation of its white noise within 1 rad/s [rad/s], [m/s^2].
+    pub resonance: (f64, f64),
     /// Standard deviation of white noise along the force, over the force.
     pub jitter: f64,
     /// Standard deviation and correlation time of the first-order Markov noise [m/s^2], [s].
@@ -63,6 +65,7 @@ impl Default for Stream {
             rate: 100.0,
             white: 2e-3,
             shaking: 0.0,
+            resonance: (0.0, 0.0),
             jitter: 0.0,
             colour: (0.0, 1.0),
             correlation: 0.0,
@@ -154,6 +157,9 @@ impl Stream {
             if self.shaking > 0.0 {
                 let size = self.shaking * (omega / 62.6).powi(2);
                 f += Vector3::from_fn(|_, _| size * random.normal());
+            }
+            if self.resonance.1 > 0.0 && (omega - self.resonance.0).abs() < 1.0 {
+                f += Vector3::from_fn(|_, _| self.resonance.1 * random.normal());
             }
             if self.jitter > 0.0 {
                 f += force(omega, rate) * (self.jitter * random.normal());

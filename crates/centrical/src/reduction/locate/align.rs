@@ -1,5 +1,6 @@
 //! The blocks of a record that belong to each scheduled plateau: by order, level and steadiness.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -18,11 +19,14 @@ const FAR: f64 = 0.1;
 /// More rounds than are needed.
 const ROUNDS: usize = 8;
 
+/// Noise that is tried where plateaus are not found by that of a sample, in units of it: vibration at one speed, a speed that hunts.
+const LOUDER: [f64; 4] = [4.0, 16.0, 64.0, 256.0];
+
 /// The core of each scheduled plateau, in blocks; an error for a record with a recording mistake.
 pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
-    let other = |schedule: &[ScheduledPlateau]| by_schedule(blocks, schedule).ok();
-    let retried = |error| as_seen(blocks, schedule).and_then(|seen| by_schedule(blocks, &seen).ok()).ok_or(error);
-    match by_schedule(blocks, schedule).or_else(retried) {
+    let quiet = Evidence::new(blocks);
+    let other = |schedule: &[ScheduledPlateau]| first_path(&quiet, schedule).ok().map(|path| path.settled());
+    match by_schedule(&quiet, schedule) {
         Ok(cores) => {
             hypothesis::recognise(blocks, schedule, Some(&cores), other)?;
             rotation::check(blocks, schedule, &cores)?;
@@ -35,13 +39,69 @@ pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Ve
     }
 }
 
-/// The core of each scheduled plateau, in blocks.
-fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
-    let evidence = Evidence::new(blocks);
-    let mut candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
+/// The core of each scheduled plateau, in blocks, by the noise of a sample, or by louder noise if that leaves a plateau out or cuts it short.
+fn by_schedule(quiet: &Evidence, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
+    let path = either_path(quiet, schedule);
+    if path.as_ref().is_ok_and(|path| path.is_long_enough()) {
+        return path.map(|path| path.settled());
+    }
+    let louder = LOUDER.iter().find_map(|times| by_louder_noise(quiet, schedule, *times));
+    louder.map_or_else(|| path.map(|path| path.settled()), Ok)
+}
+
+/// The same where changes are noise that is a number of `times` louder than that of a sample. By loud noise a ramp is steady too: each core must
+/// be long enough to be averaged, and its level go up as well as down.
+fn by_louder_noise(quiet: &Evidence, schedule: &[ScheduledPlateau], times: f64) -> Option<Vec<Range<usize>>> {
+    let evidence = quiet.louder(times);
+    if !shows_more(&evidence, quiet) {
+        return None;
+    }
+    let path = either_path(&evidence, schedule).ok()?;
+    let is_long = path.is_long_enough();
+    let cores = path.settled();
+    let goes_up_and_down =
+        |(plateau, core): (&ScheduledPlateau, &Range<usize>)| evidence.of(plateau).goes_up_and_down(core);
+    (is_long && schedule.iter().zip(&cores).all(goes_up_and_down)).then_some(cores)
+}
+
+/// Whether louder noise makes as many blocks steady in a stretch as a plateau has.
+fn shows_more(louder: &Evidence, quiet: &Evidence) -> bool {
+    let blocks = quiet.blocks();
+    let mut is_steady = vec![false; blocks.len()];
+    quiet.steady_stretches().into_iter().for_each(|stretch| is_steady[stretch].fill(true));
+    let more = |stretch: Range<usize>| is_steady[stretch].iter().filter(|is_steady| !**is_steady).count();
+    louder.steady_stretches().into_iter().any(|stretch| more(stretch) >= blocks.least(0.0))
+}
+
+/// The most probable path of a record through a schedule, by one noise for all plateaus.
+struct FirstPath<'a> {
+    evidence: &'a Evidence<'a>,
+    candidates: Vec<Candidate<'a>>,
+    schedule: Cow<'a, [ScheduledPlateau]>,
+    /// In transition, logarithm of the density of each block.
+    between: Vec<f64>,
+    cores: Vec<Range<usize>>,
+}
+
+/// The path through the schedule as it stands, or as the record shows it.
+fn either_path<'a>(
+    evidence: &'a Evidence,
+    schedule: &'a [ScheduledPlateau],
+) -> Result<FirstPath<'a>, ReductionError> {
+    let seen = |error| as_seen(evidence, schedule).and_then(|seen| first_path(evidence, seen).ok()).ok_or(error);
+    first_path(evidence, schedule).or_else(seen)
+}
+
+/// The path through a schedule; an error if a plateau is passed over.
+fn first_path<'a>(
+    evidence: &'a Evidence,
+    schedule: impl Into<Cow<'a, [ScheduledPlateau]>>,
+) -> Result<FirstPath<'a>, ReductionError> {
+    let (schedule, blocks) = (schedule.into(), evidence.blocks());
+    let candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
     let between = evidence.in_transition();
     let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(evidence.noise(), from, density);
-    let mut cores = band::best_path(&evidence.steady_stretches(), schedule.len(), &between, on);
+    let cores = band::best_path(&evidence.steady_stretches(), schedule.len(), &between, on);
     if let Some(index) = missing(&cores) {
         let ScheduledPlateau { omega, nominal_z } = schedule[index];
         let stretches = evidence.steady_stretches().into_iter();
@@ -54,25 +114,39 @@ fn by_schedule(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Ran
         let count = schedule.len();
         return Err(ReductionError::PlateauNotFound { index, count, omega, level_z: nominal_z, least, seen });
     }
-    for (k, candidate) in candidates.iter_mut().enumerate() {
-        let neighbours = [k.checked_sub(1), Some(k + 1)].into_iter().flatten().filter_map(|k| schedule.get(k));
-        let level_z = blocks.level(&cores[k]);
-        neighbours.for_each(|neighbour| candidate.leave_to(neighbour, &schedule[k], &level_z));
+    Ok(FirstPath { evidence, candidates, schedule, between, cores })
+}
+
+impl FirstPath<'_> {
+    /// Whether all cores are long enough to be averaged.
+    fn is_long_enough(&self) -> bool {
+        let least = |plateau: &ScheduledPlateau| self.evidence.blocks().least(plateau.omega);
+        self.schedule.iter().zip(&self.cores).all(|(plateau, core)| core.len() >= least(plateau))
     }
-    // With the plateaus located, the changes on each give their own noise, far below that of a sample. This is repeated
-    // until the noise holds no part of the ramps. A plateau stays between its neighbours.
-    let mut trellis = Trellis::new(&between_neighbours(&cores, blocks.len()), blocks.len());
-    for _ in 0..ROUNDS {
-        let own = candidates.par_iter().zip(&cores).map(|(candidate, core)| candidate.noise_of_change(core));
-        let own: Vec<Vector3<f64>> = own.collect();
-        let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(&own[k], from, density);
-        let next = trellis.best_path(&between, on);
-        if next == cores || missing(&next).is_some() {
-            break;
+
+    /// The cores by the noise of each plateau. With the plateaus located, the changes on each give their own noise, far below that of a
+    /// sample. This is repeated until the noise holds no part of the ramps. A plateau stays between its neighbours.
+    fn settled(self) -> Vec<Range<usize>> {
+        let Self { evidence, mut candidates, schedule, between, mut cores } = self;
+        let blocks = evidence.blocks();
+        for (k, candidate) in candidates.iter_mut().enumerate() {
+            let neighbours = [k.checked_sub(1), Some(k + 1)].into_iter().flatten().filter_map(|k| schedule.get(k));
+            let level_z = blocks.level(&cores[k]);
+            neighbours.for_each(|neighbour| candidate.leave_to(neighbour, &schedule[k], &level_z));
         }
-        cores = next;
+        let mut trellis = Trellis::new(&between_neighbours(&cores, blocks.len()), blocks.len());
+        for _ in 0..ROUNDS {
+            let own = candidates.par_iter().zip(&cores).map(|(candidate, core)| candidate.noise_of_change(core));
+            let own: Vec<Vector3<f64>> = own.collect();
+            let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(&own[k], from, density);
+            let next = trellis.best_path(&between, on);
+            if next == cores || missing(&next).is_some() {
+                break;
+            }
+            cores = next;
+        }
+        cores
     }
-    Ok(cores)
 }
 
 /// From the begin of the plateau before to the end of the plateau after, of each.
@@ -86,10 +160,10 @@ fn between_neighbours(cores: &[Range<usize>], blocks: usize) -> Vec<Range<usize>
 /// `Omega^2 c`. Loads may be closer to each other than the unit is to nominal. Then a plateau is nearer to the nominal level of its
 /// neighbour than to its own, and the path by nominal levels omits the first plateau or the last. `None` where the stretch cannot be the
 /// strongest plateau.
-fn as_seen(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Option<Vec<ScheduledPlateau>> {
+fn as_seen(evidence: &Evidence, schedule: &[ScheduledPlateau]) -> Option<Vec<ScheduledPlateau>> {
     let strongest = schedule.iter().max_by(|a, b| a.omega.abs().total_cmp(&b.omega.abs()))?;
-    let stretches = Evidence::new(blocks).steady_stretches();
-    let levels = stretches.iter().map(|stretch| blocks.level(stretch));
+    let stretches = evidence.steady_stretches();
+    let levels = stretches.iter().map(|stretch| evidence.blocks().level(stretch));
     let seen_z = levels.max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
     let off_z = seen_z - strongest.nominal_z;
     let along = |p: &ScheduledPlateau| {

@@ -45,7 +45,7 @@ impl Levels {
             blocks.f_z[range.clone()].iter().map(|level| level[axis] - reference[axis]).collect()
         });
         // Rounded readings may leave no spread at all.
-        let floor = blocks.sample_noise * (blocks.interval / blocks.width).sqrt() + blocks.digit / MAD;
+        let floor = blocks.sample_noise_in(&range) * (blocks.interval / blocks.width).sqrt() + blocks.digit / MAD;
         let columns = shape.columns(&blocks.t[range.clone()]);
         let mut all = Self { first: range.start, columns, f_z: levels, segments: Vec::new(), floor };
         all.segments = (0..range.len() / SEGMENT).map(|k| all.triangle(k * SEGMENT..(k + 1) * SEGMENT)).collect();

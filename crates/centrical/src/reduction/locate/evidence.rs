@@ -32,12 +32,16 @@ pub(super) fn level_width(nominal_z: &Vector3<f64>) -> f64 {
 /// Blocks whose mean is compared with that of as many before: the more, the slower a change is seen.
 const REACH: f64 = 4.0;
 
+/// Noise of a dead channel, over the span of the readings.
+const DEAD: f64 = 1e-9;
+
 /// The blocks' evidence.
+#[derive(Clone)]
 pub(super) struct Evidence<'a> {
     blocks: &'a Blocks,
     /// Largest span of a reading [m/s^2].
     span: f64,
-    /// Noise of one sample; of a dead channel a billionth of the span [m/s^2].
+    /// Noise that changes of level are taken for: that of one sample, or louder [m/s^2].
     noise: Vector3<f64>,
     /// Levels per axis, and their sums before each block.
     levels: [Vec<f64>; 3],
@@ -49,8 +53,6 @@ pub(super) struct Candidate<'a> {
     evidence: &'a Evidence<'a>,
     /// Blocks to both sides of one, over whose means the change of level about it is seen.
     reach: f64,
-    /// Noise of a block's level if it were white [m/s^2].
-    white: Vector3<f64>,
     nominal_z: Vector3<f64>,
     /// Half-width of the level's density [m/s^2].
     width: f64,
@@ -71,8 +73,18 @@ impl<'a> Evidence<'a> {
             (low, high) = (low.inf(f), high.sup(f));
         }
         let span = (high - low).max().max(blocks.sample_noise.max());
-        let noise = blocks.sample_noise.map(|noise| noise.max(1e-9 * span));
+        let noise = blocks.sample_noise.map(|noise| noise.max(DEAD * span));
         Self { blocks, span, noise, levels, sums }
+    }
+
+    /// The same, where changes are noise that is a number of `times` louder.
+    pub fn louder(&self, times: f64) -> Self {
+        Self { noise: self.noise * times, ..self.clone() }
+    }
+
+    /// The record.
+    pub fn blocks(&self) -> &'a Blocks {
+        self.blocks
     }
 
     /// Evidence for a scheduled plateau.
@@ -80,7 +92,6 @@ impl<'a> Evidence<'a> {
         Candidate {
             evidence: self,
             reach: self.reach(plateau.omega),
-            white: self.noise * (self.blocks.interval / self.blocks.width).sqrt(),
             nominal_z: plateau.nominal_z,
             width: level_width(&plateau.nominal_z),
             boundaries: Vec::new(),
@@ -98,6 +109,12 @@ impl<'a> Evidence<'a> {
     /// and coloured noise hardly larger.
     pub fn noise(&self) -> &Vector3<f64> {
         &self.noise
+    }
+
+    /// Noise of a block's level if it were white, over some blocks [m/s^2].
+    fn white(&self, range: &Range<usize>) -> Vector3<f64> {
+        let noise = self.blocks.sample_noise_in(range).sup(&Vector3::repeat(DEAD * self.span));
+        noise * (self.blocks.interval / self.blocks.width).sqrt()
     }
 
     /// Steady stretches of the record, whatever the schedule.
@@ -307,15 +324,28 @@ impl Candidate<'_> {
         density[0] > 0.0
     }
 
+    /// Whether the level goes up as well as down over some blocks, on every axis that moves: the median change is within the scatter about it.
+    pub fn goes_up_and_down(&self, range: &Range<usize>) -> bool {
+        let white = self.evidence.white(range);
+        let mut changes = vec![0.0; range.len()];
+        (0..3).all(|axis| {
+            self.evidence.changes(axis, self.reach, range.start, &mut changes);
+            let middle = median(&mut changes.clone());
+            let mut sizes: Vec<f64> = changes.iter().map(|change| (change - middle).abs()).collect();
+            middle.abs() <= (MAD * median(&mut sizes)).max(white[axis])
+        })
+    }
+
     /// Robust standard deviation of the change over some blocks, not below what white noise makes.
     pub fn noise_of_change(&self, range: &Range<usize>) -> Vector3<f64> {
+        let white = self.evidence.white(range);
         let mut sizes = vec![0.0; range.len()];
         Vector3::from_fn(|axis, _| {
             self.evidence.changes(axis, self.reach, range.start, &mut sizes);
             for change in &mut sizes {
                 *change = change.abs();
             }
-            (MAD * median(&mut sizes)).max(self.white[axis])
+            (MAD * median(&mut sizes)).max(white[axis])
         })
     }
 }

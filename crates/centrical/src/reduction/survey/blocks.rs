@@ -28,6 +28,8 @@ pub(in crate::reduction) struct Blocks {
     pub repeat_rate: [f64; 3],
     /// Standard deviation of a single sample from one to the next, independent of ramps and colour [m/s^2].
     pub sample_noise: Vector3<f64>,
+    /// The same in each block, on the axes that show it [m/s^2].
+    noise: Vec<Vector3<f64>>,
 }
 
 impl Blocks {
@@ -72,6 +74,7 @@ impl Blocks {
             // Rule of succession: a rate is never known to be 0 or 1.
             repeat_rate: [0, 1, 2].map(|axis| (repeated[axis] as f64 + 1.0) / (fresh[axis] as f64 + 2.0)),
             sample_noise: Vector3::zeros(),
+            noise: filled().map(|(_, (_, noise))| noise).collect(),
         };
         if blocks.t.len() < 3 {
             let found = gathered.iter().map(|block| block.readable).sum();
@@ -90,6 +93,17 @@ impl Blocks {
             blocks.sample_noise[axis] = noise.max(blocks.digit[axis] / 12_f64.sqrt());
         }
         Ok(blocks)
+    }
+
+    /// Standard deviation of a single sample in some blocks: that of the record, unless half of these blocks are far quieter, as a rest
+    /// is among speeds that vibrate [m/s^2].
+    pub fn sample_noise_in(&self, range: &Range<usize>) -> Vector3<f64> {
+        const FAR_QUIETER: f64 = 0.5;
+        Vector3::from_fn(|axis, _| {
+            let noise = self.noise[range.clone()].iter().map(|noise| noise[axis]).filter(|noise| noise.is_finite());
+            let here = median(&mut noise.collect::<Vec<f64>>()).max(self.digit[axis] / 12_f64.sqrt());
+            if here < FAR_QUIETER * self.sample_noise[axis] { here } else { self.sample_noise[axis] }
+        })
     }
 
     /// Number of blocks.
