@@ -1,5 +1,6 @@
 //! What went wrong with a file, in the user's words: where, found, expected.
 
+use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -27,12 +28,14 @@ pub enum Error {
         message: String,
     },
     /// A record does not hold what the schedule says.
-    #[error("{}, mounting {mounting}: {source}", shown_path(file))]
+    #[error("{}, mounting {mounting}: {}{source}", shown_path(file), said_first(instead.as_ref()))]
     Reduction {
         /// The record.
         file: PathBuf,
         /// Number of the mounting, from 1.
         mounting: usize,
+        /// What the record fits instead.
+        instead: Option<Instead>,
         /// What was looked for and what was seen.
         source: Box<centrical::reduction::ReductionError>,
     },
@@ -115,7 +118,69 @@ pub enum ErrorKind {
     Internal,
 }
 
+/// All plateaus of the record are where this would have them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Instead {
+    /// Another mounting of the session.
+    Mounting {
+        /// Its number, from 1.
+        number: usize,
+        /// The id of its position.
+        position: String,
+        /// Its nominal place, arm axes [m].
+        arm: [f64; 3],
+    },
+    /// Another attitude at this place.
+    Attitude {
+        /// Arm axes along which the instrument axes 1, 2, 3 point, as an experiment file has them.
+        axes: String,
+    },
+    /// Another nominal place of the session, in the attitude that is stated.
+    Arm {
+        /// The place, arm axes [m].
+        arm: [f64; 3],
+    },
+}
+
+impl fmt::Display for Instead {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = |arm: &[f64; 3]| format!("({}, {}, {}) m", arm[0], arm[1], arm[2]);
+        match self {
+            Self::Mounting { number, position, arm } => write!(
+                out,
+                "the record shows all plateaus of mounting {number} (position {position:?}, arm {}): files or entries are exchanged, or \
+                 the unit was there",
+                place(arm)
+            ),
+            Self::Attitude { axes } => {
+                write!(out, "the record shows all plateaus if axes = {axes:?}: the unit was turned, or axes are wrong")
+            }
+            Self::Arm { arm } => {
+                write!(
+                    out,
+                    "the record shows all plateaus if arm = {}: the unit was there, or arm is wrong",
+                    place(arm)
+                )
+            }
+        }
+    }
+}
+
+/// What a message begins with, if there is anything.
+fn said_first(instead: Option<&Instead>) -> String {
+    instead.map_or_else(String::new, |instead| format!("{instead}; "))
+}
+
 impl Error {
+    /// A refused record, with what it fits instead.
+    #[must_use]
+    pub(crate) fn with_instead(self, fits: Option<Instead>) -> Self {
+        match self {
+            Self::Reduction { file, mounting, source, .. } => Self::Reduction { file, mounting, instead: fits, source },
+            other => other,
+        }
+    }
+
     /// What kind of thing went wrong.
     pub fn kind(&self) -> ErrorKind {
         match self {

@@ -128,6 +128,26 @@ fn fewer_plateaus_than_scheduled() {
     refused(&copy, &["m07.csv", "mounting 7", "plateau 7 of 9", "looked for", "seen"]);
 }
 
+/// Records of two mountings exchanged, an attitude and a place that the unit did not have: the message says what the record fits.
+#[test]
+fn what_a_record_fits_instead_is_said() {
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| {
+        text.replace("records/m03.csv", "x").replace("records/m04.csv", "records/m03.csv").replacen(
+            "\"x\"",
+            "\"records/m04.csv\"",
+            1,
+        )
+    });
+    refused(
+        &copy,
+        &["m04.csv, mounting 3: the record shows all plateaus of mounting 4 (position \"2\", arm (0.25, 0, 0) m)"],
+    );
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| text.replace("axes = \"+3 +1 +2\"", "axes = \"+3 +2 -1\""));
+    refused(&copy, &["mounting 5: the record shows all plateaus if axes = \"+3 +1 +2\"", "plateau 3 of 9 not found"]);
+}
+
 #[test]
 fn experiment() {
     toml("gravity = \"9.81523 m/s^2\"", "gravity = 0", &["[site]", "gravity", "found", "expected"]);

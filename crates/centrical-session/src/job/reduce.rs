@@ -1,10 +1,12 @@
 //! From a session's files to plateau means: the part of the work that is proportional to the data.
 
 mod in_memory;
+mod instead;
 mod mounting;
 mod own_readings;
 mod pooling;
 mod rests;
+mod schedule;
 mod scheduler;
 
 use std::borrow::Cow;
@@ -14,9 +16,11 @@ use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 pub use self::in_memory::{Recorded, reduce_recorded};
+pub(crate) use self::instead::fits_instead;
 use self::own_readings::refuse_shared_readings;
 use self::pooling::pooled;
 pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size, with_all_rests};
+pub(crate) use self::schedule::schedule;
 use self::scheduler::Scheduler;
 use crate::error::Error;
 use crate::experiment::Session;

@@ -23,6 +23,7 @@ use super::plateau::ScheduledPlateau;
 use super::survey::{Blocks, Survey};
 use crate::statistics::whole;
 pub use clock::{ClockAgreement, ClockOffset, SpeedTrace};
+use hypothesis::Line;
 pub(super) use shape::{Interval, Shape, TURNING};
 pub use tachometer::{PulseTrain, SpeedReading};
 pub(super) use window::Window;
@@ -174,6 +175,19 @@ impl Located {
     /// Standard deviation of a sample from one to the next [m/s^2].
     pub(super) fn sample_noise(&self) -> &Vector3<f64> {
         &self.blocks.sample_noise
+    }
+
+    /// Logarithm of the density of the levels that were found about the nominal ones, by the law by which real units differ from these; of
+    /// several schedules that a record fits, the likeliest has the greatest. `None` if all plateaus have the same speed.
+    pub fn log_likelihood(&self) -> Option<f64> {
+        let Blocks { t, .. } = &self.blocks;
+        let seen = |window: &Window| {
+            let [from, to] = window.span;
+            self.blocks.level(&(t.partition_point(|t| *t < from)..t.partition_point(|t| *t <= to)))
+        };
+        let nominal = Line::through(self.schedule.iter().map(|plateau| (plateau.omega, plateau.nominal_z)))?;
+        let seen = self.schedule.iter().zip(&self.windows).map(|(plateau, window)| (plateau.omega, seen(window)));
+        Some(Line::through(seen)?.log_likelihood(&nominal))
     }
 
     /// The window of each plateau, from and to, the record's clock [s], in the order of the schedule.

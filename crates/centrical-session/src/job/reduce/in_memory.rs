@@ -6,9 +6,11 @@ use centrical::reduction::{PulseTrain, Record, ReducedMounting, ReductionError, 
 use centrical::{OnProgress, advance};
 use rayon::prelude::*;
 
-use super::mounting::{OfRecord, counts_pulses, schedule};
+use super::instead::fits_instead;
+use super::mounting::{OfRecord, counts_pulses};
 use super::pooling::pooled;
 use super::rests::with_all_rests;
+use super::schedule::schedule;
 use crate::error::{Error, Place};
 use crate::experiment::Session;
 use crate::record::RecordOverview;
@@ -65,12 +67,16 @@ fn reduce_mounting(
     let refused = |source: ReductionError| Error::Reduction {
         file: session.file.clone(),
         mounting: number + 1,
+        instead: None,
         source: Box::new(source),
     };
     let survey = Survey::of(record.as_slice()).map_err(refused)?.with_resolution(session.type_b.resolution);
     advance(progress, 0)?;
-    let schedule = schedule(session, number);
-    let mut located = locate(&survey, telemetry.as_ref(), &schedule).map_err(refused)?;
+    let schedule = schedule(&session.experiment, number);
+    let mut located = locate(&survey, telemetry.as_ref(), &schedule).map_err(|source| {
+        let instead = fits_instead(session, number, &survey, &source);
+        refused(source).with_instead(instead)
+    })?;
     if let Some(t) = pulses.filter(|_| counts_pulses(session)) {
         located.time_pulses(&PulseTrain { t, per_revolution: session.pulses_per_revolution() });
     }

@@ -1,8 +1,10 @@
 //! A mounting's record in two passes: where its plateaus are, then what they read.
 
-use centrical::reduction::{PulseTrain, ReducedMounting, ReductionError, ScheduledPlateau, locate};
-use centrical::{OnProgress, linear};
+use centrical::OnProgress;
+use centrical::reduction::{PulseTrain, ReducedMounting, ReductionError, locate};
 
+use super::instead::fits_instead;
+use super::schedule::schedule;
 use crate::error::Error;
 use crate::experiment::{Session, SpeedSource};
 use crate::record::{RecordFile, RecordOverview, SampleCache};
@@ -27,12 +29,17 @@ pub(super) fn reduce_mounting(
     let refused = |source: ReductionError| Error::Reduction {
         file: file.to_owned(),
         mounting: number + 1,
+        instead: None,
         source: Box::new(source),
     };
     let (survey, interpolated) = record.survey(cache)?;
     let survey = survey.with_resolution(session.type_b.resolution);
     let telemetry = session.telemetry(number)?;
-    let mut located = locate(&survey, telemetry.as_ref(), &schedule(session, number)).map_err(refused)?;
+    let located = locate(&survey, telemetry.as_ref(), &schedule(&session.experiment, number));
+    let mut located = located.map_err(|source| {
+        let instead = fits_instead(session, number, &survey, &source);
+        refused(source).with_instead(instead)
+    })?;
     if let Some(pulses) = counted_pulses(session, number)? {
         located.time_pulses(&pulses);
     }
@@ -49,14 +56,6 @@ fn counted_pulses(session: &Session, number: usize) -> Result<Option<PulseTrain>
 /// Whether pulses measure the speed.
 pub(super) fn counts_pulses(session: &Session) -> bool {
     session.speeds.measured.is_some_and(|measured| measured.source == SpeedSource::Pulses)
-}
-
-/// The plateaus of a mounting in their order.
-pub(super) fn schedule(session: &Session, mounting: usize) -> Vec<ScheduledPlateau> {
-    let experiment = &session.experiment;
-    let of_mounting = experiment.set_points.iter().filter(|set_point| set_point.mounting == mounting);
-    let scheduled = |set_point| linear::nominal(experiment, set_point);
-    of_mounting.map(|s| ScheduledPlateau { omega: s.omega, nominal_z: scheduled(s) }).collect()
 }
 
 #[cfg(test)]

@@ -7,17 +7,18 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
 
+use centrical::Observation;
 use centrical::reduction::{
-    MeasuredSpeed, NoiseModel, Record, ReducedMounting, ReductionError, ScheduledPlateau, measured_speeds,
+    MeasuredSpeed, NoiseModel, Record, ReducedMounting, ReductionError, ScheduledPlateau, Survey, measured_speeds,
     plateau_means, reduce, reduce_counted,
 };
-use centrical::{Observation, SetPoint, linear};
 use centrical_table::Extent;
 
 use super::growth::Growth;
 use super::rests;
 use crate::error::Error;
 use crate::experiment::{PlateauMean, Session, SpeedSource};
+use crate::job::reduce::{fits_instead, schedule};
 
 /// A session folder that is looked into again and again.
 ///
@@ -217,7 +218,11 @@ impl<'s> Watch<'s> {
     /// All plateaus of a finished mounting.
     fn whole(&self, mounting: usize, record: &Record) -> Result<(ReducedMounting, usize), Error> {
         let schedule = self.schedule(mounting);
-        let reduced = self.reduced(mounting, record, &schedule).map_err(|source| self.refused(mounting, source))?;
+        let reduced = self.reduced(mounting, record, &schedule).map_err(|source| {
+            let survey = Survey::of(record.as_slice()).ok();
+            let instead = survey.and_then(|survey| fits_instead(self.session, mounting, &survey, &source));
+            self.refused(mounting, source).with_instead(instead)
+        })?;
         Ok((reduced, schedule.len()))
     }
 
@@ -293,15 +298,12 @@ impl<'s> Watch<'s> {
     }
 
     fn schedule(&self, mounting: usize) -> Vec<ScheduledPlateau> {
-        let experiment = &self.session.experiment;
-        let there = experiment.set_points.iter().filter(|set_point| set_point.mounting == mounting);
-        let scheduled = |s: &SetPoint| ScheduledPlateau { omega: s.omega, nominal_z: linear::nominal(experiment, s) };
-        there.map(scheduled).collect()
+        schedule(&self.session.experiment, mounting)
     }
 
     fn refused(&self, mounting: usize, source: ReductionError) -> Error {
         let file = self.session.mountings[mounting].record.clone().unwrap_or_default();
-        Error::Reduction { file, mounting: mounting + 1, source: Box::new(source) }
+        Error::Reduction { file, mounting: mounting + 1, instead: None, source: Box::new(source) }
     }
 }
 

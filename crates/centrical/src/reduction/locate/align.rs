@@ -25,7 +25,7 @@ const LOUDER: [f64; 4] = [4.0, 16.0, 64.0, 256.0];
 /// The core of each scheduled plateau, in blocks; an error for a record with a recording mistake.
 pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
     let quiet = Evidence::new(blocks);
-    let other = |schedule: &[ScheduledPlateau]| first_path(&quiet, schedule).ok().map(|path| path.settled());
+    let other = |schedule: &[ScheduledPlateau]| first_path(&quiet, schedule).ok().map(FirstPath::settled);
     match by_schedule(&quiet, schedule) {
         Ok(cores) => {
             hypothesis::recognise(blocks, schedule, Some(&cores), other)?;
@@ -42,11 +42,11 @@ pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Ve
 /// The core of each scheduled plateau, in blocks, by the noise of a sample, or by louder noise if that leaves a plateau out or cuts it short.
 fn by_schedule(quiet: &Evidence, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
     let path = either_path(quiet, schedule);
-    if path.as_ref().is_ok_and(|path| path.is_long_enough()) {
-        return path.map(|path| path.settled());
+    if path.as_ref().is_ok_and(FirstPath::is_long_enough) {
+        return path.map(FirstPath::settled);
     }
     let louder = LOUDER.iter().find_map(|times| by_louder_noise(quiet, schedule, *times));
-    louder.map_or_else(|| path.map(|path| path.settled()), Ok)
+    louder.map_or_else(|| path.map(FirstPath::settled), Ok)
 }
 
 /// The same where changes are noise that is a number of `times` louder than that of a sample. By loud noise a ramp is steady too: each core must
@@ -84,10 +84,7 @@ struct FirstPath<'a> {
 }
 
 /// The path through the schedule as it stands, or as the record shows it.
-fn either_path<'a>(
-    evidence: &'a Evidence,
-    schedule: &'a [ScheduledPlateau],
-) -> Result<FirstPath<'a>, ReductionError> {
+fn either_path<'a>(evidence: &'a Evidence, schedule: &'a [ScheduledPlateau]) -> Result<FirstPath<'a>, ReductionError> {
     let seen = |error| as_seen(evidence, schedule).and_then(|seen| first_path(evidence, seen).ok()).ok_or(error);
     first_path(evidence, schedule).or_else(seen)
 }

@@ -102,7 +102,7 @@ impl Line {
     }
 
     /// Logarithm of the density of this line if `expected` is the nominal one.
-    fn log_likelihood(&self, expected: &Self) -> f64 {
+    pub fn log_likelihood(&self, expected: &Self) -> f64 {
         log_density(&self.a, &expected.a) + log_density(&(self.c * self.fastest), &(expected.c * self.fastest))
     }
 }
