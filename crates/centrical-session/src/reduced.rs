@@ -2,7 +2,7 @@
 
 use centrical::reduction::{Arc, ClockAgreement, ClockOffset, LeftOut, MeasuredSpeed, PlateauMean};
 use centrical::uncertainty::BetweenRests;
-use centrical::{MeasurementModel, Observation, SetPoint};
+use centrical::{MeasurementModel, Observation, SetPoint, TypeB};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::Error;
@@ -62,6 +62,8 @@ pub struct ReducedPlateau {
     pub steadiness: Option<Steadiness>,
     /// How the unit turns, of an arc of slow rotation.
     pub arc: Option<Arc>,
+    /// Variance of a single reading about the fit [m^2/s^4]; none for a plateau that came already averaged.
+    pub variance: Option<Vector3<f64>>,
 }
 
 /// What a plateau shows beside its mean.
@@ -152,7 +154,18 @@ impl Reduced {
     /// # Errors
     /// As [`Session::model`].
     pub fn model(&self, session: &Session) -> Result<MeasurementModel, Error> {
-        session.model_at(self.set_points(session))
+        let model = session.model_at(self.set_points(session))?;
+        let stated = *model.stated();
+        Ok(match self.reading_noise() {
+            Some(reading_noise) if stated.resolution > 0.0 => model.with_stated(TypeB { reading_noise, ..stated }),
+            _ => model,
+        })
+    }
+
+    /// Standard deviation of a single reading on the axis and the plateau with the least [m/s^2]; none where some plateau came already averaged.
+    pub(crate) fn reading_noise(&self) -> Option<f64> {
+        let least = |plateau: &ReducedPlateau| plateau.variance.map(|variance| variance.min().sqrt());
+        self.plateaus.iter().map(least).reduce(|a, b| Some(a?.min(b?))).flatten()
     }
 
     /// Readings of newtonometers 1, 2, 3 that were interpolated in all mountings together; none where none were.
@@ -210,6 +223,7 @@ impl From<PlateauMean> for ReducedPlateau {
             covariance: plateau.covariance,
             once_per_revolution: amplitude(&plateau.once_per_revolution),
             measured_speed: plateau.measured_speed,
+            variance: Some(plateau.white_variance * plateau.samples as f64),
             // The slope of an arc of slow rotation is its turn.
             arc: plateau.arc,
             steadiness: plateau.arc.is_none().then(|| Steadiness::from(&plateau)),
@@ -234,6 +248,7 @@ impl From<&TabledPlateau> for ReducedPlateau {
             measured_speed: None,
             steadiness: None,
             arc: None,
+            variance: None,
         }
     }
 }

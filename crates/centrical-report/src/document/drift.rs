@@ -55,6 +55,7 @@ fn drifts(facts: &mut Vec<Fact>, drift: &DriftSummary, language: Language) {
         });
         let verdict = match drift.session_verdict() {
             SessionDriftVerdict::NotSeen => messages.no_drift,
+            SessionDriftVerdict::Unsure => messages.drift_or_chance,
             SessionDriftVerdict::WithinScatter => messages.within_scatter,
             SessionDriftVerdict::Seen => messages.session_drifts,
         };

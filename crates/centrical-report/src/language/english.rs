@@ -75,6 +75,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     readings_drift: "readings drift over plateaus by more than slow noise and the speeds explain: a temperature, a bias or an unseen change of speed",
     session_drifts: "the session drifts",
     no_drift: "no drift seen",
+    drift_or_chance: "a drift or, in one session of twenty, chance",
     within_scatter: "no more than the plateaus scatter",
     run_again: "Plateaus run again",
     farthest_apart: "farthest apart",

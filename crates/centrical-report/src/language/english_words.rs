@@ -44,6 +44,7 @@ pub(super) fn group(group: Group) -> &'static str {
         Group::MountingShift => "Shift of one mounting",
         Group::MountingTurn => "Turn of one mounting",
         Group::MountingTilt => "Tilt of the axis in one mounting",
+        Group::MountingBias => "Bias of one mounting",
         Group::Disturbance => "Disturbance of the readings",
     }
 }
@@ -154,6 +155,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::MountingShift => "shift of its own in each mounting",
             Extension::MountingTurn => "turn of its own in each mounting",
             Extension::MountingTilt => "tilt of the axis that differs by mounting",
+            Extension::MountingBias => "bias that differs by mounting",
             Extension::SpinTurn => "turn of the unit between rest and spinning",
             Extension::Disturbance(Course::Spinning) => {
                 "step between rest and spinning: an aliased line or rectified vibration"

@@ -66,6 +66,7 @@ pub(crate) struct Messages {
     pub readings_drift: &'static str,
     pub session_drifts: &'static str,
     pub no_drift: &'static str,
+    pub drift_or_chance: &'static str,
     pub within_scatter: &'static str,
     pub run_again: &'static str,
     pub farthest_apart: &'static str,

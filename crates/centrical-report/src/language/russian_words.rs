@@ -42,6 +42,7 @@ pub(super) fn group(group: Group) -> &'static str {
         Group::MountingShift => "Смещение в одной установке",
         Group::MountingTurn => "Поворот в одной установке",
         Group::MountingTilt => "Наклон оси в одной установке",
+        Group::MountingBias => "Смещение нуля в одной установке",
         Group::Disturbance => "Возмущение показаний",
     }
 }
@@ -152,6 +153,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::MountingShift => "собственное смещение в каждой установке",
             Extension::MountingTurn => "собственный поворот в каждой установке",
             Extension::MountingTilt => "наклон оси, различный по установкам",
+            Extension::MountingBias => "смещение нуля, различное по установкам",
             Extension::SpinTurn => "поворот прибора между покоем и вращением",
             Extension::Disturbance(Course::Spinning) => {
                 "ступень между покоем и вращением: наложение частот или выпрямленная вибрация"

@@ -69,6 +69,9 @@ fn over_session(screen: &mut Screen, drift: &DriftSummary) {
     let trends: Vec<String> = trends.collect();
     let verdict = match drift.session_verdict() {
         SessionDriftVerdict::NotSeen => "no drift seen",
+        SessionDriftVerdict::Unsure => {
+            "a drift or, in one session of twenty, chance; bias_drift under [uncertainty] allows for one"
+        }
         SessionDriftVerdict::WithinScatter => "no more than the plateaus scatter",
         SessionDriftVerdict::Seen => "the session drifts",
     };

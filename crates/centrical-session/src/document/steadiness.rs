@@ -133,6 +133,8 @@ pub enum PlateauDriftVerdict {
 pub enum SessionDriftVerdict {
     /// No more than the stated uncertainties explain.
     NotSeen,
+    /// Larger than chance makes it in one session of twenty, and no proof of a drift.
+    Unsure,
     /// More than the stated uncertainties explain, and no more than the plateaus scatter about the fit.
     WithinScatter,
     /// More than the plateaus scatter about the fit.
@@ -200,14 +202,16 @@ impl DriftSummary {
     /// What the residuals say of a drift over the session, family-wise over the newtonometers (Bonferroni).
     pub fn session_verdict(&self) -> SessionDriftVerdict {
         let tests = self.over_session.len() as f64;
-        let any = |probability: &dyn Fn(&SessionTrend) -> f64| {
-            self.over_session.iter().any(|trend| Level::Real.is_passed_by(tests * probability(trend)))
+        let any = |level: Level, probability: &dyn Fn(&SessionTrend) -> f64| {
+            self.over_session.iter().any(|trend| level.is_passed_by(tests * probability(trend)))
         };
         let stated = |trend: &SessionTrend| chi_squared_tail((trend.change / trend.standard_uncertainty).powi(2), 1);
-        if any(&|trend| trend.probability) {
+        if any(Level::Real, &|trend| trend.probability) {
             SessionDriftVerdict::Seen
-        } else if any(&stated) {
+        } else if any(Level::Real, &stated) {
             SessionDriftVerdict::WithinScatter
+        } else if any(Level::Reported, &stated) {
+            SessionDriftVerdict::Unsure
         } else {
             SessionDriftVerdict::NotSeen
         }

@@ -12,7 +12,7 @@ use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
 
 /// The quantities beside effects.
-const QUANTITIES: [&str; 12] = [
+const QUANTITIES: [&str; 14] = [
     "gravity",
     "latitude",
     "radius",
@@ -23,7 +23,9 @@ const QUANTITIES: [&str; 12] = [
     "proof_masses",
     "attitude",
     "bias_change",
+    "mounting_bias",
     "resolution",
+    "reading_noise",
     "doubt",
 ];
 
@@ -78,7 +80,9 @@ pub(crate) fn type_b(
         proof_masses: length("proof_masses")?.unwrap_or(0.0),
         attitude: angle("attitude")?.unwrap_or(0.0),
         bias_change: acceleration("bias_change")?.unwrap_or(ANY_BIAS),
+        mounting_bias: acceleration("mounting_bias")?.unwrap_or(0.0),
         resolution: acceleration("resolution")?.unwrap_or(0.0),
+        reading_noise: acceleration("reading_noise")?.unwrap_or(0.0),
         doubt: ratio("doubt")?.unwrap_or(0.0),
         effects: effects(&at, table, experiment, error_model)?,
     })

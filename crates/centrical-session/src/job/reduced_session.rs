@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use centrical_table::{TableFormat, claim_folder, refuse_inputs, write_whole};
-use toml_edit::{InlineTable, Item, TableLike, Value, value};
+use toml_edit::{DocumentMut, InlineTable, Item, TableLike, Value, value};
 
 use crate::error::{Error, Place};
 use crate::experiment::{
@@ -45,7 +45,13 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
     let of_plateaus = session.speeds.measured.is_none() && rows.iter().any(|row| row.speed_uncertainty.is_some());
     // Rests alone have tables of their own.
     let name = (!session.mountings.is_empty()).then_some(name);
-    let text = experiment(session, name, of_plateaus.then_some(session.speeds.set_uncertainty))?;
+    let mut document = editable(&session.file, &session.experiment_text()?)?;
+    rewrite(&mut document, session, name, of_plateaus.then_some(session.speeds.set_uncertainty));
+    if let Some(noise) = reduced.reading_noise().filter(|_| session.type_b.resolution > 0.0)
+        && let Some(uncertainty) = document.get_mut("uncertainty").and_then(Item::as_table_like_mut)
+    {
+        uncertainty.insert("reading_noise", value(noise));
+    }
     if let Some(name) = name {
         write(&folder.join(name), &rows)?;
     }
@@ -55,13 +61,12 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
             write_attitudes(attitudes, &known.up_b)?;
         }
     }
-    Ok(write_whole(&experiment_file, text.as_bytes())?)
+    Ok(write_whole(&experiment_file, document.to_string().as_bytes())?)
 }
 
 /// The experiment file with the table, if there is one, instead of records, and all else, comments too, as it was. With `uncertainty` it says
 /// that plateaus state measured speeds, the others as uncertain as this.
-fn experiment(session: &Session, table: Option<&str>, uncertainty: Option<f64>) -> Result<String, Error> {
-    let mut document = editable(&session.file, &session.experiment_text()?)?;
+fn rewrite(document: &mut DocumentMut, session: &Session, table: Option<&str>, uncertainty: Option<f64>) {
     match document.get_mut("mounting") {
         Some(Item::ArrayOfTables(mountings)) => mountings.iter_mut().for_each(|mounting| strip(mounting)),
         Some(Item::Value(Value::Array(mountings))) => {
@@ -92,7 +97,6 @@ fn experiment(session: &Session, table: Option<&str>, uncertainty: Option<f64>) 
         let inline = tumbles.iter_mut().filter_map(Value::as_inline_table_mut);
         inline.zip(tables).for_each(|(tumble, (n, rests))| rename_rests(n, tumble, rests));
     }
-    Ok(document.to_string())
 }
 
 /// Names of the tables of `[[tumble]]` number `n` from 0.

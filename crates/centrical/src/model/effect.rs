@@ -164,6 +164,11 @@ impl Course {
 }
 
 impl Effect {
+    /// The bias of a newtonometer in one mounting [m/s^2].
+    pub(super) fn bias_of_mounting(axis: usize, mounting: usize) -> Self {
+        Self::Monomial { axis, monomial: Monomial::ONE, mounting: Some(mounting) }
+    }
+
     /// Whether it depends on what came before a plateau.
     pub(super) fn is_of_history(self) -> bool {
         matches!(self, Self::Disturbance { follows, .. } if follows.is_of_history())

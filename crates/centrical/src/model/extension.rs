@@ -39,6 +39,8 @@ pub enum Extension {
     MountingTurn,
     /// Tilt of the axis in every mounting, two each.
     MountingTilt,
+    /// Bias of every mounting, three each: a unit that is switched off to be moved, or gets warm.
+    MountingBias,
     /// Turn of the unit while spinning against that at rest, three per position.
     SpinTurn,
     /// A disturbance of the readings, one per newtonometer.
@@ -60,7 +62,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 25] = [
+    pub const NAMED: [(&'static str, Self); 26] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -78,6 +80,7 @@ impl Extension {
         ("mounting-shift", Self::MountingShift),
         ("mounting-turn", Self::MountingTurn),
         ("mounting-tilt", Self::MountingTilt),
+        ("mounting-bias", Self::MountingBias),
         ("spin-turn", Self::SpinTurn),
         ("spin-step", Self::Disturbance(Course::Spinning)),
         ("spin-square", Self::Disturbance(Course::SquaredSpeed)),
@@ -150,6 +153,7 @@ impl Extension {
                     effect(name, "rad", Group::MountingTilt, Effect::MountingTilt { axis, mounting }, 1e-3)
                 },
             ),
+            Self::MountingBias => by_mounting(experiment, 3, |_, _| true, mounting_bias),
             Self::SpinTurn => by_position(experiment, |axis, position, id| {
                 let name = format!("spin_turn_{}[{id}]", axis + 1);
                 effect(name, "rad", Group::SpinTurn, Effect::SpinTurn { axis, position }, 1e-3)
@@ -183,6 +187,12 @@ fn mounting_turn(axis: usize, mounting: usize) -> Parameter {
     effect(name, "rad", Group::MountingTurn, Effect::MountingTurn { axis, mounting }, 1e-3)
 }
 
+/// The bias of a newtonometer in one mounting [m/s^2].
+fn mounting_bias(axis: usize, mounting: usize) -> Parameter {
+    let name = format!("mounting_bias_{}[{}]", axis + 1, mounting + 1);
+    effect(name, "m/s^2", Group::MountingBias, Effect::bias_of_mounting(axis, mounting), BIAS)
+}
+
 fn other_unit(term: &Term, mounting: usize) -> Parameter {
     let Term { axis, monomial, .. } = *term;
     let name = format!("{}[{}]", term.name, mounting + 1);
@@ -190,8 +200,10 @@ fn other_unit(term: &Term, mounting: usize) -> Parameter {
     Parameter { name, kind: Kind::Effect(effect), ..coefficient(term) }
 }
 
+/// Typical magnitude of a bias [m/s^2].
+const BIAS: f64 = 5e-3 * STANDARD_GRAVITY;
+
 fn disturbance(axis: usize, follows: Course) -> Parameter {
-    const BIAS: f64 = 5e-3 * STANDARD_GRAVITY;
     let (stem, unit, typical) = match follows {
         Course::Spinning => ("spin_step", "m/s^2", BIAS),
         Course::SquaredSpeed => ("spin_square", "m", BIAS / Law::Speed.full_scale()),

@@ -53,13 +53,15 @@ pub enum Group {
     MountingTurn,
     /// Tilt of the axis in one mounting.
     MountingTilt,
+    /// Bias of a newtonometer in one mounting.
+    MountingBias,
     /// Disturbance of the readings.
     Disturbance,
 }
 
 impl Group {
     /// All groups.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 27] = [
         Self::Bias,
         Self::Scale,
         Self::Misalignment,
@@ -85,6 +87,7 @@ impl Group {
         Self::MountingShift,
         Self::MountingTurn,
         Self::MountingTilt,
+        Self::MountingBias,
         Self::Disturbance,
     ];
 
@@ -116,6 +119,7 @@ impl Group {
             Self::MountingShift => "shift of one mounting",
             Self::MountingTurn => "turn of one mounting",
             Self::MountingTilt => "tilt in one mounting",
+            Self::MountingBias => "bias of one mounting",
             Self::Disturbance => "disturbance",
         }
     }

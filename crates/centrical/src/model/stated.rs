@@ -10,6 +10,7 @@ use super::experiment::{Experiment, SetPoint};
 use super::kind::Kind;
 use super::position::SwitchOn;
 use super::rival::Rival;
+use crate::statistics::bias_variance;
 
 /// Standard uncertainties that a laboratory states (GUM type B), SI; zero where there is none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -33,9 +34,14 @@ pub struct TypeB {
     /// Of the change of each bias between two switch-ons, of the arm and of rests in free attitudes, where the latter state none of their
     /// own [m/s^2].
     pub bias_change: f64,
-    /// Smallest step of the reading [m/s^2], not a standard uncertainty: it leaves a rectangular error of `step/sqrt(12)`
-    /// on each mean (GUM, F.2.2.1), independent of the others.
+    /// Of the bias of each newtonometer in each mounting: a unit that is switched off to be moved [m/s^2].
+    pub mounting_bias: f64,
+    /// Smallest step of the reading [m/s^2], not a standard uncertainty: it leaves an error on each mean, see [`TypeB::rounding`],
+    /// independent of the others.
     pub resolution: f64,
+    /// Standard deviation of a single reading, rounding included, on the axis and the plateau with the least [m/s^2]; zero where it is
+    /// unknown.
+    pub reading_noise: f64,
     /// Of one unit of each effect that the model leaves out, in the order of [`Rival::COMMON`]: an engineer's bound.
     pub effects: [f64; Rival::COUNT],
     /// How doubtful these numbers themselves are: relative standard uncertainty of each, from which follow its
@@ -68,7 +74,7 @@ pub enum Source {
     ProofMasses,
     /// Nominal attitudes.
     Attitude,
-    /// Change of the bias from one switch-on to another, of the arm and of rests in free attitudes.
+    /// Change of the bias from one switch-on to another, of mountings and of rests in free attitudes.
     BiasChange,
     /// Acceleration about the axes of a slow rotation.
     Turning,
@@ -172,6 +178,9 @@ impl TypeB {
         for (position, axis) in on_arm.flat_map(|k| (0..3).map(move |axis| (k, axis))) {
             add(Source::Attitude, Effect::PositionTurn { position, axis }, self.attitude);
         }
+        for (mounting, axis) in experiment.mountings_on_arm().flat_map(|m| (0..3).map(move |axis| (m, axis))) {
+            add(Source::BiasChange, Effect::bias_of_mounting(axis, mounting), self.mounting_bias);
+        }
         for SwitchOn { number: switch_on, bias_change, .. } in experiment.other_switch_ons() {
             for axis in 0..3 {
                 let u = bias_change.unwrap_or(self.bias_change);
@@ -198,9 +207,17 @@ impl TypeB {
         list
     }
 
-    /// Standard uncertainty of the rounding of one mean [m/s^2]: of a rectangular error of one step (GUM, F.2.2.1).
+    /// Standard uncertainty of the rounding of one mean [m/s^2]: without noise that of a rectangular error of one step, `step / sqrt(12)`
+    /// (GUM, F.2.2.1), and less where noise dithers it. Rounding adds a quarter of the squared step to the variance of a reading at most:
+    /// what is above it is noise.
     pub fn rounding(&self) -> f64 {
-        self.resolution / 12.0_f64.sqrt()
+        let step = self.resolution;
+        let noise_variance = self.reading_noise * self.reading_noise - 0.25 * step * step;
+        if step > 0.0 && noise_variance > 0.0 {
+            bias_variance(step, noise_variance, 0.0).sqrt()
+        } else {
+            step / 12.0_f64.sqrt()
+        }
     }
 
     /// That part of it which is independent of all other plateaus: none for a rest that is repeated, since equal forces round
@@ -233,5 +250,42 @@ impl Radii {
         let own = difference / std::f64::consts::SQRT_2;
         let common = (stated.radius * stated.radius - own * own).max(0.0).sqrt();
         Self { common, own, source: Source::RadiusDifference }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::TypeB;
+    use crate::statistics::Random;
+
+    /// Means of rounded readings at any level are off by as much as stated, or by less: the noise is taken at its least. Without noise the
+    /// error is rectangular, and with a noise of one step there is none.
+    #[test]
+    fn rounding_is_as_large_as_stated_or_smaller() {
+        const READINGS: usize = 4000;
+        const LEVELS: usize = 400;
+        let mut random = Random::stream(11, 0);
+        for noise in [0.0, 0.2, 0.35, 0.5, 0.7] {
+            let (mut squares, mut least) = (0.0, f64::INFINITY);
+            for _ in 0..LEVELS {
+                let level = random.uniform();
+                // Without their own mean, the noise of the readings leaves rounding alone.
+                let drawn: Vec<f64> = (0..READINGS).map(|_| noise * random.normal()).collect();
+                let own = drawn.iter().sum::<f64>() / READINGS as f64;
+                let readings: Vec<f64> = drawn.iter().map(|drawn| (level + drawn).round()).collect();
+                let mean = readings.iter().sum::<f64>() / READINGS as f64;
+                let variance = readings.iter().map(|reading| (reading - mean).powi(2)).sum::<f64>() / READINGS as f64;
+                squares += (mean - level - own).powi(2) / LEVELS as f64;
+                least = variance.min(least);
+            }
+            let stated = TypeB { resolution: 1.0, reading_noise: least.sqrt(), ..TypeB::default() }.rounding();
+            // Of `READINGS` roundings, each off by a step's deviation, and of `LEVELS` squares.
+            let chance = 1.0 / 12.0 / READINGS as f64;
+            assert!(squares < 1.25 * stated * stated + 2.0 * chance, "{noise}: {squares} against {stated}^2");
+        }
+        let at = |reading_noise: f64| TypeB { resolution: 1.0, reading_noise, ..TypeB::default() }.rounding();
+        assert!((at(0.0) - 12.0_f64.sqrt().recip()).abs() < 1e-15 && at(1.04) < 1e-7, "{} {}", at(0.0), at(1.04));
+        // Where noise begins to be known the series is that of a rectangle.
+        assert!((at(0.5 + 1e-9) / at(0.0) - 1.0).abs() < 0.02);
     }
 }

@@ -7,7 +7,6 @@ mod markov;
 mod mean;
 mod noise_model;
 mod posterior;
-mod rounding;
 mod settling;
 
 use rayon::prelude::*;

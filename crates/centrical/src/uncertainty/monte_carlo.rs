@@ -190,15 +190,15 @@ impl<'a> Laboratory<'a> {
         let set_points = self.draw_settings(random);
         let deviations = model.influences().iter().map(|_| random.normal()).collect();
         let deviated = model.clone().deviated(deviations);
-        let half_step = 0.5 * model.stated().resolution;
+        let half_width = 3.0_f64.sqrt() * model.stated().rounding();
         let pairs = self.data.observations().iter().zip(&self.noise_factors);
         let drawn = pairs.map(|(observation, factor)| {
             let set_point = &set_points[observation.set_point];
             let noise = Vector3::from_fn(|_, _| random.normal());
             let mut mean = deviated.reading(set_point, truth) + factor * noise;
             // Rests that round alike share an influence.
-            if half_step > 0.0 && set_point.history.repeats.is_none() {
-                mean += Vector3::from_fn(|_, _| half_step * random.symmetric());
+            if half_width > 0.0 && set_point.history.repeats.is_none() {
+                mean += Vector3::from_fn(|_, _| half_width * random.symmetric());
             }
             Observation { mean, ..observation.clone() }
         });

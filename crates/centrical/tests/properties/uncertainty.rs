@@ -21,7 +21,9 @@ pub const STATED: TypeB = TypeB {
     proof_masses: 20e-6,
     attitude: 2e-5,
     bias_change: 0.0,
+    mounting_bias: 0.0,
     resolution: 1e-5,
+    reading_noise: 0.0,
     doubt: 0.0,
     effects: [0.0; Rival::COUNT],
 };

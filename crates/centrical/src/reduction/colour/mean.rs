@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix3, Vector3};
 
 use super::noise_model::NoiseModel;
-use super::rounding::bias_variance;
 use super::settling::TimeStep;
 use crate::reduction::average::{PlateauFit, Weights};
 use crate::reduction::plateau::PlateauMean;
+use crate::statistics::bias_variance;
 
 /// The mean of a plateau whose noise has a scale of its `own` on each axis.
 pub(super) fn mean(plateau: &PlateauFit, noise: &NoiseModel, step: &TimeStep, own: &Vector3<f64>) -> PlateauMean {

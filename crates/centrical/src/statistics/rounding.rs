@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// amplitude `a`, the level being anywhere between two digits:
 /// `sum_k d^2 / (2 pi^2 k^2) exp(-4 pi^2 k^2 v / d^2) J_0(2 pi k a / d)^2` (Widrow and Kollar, Quantization Noise, 2008):
 /// `d^2 / 12` without noise and motion, and negligible once the noise is a digit.
-pub(super) fn bias_variance(digit: f64, variance: f64, amplitude: f64) -> f64 {
+pub fn bias_variance(digit: f64, variance: f64, amplitude: f64) -> f64 {
     // The hundredth term is 1e-4 of the first at most; what has faded so far is nothing beside any noise.
     const TERMS: i32 = 100;
     const FADED: f64 = 1e-30;
