@@ -119,6 +119,35 @@ fn axes_of_a_result_are_a_rotation() {
     assert!(said(&output).contains("expected a rotation"), "{}", said(&output));
 }
 
+/// A result that somebody edited contradicts itself: no command takes it.
+#[test]
+fn a_result_agrees_with_itself() {
+    let copy = Copy::new();
+    calibrated(&copy, "upper");
+    let file = copy.out().join("upper/result.json");
+    let whole = json(&file);
+    let refused = |edit: &dyn Fn(&mut Value), expected: &str| {
+        let mut result = whole.clone();
+        edit(&mut result);
+        fs::write(&file, result.to_string()).unwrap();
+        let output = copy.run(&["compare", "upper/result.json", "upper/result.json"]);
+        let message = said(&output);
+        assert!(output.status.code() == Some(2) && message.contains(expected), "{message}");
+        assert!(message.contains("upper/result.json: found "), "{message}");
+    };
+    let halved = |value: &mut Value| *value = (0.5 * value.as_f64().unwrap()).into();
+    refused(&|r| halved(&mut r["parameters"][3]["standard_uncertainty"]), "the square of its standard uncertainty");
+    refused(&|r| r["covariance"][2][0] = 1e-3.into(), "as on the other side of the diagonal");
+    let correlated = |r: &mut Value| [(2, 0), (0, 2)].iter().for_each(|&(i, j)| r["covariance"][i][j] = 1e-3.into());
+    refused(&correlated, "at most, the product of their standard uncertainties");
+    refused(&|r| r["parameters"][3]["value"] = Value::Null, "both or neither");
+    refused(&|r| r["parameters"][3]["name"] = "df_1".into(), "each once");
+    refused(&|r| drop(r["covariance"].as_array_mut().unwrap().pop()), "the number of parameters");
+    refused(&|r| r["fit"]["chi_squared"] = (-1.0).into(), "zero or more");
+    let raw = serde_json::json!({"unit": "mg", "scale": [1.0, 1.0, 1.0], "bias": [0.0, 0.0, 0.0]});
+    refused(&|r| r["output"] = raw.clone(), "one of counts, V");
+}
+
 #[test]
 fn rests_do_not_show_the_case() {
     let copy = Copy::new();

@@ -4,6 +4,7 @@ mod axes;
 mod axes_summary;
 mod between_rests;
 mod budget_and_checks;
+mod contradiction;
 mod error_terms;
 mod file;
 mod from_calibration;

@@ -7,6 +7,7 @@ use centrical::uncertainty::Estimates;
 use centrical_table::write_whole;
 use nalgebra::DMatrix;
 
+use super::contradiction::contradiction;
 use super::schema::{CalibrationResult, ParameterEstimate, PlateauSummary, SCHEMA};
 use crate::document::json;
 use crate::error::{Error, Place};
@@ -107,6 +108,9 @@ impl CalibrationResult {
         if let Some(axes) = result.axes.as_ref().filter(|axes| !axes.is_turned()) {
             let found = format!("axes with the matrix {:?}", axes.matrix);
             return Err(Error::content(path, Place::Whole, found, "a rotation"));
+        }
+        if let Some((found, expected)) = contradiction(&result) {
+            return Err(Error::content(path, Place::Whole, found, expected));
         }
         Ok(result)
     }
