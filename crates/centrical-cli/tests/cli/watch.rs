@@ -49,6 +49,20 @@ fn a_complete_session_is_followed_to_its_calibration() {
     }
 }
 
+/// A record that was copied, and trimmed, is refused as soon as it is finished.
+#[test]
+fn a_copied_record_is_refused() {
+    let copy = Copy::new();
+    copy.edit("experiment.toml", |text| text.replacen("arm = [0.25, 0.0, 0.0]", "arm = [0.5, 0.0, 0.0]", 1));
+    let first = fs::read_to_string(copy.session().join("records/m01.csv")).unwrap();
+    let lines: Vec<&str> = first.lines().collect();
+    copy.edit("records/m02.csv", |_| lines[..lines.len() - 30].join("\n") + "\n");
+    let run = copy.run(&["watch", copy.session().to_str().unwrap(), "--quiet", "0", "--once"]);
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(2), "{message}");
+    assert!(message.contains("m02.csv: found the readings of mounting 1, "), "{message}");
+}
+
 /// Records that come piece by piece, lines in part; Ctrl-C in the middle, and the same command again: the end is the same as
 /// without.
 #[test]

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 pub use self::in_memory::{Recorded, reduce_recorded};
 pub(crate) use self::instead::fits_instead;
+pub(crate) use self::own_readings::refuse_copies;
 use self::own_readings::refuse_shared_readings;
 use self::pooling::pooled;
 pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size, with_all_rests};

@@ -38,14 +38,19 @@ pub(super) fn refuse_shared_readings(session: &Session, reduced: &Reduced) -> Re
     Ok(())
 }
 
-/// Refuses records of one mounting whose means are more alike than the noise allows: copies that were trimmed, shifted or rounded. `means` by
-/// mounting. Among records of the same schedule, neighbours in the order of their largest mean are compared.
-pub(super) fn refuse_copies(session: &Session, means: &[Vec<PlateauMean>]) -> Result<(), Error> {
+/// Refuses records of one mounting whose means are more alike than the noise allows: copies that were trimmed, shifted or rounded. The `means` of
+/// the first `count` mountings are asked for where two of these have the same schedule. Among records of the same schedule, neighbours in the
+/// order of their largest mean are compared.
+pub(crate) fn refuse_copies<M: AsRef<[Vec<PlateauMean>]>>(
+    session: &Session,
+    count: usize,
+    means: impl FnOnce() -> M,
+) -> Result<(), Error> {
     let experiment = &session.experiment;
     let place = |mounting: &Mounting| -> Vec<u64> {
         std::iter::once(mounting.position as u64).chain(mounting.arm_y.iter().map(|r| r.to_bits())).collect()
     };
-    let mut keys: Vec<Vec<u64>> = experiment.mountings.iter().take(means.len()).map(place).collect();
+    let mut keys: Vec<Vec<u64>> = experiment.mountings.iter().take(count).map(place).collect();
     for set_point in &experiment.set_points {
         if let Some(key) = keys.get_mut(set_point.mounting) {
             key.extend([set_point.omega, set_point.angle].map(f64::to_bits));
@@ -56,6 +61,11 @@ pub(super) fn refuse_copies(session: &Session, means: &[Vec<PlateauMean>]) -> Re
         alike.entry(key).or_default().push(number);
     }
     let pairs: usize = alike.values().map(|numbers| numbers.len() - 1).sum();
+    if pairs == 0 {
+        return Ok(());
+    }
+    let means = means();
+    let means = means.as_ref();
     for mut numbers in alike.into_values() {
         let size = |number: &usize| means[*number].iter().map(|mean| mean.mean.amax()).fold(0.0, f64::max);
         numbers.sort_by(|a, b| size(a).total_cmp(&size(b)));
@@ -64,8 +74,9 @@ pub(super) fn refuse_copies(session: &Session, means: &[Vec<PlateauMean>]) -> Re
             let chance = chance_of_likeness(&means[first], &means[second]).map(|chance| pairs as f64 * chance);
             if let Some(chance) = chance.filter(|chance| Level::Objection.is_passed_by(*chance)) {
                 let file = |number: usize| session.mountings[number].record.as_deref().unwrap_or(&session.file);
+                let chance = if chance > 0.0 { format!("of {chance:.0e}") } else { "below 1e-300".to_owned() };
                 let found = format!(
-                    "the readings of mounting {}, {}: two records have means so alike with a probability of {chance:.0e}",
+                    "the readings of mounting {}, {}: two records have means so alike with a probability {chance}",
                     first + 1,
                     file(first).display()
                 );

@@ -20,7 +20,7 @@ pub(super) fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Redu
         mountings.into_iter().map(|mounting| (mounting.reduced, mounting.overview)).unzip();
     let noise = NoiseModel::pool(&reduced);
     let means: Vec<Vec<PlateauMean>> = reduced.iter().map(|mounting| plateau_means(mounting, &noise)).collect();
-    refuse_copies(session, &means)?;
+    refuse_copies(session, means.len(), || &means)?;
     let findings = |(m, interpolated): (&ReducedMounting, &Option<[u64; 3]>)| MountingFindings {
         settling_time: m.settling_time(),
         clock_offset: m.clock_offset(),

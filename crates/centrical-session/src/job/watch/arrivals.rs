@@ -18,7 +18,7 @@ use super::growth::Growth;
 use super::rests;
 use crate::error::Error;
 use crate::experiment::{PlateauMean, Session, SpeedSource};
-use crate::job::reduce::{fits_instead, schedule};
+use crate::job::reduce::{fits_instead, refuse_copies, schedule};
 
 /// A session folder that is looked into again and again.
 ///
@@ -187,12 +187,21 @@ impl<'s> Watch<'s> {
                 self.arrive(mounting, &reduced, complete, arrivals);
                 if finished {
                     self.finished.push(reduced);
+                    self.refuse_copies()?;
                     (self.come, self.seen) = (0, None);
                     return Ok(true);
                 }
             }
         }
         Ok(false)
+    }
+
+    /// Refuses a finished record that is a copy of another.
+    fn refuse_copies(&self) -> Result<(), Error> {
+        refuse_copies(self.session, self.finished.len(), || {
+            let noise = NoiseModel::pool(&self.finished);
+            self.finished.iter().map(|mounting| plateau_means(mounting, &noise)).collect::<Vec<_>>()
+        })
     }
 
     /// `None` while there is no record.
