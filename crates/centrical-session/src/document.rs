@@ -16,6 +16,7 @@ mod noise;
 mod observability;
 mod plan;
 mod prediction;
+mod record_findings;
 mod reduction;
 mod result;
 mod series;
@@ -59,6 +60,7 @@ pub use self::plan::{
     ReasonReport,
 };
 pub use self::prediction::{PredictedParameter, PredictionReport};
+pub(crate) use self::record_findings::RecordFindings;
 pub use self::reduction::{REDUCTION_SCHEMA, ReducedPlateauSummary, ReductionReport};
 pub(crate) use self::result::Attitude;
 pub use self::result::{

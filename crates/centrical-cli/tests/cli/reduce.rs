@@ -40,7 +40,7 @@ fn the_same_numbers_to_the_last_digit() {
         assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
         assert_eq!(String::from_utf8(run.stderr).unwrap(), "", "a bar is for terminals");
         let plateaus = calibrated(&out);
-        for key in ["parameters", "covariance", "observability", "fit", "model"] {
+        for key in ["parameters", "covariance", "observability", "fit", "model", "drift", "tilt", "validity"] {
             assert_eq!(plateaus[key], records[key], "{format}: {key}");
         }
         let rows = |result: &Value| result["plateaus"].as_array().unwrap().clone();

@@ -72,7 +72,7 @@ pub(crate) const ENGLISH: Messages = Messages {
     drift_over_session: "Drift over the session",
     plateaus_drift: "plateaus drift",
     plateaus_drift_with_speed: "plateaus drift no more than their speeds may run",
-    readings_drift: "readings drift over plateaus by more than slow noise and the speeds explain: a temperature, a bias or an unseen change of speed",
+    readings_drift: "readings drift over plateaus by more than slow noise and the speeds explain: a temperature, a bias, a speed that has not settled or changed unseen",
     session_drifts: "the session drifts",
     no_drift: "no drift seen",
     drift_or_chance: "a drift or, in one session of twenty, chance",

@@ -45,6 +45,7 @@ pub(super) fn group(group: Group) -> &'static str {
         Group::MountingTurn => "Turn of one mounting",
         Group::MountingTilt => "Tilt of the axis in one mounting",
         Group::MountingBias => "Bias of one mounting",
+        Group::MountingScale => "Scale of one mounting",
         Group::Disturbance => "Disturbance of the readings",
     }
 }
@@ -156,6 +157,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::MountingTurn => "turn of its own in each mounting",
             Extension::MountingTilt => "tilt of the axis that differs by mounting",
             Extension::MountingBias => "bias that differs by mounting",
+            Extension::MountingScale => "scale that differs by mounting",
             Extension::SpinTurn => "turn of the unit between rest and spinning",
             Extension::Disturbance(Course::Spinning) => {
                 "step between rest and spinning: an aliased line or rectified vibration"

@@ -43,6 +43,7 @@ pub(super) fn group(group: Group) -> &'static str {
         Group::MountingTurn => "Поворот в одной установке",
         Group::MountingTilt => "Наклон оси в одной установке",
         Group::MountingBias => "Смещение нуля в одной установке",
+        Group::MountingScale => "Масштаб в одной установке",
         Group::Disturbance => "Возмущение показаний",
     }
 }
@@ -154,6 +155,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::MountingTurn => "собственный поворот в каждой установке",
             Extension::MountingTilt => "наклон оси, различный по установкам",
             Extension::MountingBias => "смещение нуля, различное по установкам",
+            Extension::MountingScale => "масштаб, различный по установкам",
             Extension::SpinTurn => "поворот прибора между покоем и вращением",
             Extension::Disturbance(Course::Spinning) => {
                 "ступень между покоем и вращением: наложение частот или выпрямленная вибрация"

@@ -120,10 +120,11 @@ fn difference_in_english(found: &SpeedDifference) -> String {
         None => "",
     };
     format!(
-        "{} says {:.2} rpm, the schedule {:.2} ({}, {} times the stated uncertainty) {place}: {cause}{record}",
+        "{} says {:.2} rpm, the schedule {:.2} ({}{}, {} times the stated uncertainty) {place}: {cause}{record}",
         english_witness(found.shown_by),
         rpm(found.shown),
         rpm(found.set),
+        if is_mean(found) { "mean " } else { "" },
         percent(found.difference),
         times(found),
     )
@@ -153,8 +154,14 @@ fn difference_in_russian(found: &SpeedDifference) -> String {
     };
     let witness = russian_witness(found.shown_by)[0];
     let numbers = format!("{witness} показывает {:.2} об/мин, программа {:.2}", rpm(found.shown), rpm(found.set));
-    let off = format!("{}, в {} раз больше заявленной неопределённости", percent(found.difference), times(found));
+    let mean = if is_mean(found) { "в среднем " } else { "" };
+    let off = format!("{mean}{}, в {} раз больше заявленной неопределённости", percent(found.difference), times(found));
     format!("{} ({}) {place}: {cause}{record}", comma(&numbers), comma(&off))
+}
+
+/// Whether the difference is the mean one of several plateaus.
+fn is_mean(found: &SpeedDifference) -> bool {
+    found.plateaus.len() > 1 && !matches!(found.extent, DifferenceExtent::Plateaus)
 }
 
 /// `mounting 4`, or `mountings 1, 2`.

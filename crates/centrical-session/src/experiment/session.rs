@@ -59,6 +59,8 @@ pub struct Session {
     pub mountings: Vec<MountingFiles>,
     /// Plateaus already averaged, if the session brings them instead of records.
     pub plateaus: Option<PlateauTable>,
+    /// What the records showed beside these means.
+    pub record_findings: Option<serde_json::Map<String, serde_json::Value>>,
     /// Tables of rests in free attitudes, each rest a mounting behind the others.
     pub rest_tables: Vec<RestTable>,
     /// Duration that the schedule states for each set point, if it does [s].
@@ -267,6 +269,7 @@ impl Session {
                 })
                 .collect(),
             plateaus: None,
+            record_findings: form.record_findings.clone(),
             rest_tables: RestTable::named(file, &folder, &form.tumble)?,
             durations: Vec::new(),
             priors: prior::entries(&form.prior),

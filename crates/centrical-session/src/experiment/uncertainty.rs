@@ -12,7 +12,7 @@ use crate::error::{Error, quoted};
 use crate::quantity::{Dimension, Quantity};
 
 /// The quantities beside effects.
-const QUANTITIES: [&str; 14] = [
+const QUANTITIES: [&str; 15] = [
     "gravity",
     "latitude",
     "radius",
@@ -24,6 +24,7 @@ const QUANTITIES: [&str; 14] = [
     "attitude",
     "bias_change",
     "mounting_bias",
+    "mounting_scale",
     "resolution",
     "reading_noise",
     "doubt",
@@ -81,6 +82,7 @@ pub(crate) fn type_b(
         attitude: angle("attitude")?.unwrap_or(0.0),
         bias_change: acceleration("bias_change")?.unwrap_or(ANY_BIAS),
         mounting_bias: acceleration("mounting_bias")?.unwrap_or(0.0),
+        mounting_scale: ratio("mounting_scale")?.unwrap_or(0.0),
         resolution: acceleration("resolution")?.unwrap_or(0.0),
         reading_noise: acceleration("reading_noise")?.unwrap_or(0.0),
         doubt: ratio("doubt")?.unwrap_or(0.0),

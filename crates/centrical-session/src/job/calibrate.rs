@@ -4,7 +4,7 @@ use centrical::uncertainty::BetweenRests;
 use centrical::{Calibration, Data, FitError, MeasurementModel, OnProgress, advance};
 
 use super::reduce::reduce;
-use crate::document::{BetweenRestsSummary, CalibrationResult, Method};
+use crate::document::{BetweenRestsSummary, CalibrationResult, Method, RecordFindings};
 use crate::error::Error;
 use crate::experiment::{PlateauName, Session};
 use crate::reduced::Reduced;
@@ -168,6 +168,10 @@ fn by_noise<T>(
     advance(progress, 0)?;
     let calibration = calibration.map_err(failed)?;
     let result = CalibrationResult::from(&calibration, session, reduced, progress).map_err(failed)?;
+    let result = match RecordFindings::stated(session)? {
+        Some(findings) => findings.added_to(result),
+        None => result,
+    };
     advance(progress, 0)?;
     let beside = beside(&calibration, &result).map_err(failed)?;
     Ok((result, beside))

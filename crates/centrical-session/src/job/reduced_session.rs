@@ -2,9 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use centrical::unwatched;
 use centrical_table::{TableFormat, claim_folder, refuse_inputs, write_whole};
 use toml_edit::{DocumentMut, InlineTable, Item, TableLike, Value, value};
 
+use super::calibrate::calibrate_reduced;
+use crate::document::{Method, RecordFindings};
 use crate::error::{Error, Place};
 use crate::experiment::{
     EXPERIMENT_FILE, PlateauMean, RestTable, Session, SpeedSource, write_attitudes, write_plateaus,
@@ -47,6 +50,9 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
     let name = (!session.mountings.is_empty()).then_some(name);
     let mut document = editable(&session.file, &session.experiment_text()?)?;
     rewrite(&mut document, session, name, of_plateaus.then_some(session.speeds.set_uncertainty));
+    if let Some(findings) = session.plateaus.is_none().then(|| findings(session, reduced)).flatten() {
+        document.insert("record_findings", value(findings.to_toml()?));
+    }
     if let Some(noise) = reduced.reading_noise().filter(|_| session.type_b.resolution > 0.0)
         && let Some(uncertainty) = document.get_mut("uncertainty").and_then(Item::as_table_like_mut)
     {
@@ -62,6 +68,13 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
         }
     }
     Ok(write_whole(&experiment_file, document.to_string().as_bytes())?)
+}
+
+/// What calibrating finds in the records beside the means: drifts over plateaus, and speeds that contradict the schedule. None of a session that
+/// cannot be calibrated.
+fn findings(session: &Session, reduced: &Reduced) -> Option<RecordFindings> {
+    let result = calibrate_reduced(session, reduced, Method::Exact, &unwatched).ok()?;
+    RecordFindings::of(&result)
 }
 
 /// The experiment file with the table, if there is one, instead of records, and all else, comments too, as it was. With `uncertainty` it says

@@ -164,6 +164,11 @@ impl Course {
 }
 
 impl Effect {
+    /// The scale of a newtonometer in one mounting, relative.
+    pub(super) fn scale_of_mounting(axis: usize, mounting: usize) -> Self {
+        Self::Monomial { axis, monomial: Monomial::power(axis, 1), mounting: Some(mounting) }
+    }
+
     /// The bias of a newtonometer in one mounting [m/s^2].
     pub(super) fn bias_of_mounting(axis: usize, mounting: usize) -> Self {
         Self::Monomial { axis, monomial: Monomial::ONE, mounting: Some(mounting) }

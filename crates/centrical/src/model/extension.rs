@@ -41,6 +41,8 @@ pub enum Extension {
     MountingTilt,
     /// Bias of every mounting, three each: a unit that is switched off to be moved, or gets warm.
     MountingBias,
+    /// Scale of every mounting, three each: likewise.
+    MountingScale,
     /// Turn of the unit while spinning against that at rest, three per position.
     SpinTurn,
     /// A disturbance of the readings, one per newtonometer.
@@ -62,7 +64,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 26] = [
+    pub const NAMED: [(&'static str, Self); 27] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -81,6 +83,7 @@ impl Extension {
         ("mounting-turn", Self::MountingTurn),
         ("mounting-tilt", Self::MountingTilt),
         ("mounting-bias", Self::MountingBias),
+        ("mounting-scale", Self::MountingScale),
         ("spin-turn", Self::SpinTurn),
         ("spin-step", Self::Disturbance(Course::Spinning)),
         ("spin-square", Self::Disturbance(Course::SquaredSpeed)),
@@ -154,6 +157,7 @@ impl Extension {
                 },
             ),
             Self::MountingBias => by_mounting(experiment, 3, |_, _| true, mounting_bias),
+            Self::MountingScale => by_mounting(experiment, 3, |_, _| true, mounting_scale),
             Self::SpinTurn => by_position(experiment, |axis, position, id| {
                 let name = format!("spin_turn_{}[{id}]", axis + 1);
                 effect(name, "rad", Group::SpinTurn, Effect::SpinTurn { axis, position }, 1e-3)
@@ -191,6 +195,12 @@ fn mounting_turn(axis: usize, mounting: usize) -> Parameter {
 fn mounting_bias(axis: usize, mounting: usize) -> Parameter {
     let name = format!("mounting_bias_{}[{}]", axis + 1, mounting + 1);
     effect(name, "m/s^2", Group::MountingBias, Effect::bias_of_mounting(axis, mounting), BIAS)
+}
+
+/// The scale of a newtonometer in one mounting, relative.
+fn mounting_scale(axis: usize, mounting: usize) -> Parameter {
+    let name = format!("mounting_scale_{}[{}]", axis + 1, mounting + 1);
+    effect(name, "1", Group::MountingScale, Effect::scale_of_mounting(axis, mounting), 1e-3)
 }
 
 fn other_unit(term: &Term, mounting: usize) -> Parameter {

@@ -55,13 +55,15 @@ pub enum Group {
     MountingTilt,
     /// Bias of a newtonometer in one mounting.
     MountingBias,
+    /// Scale of a newtonometer in one mounting.
+    MountingScale,
     /// Disturbance of the readings.
     Disturbance,
 }
 
 impl Group {
     /// All groups.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 28] = [
         Self::Bias,
         Self::Scale,
         Self::Misalignment,
@@ -88,6 +90,7 @@ impl Group {
         Self::MountingTurn,
         Self::MountingTilt,
         Self::MountingBias,
+        Self::MountingScale,
         Self::Disturbance,
     ];
 
@@ -120,6 +123,7 @@ impl Group {
             Self::MountingTurn => "turn of one mounting",
             Self::MountingTilt => "tilt in one mounting",
             Self::MountingBias => "bias of one mounting",
+            Self::MountingScale => "scale of one mounting",
             Self::Disturbance => "disturbance",
         }
     }

@@ -101,6 +101,7 @@ impl Rival {
                 Extension::MountingTurn => "delta, by mounting",
                 Extension::MountingTilt => "alpha, by mounting",
                 Extension::MountingBias => "df0, by mounting",
+                Extension::MountingScale => "f_i, by mounting",
                 Extension::SpinTurn => "delta while spinning, by position",
                 Extension::Disturbance(Course::Spinning) => "1 where Omega > 0",
                 Extension::Disturbance(Course::SquaredSpeed) => "Omega^2",
@@ -137,7 +138,9 @@ impl Rival {
                 | Extension::SpinTurn
                 | Extension::OneMounting(..) => "mechanics of the arm and the seat",
                 Extension::Disturbance(Course::Yield) => "IEEE Std 1293, open loop",
-                Extension::MountingBias | Extension::Disturbance(_) => "electronics and material of the unit",
+                Extension::MountingBias | Extension::MountingScale | Extension::Disturbance(_) => {
+                    "electronics and material of the unit"
+                }
             },
         }
     }

@@ -13,7 +13,7 @@ use super::rival::Rival;
 use crate::statistics::bias_variance;
 
 /// Standard uncertainties that a laboratory states (GUM type B), SI; zero where there is none.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TypeB {
     /// Of local gravity [m/s^2].
     pub gravity: f64,
@@ -36,6 +36,8 @@ pub struct TypeB {
     pub bias_change: f64,
     /// Of the bias of each newtonometer in each mounting: a unit that is switched off to be moved [m/s^2].
     pub mounting_bias: f64,
+    /// Of the scale of each newtonometer in each mounting, relative.
+    pub mounting_scale: f64,
     /// Smallest step of the reading [m/s^2], not a standard uncertainty: it leaves an error on each mean, see [`TypeB::rounding`],
     /// independent of the others.
     pub resolution: f64,
@@ -74,7 +76,7 @@ pub enum Source {
     ProofMasses,
     /// Nominal attitudes.
     Attitude,
-    /// Change of the bias from one switch-on to another, of mountings and of rests in free attitudes.
+    /// Change of bias and scale from one switch-on to another, of mountings and of rests in free attitudes.
     BiasChange,
     /// Acceleration about the axes of a slow rotation.
     Turning,
@@ -147,6 +149,29 @@ pub struct Influence {
     pub standard_uncertainty: f64,
 }
 
+// Arrays of more than 32 have no default of their own.
+impl Default for TypeB {
+    fn default() -> Self {
+        Self {
+            gravity: 0.0,
+            latitude: 0.0,
+            radius: 0.0,
+            radius_difference: None,
+            speed_scale: 0.0,
+            rest_angle: 0.0,
+            proof_masses: 0.0,
+            attitude: 0.0,
+            bias_change: 0.0,
+            mounting_bias: 0.0,
+            mounting_scale: 0.0,
+            resolution: 0.0,
+            reading_noise: 0.0,
+            effects: [0.0; Rival::COUNT],
+            doubt: 0.0,
+        }
+    }
+}
+
 impl TypeB {
     /// The influences on more than one plateau, those of zero uncertainty left out.
     pub(super) fn influences(&self, experiment: &Experiment, error_model: &ErrorModel) -> Vec<Influence> {
@@ -180,6 +205,7 @@ impl TypeB {
         }
         for (mounting, axis) in experiment.mountings_on_arm().flat_map(|m| (0..3).map(move |axis| (m, axis))) {
             add(Source::BiasChange, Effect::bias_of_mounting(axis, mounting), self.mounting_bias);
+            add(Source::BiasChange, Effect::scale_of_mounting(axis, mounting), self.mounting_scale);
         }
         for SwitchOn { number: switch_on, bias_change, .. } in experiment.other_switch_ons() {
             for axis in 0..3 {

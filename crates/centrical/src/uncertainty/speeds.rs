@@ -57,9 +57,9 @@ pub struct SpeedContradiction {
     pub extent: Extent,
     /// Their set points.
     pub set_points: Vec<usize>,
-    /// Speeds that were set and that is shown on the first of them, without sign [rad/s].
+    /// Speed that was set on the plateau whose difference is nearest to the mean one, without sign [rad/s].
     pub set: f64,
-    /// See `set`.
+    /// Speed that is shown there [rad/s].
     pub shown: f64,
     /// Mean relative difference.
     pub difference: f64,
@@ -129,12 +129,12 @@ impl<'a> Tested<'a> {
         }
         let (mean, standard_uncertainty) = self.mean(alike);
         let probability = family_wise(two_sided(mean / standard_uncertainty, Degrees::Infinite), self.family());
-        let first = *alike.first()?;
+        let example = self.nearest(alike, mean)?;
         Level::Reported.is_passed_by(probability).then(|| SpeedContradiction {
             extent: Extent::All,
             set_points: alike.iter().map(|n| speeds[*n].set_point).collect(),
-            set: speeds[first].set,
-            shown: speeds[first].shown.speed,
+            set: speeds[example].set,
+            shown: speeds[example].shown.speed,
             difference: mean,
             standard_uncertainty,
             probability,
@@ -211,15 +211,22 @@ impl<'a> Tested<'a> {
         }
     }
 
+    /// The first of the plateaus whose difference is nearest to a mean.
+    fn nearest(&self, plateaus: &[usize], mean: f64) -> Option<usize> {
+        let distance = |n: usize| (self.difference[n] - mean).abs();
+        plateaus.iter().copied().min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+    }
+
     fn contradiction(&self, extent: Extent, group: &[usize], common: Option<f64>) -> SpeedContradiction {
         // The plateau that is farthest off stands for them.
         let far = |n: &usize| (self.difference[*n] - common.unwrap_or(0.0)).abs() / self.uncertainty[*n];
         let worst = group.iter().copied().max_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0);
-        let example = if matches!(extent, Extent::Plateaus) { worst } else { group.first().copied().unwrap_or(0) };
         let (difference, standard_uncertainty) = match extent {
             Extent::Plateaus => (self.difference[worst], self.uncertainty[worst].hypot(self.stated.scale)),
             _ => self.mean(group),
         };
+        let example = if matches!(extent, Extent::Plateaus) { None } else { self.nearest(group, difference) };
+        let example = example.unwrap_or(worst);
         SpeedContradiction {
             extent,
             set_points: group.iter().map(|n| self.speeds[*n].set_point).collect(),

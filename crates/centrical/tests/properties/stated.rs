@@ -40,6 +40,7 @@ fn sessions_with_stated_deviations_are_accepted() {
         ("radius 20 um, seats apart", TypeB { radius: 20e-6, ..TypeB::default() }),
         ("proof masses 50 um", TypeB { proof_masses: 50e-6, ..TypeB::default() }),
         ("bias of each mounting 30 ug", TypeB { mounting_bias: 3e-4, ..TypeB::default() }),
+        ("scale of each mounting 20 ppm", TypeB { mounting_scale: 2e-5, ..TypeB::default() }),
         ("resolution 20 ug", TypeB { resolution: 2e-4, ..TypeB::default() }),
         ("gravity and latitude", TypeB { gravity: 1e-4, latitude: 1e-2, ..TypeB::default() }),
         ("arm turn 1 urad at 100 g", bounded("arm-turn-load", 1e-6 / 980.665)),

@@ -22,6 +22,7 @@ pub const STATED: TypeB = TypeB {
     attitude: 2e-5,
     bias_change: 0.0,
     mounting_bias: 0.0,
+    mounting_scale: 0.0,
     resolution: 1e-5,
     reading_noise: 0.0,
     doubt: 0.0,

@@ -76,7 +76,7 @@ pub struct SpeedDifference {
     pub plateaus: Vec<String>,
     /// Plateaus with a speed in the telemetry.
     pub of: usize,
-    /// Speed that was set, of the first or farthest of them [rad/s].
+    /// Speed that was set on the plateau with the difference nearest to the mean one, or of single plateaus on the farthest off [rad/s].
     pub set: f64,
     /// Speed that the telemetry shows there [rad/s].
     pub shown: f64,

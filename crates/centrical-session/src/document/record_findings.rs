@@ -1,0 +1,96 @@
+//! What records show beside their means, in the experiment file of a session that is reduced to these: `[record_findings]`.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use toml_edit::{Array, InlineTable};
+
+use super::result::{CalibrationResult, SpeedsSummary};
+use super::steadiness::{DriftSummary, TiltSummary};
+use crate::error::{Error, Place};
+use crate::experiment::Session;
+
+/// What calibrating the records found in them, in the forms of `result.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RecordFindings {
+    /// How the readings drifted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    drift: Option<DriftSummary>,
+    /// The tilt at rest and while spinning.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tilt: Option<TiltSummary>,
+    /// What the measured speeds say of the schedule.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    speeds: Option<SpeedsSummary>,
+}
+
+impl RecordFindings {
+    /// Those of a result; none where it has none.
+    pub fn of(result: &CalibrationResult) -> Option<Self> {
+        let CalibrationResult { drift, tilt, speeds, .. } = result;
+        let has_any = drift.is_some() || tilt.is_some() || speeds.is_some();
+        let (drift, tilt, speeds) = (drift.clone(), tilt.clone(), speeds.clone());
+        has_any.then(|| Self { drift, tilt, speeds })
+    }
+
+    /// Those that a reduced session states; none of one with records.
+    ///
+    /// # Errors
+    /// [`Error`] when they are not of this form.
+    pub fn stated(session: &Session) -> Result<Option<Self>, Error> {
+        let Some(table) = &session.record_findings else { return Ok(None) };
+        let read = serde_json::from_value(Value::Object(table.clone()));
+        let refused = |error: serde_json::Error| {
+            let expected = "[record_findings] as `centrical reduce` writes it";
+            Error::content(&session.file, Place::Whole, format!("[record_findings] with {error}"), expected)
+        };
+        read.map(Some).map_err(refused)
+    }
+
+    /// The entry of an experiment file.
+    ///
+    /// # Errors
+    /// [`Error::Json`] when a value has no place in JSON.
+    pub fn to_toml(&self) -> Result<toml_edit::Value, Error> {
+        let failed = |source| Error::Json { document: "record_findings", source };
+        let whole = serde_json::to_value(self).map_err(failed)?;
+        Ok(in_toml(&whole).unwrap_or_else(|| InlineTable::new().into()))
+    }
+
+    /// A result of the means with what the records show beside them.
+    pub fn added_to(self, result: CalibrationResult) -> CalibrationResult {
+        CalibrationResult {
+            drift: result.drift.or(self.drift),
+            tilt: result.tilt.or(self.tilt),
+            speeds: with_findings(result.speeds, self.speeds),
+            ..result
+        }
+    }
+}
+
+/// A value of JSON in TOML, which has no null.
+fn in_toml(value: &Value) -> Option<toml_edit::Value> {
+    Some(match value {
+        Value::Null => return None,
+        Value::Bool(truth) => (*truth).into(),
+        Value::Number(number) => match number.as_i64() {
+            Some(whole) => whole.into(),
+            None => number.as_f64()?.into(),
+        },
+        Value::String(text) => text.as_str().into(),
+        Value::Array(values) => Array::from_iter(values.iter().filter_map(in_toml)).into(),
+        Value::Object(entries) => {
+            let entries = entries.iter().filter_map(|(key, value)| Some((key.as_str(), in_toml(value)?)));
+            InlineTable::from_iter(entries).into()
+        }
+    })
+}
+
+/// What is known of the speeds, with what was found in the records where the means show no such thing.
+fn with_findings(of_means: Option<SpeedsSummary>, of_records: Option<SpeedsSummary>) -> Option<SpeedsSummary> {
+    match (of_means, of_records) {
+        (Some(of_means), Some(of_records)) if of_means.findings.is_empty() => {
+            Some(SpeedsSummary { findings: of_records.findings, ..of_means })
+        }
+        (of_means, of_records) => of_means.or(of_records),
+    }
+}
