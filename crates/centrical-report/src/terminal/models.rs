@@ -1,6 +1,6 @@
 //! The choice of the error model as text for the terminal.
 
-use centrical::uncertainty::{FittedCandidate, Selection};
+use centrical::uncertainty::{FittedCandidate, Level, Selection, chance_of_residuals};
 
 use super::rivals::changes_for;
 use super::screen::{Emphasis, Screen};
@@ -149,8 +149,22 @@ fn reasons(selection: &Selection) -> Vec<String> {
     let mut reasons = vec!["it has the lowest BIC".to_owned()];
     let others = selection.candidates.iter().enumerate().filter(|(n, _)| *n != selection.recommended).map(|(_, r)| r);
     if let Some(second) = others.min_by(|a, b| a.bic.total_cmp(&b.bic)) {
-        reasons[0] =
-            format!("it has the lowest BIC; the next, \"{}\", is {:.1} behind", second.name, second.bic - best.bic);
+        reasons[0] = if second.bic < best.bic {
+            format!("it has the lowest BIC of those that gain more than chance; \"{}\" has a lower one", second.name)
+        } else {
+            format!("it has the lowest BIC; the next, \"{}\", is {:.1} behind", second.name, second.bic - best.bic)
+        };
+    }
+    let chance = chance_of_residuals(best.chi_squared, best.degrees_of_freedom, None);
+    if Level::Objection.is_passed_by(chance) {
+        reasons.insert(
+            0,
+            format!(
+                "it does not fit either, chi^2 {} of {} degrees of freedom: what is wrong is no effect of this list alone",
+                wide(best.chi_squared),
+                best.degrees_of_freedom
+            ),
+        );
     }
     if let Some(test) = &best.against {
         reasons.push(format!(

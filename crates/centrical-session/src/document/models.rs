@@ -20,7 +20,7 @@ pub struct ModelsReport {
     pub program: Program,
     /// Title of the session.
     pub title: String,
-    /// The recommended model, counted from 0 among the candidates: the lowest BIC of those that converged.
+    /// The recommended model, counted from 0 among the candidates: the lowest BIC of those that converged and gain more than chance.
     pub recommended: usize,
     /// The models, in the order in which they were fitted.
     pub candidates: Vec<CandidateSummary>,

@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 
 use super::rivals::columns::Columns;
 use super::validity::f_tail;
+use super::verdict::Level;
 use crate::fit::{Calibration, Data, Fit, Termination};
 use crate::model::{ErrorModel, Extension, FitError, Kind, MeasurementModel, Observation, Parameter, Rival};
 use crate::progress::{OnProgress, advance};
@@ -202,8 +203,15 @@ fn conclude(fits: &[(&Candidate, Calibration)]) -> Result<Selection, FitError> {
     for n in 0..fitted.len() {
         fitted[n].against = nested_test(&candidates, &fitted, n);
     }
-    let converged = (0..fitted.len()).filter(|&n| fitted[n].converged);
-    let recommended = converged.min_by(|&a, &b| fitted[a].bic.total_cmp(&fitted[b].bic)).ok_or(FitError::Empty)?;
+    let least = |all: &mut dyn Iterator<Item = usize>| all.min_by(|&a, &b| fitted[a].bic.total_cmp(&fitted[b].bic));
+    let converged = || (0..fitted.len()).filter(|&n| fitted[n].converged);
+    // Where no model fits, the stated weights make any gain a large one: beside what is left, it has to be more than chance too.
+    let is_gain = |n: &usize| {
+        let by_chance = fitted[*n].against.as_ref().map_or(1.0, |test| test.probability);
+        fitted[*n].rivals.is_empty() || Level::Reported.is_passed_by(by_chance)
+    };
+    let recommended =
+        least(&mut converged().filter(is_gain)).or_else(|| least(&mut converged())).ok_or(FitError::Empty)?;
     let best = Best(&fits[recommended].1);
     let mut terms = best.own_terms();
     terms.extend(best.further_terms(&candidates)?);

@@ -489,6 +489,23 @@ fn a_plateau_that_is_missing_among_noisy_ones_is_refused() {
     }
 }
 
+/// A plateau that was interrupted and resumed has the speed of its two parts.
+#[test]
+fn the_speed_of_an_interruption_is_not_that_of_the_plateau() {
+    let run = Stream { lengths: vec![30.0; 6], settling: (0.0, 1.0), ..Stream::default() };
+    let mut telemetry = run.telemetry(0.0);
+    let [start, _] = run.windows()[3];
+    for (t, omega) in telemetry.t.iter().zip(&mut telemetry.omega) {
+        if (start + 12.0..start + 15.0).contains(t) {
+            *omega *= 0.5;
+        }
+    }
+    let reduced = reduce(&run.record(), Some(&telemetry), &run.schedule()).expect("all plateaus are there");
+    let speeds = measured_speeds(&run.omegas, reduced.speed_readings());
+    let shown = speeds[3].expect("it spins").speed / run.omegas[3];
+    assert!((shown - 1.0).abs() < 1e-6, "{shown}");
+}
+
 /// Forty loads of 5 g each: a unit 2 % off reads each of the upper ones as the next should.
 fn staircase() -> Stream {
     let steps = (1..=40).map(|n| 62.6 * (f64::from(n) / 40.0).sqrt());

@@ -98,6 +98,25 @@ fn rivals_that_are_not_seen_are_no_candidates() {
     assert!(selection.candidates.iter().all(|c| c.name != "as stated + seat-lateral"));
 }
 
+/// One speed is half a per cent off everywhere: no effect describes that, and each takes much of a chi^2 of millions. What is recommended takes more than chance.
+#[test]
+fn a_recommendation_is_no_chance_where_nothing_fits() {
+    let model = source_model();
+    for seed in 0..4 {
+        let mut random = Random::new(seed);
+        let x = truth(&model, 0.3, &mut random);
+        let mut wrong = model.experiment().clone();
+        let fastest = wrong.set_points.iter().map(|s| s.omega).fold(0.0, f64::max);
+        wrong.set_points.iter_mut().filter(|s| s.omega == fastest).for_each(|s| s.omega *= 1.005);
+        let data = session(&model.in_experiment(wrong), &x, &mut random);
+        let selection = select_beside(&model, &data, &unwatched).unwrap();
+        let recommended = &selection.candidates[selection.recommended];
+        let chi_squared = recommended.chi_squared / recommended.degrees_of_freedom as f64;
+        println!("{} {chi_squared:.0} {:?}", recommended.name, recommended.against);
+        assert!(recommended.against.as_ref().is_none_or(|test| test.probability < 0.05), "{}", recommended.name);
+    }
+}
+
 /// A session with no rival at all is refused.
 #[test]
 fn no_candidate_is_an_error() {

@@ -47,6 +47,9 @@ const GROUPS: usize = 16;
 /// Rounds of finding spikes.
 const ROUNDS: usize = 4;
 
+/// A speed farther from the median one, relative, is that of an interruption of the plateau: its readings are left out as well.
+const INTERRUPTED: f64 = 0.01;
+
 /// Samples farther than this many robust standard deviations from the fit are spikes.
 const SPIKE: f64 = 8.0;
 
@@ -90,9 +93,12 @@ impl SpeedTrace {
     /// The speed of the plateau in `window`, `margin` [s] left out at both ends. `step` is that of the reports.
     pub(super) fn speed(&self, offset: &ClockOffset, window: &Window, margin: f64, step: f64) -> Option<SpeedReading> {
         let times = inside(&self.t, offset, window, margin)?;
-        let is_number = |k: &usize| self.omega[*k].is_finite();
+        let mut reports: Vec<f64> =
+            self.omega[times.clone()].iter().copied().filter(|omega| omega.is_finite()).collect();
+        let middle = median(&mut reports);
+        let is_of_plateau = |k: &usize| (self.omega[*k] - middle).abs() <= INTERRUPTED * middle.abs();
         let (t, omega): (Vec<f64>, Vec<f64>) =
-            times.filter(is_number).map(|k| (self.t[k] + offset.seconds, self.omega[k])).unzip();
+            times.filter(is_of_plateau).map(|k| (self.t[k] + offset.seconds, self.omega[k])).unzip();
         let mut columns = vec![vec![1.0; t.len()]];
         columns.extend(settling(&t, window));
         let fitted = Fitted::of(&columns, &t, &omega, step)?;
