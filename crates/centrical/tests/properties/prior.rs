@@ -144,6 +144,8 @@ fn optional_groups_are_recovered() {
         Extension::PositionShift,
         Extension::MountingShift,
         Extension::MountingTurn,
+        Extension::MountingBias,
+        Extension::MountingScale,
         Extension::SpinTurn,
     ];
     assert_eq!(lossy, expected.map(|extension| vec![extension]));
