@@ -112,7 +112,8 @@ fn refusals() {
     let text = fs::read_to_string(&result).unwrap();
     let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
     let parameters = json["parameters"].as_array_mut().unwrap();
-    parameters.iter_mut().find(|p| p["name"] == "G1_31").unwrap()["value"] = serde_json::Value::Null;
+    let lost = parameters.iter_mut().find(|p| p["name"] == "G1_31").unwrap();
+    (lost["value"], lost["standard_uncertainty"]) = (serde_json::Value::Null, serde_json::Value::Null);
     fs::write(&result, json.to_string()).unwrap();
     refused(&["f.csv"], "result.json: G1_31: found no value, the data do not determine it");
 }
