@@ -74,7 +74,7 @@ fn the_form_is_kept() {
         (
             "[site]",
             "[sites]",
-            r"line 5, column 2: found an unknown key `sites`, expected one of `plateaus`, `plan`, `candidates`, `cost`, `target`, `robust`, `session`, `site`, `unit`, `centrifuge`, `model`, `uncertainty`, `columns`, `position`, `schedule`, `mounting`, `tumble`, `prior`",
+            r"line 5, column 2: found an unknown key `sites`, expected one of `plateaus`, `record_findings`, `plan`, `candidates`, `cost`, `target`, `robust`, `session`, `site`, `unit`, `centrifuge`, `model`, `uncertainty`, `columns`, `position`, `schedule`, `mounting`, `tumble`, `prior`",
         ),
         ("gravity = \"9.81523 m/s^2\"\n", "", r"line 5, column 1: found no key `gravity`, expected one"),
         (r#""9.81523 m/s^2""#, r#""9.81523 m/s^2"#, r#"line 6, column 25: found invalid basic string, expected `"`"#),
