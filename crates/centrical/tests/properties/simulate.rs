@@ -3,7 +3,9 @@ use std::f64::consts::TAU;
 use centrical::position::ThirdPosition::{AxisOneDown, AxisOneUp};
 use centrical::reduction::Record;
 use centrical::simulate::{Equipment, Machine, Recorder, Simulation, SimulationError, Tachometer};
-use centrical::{ArmMotion, EARTH_RATE, Experiment, MeasurementModel, PairRelation, SetPoint, carousel, rotation};
+use centrical::{
+    ArmMotion, EARTH_RATE, Experiment, Group, MeasurementModel, PairRelation, SetPoint, carousel, rotation,
+};
 use nalgebra::Vector3;
 
 use crate::common::{Random, everything, experiment, kozlov, truth};
@@ -43,6 +45,9 @@ fn mean_of_a_record_is_the_reading() {
         while let Some(parameter) = full.of_history(&x) {
             x[full.parameters().find(&parameter.name).unwrap()] = 0.0;
         }
+        // The scale of a mounting acts on all of the nominal force, a thousandth of what it knows wrongly of the rate of the Earth: 1e-9 m/s^2.
+        let scales = full.parameters().iter().enumerate().filter(|(_, p)| p.group == Group::MountingScale);
+        scales.for_each(|(j, _)| x[j] = 0.0);
         for set_point in full.experiment().set_points.iter().step_by(3) {
             let set_point = SetPoint { omega: sense * set_point.omega, ..*set_point };
             let mut one = full.experiment().clone();
@@ -60,8 +65,8 @@ fn mean_of_a_record_is_the_reading() {
             let expected = everything(at_latitude_of_the_axis(one, [x[0], x[1]])).reading(&set_point, &x);
             // The periodic Coriolis term times the tilt through the squares: 1e-5 /g of (300 ug)^2, below 1e-11 m/s^2.
             let error = (mean - expected).amax();
-            // Effects on the nominal force know the rate of the Earth along the plumb line: 1e-12 of the reading each.
-            assert!(error <= 1e-11 * expected.amax() + 1e-11, "{set_point:?}: {error:e} of {:e}", expected.amax());
+            // Effects on the nominal force know the rate of the Earth along the plumb line: 1e-12 of the reading.
+            assert!(error <= 5e-12 * expected.amax() + 1e-11, "{set_point:?}: {error:e} of {:e}", expected.amax());
         }
     }
 }

@@ -27,10 +27,11 @@ pub(crate) fn fits_instead(
     fit.reduce(likelier).map(|(instead, _)| instead)
 }
 
-/// The other mountings of a session, with their plateaus.
+/// The first mounting of a session in each other position and place, with its plateaus.
 fn mountings(experiment: &Experiment, number: usize) -> impl Iterator<Item = (Instead, Vec<ScheduledPlateau>)> {
-    let others = experiment.mountings.iter().enumerate().filter(move |(other, _)| *other != number);
-    others.map(|(other, mounting)| {
+    let all = &experiment.mountings;
+    let is_other = move |k: usize| all[k] != all[number] && !all[..k].contains(&all[k]);
+    all.iter().enumerate().filter(move |(k, _)| is_other(*k)).map(|(other, mounting)| {
         let position = experiment.positions[mounting.position].id.clone();
         let instead = Instead::Mounting { number: other + 1, position, arm: mounting.arm_y.into() };
         (instead, schedule(experiment, other))
