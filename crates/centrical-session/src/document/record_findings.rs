@@ -1,9 +1,9 @@
-//! What records show beside their means, in the experiment file of a session that is reduced to these: `[record_findings]`.
+//! What records show beside their means, in the experiment file of a session that is reduced to these: JSON in
+//! `record_findings`.
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
-use toml_edit::{Array, InlineTable};
 
+use super::json;
 use super::result::{CalibrationResult, SpeedsSummary};
 use super::steadiness::{DriftSummary, TiltSummary};
 use crate::error::{Error, Place};
@@ -37,23 +37,20 @@ impl RecordFindings {
     /// # Errors
     /// [`Error`] when they are not of this form.
     pub fn stated(session: &Session) -> Result<Option<Self>, Error> {
-        let Some(table) = &session.record_findings else { return Ok(None) };
-        let read = serde_json::from_value(Value::Object(table.clone()));
+        let Some(text) = &session.record_findings else { return Ok(None) };
         let refused = |error: serde_json::Error| {
-            let expected = "[record_findings] as `centrical reduce` writes it";
-            Error::content(&session.file, Place::Whole, format!("[record_findings] with {error}"), expected)
+            let expected = "what `centrical reduce` writes there";
+            Error::content(&session.file, Place::Whole, format!("record_findings with {error}"), expected)
         };
-        read.map(Some).map_err(refused)
+        serde_json::from_str(text).map(Some).map_err(refused)
     }
 
-    /// The entry of an experiment file.
+    /// Their text in an experiment file.
     ///
     /// # Errors
     /// [`Error::Json`] when a value has no place in JSON.
-    pub fn to_toml(&self) -> Result<toml_edit::Value, Error> {
-        let failed = |source| Error::Json { document: "record_findings", source };
-        let whole = serde_json::to_value(self).map_err(failed)?;
-        Ok(in_toml(&whole).unwrap_or_else(|| InlineTable::new().into()))
+    pub fn to_json(&self) -> Result<String, Error> {
+        json::document("record_findings", self)
     }
 
     /// A result of the means with what the records show beside them.
@@ -65,24 +62,6 @@ impl RecordFindings {
             ..result
         }
     }
-}
-
-/// A value of JSON in TOML, which has no null.
-fn in_toml(value: &Value) -> Option<toml_edit::Value> {
-    Some(match value {
-        Value::Null => return None,
-        Value::Bool(truth) => (*truth).into(),
-        Value::Number(number) => match number.as_i64() {
-            Some(whole) => whole.into(),
-            None => number.as_f64()?.into(),
-        },
-        Value::String(text) => text.as_str().into(),
-        Value::Array(values) => Array::from_iter(values.iter().filter_map(in_toml)).into(),
-        Value::Object(entries) => {
-            let entries = entries.iter().filter_map(|(key, value)| Some((key.as_str(), in_toml(value)?)));
-            InlineTable::from_iter(entries).into()
-        }
-    })
 }
 
 /// What is known of the speeds, with what was found in the records where the means show no such thing.

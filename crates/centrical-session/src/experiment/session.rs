@@ -59,8 +59,8 @@ pub struct Session {
     pub mountings: Vec<MountingFiles>,
     /// Plateaus already averaged, if the session brings them instead of records.
     pub plateaus: Option<PlateauTable>,
-    /// What the records showed beside these means.
-    pub record_findings: Option<serde_json::Map<String, serde_json::Value>>,
+    /// What the records showed beside these means, as JSON.
+    pub record_findings: Option<String>,
     /// Tables of rests in free attitudes, each rest a mounting behind the others.
     pub rest_tables: Vec<RestTable>,
     /// Duration that the schedule states for each set point, if it does [s].

@@ -51,7 +51,7 @@ pub fn write_reduced(session: &Session, reduced: &Reduced, format: TableFormat, 
     let mut document = editable(&session.file, &session.experiment_text()?)?;
     rewrite(&mut document, session, name, of_plateaus.then_some(session.speeds.set_uncertainty));
     if let Some(findings) = session.plateaus.is_none().then(|| findings(session, reduced)).flatten() {
-        document.insert("record_findings", value(findings.to_toml()?));
+        document.insert("record_findings", value(findings.to_json()?));
     }
     if let Some(noise) = reduced.reading_noise().filter(|_| session.type_b.resolution > 0.0)
         && let Some(uncertainty) = document.get_mut("uncertainty").and_then(Item::as_table_like_mut)

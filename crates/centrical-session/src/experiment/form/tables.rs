@@ -16,8 +16,8 @@ use crate::quantity::Quantity;
 pub(crate) struct Form {
     /// Path of a table of plateaus already averaged.
     pub plateaus: Option<String>,
-    /// What the records showed beside these means, as `centrical reduce` writes it.
-    pub record_findings: Option<serde_json::Map<String, serde_json::Value>>,
+    /// What the records showed beside these means, JSON as `centrical reduce` writes it.
+    pub record_findings: Option<String>,
     /// What is planned, where nothing is measured yet.
     pub plan: Option<PlanTable>,
     /// What a plan is chosen from.
