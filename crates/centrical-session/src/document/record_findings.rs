@@ -26,10 +26,9 @@ pub(crate) struct RecordFindings {
 impl RecordFindings {
     /// Those of a result; none where it has none.
     pub fn of(result: &CalibrationResult) -> Option<Self> {
-        let CalibrationResult { drift, tilt, speeds, .. } = result;
-        let has_any = drift.is_some() || tilt.is_some() || speeds.is_some();
-        let (drift, tilt, speeds) = (drift.clone(), tilt.clone(), speeds.clone());
-        has_any.then(|| Self { drift, tilt, speeds })
+        let found = Self { drift: result.drift.clone(), tilt: result.tilt, speeds: result.speeds.clone() };
+        let has_any = found.drift.is_some() || found.tilt.is_some() || found.speeds.is_some();
+        has_any.then_some(found)
     }
 
     /// Those that a reduced session states; none of one with records.
