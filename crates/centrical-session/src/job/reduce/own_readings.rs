@@ -1,5 +1,6 @@
 //! Readings of two mountings at once: of a record that was copied or named twice the noise would count for half.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
@@ -41,10 +42,10 @@ pub(super) fn refuse_shared_readings(session: &Session, reduced: &Reduced) -> Re
 /// Refuses records of one mounting whose means are more alike than the noise allows: copies that were trimmed, shifted or rounded. The `means` of
 /// the first `count` mountings are asked for where two of these have the same schedule. Among records of the same schedule, neighbours in the
 /// order of their largest mean are compared.
-pub(crate) fn refuse_copies<M: AsRef<[Vec<PlateauMean>]>>(
+pub(crate) fn refuse_copies<'m>(
     session: &Session,
     count: usize,
-    means: impl FnOnce() -> M,
+    means: &dyn Fn() -> Cow<'m, [Vec<PlateauMean>]>,
 ) -> Result<(), Error> {
     let experiment = &session.experiment;
     let place = |mounting: &Mounting| -> Vec<u64> {
@@ -65,7 +66,6 @@ pub(crate) fn refuse_copies<M: AsRef<[Vec<PlateauMean>]>>(
         return Ok(());
     }
     let means = means();
-    let means = means.as_ref();
     for mut numbers in alike.into_values() {
         let size = |number: &usize| means[*number].iter().map(|mean| mean.mean.amax()).fold(0.0, f64::max);
         numbers.sort_by(|a, b| size(a).total_cmp(&size(b)));

@@ -1,5 +1,7 @@
 //! All mountings of a session together: the noise of their records, the covariances of their means, the measured speeds.
 
+use std::borrow::Cow;
+
 use centrical::reduction::{MeasuredSpeed, NoiseModel, PlateauMean, ReducedMounting, measured_speeds, plateau_means};
 
 use super::mounting::OfRecord;
@@ -20,7 +22,7 @@ pub(super) fn pooled(session: &Session, mountings: Vec<OfRecord>) -> Result<Redu
         mountings.into_iter().map(|mounting| (mounting.reduced, mounting.overview)).unzip();
     let noise = NoiseModel::pool(&reduced);
     let means: Vec<Vec<PlateauMean>> = reduced.iter().map(|mounting| plateau_means(mounting, &noise)).collect();
-    refuse_copies(session, means.len(), || &means)?;
+    refuse_copies(session, means.len(), &|| Cow::Borrowed(&means))?;
     let findings = |(m, interpolated): (&ReducedMounting, &Option<[u64; 3]>)| MountingFindings {
         settling_time: m.settling_time(),
         clock_offset: m.clock_offset(),

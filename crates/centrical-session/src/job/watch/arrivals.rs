@@ -198,9 +198,9 @@ impl<'s> Watch<'s> {
 
     /// Refuses a finished record that is a copy of another.
     fn refuse_copies(&self) -> Result<(), Error> {
-        refuse_copies(self.session, self.finished.len(), || {
+        refuse_copies(self.session, self.finished.len(), &|| {
             let noise = NoiseModel::pool(&self.finished);
-            self.finished.iter().map(|mounting| plateau_means(mounting, &noise)).collect::<Vec<_>>()
+            self.finished.iter().map(|mounting| plateau_means(mounting, &noise)).collect()
         })
     }
 

@@ -25,7 +25,7 @@ const LOUDER: [f64; 4] = [4.0, 16.0, 64.0, 256.0];
 /// The core of each scheduled plateau, in blocks; an error for a record with a recording mistake.
 pub(super) fn align(blocks: &Blocks, schedule: &[ScheduledPlateau]) -> Result<Vec<Range<usize>>, ReductionError> {
     let quiet = Evidence::new(blocks);
-    let other = |schedule: &[ScheduledPlateau]| first_path(&quiet, schedule).ok().map(FirstPath::settled);
+    let other = |schedule: &[ScheduledPlateau]| first_path(&quiet, schedule.into()).ok().map(FirstPath::settled);
     match by_schedule(&quiet, schedule) {
         Ok(cores) => {
             hypothesis::recognise(blocks, schedule, Some(&cores), other)?;
@@ -85,16 +85,16 @@ struct FirstPath<'a> {
 
 /// The path through the schedule as it stands, or as the record shows it.
 fn either_path<'a>(evidence: &'a Evidence, schedule: &'a [ScheduledPlateau]) -> Result<FirstPath<'a>, ReductionError> {
-    let seen = |error| as_seen(evidence, schedule).and_then(|seen| first_path(evidence, seen).ok()).ok_or(error);
-    first_path(evidence, schedule).or_else(seen)
+    let seen = |error| as_seen(evidence, schedule).and_then(|seen| first_path(evidence, seen.into()).ok()).ok_or(error);
+    first_path(evidence, schedule.into()).or_else(seen)
 }
 
 /// The path through a schedule; an error if a plateau is passed over.
 fn first_path<'a>(
     evidence: &'a Evidence,
-    schedule: impl Into<Cow<'a, [ScheduledPlateau]>>,
+    schedule: Cow<'a, [ScheduledPlateau]>,
 ) -> Result<FirstPath<'a>, ReductionError> {
-    let (schedule, blocks) = (schedule.into(), evidence.blocks());
+    let blocks = evidence.blocks();
     let candidates: Vec<Candidate> = schedule.par_iter().map(|plateau| evidence.of(plateau)).collect();
     let between = evidence.in_transition();
     let on = |k: usize, from: usize, density: &mut [f64]| candidates[k].density(evidence.noise(), from, density);
