@@ -43,13 +43,10 @@ fn refused(copy: &Copy, parts: &[&str]) {
 #[test]
 fn speeds_that_contradict_the_schedule_are_refused() {
     for (scale, parts) in [
-        (
-            1.001,
-            ["telemetry says 133.9", "in all 84 plateaus: a wrong unit, a wrong set-point, or a tachometer's scale"],
-        ),
-        (1.02, ["(+2.00 %", "in all 84 plateaus: a wrong unit, a wrong set-point, or a tachometer's scale"]),
-        (60.0 / TAU, ["telemetry says 1277.", "in all 84 plateaus: speeds in rpm are read in rad/s"]),
-        (360.0 / TAU, ["telemetry says 7666.", "in all 84 plateaus: speeds in deg/s are read in rad/s"]),
+        (1.001, ["(mean +0.10 %", "in all 84 plateaus: a wrong unit, a wrong set-point, or a tachometer's scale"]),
+        (1.02, ["(mean +2.00 %", "in all 84 plateaus: a wrong unit, a wrong set-point, or a tachometer's scale"]),
+        (60.0 / TAU, ["telemetry says ", "in all 84 plateaus: speeds in rpm are read in rad/s"]),
+        (360.0 / TAU, ["telemetry says ", "in all 84 plateaus: speeds in deg/s are read in rad/s"]),
     ] {
         let copy = Copy::new();
         (1..=12).for_each(|m| change(&copy, m, |t, omega| (t, scale * omega)));

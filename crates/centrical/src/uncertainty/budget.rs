@@ -87,7 +87,9 @@ impl Calibration<'_> {
             let of_source = model.influences().iter().enumerate().filter(|(_, influence)| influence.source == source);
             let shared: Vec<usize> = of_source.map(|(n, _)| n).collect();
             let changes = side_by_side(&own, &of_influences.select_columns(&shared));
-            if changes.ncols() > 0 {
+            // A resolution that the noise dithers is stated all the same: it contributes nothing.
+            let is_dithered = source == Source::Resolution && stated.resolution > 0.0;
+            if changes.ncols() > 0 || is_dithered {
                 let degrees = if source.is_weighed() { Degrees::Infinite } else { of_type_b };
                 contributions.push(Contribution { source, degrees, changes });
             }
