@@ -23,6 +23,7 @@ mod turning;
 mod uncertainty;
 mod unit;
 
+pub(crate) use self::attitude::axes_text;
 pub use self::candidates::{Planning, available_time};
 pub use self::folder::Folder;
 pub(crate) use self::form::{Form as ExperimentForm, PlanForm};

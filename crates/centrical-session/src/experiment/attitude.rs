@@ -83,6 +83,11 @@ fn from_axes(at: &TomlPath, axes: &str) -> Result<Matrix3<f64>, Error> {
     }
 }
 
+/// The text that [`from_axes`] reads: the arm axis from 0 along which each instrument axis points, and its sign.
+pub(crate) fn axes_text(along: &[(usize, f64); 3]) -> String {
+    along.map(|(axis, sign)| format!("{}{}", if sign > 0.0 { '+' } else { '-' }, axis + 1)).join(" ")
+}
+
 /// `P_k` by its rows: the instrument axes in the arm frame.
 fn from_rows(at: &TomlPath, rows: &[[f64; 3]; 3]) -> Result<Matrix3<f64>, Error> {
     let p_zy = Matrix3::from_fn(|i, j| rows[i][j]);

@@ -284,8 +284,8 @@ mod tests {
     use super::TypeB;
     use crate::statistics::Random;
 
-    /// Means of rounded readings at any level are off by as much as stated, or by less: the noise is taken at its least. Without noise the
-    /// error is rectangular, and with a noise of one step there is none.
+    /// Errors of means of rounded readings are as large as stated, or smaller, since the least noise is taken. The error is rectangular without
+    /// noise, and vanishes with a noise of one step.
     #[test]
     fn rounding_is_as_large_as_stated_or_smaller() {
         const READINGS: usize = 4000;

@@ -205,7 +205,7 @@ fn conclude(fits: &[(&Candidate, Calibration)]) -> Result<Selection, FitError> {
     }
     let least = |all: &mut dyn Iterator<Item = usize>| all.min_by(|&a, &b| fitted[a].bic.total_cmp(&fitted[b].bic));
     let converged = || (0..fitted.len()).filter(|&n| fitted[n].converged);
-    // Where no model fits, the stated weights make any gain a large one: beside what is left, it has to be more than chance too.
+    // Where no model fits, the stated weights make every gain large. The F test compares it with the chi^2 of the richer model.
     let is_gain = |n: &usize| {
         let by_chance = fitted[*n].against.as_ref().map_or(1.0, |test| test.probability);
         fitted[*n].rivals.is_empty() || Level::Reported.is_passed_by(by_chance)

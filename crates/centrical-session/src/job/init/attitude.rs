@@ -1,5 +1,7 @@
 //! The attitude of a unit from its readings.
 
+use crate::experiment::axes_text;
+
 /// A direction along an axis: which, from 0, and its sign.
 pub(super) type Along = (usize, f64);
 
@@ -47,8 +49,7 @@ fn determinant(rows: &[Along; 3]) -> f64 {
 impl Attitude {
     /// As an experiment file has it: `"+2 -3 +1"`.
     pub(super) fn axes(&self) -> String {
-        let name = |(axis, sign): &Along| format!("{}{}", if *sign > 0.0 { '+' } else { '-' }, axis + 1);
-        self.0.iter().map(name).collect::<Vec<_>>().join(" ")
+        axes_text(&self.0)
     }
 
     /// The instrument axis that is vertical, and its sign: the two positions of a pair share it.

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::schedule::schedule;
 use crate::error::Instead;
-use crate::experiment::Session;
+use crate::experiment::{Session, axes_text};
 
 /// What else has all plateaus of a record that was refused by its levels: another mounting of its session, another place, or another attitude; of
 /// several the likeliest.
@@ -56,19 +56,12 @@ fn attitudes(experiment: &Experiment, number: usize) -> impl Iterator<Item = (In
     let along = |k: usize| Vector3::ith(k / 2, if k.is_multiple_of(2) { 1.0 } else { -1.0 });
     let pairs = (0..36).map(move |k| (along(k / 6), along(k % 6))).filter(|(first, second)| first.dot(second) == 0.0);
     pairs.map(move |(first, second)| {
-        let p_zy = Matrix3::from_rows(&[first.transpose(), second.transpose(), first.cross(&second).transpose()]);
+        let rows = [first, second, first.cross(&second)];
+        let p_zy = Matrix3::from_rows(&rows.map(|row| row.transpose()));
         let mut experiment = experiment.clone();
         let position = experiment.mountings[number].position;
         experiment.positions[position].p_zy = p_zy;
-        (Instead::Attitude { axes: axes(&p_zy) }, schedule(&experiment, number))
+        let axes = axes_text(&rows.map(|row| (row.iamax(), row.sum())));
+        (Instead::Attitude { axes }, schedule(&experiment, number))
     })
-}
-
-/// `"+2 -3 +1"`: an attitude as an experiment file has it.
-fn axes(p_zy: &Matrix3<f64>) -> String {
-    let axis = |i: usize| {
-        let along = p_zy.row(i).transpose().iamax();
-        format!("{}{}", if p_zy[(i, along)] > 0.0 { '+' } else { '-' }, along + 1)
-    };
-    [0, 1, 2].map(axis).join(" ")
 }

@@ -83,7 +83,7 @@ struct FirstPath<'a> {
     cores: Vec<Range<usize>>,
 }
 
-/// The path through the schedule as it stands, or as the record shows it.
+/// The path through the schedule by its nominal levels; if that omits a plateau, by the levels of [`as_seen`].
 fn either_path<'a>(evidence: &'a Evidence, schedule: &'a [ScheduledPlateau]) -> Result<FirstPath<'a>, ReductionError> {
     let seen = |error| as_seen(evidence, schedule).and_then(|seen| first_path(evidence, seen.into()).ok()).ok_or(error);
     first_path(evidence, schedule.into()).or_else(seen)
