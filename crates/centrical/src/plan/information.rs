@@ -102,6 +102,18 @@ impl LinearisedScenario {
         Ok(Self { weight: 1.0, jacobians, precisions: Vec::new(), prior, columns, goals })
     }
 
+    /// The scenario with some of the candidates, which it numbers anew.
+    pub fn part(&self, candidates: &[usize], atoms: Atoms) -> Self {
+        Self {
+            weight: self.weight,
+            jacobians: candidates.iter().map(|&c| self.jacobians[c].clone()).collect(),
+            precisions: candidates.iter().flat_map(|&c| atoms.of(c)).map(|x| self.precisions[x]).collect(),
+            prior: self.prior.clone(),
+            columns: self.columns.clone(),
+            goals: self.goals,
+        }
+    }
+
     /// `N` of an atom.
     pub fn precision(&self, atom: usize) -> &Matrix3<f64> {
         &self.precisions[atom]

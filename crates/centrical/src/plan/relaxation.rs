@@ -13,14 +13,18 @@
 //! above by any Lagrange multiplier.
 //!
 //! The optimum is sought by multiplicative steps, which gather the candidates that matter, and then by sequential quadratic
-//! programming, whose inner problems are solved by exchange of time between pairs of candidates.
+//! programming, whose inner problems are solved by exchange of time between pairs of candidates. Of many candidates a part is
+//! searched, which grows by those that the bound over all of them asks for ([`part`]).
 
 mod curvature;
 mod model;
+mod part;
 mod point;
 mod polytope;
 
 use self::model::Model;
+pub(super) use self::part::FEW;
+use self::part::Part;
 use self::point::{Objective, Point};
 pub(super) use self::polytope::Polytope;
 use super::information::Factor;
@@ -36,6 +40,9 @@ const FAR: f64 = 1.0;
 /// Limit of quadratic models for each exponent.
 const MODELS: usize = 25;
 
+/// Limit of the parts of many candidates that are searched one after the other.
+const PARTS: usize = 8;
+
 /// How well an optimum has to be known, in the logarithm of the criterion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Precision {
@@ -48,6 +55,12 @@ pub(super) struct Precision {
 }
 
 impl Precision {
+    /// Whether a design of this value suffices: its bound is known, or is enough, or cannot become enough and is nearly known.
+    fn is_met(&self, value: f64, bound: f64) -> bool {
+        let left = value - bound;
+        bound >= self.enough || left <= self.tolerance || (value < self.enough && left <= self.loose)
+    }
+
     /// To `tolerance`, whatever the optimum is.
     pub fn of(tolerance: f64) -> Self {
         Self { tolerance, loose: tolerance, enough: f64::INFINITY }
@@ -82,6 +95,48 @@ impl Relaxed {
 
 /// Seeks the optimum of `polytope` from `start` until it is known as well as `precision` asks, or the search is stopped.
 pub(super) fn relax(
+    watch: &Watch,
+    scenarios: &LinearisedScenarios,
+    polytope: &Polytope,
+    start: Option<&[f64]>,
+    precision: Precision,
+) -> Relaxed {
+    match Part::first(polytope, start) {
+        Some(part) => relax_by_parts(watch, scenarios, polytope, part, start, precision),
+        None => relax_all(watch, scenarios, polytope, start, precision),
+    }
+}
+
+/// The optimum of a part of the candidates, and again with those that the bound over all of them asks for.
+fn relax_by_parts(
+    watch: &Watch,
+    scenarios: &LinearisedScenarios,
+    polytope: &Polytope,
+    mut part: Part,
+    start: Option<&[f64]>,
+    precision: Precision,
+) -> Relaxed {
+    let of_all = Objective { scenarios, polytope, exponent: if scenarios.has_norm() { 128.0 } else { 1.0 } };
+    let atoms = polytope.atoms;
+    let visits = start.map_or_else(|| polytope.spread(), <[f64]>::to_vec);
+    let mut best = Relaxed { visits, value: f64::INFINITY, bound: f64::NEG_INFINITY, models: 0 };
+    for _ in 0..PARTS {
+        let start = part.of_atoms(&best.visits, atoms);
+        let (of_scenarios, of_polytope) = (part.of_scenarios(scenarios, atoms), part.of_polytope(polytope));
+        let found = relax_all(watch, &of_scenarios, &of_polytope, Some(&start), precision);
+        let visits = part.among_all(&found.visits, atoms);
+        let point = of_all.point(of_all.factors(&visits));
+        let bound = best.bound.max(point.bound).min(found.value);
+        best = Relaxed { visits, value: found.value, bound, models: best.models + found.models };
+        if precision.is_met(best.value, bound) || watch.is_stopped() || !part.grow(polytope, &point) {
+            break;
+        }
+    }
+    best
+}
+
+/// The same among all candidates at once.
+fn relax_all(
     watch: &Watch,
     scenarios: &LinearisedScenarios,
     polytope: &Polytope,
@@ -129,11 +184,9 @@ impl<'a> Search<'a> {
         point.value - self.best > FAR && !self.is_done(point.value)
     }
 
-    /// Whether to end: the bound is known, or is enough, or cannot become enough and is nearly known; or the caller stops.
+    /// Whether to end: the design suffices, or the caller stops.
     fn is_done(&self, value: f64) -> bool {
-        let left = value - self.best;
-        let Precision { tolerance, loose, enough } = self.precision;
-        self.best >= enough || left <= tolerance || (value < enough && left <= loose) || self.watch.is_stopped()
+        self.precision.is_met(value, self.best) || self.watch.is_stopped()
     }
 
     /// Multiplicative steps `w_x (g_x / lambda tau_x)^e`, from a spread design.

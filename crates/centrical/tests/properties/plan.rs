@@ -398,6 +398,26 @@ fn large_plans_are_certified() {
     }
 }
 
+/// Of many candidates a part is searched and all are bounded: the plan is as good as that of few loads, which lie among the many, or
+/// better, and its bound lies below both.
+#[test]
+fn plans_of_many_loads_are_certified() {
+    let [few, many] = [10, 100].map(|speeds| large(speeds, &[60.0]));
+    assert!(many.len() > 1000 && few.len() < 1000);
+    for number in [0, 2] {
+        let plan = |candidates: &Candidates| {
+            let criterion = criterion(number, &candidates.scenarios[0].model);
+            best_for_time(candidates, &criterion, 8.0 * 3600.0, Effort::usual(candidates), &unwatched).unwrap()
+        };
+        let [of_few, of_many] = [&few, &many].map(plan);
+        println!("{number}: gaps {:.2e}, {:.2e}", of_few.gap(), of_many.gap());
+        assert!(of_many.bound <= of_few.criterion);
+        assert!(of_many.criterion < 1.002 * of_few.criterion, "{} {}", of_many.criterion, of_few.criterion);
+        assert!(of_many.continuous.gap() < 2e-3, "{number}: {}", of_many.continuous.gap());
+        assert!((1.0 + of_many.gap()).sqrt() < 1.01, "{number}: {}", of_many.gap());
+    }
+}
+
 /// A plan of two durations for the tests of what is predicted.
 fn planned() -> (Candidates, Schedule) {
     let candidates = large(5, &[20.0, 40.0]);

@@ -5,6 +5,7 @@ use crate::plan::criterion::Criterion;
 use crate::plan::error::PlanError;
 use crate::plan::exchange::{Exchange, IntegerSchedule};
 use crate::plan::information::LinearisedScenario;
+use crate::plan::relaxation::FEW;
 use crate::plan::scenarios::LinearisedScenarios;
 use crate::progress::{OnProgress, Watch};
 
@@ -20,7 +21,7 @@ pub struct Effort {
 impl Effort {
     /// Some seconds' worth: fewer nodes where there are more candidates in more set-ups.
     pub fn usual(candidates: &Candidates) -> Self {
-        let size = candidates.len() * candidates.set_ups();
+        let size = candidates.len().min(FEW) * candidates.set_ups();
         Self { nodes: (3_600_000 / size.max(1)).clamp(20, 1000), ..Self::CERTIFIED }
     }
 
