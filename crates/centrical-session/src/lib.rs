@@ -98,7 +98,8 @@ pub use laboratory::{
 };
 pub use quantity::{Date, Dimension, NotADay, NotThatQuantity, Quantity};
 pub use record::{
-    Column, Columns, Input, RecordOverview, RecordReader, RecordWriter, Scale, read_record, read_telemetry, stretch,
+    Column, Columns, Input, MissingReadings, RecordOverview, RecordReader, RecordWriter, Scale, read_record,
+    read_telemetry, stretch,
 };
 pub use reduced::{MountingFindings, Reduced, ReducedPlateau, Steadiness};
 pub use store::{

@@ -12,7 +12,7 @@ mod units_found;
 mod writer;
 
 pub(crate) use self::columns::named_columns;
-pub use self::columns::{Column, Columns, Scale};
+pub use self::columns::{Column, Columns, MissingReadings, Scale};
 pub(crate) use self::equal_columns::EqualColumns;
 pub use self::input::Input;
 pub use self::overview::RecordOverview;

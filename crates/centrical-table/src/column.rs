@@ -38,8 +38,17 @@ pub enum Rule {
         /// Whether stamps are allowed beside numbers.
         stamps: bool,
     },
-    /// A value may be missing, and is NaN then.
+    /// A value may be missing ([`is_missing`]), and is NaN then.
     OrMissing,
+}
+
+/// How programs write a value that they lack, in small letters.
+const MISSING: [&str; 12] =
+    ["", "nan", "-nan", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#ind", "na", "n/a", "#n/a", "null", "none"];
+
+/// Whether a field stands for a value that is missing: it is empty, or a word for no number, such as `NaN`, `null` or `#N/A`.
+pub fn is_missing(field: &str) -> bool {
+    MISSING.iter().any(|word| field.trim().eq_ignore_ascii_case(word))
 }
 
 impl Rule {

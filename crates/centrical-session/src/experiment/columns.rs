@@ -17,7 +17,8 @@ pub(crate) fn columns(file: &Path, table: &ColumnsTable, unit: &UnitTable) -> Re
     let record_lines = lines(&at, "header_line", table.header_line, "first_row", table.first_row)?;
     let (header, first_row) = (table.telemetry_header_line, table.telemetry_first_row);
     let telemetry_lines = lines(&at, "telemetry_header_line", header, "telemetry_first_row", first_row)?;
-    let mut columns = Columns { record_lines, telemetry_lines, ..Columns::default() };
+    let missing_readings = table.missing_readings;
+    let mut columns = Columns { record_lines, telemetry_lines, missing_readings, ..Columns::default() };
     for (column, scale) in columns.f.iter_mut().zip(unit::output(file, unit)?) {
         column.scale = scale;
         column.unit.clone_from(&unit.output_unit);

@@ -1,6 +1,8 @@
 //! The columns of records and telemetry, and what takes their numbers to SI.
 
-use centrical_table::{ColumnName, Field, Rule, TableLines, to_scale};
+use centrical_table::{ColumnName, Field, Rows, Rule, TableLines, is_missing, to_scale};
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 use crate::quantity::Dimension;
 
@@ -21,6 +23,20 @@ pub struct Columns {
     pub record_lines: TableLines,
     /// The same in the telemetry.
     pub telemetry_lines: TableLines,
+    /// What becomes of rows that lack a reading.
+    pub missing_readings: MissingReadings,
+}
+
+/// What becomes of the rows of a record that lack a reading: its field is empty, or a word for no number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+pub enum MissingReadings {
+    /// The record is refused.
+    #[default]
+    #[serde(rename = "refused")]
+    Refused,
+    /// They are left out, as samples that the recorder lost.
+    #[serde(rename = "left out")]
+    LeftOut,
 }
 
 /// One column: how it is found and what takes it to SI.
@@ -72,6 +88,7 @@ impl Default for Columns {
             speed: Column::si("omega", "rad/s"),
             record_lines: TableLines::default(),
             telemetry_lines: TableLines::default(),
+            missing_readings: MissingReadings::default(),
         }
     }
 }
@@ -117,12 +134,44 @@ pub(crate) fn named_columns(
     (time, readings.iter().map(|name| column(name, unit, factor)).collect())
 }
 
-/// Columns as fields of a table, the first of them time.
-pub(super) fn fields(columns: &[&Column]) -> Vec<Field> {
+/// Columns as fields of a table, the first of them time, the others readings.
+pub(super) fn fields(columns: &[&Column], missing: MissingReadings) -> Vec<Field> {
     let rule = |k: usize, column: &Column| match k {
         // A stamp is in seconds, whatever the numbers would be in.
         0 => Rule::Ascending { stamps: column.scale == Scale::factor(1.0) },
+        _ if missing == MissingReadings::LeftOut => Rule::OrMissing,
         _ => Rule::Any,
     };
     columns.iter().enumerate().map(|(k, column)| column.field(rule(k, column))).collect()
+}
+
+impl MissingReadings {
+    /// Leaves out the rows that lack a reading, if so stated; the first column is time.
+    pub(super) fn leave_out(self, rows: &mut Rows) {
+        if self == Self::Refused {
+            return;
+        }
+        let is_whole = |row: usize| rows[1..].iter().all(|readings| !readings[row].is_nan());
+        let whole: Vec<bool> = (0..rows[0].len()).map(is_whole).collect();
+        if whole.contains(&false) {
+            for column in rows {
+                let mut whole = whole.iter();
+                column.retain(|_| whole.next() == Some(&true));
+            }
+        }
+    }
+
+    /// An error about a reading that is missing says how such rows are left out.
+    pub(super) fn explain(self, error: centrical_table::Error) -> centrical_table::Error {
+        use centrical_table::Error::Content;
+        match error {
+            Content { file, place, found, expected }
+                if self == Self::Refused && (found == "no value" || is_missing(found.trim_matches('"'))) =>
+            {
+                let expected = format!("{expected}, or missing_readings = \"left out\" under [columns]");
+                Content { file, place, found, expected }
+            }
+            other => other,
+        }
+    }
 }

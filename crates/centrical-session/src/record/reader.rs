@@ -6,7 +6,7 @@ use centrical::reduction::{Record, RecordSlice, SpeedTrace};
 use centrical::{OnProgress, advance, unwatched};
 use centrical_table::{Extent, Index, Reread, Rows, Source, Stamps, TableLines, TableReader};
 
-use super::columns::{Column, Columns, Scale, fields};
+use super::columns::{Column, Columns, MissingReadings, Scale, fields};
 use super::equal_columns::EqualColumns;
 use super::joined::Joined;
 use super::units_found::StatedUnits;
@@ -53,7 +53,8 @@ pub(crate) const PULSES: &str = "times of pulses";
 /// As [`RecordReader::next_batch`].
 pub(crate) fn telemetry_of(source: Source, columns: &Columns, extent: Extent) -> Result<SpeedTrace, Error> {
     let of_telemetry = [&columns.telemetry_time, &columns.speed];
-    let mut reader = RecordReader::with(source, extent, &of_telemetry, columns.telemetry_lines, TELEMETRY)?;
+    let form = Form { lines: columns.telemetry_lines, missing: None, expected: TELEMETRY };
+    let mut reader = RecordReader::with(source, extent, &of_telemetry, form)?;
     let mut telemetry = SpeedTrace::default();
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
@@ -69,7 +70,8 @@ pub(crate) fn telemetry_of(source: Source, columns: &Columns, extent: Extent) ->
 /// # Errors
 /// As [`RecordReader::next_batch`].
 pub(crate) fn pulses_of(source: Source, columns: &Columns, extent: Extent) -> Result<Vec<f64>, Error> {
-    let mut reader = RecordReader::with(source, extent, &[&columns.pulse], TableLines::default(), PULSES)?;
+    let form = Form { lines: TableLines::default(), missing: None, expected: PULSES };
+    let mut reader = RecordReader::with(source, extent, &[&columns.pulse], form)?;
     let mut times = Vec::new();
     while let Some(batch) = reader.next_batch()? {
         for rows in batch {
@@ -85,10 +87,19 @@ pub struct RecordReader {
     table: Tables,
     scales: Scales,
     units: StatedUnits,
+    /// What becomes of rows that lack a reading, in the record of a session.
+    missing: Option<MissingReadings>,
     /// Of one file with three readings, where it is asked.
     equal: Option<EqualColumns>,
     /// Bytes that [`RecordReader::newly_read`] has returned.
     reported: u64,
+}
+
+/// How a table is written, and what it is.
+struct Form {
+    lines: TableLines,
+    missing: Option<MissingReadings>,
+    expected: &'static str,
 }
 
 impl RecordReader {
@@ -97,9 +108,9 @@ impl RecordReader {
     /// # Errors
     /// If it cannot be read.
     pub fn open(file: &Path, columns: &Columns) -> Result<Self, Error> {
-        let all = Self::open_all(vec![Source::open(file, RECORD)?], Extent::Whole, columns)?;
         // Readings to be compensated are as they are.
-        Ok(Self { equal: None, ..all })
+        let form = Form { lines: columns.record_lines, missing: None, expected: RECORD };
+        Self::with(Source::open(file, RECORD)?, Extent::Whole, &columns.of_record(), form)
     }
 
     /// Reads the record in a source, or in three, one for each newtonometer.
@@ -107,35 +118,32 @@ impl RecordReader {
     /// # Errors
     /// If one cannot be read.
     pub(crate) fn open_all(sources: Vec<Source>, extent: Extent, columns: &Columns) -> Result<Self, Error> {
-        let of_record = columns.of_record();
+        let (of_record, missing) = (columns.of_record(), Some(columns.missing_readings));
         match <[Source; 3]>::try_from(sources) {
             Ok(sources) => {
                 let (file, scales) = (sources[0].name().to_owned(), Scales::of(&of_record));
                 let joined = Box::new(Joined::open(sources, extent, columns)?);
                 // Each file's part has its own.
                 let units = StatedUnits::of([]);
-                Ok(Self { file, table: Tables::Three(joined), scales, units, equal: None, reported: 0 })
+                Ok(Self { file, table: Tables::Three(joined), scales, units, missing: None, equal: None, reported: 0 })
             }
             Err(mut sources) => {
-                let one = Self::with(sources.remove(0), extent, &of_record, columns.record_lines, RECORD)?;
+                let form = Form { lines: columns.record_lines, missing, expected: RECORD };
+                let one = Self::with(sources.remove(0), extent, &of_record, form)?;
                 let names = columns.f.each_ref().map(|column| column.name.to_string());
                 Ok(Self { equal: Some(EqualColumns::of(names)), ..one })
             }
         }
     }
 
-    fn with(
-        source: Source,
-        extent: Extent,
-        columns: &[&Column],
-        lines: TableLines,
-        expected: &str,
-    ) -> Result<Self, Error> {
+    fn with(source: Source, extent: Extent, columns: &[&Column], form: Form) -> Result<Self, Error> {
+        let Form { lines, missing, expected } = form;
         let file = source.name().to_owned();
-        let table = TableReader::new(source, extent, &fields(columns), expected, lines)?;
+        let fields = fields(columns, missing.unwrap_or_default());
+        let table = TableReader::new(source, extent, &fields, expected, lines)?;
         let units = StatedUnits::of(columns.iter().copied());
         let (table, scales) = (Tables::One(Box::new(table)), Scales::of(columns));
-        Ok(Self { file, table, scales, units, equal: None, reported: 0 })
+        Ok(Self { file, table, scales, units, missing, equal: None, reported: 0 })
     }
 
     /// The next rows: columns of time [s] and of readings [m/s^2] ([`stretch`]), several sets of them, to be worked on where they
@@ -144,11 +152,17 @@ impl RecordReader {
     /// Time never decreases from row to row; it may stand still, as real streams repeat samples.
     ///
     /// # Errors
-    /// If the file cannot be read, has no rows, lacks a column, or a value is not finite; if time runs
+    /// If the file cannot be read, has no rows, lacks a column, or a value is not finite (unless such rows are left out); if time runs
     /// backwards; if the file names other units than those of the columns; at the end, if two readings of a session are the same.
     pub fn next_batch(&mut self) -> Result<Option<&mut [Rows]>, Error> {
         let is_over = match &mut self.table {
-            Tables::One(table) => table.next_batch()?.is_none(),
+            Tables::One(table) => {
+                let explain = |error| match self.missing {
+                    Some(missing) => missing.explain(error),
+                    None => error,
+                };
+                table.next_batch().map_err(explain)?.is_none()
+            }
             Tables::Three(joined) => joined.next_batch()? == 0,
         };
         if is_over {
@@ -157,6 +171,9 @@ impl RecordReader {
         }
         if let Tables::One(table) = &self.table {
             self.units.check(&self.file, table)?;
+        }
+        if let Some(missing) = self.missing {
+            self.table.batch().iter_mut().for_each(|rows| missing.leave_out(rows));
         }
         if let Some(equal) = &mut self.equal {
             // Before the scales, which may differ.
@@ -202,9 +219,9 @@ impl RecordReader {
 
     /// After the end: where the samples are, if any part can be read again.
     pub(super) fn into_index(self) -> Option<RecordIndex> {
-        let scales = self.scales;
+        let Self { scales, missing, .. } = self;
         let Tables::One(table) = self.table else { return None };
-        table.into_index().map(|index| RecordIndex { index, scales })
+        table.into_index().map(|index| RecordIndex { index, scales, missing: missing.unwrap_or_default() })
     }
 
     fn into_record(mut self, progress: OnProgress) -> Result<Record, Error> {
@@ -251,6 +268,7 @@ pub fn stretch(rows: &Rows) -> RecordSlice<'_> {
 pub(super) struct RecordIndex {
     index: Index,
     scales: Scales,
+    missing: MissingReadings,
 }
 
 /// Reads parts of a record again.
@@ -269,11 +287,12 @@ impl RecordIndex {
 impl PartReader<'_> {
     /// Reads the samples from and to [s] in place of those in `samples`; the bytes that it took.
     pub fn read(&mut self, part: [f64; 2], samples: &mut Record) -> Result<u64, Error> {
-        let RecordIndex { index, scales } = self.index;
+        let RecordIndex { index, scales, missing } = self.index;
         let raw = scales.raw_range(part);
         samples.clear();
         self.table.seek(raw);
         while let Some(batch) = self.table.next_batch()? {
+            batch.iter_mut().for_each(|rows| missing.leave_out(rows));
             scales.apply_to(batch).iter().for_each(|rows| samples.extend(stretch(rows).between(part)));
         }
         Ok(index.bytes(raw))

@@ -54,7 +54,7 @@ fn the_form_is_kept() {
         (
             "speed_unit =",
             "speed_units =",
-            r"line 22, column 1: found an unknown key `speed_units`, expected one of `time`, `f`, `telemetry_time`, `pulse`, `speed`, `speed_unit`, `header_line`, `first_row`, `telemetry_header_line`, `telemetry_first_row`",
+            r"line 22, column 1: found an unknown key `speed_units`, expected one of `time`, `f`, `telemetry_time`, `pulse`, `speed`, `speed_unit`, `header_line`, `first_row`, `telemetry_header_line`, `telemetry_first_row`, `missing_readings`",
         ),
         (
             "pair =",

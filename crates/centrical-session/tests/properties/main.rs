@@ -2,6 +2,7 @@
 
 mod columns;
 mod in_memory;
+mod missing_readings;
 mod past_with_priors;
 mod predictions;
 #[path = "../../../centrical/tests/common/random.rs"]

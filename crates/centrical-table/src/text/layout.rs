@@ -7,7 +7,7 @@ use memchr::{memchr2, memchr3};
 use super::batch::{Batch, ROWS};
 use super::fields::{Delimiter, Fault, number, unquoted};
 use super::number::plain;
-use crate::column::{ColumnName, Field, LARGEST, Rule};
+use crate::column::{ColumnName, Field, LARGEST, Rule, is_missing};
 use crate::error::quoted;
 use crate::rows::Rows;
 use crate::stamp;
@@ -27,7 +27,7 @@ impl Field {
         let stamp = || if self.rule == (Rule::Ascending { stamps: true }) { stamp::seconds(&text) } else { None };
         match number(&text).or_else(stamp).and_then(plausible) {
             Some(number) => Ok(number),
-            None if self.rule == Rule::OrMissing && text.is_empty() => Ok(f64::NAN),
+            None if self.rule == Rule::OrMissing && std::str::from_utf8(&text).is_ok_and(is_missing) => Ok(f64::NAN),
             None => Err(self.fault(quoted(&text), &self.expected)),
         }
     }

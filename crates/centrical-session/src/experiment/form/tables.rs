@@ -9,6 +9,7 @@ use super::entries::{AttitudeList, ColumnEntry, PriorValue, RecordEntry, TermLis
 use super::entry_schemas;
 use super::plan_tables::{CandidatesTable, CostTable, PlanTable, RobustTable, TargetTable};
 use crate::quantity::Quantity;
+use crate::record::MissingReadings;
 
 /// The whole file.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -252,6 +253,9 @@ pub(crate) struct ColumnsTable {
     pub telemetry_header_line: Option<u64>,
     /// Line of the first row of the telemetry.
     pub telemetry_first_row: Option<u64>,
+    /// Rows of records that lack a reading are refused if absent.
+    #[serde(default)]
+    pub missing_readings: MissingReadings,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use centrical_table::{Extent, Rows, Source, TableReader};
 
 use crate::error::Error;
-use crate::record::columns::{Columns, fields};
+use crate::record::columns::{Columns, MissingReadings, fields};
 use crate::record::units_found::StatedUnits;
 
 /// A table of time and one reading.
 pub(super) struct Part {
     pub file: PathBuf,
     units: StatedUnits,
+    missing: MissingReadings,
     table: TableReader,
     /// Rows that are read and not taken yet begin at `at`.
     rows: Rows,
@@ -28,10 +29,11 @@ impl Part {
     pub fn open(source: Source, j: usize, extent: Extent, columns: &Columns) -> Result<Self, Error> {
         let of_file = [&columns.time, &columns.f[j]];
         let (file, expected) = (source.name().to_owned(), "the record of a newtonometer");
-        let table = TableReader::new(source, extent, &fields(&of_file), expected, columns.record_lines)?;
+        let missing = columns.missing_readings;
+        let table = TableReader::new(source, extent, &fields(&of_file, missing), expected, columns.record_lines)?;
         let units = StatedUnits::of(of_file);
         let rows = vec![Vec::new(); 2];
-        Ok(Self { file, units, table, rows, at: 0, is_over: false, count: 0, before: None })
+        Ok(Self { file, units, missing, table, rows, at: 0, is_over: false, count: 0, before: None })
     }
 
     /// The time of the next row; none at the end.
@@ -87,12 +89,13 @@ impl Part {
     fn read(&mut self) -> Result<(), Error> {
         let at = std::mem::take(&mut self.at);
         self.rows.iter_mut().for_each(|values| drop(values.drain(..at)));
-        self.is_over = self.table.next_batch()?.is_none();
+        self.is_over = self.table.next_batch().map_err(|error| self.missing.explain(error))?.is_none();
         if self.is_over {
             return Ok(());
         }
         self.units.check(&self.file, &self.table)?;
         for rows in self.table.batch() {
+            self.missing.leave_out(rows);
             self.count += rows[0].len() as u64;
             self.rows.iter_mut().zip(rows).for_each(|(all, values)| all.extend_from_slice(values));
         }
