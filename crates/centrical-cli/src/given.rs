@@ -14,13 +14,20 @@ pub fn column_name(text: &str) -> Result<ColumnName, String> {
 /// A sampling rate [Hz].
 pub fn frequency(text: &str) -> Result<f64, String> {
     let rate = quantity(text, Dimension::Frequency).map_err(|wrong| wrong.to_string())?;
-    if rate > 0.0 { Ok(rate) } else { Err(format!("found {text:?}, expected a rate above zero")) }
+    let is_rate = (1e-3..=1e9).contains(&rate);
+    is_rate.then_some(rate).ok_or_else(|| format!("found {text:?}, expected a rate from 1e-3 Hz to 1 GHz"))
 }
 
 /// A largest error [m/s^2].
 pub fn largest_error(text: &str) -> Result<f64, String> {
     let error = quantity(text, Dimension::Acceleration).map_err(|wrong| wrong.to_string())?;
     if error > 0.0 { Ok(error) } else { Err(format!("found {text:?}, expected an acceleration above zero")) }
+}
+
+/// A number above zero that stands for a quantity: no more than a million of its unit.
+pub fn above_zero(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|value| *value > 0.0 && *value <= 1e6);
+    value.ok_or_else(|| format!("found {text:?}, expected a number above 0 and up to 1e6"))
 }
 
 /// A time [s].

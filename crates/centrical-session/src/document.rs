@@ -9,6 +9,7 @@ mod documents;
 mod draft;
 mod history;
 mod history_list;
+mod impossible;
 mod json;
 mod models;
 mod montecarlo;

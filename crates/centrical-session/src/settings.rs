@@ -1,10 +1,15 @@
 //! Settings and documents from their text, and what is wrong with one in words of the file and not of its parser.
 
+mod strict;
+mod words;
+
 use std::path::Path;
 
 use centrical_table::{Source, cut};
 use serde::de::DeserializeOwned;
 
+use self::strict::Strict;
+use self::words::found_and_expected;
 use crate::error::{Error, Place};
 
 /// Largest file of settings [bytes]: thousands of mountings fit; more is another kind of file.
@@ -33,7 +38,8 @@ pub(crate) fn read_result(file: &Path, expected: &str) -> Result<String, Error> 
 
 /// Settings from the text of `file`.
 pub(crate) fn from_toml<T: DeserializeOwned>(file: &Path, text: &str) -> Result<T, Error> {
-    toml::from_str(text).map_err(|error| {
+    let read = toml::Deserializer::parse(text).and_then(|file| T::deserialize(Strict(file)));
+    read.map_err(|error| {
         let place = error.span().map_or(Place::Whole, |span| Place::of_byte(text, span.start));
         form_error(file, place, error.message(), "TOML as the form of this file says")
     })
@@ -62,6 +68,20 @@ pub(crate) fn from_json<T: DeserializeOwned>(file: &Path, line: usize, text: &st
     })
 }
 
+/// A document from JSON that stands under a key of settings.
+pub(crate) fn from_json_under<T: DeserializeOwned>(
+    file: &Path,
+    key: &str,
+    text: &str,
+    expected: &str,
+) -> Result<T, Error> {
+    serde_json::from_str(text).map_err(|error| {
+        let sentence = error.to_string();
+        let sentence = sentence.split(" at line ").next().unwrap_or_default();
+        form_error(file, Place::Key { table: String::new(), key: key.to_owned() }, sentence, expected)
+    })
+}
+
 /// What a parser says, as what was found and what was expected.
 fn form_error(file: &Path, place: Place, sentence: &str, expected: &str) -> Error {
     let sentence = sentence.trim().replace('\n', ", ");
@@ -72,32 +92,4 @@ fn form_error(file: &Path, place: Place, sentence: &str, expected: &str) -> Erro
         None => cut(&message, LONGEST_SENTENCE).into_owned(),
     };
     Error::Form { file: file.to_owned(), place, message }
-}
-
-/// `invalid type: string "x", expected a number` as `found string "x", expected a number`, and so on.
-fn found_and_expected(sentence: &str, expected: &str) -> String {
-    let quoted_name = |rest: &str| rest.strip_prefix('`').and_then(|rest| rest.split('`').next()).map(str::to_owned);
-    if let Some(name) = sentence.strip_prefix("missing field ").and_then(quoted_name) {
-        return format!("found no key `{name}`, expected one");
-    }
-    if let Some(name) = sentence.strip_prefix("duplicate field ").and_then(quoted_name) {
-        return format!("found the key `{name}` twice, expected it once");
-    }
-    if let Some(rest) = sentence.strip_prefix("unknown field ") {
-        let rest = rest.replace(", there are no fields", ", expected none");
-        return format!("found an unknown key {rest}");
-    }
-    for start in ["invalid type: ", "invalid value: ", "unknown variant "] {
-        if let Some(rest) = sentence.strip_prefix(start) {
-            return format!("found {rest}");
-        }
-    }
-    if let Some(rest) = sentence.strip_prefix("invalid length ") {
-        return format!("found a length of {rest}");
-    }
-    if sentence.contains(", expected ") {
-        let start = if sentence.starts_with("found ") { "" } else { "found " };
-        return format!("{start}{sentence}");
-    }
-    format!("found text with a fault ({sentence}), expected {expected}")
 }

@@ -4,6 +4,7 @@
 //! A part is written beside and renamed, under a lock that the system releases when its process ends. A merge of parts writes the
 //! new one before it removes the old ones, and readers drop a key that they have seen. So a kill loses nothing and shows nothing twice.
 
+mod contradiction;
 mod folder;
 mod part;
 mod reading;

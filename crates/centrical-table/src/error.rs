@@ -97,7 +97,7 @@ pub enum Place {
     Column(String),
     /// A key of a file of settings.
     Key {
-        /// Its table, and which one where there are several: `[[mounting]] 3`.
+        /// Its table, and which one where there are several: `[[mounting]] 3`; empty for a key of the file itself.
         table: String,
         /// The key in the table.
         key: String,
@@ -113,6 +113,7 @@ impl fmt::Display for Place {
             Self::Line { line, column: None } => write!(f, ", line {line}"),
             Self::Row { row, column } => write!(f, ", row {row}, {}", cut(column, LONGEST_NAME)),
             Self::Column(column) => write!(f, ", {}", cut(column, LONGEST_NAME)),
+            Self::Key { table, key } if table.is_empty() => write!(f, ", {}", cut(key, LONGEST_NAME)),
             Self::Key { table, key } => write!(f, ", {table}, {}", cut(key, LONGEST_NAME)),
         }
     }

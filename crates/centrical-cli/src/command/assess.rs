@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use centrical_report::assessment_text;
 use centrical_session::{AssessmentRequest, Error, STANDARD_GRAVITY, Session, assess};
 
+use crate::given::above_zero;
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 use crate::progress;
@@ -28,7 +29,7 @@ pub struct Arguments {
     #[arg(long)]
     correlations: bool,
     /// Range of the specific force of the prediction, in g [default: the highest of the session]
-    #[arg(long, value_name = "G")]
+    #[arg(long, value_name = "G", value_parser = above_zero, allow_hyphen_values = true)]
     range: Option<f64>,
     #[command(flatten)]
     printing: Printing,

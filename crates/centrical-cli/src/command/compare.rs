@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use centrical_report::{comparison_plot, comparison_text};
 use centrical_session::{CalibrationResult, ComparisonRequest, Error, compare_results, refuse_inputs, write_whole};
 
+use crate::given::above_zero;
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 
@@ -18,7 +19,7 @@ pub struct Arguments {
     #[arg(num_args = 2.., required = true, value_name = "RESULT")]
     results: Vec<PathBuf>,
     /// Years between two results, for the drift per year [default: by the dates of their sessions]
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, value_parser = above_zero, allow_hyphen_values = true)]
     years: Option<f64>,
     /// Compare results of other units than the first; they do not agree, whatever their numbers
     #[arg(long)]

@@ -6,6 +6,7 @@ use centrical_report::monte_carlo_text;
 use centrical_session::{Error, MonteCarloCase, MonteCarloRequest, Session, read_plan};
 
 use super::assess::probability;
+use crate::given::above_zero;
 use crate::outcome::Outcome;
 use crate::printing::Printing;
 use crate::progress;
@@ -29,7 +30,7 @@ pub struct Arguments {
     #[arg(long)]
     linear: bool,
     /// White noise of the plateau means of a plan, in ug, instead of the plan's noise and durations
-    #[arg(long, value_name = "UG")]
+    #[arg(long, value_name = "UG", value_parser = above_zero, allow_hyphen_values = true)]
     noise: Option<f64>,
     /// Assume a unit with errors of typical size (alternating signs) instead of the plan's nominal unit, or of the
     /// session's estimates

@@ -144,8 +144,28 @@ fn a_result_agrees_with_itself() {
     refused(&|r| r["parameters"][3]["name"] = "df_1".into(), "each once");
     refused(&|r| drop(r["covariance"].as_array_mut().unwrap().pop()), "the number of parameters");
     refused(&|r| r["fit"]["chi_squared"] = (-1.0).into(), "zero or more");
-    let raw = serde_json::json!({"unit": "mg", "scale": [1.0, 1.0, 1.0], "bias": [0.0, 0.0, 0.0]});
-    refused(&|r| r["output"] = raw.clone(), "one of counts, V");
+    let raw =
+        |unit: &str, scale: f64| serde_json::json!({"unit": unit, "scale": [1.0, scale, 1.0], "bias": [0.0, 0.0, 0.0]});
+    refused(&|r| r["output"] = raw("mg", 1.0), "one of counts, V");
+    refused(&|r| r["output"] = raw("counts", 0.0), "numbers other than zero");
+    refused(&|r| r["parameters"][3]["estimable"] = false.into(), "a value and estimable: false");
+    let terms = |r: &mut Value| r["model"]["error_model"].as_array_mut().unwrap().clone();
+    refused(
+        &|r| r["model"]["error_model"][9]["powers"] = serde_json::json!([0, 2, 0]),
+        "the monomial f2^2 of newtonometer 1",
+    );
+    refused(&|r| r["model"]["error_model"][9]["axis"] = 2.into(), "the name G1_21 or K_2[f1^2]");
+    refused(&|r| r["model"]["error_model"] = terms(r)[1..].to_vec().into(), "without its term in error_model");
+    refused(&|r| r["model"]["error_model"] = [&terms(r)[..], &terms(r)[..1]].concat().into(), "twice in error_model");
+    refused(&|r| r["observability"]["rank"] = 10.into(), "observability with rank 10");
+    refused(
+        &|r| drop(r["convergence"]["standard_uncertainty"][0].as_array_mut().unwrap().pop()),
+        "[0] with 48 numbers",
+    );
+    refused(&|r| r["plateaus"][2]["mounting"] = 13.into(), "plateaus[2] with mounting 13");
+    refused(&|r| r["plateaus"][2]["covariance"][1][1] = (-1.0).into(), "plateaus[2] with a negative variance");
+    refused(&|r| r["tilt"]["probability"] = (-3.0).into(), "a probability of -3 in tilt.probability");
+    refused(&|r| r["drift"]["chi_squared"] = (-1.0).into(), "drift.chi_squared = -1");
 }
 
 #[test]

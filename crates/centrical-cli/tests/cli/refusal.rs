@@ -179,6 +179,43 @@ fn positions_and_schedules() {
     refused(&copy, &["experiment.toml", "at rest", "expected"]);
 }
 
+/// A mean that no unit explains is named, and not what it does to the fit.
+#[test]
+fn a_mean_beyond_all_measure() {
+    let copy = Copy::new();
+    assert_eq!(copy.run(&["reduce", "../session", "--out", "reduced"]).status.code(), Some(0));
+    let file = copy.out().join("reduced/plateaus.csv");
+    let table = fs::read_to_string(&file).unwrap();
+    let mut rows: Vec<Vec<&str>> = table.lines().map(|row| row.split(',').collect()).collect();
+    rows[11][3] = "99999";
+    let rows: Vec<String> = rows.iter().map(|row| row.join(",")).collect();
+    fs::write(&file, rows.join("\n")).unwrap();
+    let output = copy.run(&["calibrate", "reduced", "--out", "out"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("plateaus.csv: found 99999 m/s^2 as mean_1 of plateau 2:2, where "), "{message}");
+}
+
+/// Numbers of options that stand for nothing.
+#[test]
+fn numbers_of_options() {
+    let copy = Copy::new();
+    let refused = |arguments: &[&str], option: &str| {
+        let output = copy.run(arguments);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && message.contains(option), "{arguments:?}: {message}");
+    };
+    for number in ["nan", "inf", "-1", "0"] {
+        refused(&["assess", "../session", "--range", number], "--range");
+        refused(&["compare", "a.json", "b.json", "--years", number], "--years");
+        refused(&["montecarlo", "../session", "--noise", number], "--noise");
+    }
+    refused(&["noise", "../session/records/m01.csv", "--rate", "1e-300"], "--rate");
+    // A second's samples are few, and no reason to stop.
+    let slow = copy.run(&["noise", "../session/records/m01.csv", "--rate", "1"]);
+    assert!(slow.status.code().is_some_and(|code| code < 2), "{}", String::from_utf8_lossy(&slow.stderr));
+}
+
 #[test]
 fn usage() {
     let copy = Copy::new();

@@ -230,7 +230,7 @@ fn attitudes_that_are_none_are_refused() {
     let text = refused(&["--attitudes", "cube"]);
     assert!(text.contains("--attitude-uncertainty"), "{text}");
     let text = refused(&["--attitudes", "cube", "--attitude-uncertainty", "20 deg"]);
-    assert!(text.contains("expected a standard uncertainty above 0 and up to 10 deg"), "{text}");
+    assert!(text.contains("expected a standard uncertainty of 1e-12 rad to 10 deg"), "{text}");
     let text = refused(&["--attitudes", &record, "--attitude-uncertainty", "1 deg"]);
     assert!(text.contains("up_1"), "{text}");
     fs::write(copy.out().join("one.csv"), "up_1,up_2,up_3\n0,0,0\n").unwrap();

@@ -1,13 +1,22 @@
 //! What records show beside their means, in the experiment file of a session that is reduced to these: JSON in
 //! `record_findings`.
 
+use centrical::uncertainty::chi_squared_tail;
 use serde::{Deserialize, Serialize};
 
+use super::impossible::impossible;
 use super::json;
 use super::result::{CalibrationResult, SpeedsSummary};
 use super::steadiness::{DriftSummary, TiltSummary};
 use crate::error::{Error, Place};
 use crate::experiment::Session;
+use crate::settings::from_json_under;
+
+/// Probabilities that differ by less are the same, whatever computed them.
+const SAME_PROBABILITY: f64 = 1e-6;
+
+/// The key that they stand under.
+const KEY: &str = "record_findings";
 
 /// What calibrating the records found in them, in the forms of `result.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,11 +46,24 @@ impl RecordFindings {
     /// [`Error`] when they are not of this form.
     pub fn stated(session: &Session) -> Result<Option<Self>, Error> {
         let Some(text) = &session.record_findings else { return Ok(None) };
-        let refused = |error: serde_json::Error| {
-            let expected = "what `centrical reduce` writes there";
-            Error::content(&session.file, Place::Whole, format!("record_findings with {error}"), expected)
-        };
-        serde_json::from_str(text).map(Some).map_err(refused)
+        let findings: Self = from_json_under(&session.file, KEY, text, "what `centrical reduce` writes there")?;
+        let numbers = from_json_under(&session.file, KEY, text, "what `centrical reduce` writes there")?;
+        match impossible(KEY, &numbers).or_else(|| findings.contradiction()) {
+            Some((found, expected)) => Err(Error::content(&session.file, Place::Whole, found, expected)),
+            None => Ok(Some(findings)),
+        }
+    }
+
+    /// A probability that is not that of its chi^2.
+    fn contradiction(&self) -> Option<(String, String)> {
+        let of_drift = self
+            .drift
+            .as_ref()
+            .map(|drift| ("drift", drift.probability, chi_squared_tail(drift.chi_squared, drift.degrees_of_freedom)));
+        let of_tilt = self.tilt.map(|tilt| ("tilt", tilt.probability, chi_squared_tail(tilt.chi_squared, 1)));
+        let is_other = |(_, found, expected): &(&str, f64, f64)| (found - expected).abs() > SAME_PROBABILITY;
+        let (name, found, expected) = of_drift.into_iter().chain(of_tilt).find(is_other)?;
+        Some((format!("{KEY}.{name}.probability = {found:e}"), format!("{expected:e}, that of its chi_squared")))
     }
 
     /// Their text in an experiment file.
@@ -49,7 +71,7 @@ impl RecordFindings {
     /// # Errors
     /// [`Error::Json`] when a value has no place in JSON.
     pub fn to_json(&self) -> Result<String, Error> {
-        json::document("record_findings", self)
+        json::document(KEY, self)
     }
 
     /// A result of the means with what the records show beside them.

@@ -11,10 +11,11 @@
 //! | `speed_uncertainty` | relative standard uncertainty of `speed`, in a session whose plateaus state measured speeds |
 //! | `bend_1` .. `bend_3` | second derivative of the vertical in instrument axes [1/s^2], in a table of rests with arcs of slow rotation |
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use centrical::{Rotation, SetPoint};
+use centrical::{Experiment, Rotation, STANDARD_GRAVITY, SetPoint, linear};
 use centrical_table::{ColumnName, Extent, Field, Rule, Source, TableLines, TableReader, parquet_bytes, write_whole};
 use nalgebra::{Matrix3, Vector3};
 
@@ -89,6 +90,29 @@ impl PlateauTable {
         COLUMNS.into_iter().chain([SPEED_UNCERTAINTY]).map(|(name, _)| name)
     }
 
+    /// Refuses means that no error of a unit explains: farther from the nominal reading than ten times the largest one of the session. Messages
+    /// name `file`.
+    pub(crate) fn check_means(&self, file: &Path, experiment: &Experiment) -> Result<(), Error> {
+        let nominal: Vec<_> = experiment.set_points.iter().map(|s| linear::nominal(experiment, s)).collect();
+        let most = BEYOND * nominal.iter().map(|f| f.amax()).fold(STANDARD_GRAVITY, f64::max);
+        for (n, (row, nominal)) in self.rows.iter().zip(&nominal).enumerate() {
+            let far = (0..3).find(|&axis| (row.mean[axis] - nominal[axis]).abs() > most);
+            if let Some(axis) = far {
+                let place = self.rows[..n].iter().filter(|other| other.mounting == row.mounting).count() + 1;
+                let found = format!(
+                    "{} m/s^2 as {} of plateau {}:{place}, where {:.4} is nominal",
+                    row.mean[axis],
+                    COLUMNS[MEAN + axis].0,
+                    row.mounting + 1,
+                    nominal[axis]
+                );
+                let file = self.file.as_deref().unwrap_or(file);
+                return Err(Error::content(file, Place::Whole, found, format!("a mean within {most:.0} m/s^2 of it")));
+            }
+        }
+        Ok(())
+    }
+
     pub(crate) fn set_points(&self, rotation: Rotation) -> Vec<SetPoint> {
         let set_point = |p: &PlateauMean| SetPoint {
             mounting: p.mounting,
@@ -148,6 +172,12 @@ impl Further {
     }
 }
 
+/// A mean reading is wrong if it is off by this factor of the largest nominal one.
+const BEYOND: f64 = 10.0;
+
+/// Place of `mean_1` among the columns.
+const MEAN: usize = 3;
+
 /// Place of `angle` among the columns.
 const ANGLE: usize = 2;
 
@@ -204,7 +234,23 @@ fn checked(file: &Path, rows: &[Row], mountings: usize, further: Further) -> Res
             Further::Bends => PlateauMean { bend_z: Some(bend(file, number, numbers)?), ..plateau },
         })
     };
-    (1..).zip(rows).map(checked).collect()
+    let plateaus = (1..).zip(rows).map(checked).collect::<Result<Vec<_>, Error>>()?;
+    refuse_copies(file, rows)?;
+    Ok(plateaus)
+}
+
+/// Refuses a row that stands twice: its noise would count for half.
+fn refuse_copies(file: &Path, rows: &[Row]) -> Result<(), Error> {
+    let mut first_of = HashMap::with_capacity(rows.len());
+    for (number, (row, further)) in (1..).zip(rows) {
+        let numbers: Vec<u64> = row.iter().chain(further).map(|number| number.to_bits()).collect();
+        if let Some(first) = first_of.insert(numbers, number) {
+            let place = Place::Row { row: number, column: COLUMNS[MEAN].0.to_owned() };
+            let found = format!("every number of row {first} again");
+            return Err(Error::content(file, place, found, "readings of its own for each plateau"));
+        }
+    }
+    Ok(())
 }
 
 /// The unit at the end of what is expected of a column.

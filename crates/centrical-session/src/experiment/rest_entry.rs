@@ -6,7 +6,7 @@ use centrical::SwitchOn;
 
 use super::folder::Folder;
 use super::form::{AttitudeList, TumbleTable};
-use super::stated_attitudes::{MOST_UNCERTAIN, StatedAttitudes, directions};
+use super::stated_attitudes::{LEAST_UNCERTAIN, MOST_UNCERTAIN, StatedAttitudes, directions};
 use super::toml_path::TomlPath;
 use crate::error::Error;
 use crate::quantity::{Dimension, Quantity};
@@ -73,8 +73,8 @@ pub(super) fn stated(
 
 /// The standard uncertainty of the attitudes [rad], if they are known.
 pub(super) fn uncertainty(at: &TomlPath, stated: Option<&Quantity>) -> Result<Option<f64>, Error> {
-    let bounds = (f64::MIN_POSITIVE, MOST_UNCERTAIN);
-    let meaning = "a standard uncertainty above 0 and up to 10 deg";
+    let bounds = (LEAST_UNCERTAIN, MOST_UNCERTAIN);
+    let meaning = "a standard uncertainty of 1e-12 rad to 10 deg";
     let bounded = |q| at.bounded("attitude_uncertainty", q, Dimension::Angle, bounds, meaning);
     stated.map(bounded).transpose()
 }

@@ -146,6 +146,7 @@ impl Session {
             let has_speeds = has_measured_speeds(file, &session.speeds)?;
             let table = PlateauTable::read(&session.folder, table, form.mounting.len(), has_speeds)?;
             session.experiment.set_points = table.set_points(rotation);
+            table.check_means(file, &session.experiment)?;
             session.plateaus = Some(table);
         } else {
             session.experiment.set_points = schedule::set_points(file, &form.mounting, rotation)?;
@@ -169,6 +170,7 @@ impl Session {
         let table = PlateauTable::in_memory(&self.file, columns, self.mountings.len())?;
         self.forget_rests();
         self.experiment.set_points = table.set_points(self.experiment.centrifuge.rotation);
+        table.check_means(&self.file, &self.experiment)?;
         (self.plateaus, self.durations) = (Some(table), Vec::new());
         self.refuse_rests_alone()?;
         self.add_rests();

@@ -50,9 +50,9 @@ impl StatedAttitudes {
     /// If the uncertainty makes no sense, or no rest is in any of the attitudes; messages name `record` where no file states them.
     pub(crate) fn of_rests(&self, means: &[Vector3<f64>], record: &Path) -> Result<Vec<Option<Vector3<f64>>>, Error> {
         let file = self.file.as_deref().unwrap_or(record);
-        if !(self.uncertainty > 0.0 && self.uncertainty <= MOST_UNCERTAIN) {
+        if !(LEAST_UNCERTAIN..=MOST_UNCERTAIN).contains(&self.uncertainty) {
             let found = format!("attitudes uncertain by {} rad", self.uncertainty);
-            return Err(Error::content(file, Place::Whole, found, "a standard uncertainty above 0 and up to 10 deg"));
+            return Err(Error::content(file, Place::Whole, found, "a standard uncertainty of 1e-12 rad to 10 deg"));
         }
         let within = NEAR.min(0.5 * self.smallest_angle());
         let nearest = |mean: &Vector3<f64>| {
@@ -79,6 +79,9 @@ impl StatedAttitudes {
         pairs.filter(|angle| *angle > SAME).fold(PI, f64::min)
     }
 }
+
+/// No table shows attitudes better than this [rad]; far below it the fit loses its digits.
+pub(crate) const LEAST_UNCERTAIN: f64 = 1e-12;
 
 /// Attitudes that are less certain than this say nothing that gravity does not [rad].
 pub(crate) const MOST_UNCERTAIN: f64 = 10.0 * PI / 180.0;

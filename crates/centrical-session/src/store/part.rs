@@ -4,12 +4,16 @@ use std::path::{Path, PathBuf};
 
 use centrical_table::{Cell, TypedReader, TypedWriter};
 
+use super::contradiction::contradiction;
 use super::row::{Row, sha256};
-use super::schema::{Depth, ENTRIES, ROWS_SCHEMA, Read, SCHEMA_NOTE, VERSION, cells, columns};
+use super::schema::{Depth, ENTRIES, ROW_VERSION, ROWS_SCHEMA, Read, SCHEMA_NOTE, VERSION, cells, columns};
 use crate::error::{Error, Place, quoted};
 
 /// Rows of a row group: a MB of covariances, which is what a reader holds of a part.
 const GROUP: usize = 128;
+
+/// The first version of a row that this program does not know.
+const VERSION_BEYOND: i64 = VERSION + 1;
 
 /// A part, open.
 pub(super) struct Part {
@@ -82,7 +86,11 @@ impl Part {
             if at == 0 {
                 rows.resize_with(cells.len(), || Some(Row::default()));
             }
-            for (row, cell) in rows.iter_mut().zip(cells) {
+            for (at, (row, cell)) in rows.iter_mut().zip(cells).enumerate() {
+                if let (ROW_VERSION, Cell::Integer(version @ VERSION_BEYOND..)) = (entry.column.name, &cell) {
+                    let expected = format!("{VERSION} or an older one; a newer program reads newer ones");
+                    return Err(self.wrong(group, at, ROW_VERSION, version.to_string(), expected));
+                }
                 if let Some(row) = row {
                     (entry.set)(row, Read(cell));
                 }
@@ -91,7 +99,18 @@ impl Part {
                 return Ok(Vec::new());
             }
         }
+        for (at, row) in rows.iter().enumerate() {
+            if let Some((column, found, expected)) = row.as_ref().and_then(|row| contradiction(row, depth)) {
+                return Err(self.wrong(group, at, column, found, expected));
+            }
+        }
         Ok(rows.into_iter().flatten().collect())
+    }
+
+    /// The error of a row, the `at`th of its group.
+    fn wrong(&self, group: usize, at: usize, column: &str, found: String, expected: String) -> Error {
+        let row = self.table.rows_before(group) + at as u64 + 1;
+        Error::content(&self.file, Place::Row { row, column: column.to_owned() }, found, expected)
     }
 }
 

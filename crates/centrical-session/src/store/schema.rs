@@ -10,6 +10,9 @@ pub const ROWS_SCHEMA: &str = "centrical-rows/2";
 /// Key in the footer of a part under which the schema stands.
 pub(super) const SCHEMA_NOTE: &str = "centrical_schema";
 
+/// The column with the version of a row.
+pub(super) const ROW_VERSION: &str = "row_version";
+
 /// The schema's present version.
 pub(super) const VERSION: i64 = 2;
 
@@ -43,7 +46,7 @@ pub(super) struct Read(pub Cell);
 #[rustfmt::skip]
 pub(super) const ENTRIES: &[Entry] = &[
     Entry { column: TypedColumn { name: "key", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.key), set: |r, c| r.key = c.text() },
-    Entry { column: TypedColumn { name: "row_version", kind: Kind::Integer }, depth: Depth::Summary, get: |_| Cell::Integer(VERSION), set: |_, _| () },
+    Entry { column: TypedColumn { name: ROW_VERSION, kind: Kind::Integer }, depth: Depth::Summary, get: |_| Cell::Integer(VERSION), set: |_, _| () },
     Entry { column: TypedColumn { name: "status", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(r.status.word()), set: |r, c| r.status = Status::named(&c.text()) },
     Entry { column: TypedColumn { name: "message", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.message), set: |r, c| r.failure.message = c.text() },
     Entry { column: TypedColumn { name: "file", kind: Kind::Text }, depth: Depth::Summary, get: |r| text(&r.failure.file), set: |r, c| r.failure.file = c.text() },

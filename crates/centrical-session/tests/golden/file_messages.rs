@@ -55,6 +55,10 @@ fn tables_of_plateaus() {
             ", row 1, cov_11: found 0.00000001, expected a positive definite covariance",
         ),
         ("1,2,,0,0,9.8,1e-8,0,0,1e-8,0,1e-8,0\n", ", row 1, samples: found 0, expected how many samples were averaged"),
+        (
+            "1,2,,0,0,9.8,1e-8,0,0,1e-8,0,1e-8,9\n1,2,,0,0,9.7,1e-8,0,0,1e-8,0,1e-8,9\n1,2,,0,0,9.8,1e-8,0,0,1e-8,0,1e-8,9\n",
+            ", row 3, mean_1: found every number of row 1 again, expected readings of its own for each plateau",
+        ),
         ("1,2,,0,,9.8,1e-8,0,0,1e-8,0,1e-8,0\n", ", line 2, mean_2: found \"\", expected a mean in m/s^2"),
     ];
     let sample = Sample::new("");

@@ -167,7 +167,7 @@ fn planned_rests() {
             (
                 list,
                 "\"cube\"\nattitude_uncertainty = \"20 deg\"",
-                "[[tumble]] 1, attitude_uncertainty: found \"20 deg\", expected a standard uncertainty above 0 and up to 10 deg",
+                "[[tumble]] 1, attitude_uncertainty: found \"20 deg\", expected a standard uncertainty of 1e-12 rad to 10 deg",
             ),
             (
                 "attitudes = [[0, 0, 1], [1, 0, 0]]",
@@ -311,7 +311,7 @@ fn candidates_costs_and_targets() {
         (
             "repeats = 2",
             "attitudes = \"cube\"\nattitude_uncertainty = \"1 rad\"",
-            "[candidates], attitude_uncertainty: found \"1 rad\", expected a standard uncertainty above 0 and up to 10 deg",
+            "[candidates], attitude_uncertainty: found \"1 rad\", expected a standard uncertainty of 1e-12 rad to 10 deg",
         ),
         ("[target]", "table = \"-1 s\"\n\n[target]", "[cost], table: found \"-1 s\", expected a time from 0 to 1e7 s"),
         (

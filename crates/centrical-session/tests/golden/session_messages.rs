@@ -400,6 +400,34 @@ fn positions_of_a_pair() {
     );
 }
 
+/// A table is no array, read by the order of its keys, and nothing of an array goes unread.
+#[test]
+fn tables_and_arrays_are_what_they_are() {
+    compare(&[
+        (
+            "[site]\ngravity = \"9.81523 m/s^2\"\nlatitude = \"55.7 deg\"\n",
+            "[[site]]\n",
+            "line 5, column 1: found an array, expected a table",
+        ),
+        (
+            "arm = [0.5, 0, 0]",
+            "arm = [0.5, 0, 0, 9]",
+            "line 36, column 7: found a length of 4, expected an array of length 3",
+        ),
+        (
+            "[0.021, 0.012, \"10.5 mm\"]",
+            "[0.021, 0.012, \"10.5 mm\", 5]",
+            "line 11, column 28: found a length of 4, expected an array of length 3",
+        ),
+        (
+            "[0, 0, 1]]",
+            "[0, 0, 1], [7, 7, 7]]",
+            "line 31, column 10: found a length of 4, expected an array of length 3",
+        ),
+        ("{ speed = 0, angle = 0 }", "[0, 0]", "line 38, column 13: found an array, expected a table"),
+    ]);
+}
+
 #[test]
 fn nothing_to_do() {
     let at_rest = EXPERIMENT.replace("{ speed = \"133.8 rpm\" }", "{ speed = 0, angle = 1 }");

@@ -15,6 +15,9 @@ use crate::random::Random;
 /// Parameters of the unit; the first two have priors.
 const P: usize = 4;
 
+/// Their names, and the newtonometers and components that they belong to.
+const NAMES: [(&str, usize, usize); P] = [("G0_11", 1, 1), ("G0_21", 2, 1), ("G0_22", 2, 2), ("G0_31", 3, 1)];
+
 /// Standard uncertainties of the priors, where the data by themselves give about 1.
 const PRIORS: [f64; 2] = [0.5, 0.1];
 
@@ -38,6 +41,11 @@ fn measured(truth: &DVector<f64>, determines_second: bool, random: &mut Random) 
     Measured { information, estimate }
 }
 
+fn term((name, axis, component): (&str, usize, usize)) -> RowTerm {
+    let powers = [1, 2, 3].map(|j| u8::from(j == component));
+    RowTerm { name: name.to_owned(), axis, powers, sign_of: None }
+}
+
 fn row(n: usize, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Row {
     let triangle = (0..P).flat_map(|i| (0..=i).map(move |j| (i, j)));
     Row {
@@ -47,13 +55,13 @@ fn row(n: usize, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Row {
         date: format!("{}-03-05", 2010 + n),
         acceptable: true,
         range: vec![9.8; 3],
-        parameters: (0..P).map(|j| format!("p_{j}")).collect(),
+        parameters: NAMES.map(|(name, ..)| name.to_owned()).to_vec(),
         units: vec!["1".to_owned(); P],
         groups: vec!["scale".to_owned(); P],
         values: values.iter().copied().collect(),
         standard_uncertainties: (0..P).map(|j| covariance[(j, j)].sqrt()).collect(),
         covariance: triangle.map(|(i, j)| covariance[(i, j)]).collect(),
-        terms: (0..P).map(|j| RowTerm { name: format!("p_{j}"), axis: 1, powers: [1, 0, 0], sign_of: None }).collect(),
+        terms: NAMES.map(term).to_vec(),
         shared_known: true,
         priors_known: true,
         ..Row::default()
@@ -67,7 +75,7 @@ fn with_priors(n: usize, data: &Measured, right_side: &DVector<f64>, mean: [f64;
     let covariance = information.try_inverse().unwrap();
     let pulled = right_side + DVector::from_fn(P, |j, _| if j < 2 { weight(j) * mean[j] } else { 0.0 });
     let priors = (0..2).map(|j| RowPrior {
-        parameter: format!("p_{j}"),
+        parameter: NAMES[j].0.to_owned(),
         mean: mean[j],
         standard_uncertainty: PRIORS[j],
         changes: (covariance.column(j) / PRIORS[j]).iter().copied().collect(),
@@ -141,10 +149,10 @@ fn what_rests_on_priors_has_no_component() {
     }
     let (with, known) = (history(with), history(known));
     let named = |report: &UnitHistoryReport, name: &str| report.parameters.iter().find(|p| p.name == name).cloned();
-    let lost = named(&with, "p_1").unwrap();
+    let lost = named(&with, "G0_21").unwrap();
     assert!(lost.between.is_none() && lost.slope_per_year.is_none() && lost.forecast.is_none());
-    assert!(lost.values.iter().all(|value| value.abs() < 1e-9) && named(&known, "p_1").is_none());
-    for name in ["p_0", "p_2", "p_3"] {
+    assert!(lost.values.iter().all(|value| value.abs() < 1e-9) && named(&known, "G0_21").is_none());
+    for name in ["G0_11", "G0_22", "G0_31"] {
         let (found, expected) = (named(&with, name).unwrap(), named(&known, name).unwrap());
         assert_close(found.between.unwrap(), expected.between.unwrap(), 1.0);
         assert_close(found.slope_uncertainty.unwrap(), expected.slope_uncertainty.unwrap(), 1.0);

@@ -9,9 +9,15 @@ use std::time::Instant;
 use centrical_session::{Depth, Row, RowPrior, RowTerm, Selection, SharedInfluence, Store, unwatched};
 use tempfile::TempDir;
 
+/// A term of the error model.
+const TERM: &str = "K_2[f1*f3*|f3|]";
+
 /// A row of `p` parameters with numbers of their own.
 fn row(n: usize, p: usize) -> Row {
     let number = |j: usize| ((n * 7919 + j * 104_729) as f64).sin();
+    let uncertainty = move |j: usize| 1.0 + number(j);
+    let covariance =
+        move |i: usize, j: usize| uncertainty(i) * uncertainty(j) * if i == j { 1.0 } else { number(i + j) };
     Row {
         key: format!("{n:064x}"),
         unit_model: "TA".to_owned(),
@@ -23,13 +29,13 @@ fn row(n: usize, p: usize) -> Row {
         chi_squared: number(0),
         acceptable: true,
         objections: if n.is_multiple_of(3) { vec!["residuals".to_owned()] } else { Vec::new() },
-        parameters: (0..p).map(|j| format!("p_{j}")).collect(),
-        units: vec!["1".to_owned(); p],
+        parameters: (0..p).map(|j| if j == 0 { TERM.to_owned() } else { format!("p_{j}") }).collect(),
+        units: vec!["m/s^2".to_owned(); p],
         groups: vec!["bias".to_owned(); p],
         values: (0..p).map(number).collect(),
-        standard_uncertainties: (0..p).map(number).collect(),
-        covariance: (0..p * (p + 1) / 2).map(number).collect(),
-        terms: vec![RowTerm { name: "p_0".to_owned(), axis: 2, powers: [1, 0, 2], sign_of: Some(3) }],
+        standard_uncertainties: (0..p).map(uncertainty).collect(),
+        covariance: (0..p).flat_map(|i| (0..=i).map(move |j| covariance(i, j))).collect(),
+        terms: vec![RowTerm { name: TERM.to_owned(), axis: 2, powers: [1, 0, 2], sign_of: Some(3) }],
         shared_known: true,
         priors_known: n.is_multiple_of(2),
         priors: (0..n % 3).map(|k| prior(k, (0..p).map(number).collect())).collect(),
@@ -58,7 +64,6 @@ fn rows_come_back_as_they_were() {
     let folder = TempDir::new().unwrap();
     let store = Store::create(folder.path()).unwrap();
     let mut rows: Vec<Row> = (0..300).map(|n| row(n, 5)).collect();
-    rows[7].covariance[0] = f64::INFINITY;
     rows[8].day = None;
     rows[9].shared.clear();
     assert_eq!(store.add(rows.clone()).unwrap().new, 300);
@@ -78,7 +83,7 @@ fn what_is_not_estimable_is_nothing_in_the_file_and_nan_again() {
     let folder = TempDir::new().unwrap();
     let store = Store::create(folder.path()).unwrap();
     let mut one = row(1, 3);
-    one.values[1] = f64::NAN;
+    (one.values[1], one.standard_uncertainties[1]) = (f64::NAN, f64::NAN);
     store.add(vec![one]).unwrap();
     let read = &all(&store, Depth::Values)[0];
     assert!(read.values[1].is_nan() && !read.values[0].is_nan());
@@ -131,6 +136,40 @@ fn a_damaged_part_and_a_newer_one_are_errors_that_name_the_file() {
     let mut newer = whole.clone();
     newer[at + 15] = b'3';
     assert!(message(&newer).contains("found schema \"centrical-rows/3\", expected schema \"centrical-rows/2\""));
+}
+
+/// Each edit of a row, and the column and the words of the error.
+#[test]
+fn rows_that_contradict_themselves_are_refused() {
+    type Edit = fn(&mut Row);
+    let edits: [(Edit, &str); 14] = [
+        (|r| drop(r.values.pop()), "values: found a list of 4, expected 5"),
+        (|r| r.standard_uncertainties.clear(), "standard_uncertainties: found a list of 0, expected 5"),
+        (|r| r.values.insert(0, 0.5), "values: found a list of 6, expected 5"),
+        (|r| r.values[3] = 1e308, "values: found 1e308 of p_3, expected a value"),
+        (|r| r.values[3] = f64::NAN, "expected a number where there is a value"),
+        (|r| r.standard_uncertainties[3] = -1.0, "standard_uncertainties: found -1e0 of p_3, expected zero or more"),
+        (|r| r.covariance[9] = -1.0, "covariance: found -1e0 of p_3 and p_3, expected "),
+        (|r| r.covariance[6] = 1e3, " at most, by the standard uncertainties"),
+        (|r| r.covariance.clear(), "covariance: found a list of 0, expected 15"),
+        (|r| r.units[3] = "mg".to_owned(), "units: found \"mg\" of p_3, expected \"m/s^2\""),
+        (|r| r.parameters[3] = "p_2".to_owned(), "parameters: found \"p_2\" twice"),
+        (|r| r.terms[0].powers = [0, 0, 2], "term_powers: found K_2[f3*|f3|] as the term K_2[f1*f3*|f3|]"),
+        (|r| r.terms[0].axis = 0, "term_axes: found newtonometer 0 of "),
+        (|r| drop(r.shared[0].changes.pop()), "shared_changes: found 4 changes for each, expected 5"),
+    ];
+    for (edit, expected) in edits {
+        let folder = TempDir::new().unwrap();
+        let store = Store::create(folder.path()).unwrap();
+        let mut rows: Vec<Row> = (1..4).map(|n| Row { shared: row(n, 5).shared[..1].to_vec(), ..row(n, 5) }).collect();
+        rows.iter_mut().for_each(|row| row.unit_serial = "1".to_owned());
+        rows.sort_by_key(|row| row.day);
+        edit(&mut rows[1]);
+        store.add(rows).unwrap();
+        let all = store.rows(Selection { depth: Depth::Whole, ..Selection::default() }, &unwatched).unwrap();
+        let message = all.collect::<Result<Vec<_>, _>>().unwrap_err().to_string();
+        assert!(message.contains(".parquet, row 2, ") && message.contains(expected), "{message}, not {expected}");
+    }
 }
 
 #[test]

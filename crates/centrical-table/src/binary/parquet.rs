@@ -79,9 +79,14 @@ fn describe(column: &ColumnDescPtr, durations: &[String], rule: Rule) -> Option<
         None if !is_plain_of_old(column) => Some(format!("{:?}", column.converted_type())),
         None | Some(LogicalType::Integer(_)) if numbers => None,
         Some(LogicalType::Float16) => Some("numbers of 16 bits (float16)".to_owned()),
-        Some(logical) => Some(format!("{logical:?}")),
+        Some(logical) => Some(type_name(logical)),
         None => Some(format!("{:?}", column.physical_type())),
     }
+}
+
+/// The name of a type without its details: `Decimal`, `Time`, `String`.
+fn type_name(logical: &LogicalType) -> String {
+    format!("{logical:?}").chars().take_while(|c| c.is_alphanumeric()).collect()
 }
 
 /// Whether a column without a logical type is of numbers also as older writers state types.

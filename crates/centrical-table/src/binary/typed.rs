@@ -52,6 +52,11 @@ impl TypedReader {
         u64::try_from(self.metadata.file_metadata().num_rows()).unwrap_or(0)
     }
 
+    /// Number of rows in the row groups before one.
+    pub fn rows_before(&self, group: usize) -> u64 {
+        self.metadata.row_groups().iter().take(group).map(|group| u64::try_from(group.num_rows()).unwrap_or(0)).sum()
+    }
+
     /// Cells of a column in a row group, one a row; none if the table has no such column.
     ///
     /// # Errors

@@ -145,6 +145,24 @@ impl ErrorModel {
         Self { terms }
     }
 
+    /// The names that a term of newtonometer `axis` may have: that of the source's notation, and that of a term beyond the presets.
+    pub fn names(axis: usize, monomial: Monomial) -> Vec<String> {
+        let beyond = Term::new(axis, monomial).name;
+        let components: Vec<usize> = (0..3).filter(|&j| monomial.powers[j] > 0).collect();
+        let of_source = match (monomial.sign_of, components.as_slice(), monomial.degree()) {
+            (None, [], _) => Some(format!("df_{}", axis + 1)),
+            (None, [j], degree @ 1..=3) => Some(format!("G{}_{}{}", degree - 1, axis + 1, j + 1)),
+            _ => None,
+        };
+        of_source.into_iter().chain([beyond]).collect()
+    }
+
+    /// Whether a coefficient of this name belongs to an error model, and not to one mounting alone (`G1_11[3]`, `K_1[f1*f2][3]`).
+    pub fn has_name(name: &str) -> bool {
+        let of_source = Self::kozlov_2017().terms.iter().any(|term| term.name == name);
+        of_source || name.starts_with("K_") && name.ends_with(']') && !name.contains("][")
+    }
+
     /// The model with further terms at the end.
     #[must_use]
     pub fn with(mut self, extra: Extra) -> Self {

@@ -104,11 +104,8 @@ fn stretch(blocks: &[Block]) -> Option<SteadyStretch> {
         return None;
     }
     // A block at either end may hold a part of a ramp.
-    let settled = &blocks[(blocks.len() / 4).max(1)..blocks.len() - 1];
+    let settled = blocks.get((blocks.len() / 4).max(1)..blocks.len() - 1).filter(|settled| !settled.is_empty())?;
     let means: Vec<f64> = settled.iter().map(|block| block.mean).collect();
-    if means.is_empty() {
-        return None;
-    }
     let value = median(&mut means.clone());
     let scatter = MAD * median(&mut means.iter().map(|mean| (mean - value).abs()).collect::<Vec<_>>());
     // The median of normal values is 1.25 times as uncertain as their mean.

@@ -2,7 +2,9 @@
 
 use std::collections::HashSet;
 
-use super::schema::{CalibrationResult, ParameterEstimate};
+use centrical::ErrorModel;
+
+use super::schema::{CalibrationResult, ConvergenceSummary, ObservabilitySummary, ParameterEstimate};
 
 /// Units of raw output.
 const RAW_UNITS: [&str; 2] = ["counts", "V"];
@@ -10,25 +12,151 @@ const RAW_UNITS: [&str; 2] = ["counts", "V"];
 /// Rounding of numbers that were written, read and squared.
 const ROUNDING: f64 = 1e-9;
 
-/// The first contradiction: what was found, and what was expected. A covariance is symmetric, and has the squares of the standard uncertainties on its
-/// diagonal and no correlation above 1; a parameter has both numbers or none; chi^2 is no less than zero; raw output has a unit that sessions know.
-pub(super) fn contradiction(result: &CalibrationResult) -> Option<(String, String)> {
-    let (parameters, covariance) = (&result.parameters, &result.covariance);
-    let n = parameters.len();
-    if let Some(size) = std::iter::once(covariance.len()).chain(covariance.iter().map(Vec::len)).find(|size| *size != n)
-    {
-        return Some((format!("a covariance with a side of {size}"), format!("{n}, the number of parameters")));
+/// What was found, and what was expected.
+type Contradiction = (String, String);
+
+/// The first contradiction.
+pub(super) fn contradiction(result: &CalibrationResult) -> Option<Contradiction> {
+    let n = result.parameters.len();
+    of_output(result)
+        .or_else(|| of_parameters(result))
+        .or_else(|| of_terms(result))
+        .or_else(|| of_observability(&result.observability, n))
+        .or_else(|| of_convergence(result.convergence.as_ref()?, n))
+        .or_else(|| of_plateaus(result))
+        .or_else(|| of_covariance(result))
+        .or_else(|| of_checks(result))
+}
+
+/// No chi^2 and no uncertainty is negative, and probabilities lie between 0 and 1.
+fn of_checks(result: &CalibrationResult) -> Option<Contradiction> {
+    let mut probabilities = Vec::new();
+    let mut at_least_zero = vec![("fit.chi_squared", result.fit.chi_squared)];
+    if let Some(drift) = &result.drift {
+        at_least_zero.push(("drift.chi_squared", drift.chi_squared));
+        probabilities.push(("drift.probability", drift.probability));
+        probabilities.extend(drift.over_session.iter().map(|trend| ("drift.over_session", trend.probability)));
     }
-    if let Some(output) = result.output.as_ref().filter(|output| !RAW_UNITS.contains(&output.unit.as_str())) {
+    if let Some(tilt) = &result.tilt {
+        at_least_zero.push(("tilt.chi_squared", tilt.chi_squared));
+        at_least_zero.push(("tilt.at_rest_uncertainty", tilt.at_rest_uncertainty));
+        at_least_zero.push(("tilt.spinning_uncertainty", tilt.spinning_uncertainty));
+        probabilities.push(("tilt.probability", tilt.probability));
+    }
+    if let Some(validity) = &result.validity {
+        let of_outliers = validity.outlying.iter().map(|plateau| ("validity.outlying", plateau.probability));
+        let of_mountings = validity.mountings.iter().map(|mounting| ("validity.mountings", mounting.probability));
+        probabilities.push(("validity", validity.probability));
+        probabilities.extend(of_outliers.chain(of_mountings));
+    }
+    let negative = at_least_zero.into_iter().find(|(_, number)| *number < 0.0);
+    let negative = negative.map(|(name, number)| (format!("{name} = {number}"), "zero or more".to_owned()));
+    let impossible = || probabilities.into_iter().find(|(_, number)| !(0.0..=1.0).contains(number));
+    negative.or_else(|| {
+        let (name, number) = impossible()?;
+        Some((format!("a probability of {number} in {name}"), "0 to 1".to_owned()))
+    })
+}
+
+/// Raw output has a unit that sessions know, and a scale.
+fn of_output(result: &CalibrationResult) -> Option<Contradiction> {
+    let output = result.output.as_ref()?;
+    if !RAW_UNITS.contains(&output.unit.as_str()) {
         return Some((format!("raw output in {:?}", output.unit), format!("one of {}", RAW_UNITS.join(", "))));
     }
+    let is_scale = |scale: &f64| scale.is_normal();
+    (!output.scale.iter().all(is_scale))
+        .then(|| (format!("output.scale = {:?}", output.scale), "numbers other than zero".to_owned()))
+}
+
+/// Each parameter stands once, and has both numbers or none; those of a parameter that the data determine.
+fn of_parameters(result: &CalibrationResult) -> Option<Contradiction> {
     let mut names = HashSet::new();
-    if let Some(twice) = parameters.iter().find(|parameter| !names.insert(&parameter.name)) {
+    if let Some(twice) = result.parameters.iter().find(|parameter| !names.insert(&parameter.name)) {
         return Some((format!("the parameter {:?} twice", twice.name), "each once".to_owned()));
     }
-    if let Some(half) = parameters.iter().find(|p| p.value.is_some() != p.standard_uncertainty.is_some()) {
+    let half = |p: &&ParameterEstimate| p.value.is_some() != p.standard_uncertainty.is_some();
+    if let Some(half) = result.parameters.iter().find(half) {
         let found = format!("{} with one of value and standard_uncertainty", half.name);
         return Some((found, "both or neither".to_owned()));
+    }
+    let other = result.parameters.iter().find(|p| p.value.is_some() && !p.estimable)?;
+    Some((format!("{} with a value and estimable: false", other.name), "one of them".to_owned()))
+}
+
+/// The terms of the error model act as their names say, each once, and their coefficients are the parameters of the unit.
+fn of_terms(result: &CalibrationResult) -> Option<Contradiction> {
+    let mut names = HashSet::new();
+    for term in &result.model.error_model {
+        let (1..=3, Ok(monomial)) = (term.axis, term.monomial()) else {
+            return Some((format!("the term {:?} of a newtonometer beyond the third", term.name), "1 to 3".to_owned()));
+        };
+        let known = ErrorModel::names(term.axis - 1, monomial);
+        if !known.contains(&term.name) {
+            let found = format!("the term {:?} with the monomial {monomial} of newtonometer {}", term.name, term.axis);
+            return Some((found, format!("the name {}", known.join(" or "))));
+        }
+        if !names.insert(term.name.as_str()) {
+            return Some((format!("the term {:?} twice in error_model", term.name), "each once".to_owned()));
+        }
+        if result.parameter(&term.name).is_none() {
+            return Some((format!("no parameter {:?}, a term of error_model", term.name), "one".to_owned()));
+        }
+    }
+    let is_missing = |p: &&ParameterEstimate| ErrorModel::has_name(&p.name) && !names.contains(p.name.as_str());
+    let missing = result.parameters.iter().find(is_missing)?;
+    Some((format!("the parameter {:?} without its term in error_model", missing.name), "one".to_owned()))
+}
+
+/// Rank and null directions make up the number of unknowns.
+fn of_observability(seen: &ObservabilitySummary, parameters: usize) -> Option<Contradiction> {
+    let ObservabilitySummary { rank, columns, null_directions, .. } = seen;
+    if *columns != parameters {
+        return Some((
+            format!("observability of {columns} columns"),
+            format!("{parameters}, the number of parameters"),
+        ));
+    }
+    (rank + null_directions.len() != *columns).then(|| {
+        let found = format!("observability with rank {rank} and {} null directions", null_directions.len());
+        (found, format!("{columns} in all, the number of columns"))
+    })
+}
+
+/// Each row has as many numbers as there are parameters.
+fn of_convergence(convergence: &ConvergenceSummary, parameters: usize) -> Option<Contradiction> {
+    let ConvergenceSummary { plateaus, standard_uncertainty: rows } = convergence;
+    if rows.len() != plateaus.len() {
+        return Some((format!("convergence with {} rows", rows.len()), plateaus.len().to_string()));
+    }
+    let row = rows.iter().position(|row| row.len() != parameters)?;
+    let found = format!("convergence.standard_uncertainty[{row}] with {} numbers", rows[row].len());
+    Some((found, format!("{parameters}, the number of parameters")))
+}
+
+/// Each plateau belongs to a mounting, and no variance is negative.
+fn of_plateaus(result: &CalibrationResult) -> Option<Contradiction> {
+    let mountings = result.mountings.len();
+    result.plateaus.iter().enumerate().find_map(|(n, plateau)| {
+        let of = |what: &str| format!("plateaus[{n}] with {what}");
+        let variances = [plateau.covariance, plateau.fit_covariance].map(|c| [0, 1, 2].map(|axis| c[axis][axis]));
+        if !(1..=mountings).contains(&plateau.mounting) {
+            Some((of(&format!("mounting {}", plateau.mounting)), format!("1 to {mountings}")))
+        } else if variances.iter().flatten().any(|variance| *variance < 0.0) {
+            Some((of("a negative variance"), "zero or more".to_owned()))
+        } else {
+            None
+        }
+    })
+}
+
+/// The covariance is symmetric, and has the squares of the standard uncertainties on its diagonal and no correlation above 1.
+fn of_covariance(result: &CalibrationResult) -> Option<Contradiction> {
+    let (parameters, covariance) = (&result.parameters, &result.covariance);
+    let n = parameters.len();
+    let sizes = std::iter::once(covariance.len()).chain(covariance.iter().map(Vec::len));
+    if let Some(size) = sizes.into_iter().find(|size| *size != n) {
+        return Some((format!("a covariance with a side of {size}"), format!("{n}, the number of parameters")));
     }
     let of_pair = |i: usize, j: usize| {
         let (entry, mirrored) = (covariance[i][j]?, covariance[j][i]?);
@@ -46,10 +174,8 @@ pub(super) fn contradiction(result: &CalibrationResult) -> Option<(String, Strin
             None
         }
     };
-    let pairs = (0..n).flat_map(|i| (0..=i).map(move |j| (i, j)));
-    let negative = (result.fit.chi_squared < 0.0)
-        .then(|| (format!("chi^2 {}", result.fit.chi_squared), "zero or more".to_owned()));
-    pairs.into_iter().find_map(|(i, j)| of_pair(i, j)).or(negative)
+    let mut pairs = (0..n).flat_map(|i| (0..=i).map(move |j| (i, j)));
+    pairs.find_map(|(i, j)| of_pair(i, j))
 }
 
 fn variance(parameter: &ParameterEstimate, found: f64) -> String {
