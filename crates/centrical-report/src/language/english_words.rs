@@ -170,6 +170,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::Disturbance(Course::TimeScale) => "scale that changes over the session",
             Extension::Disturbance(Course::Rise) => "difference after a rise and after a fall of the speed",
             Extension::Disturbance(Course::Memory) => "memory of earlier forces",
+            Extension::OneSpeed(_) => "one set speed that is off",
             Extension::OneMounting(Difference::Shift, _) => "shift of the unit in one mounting",
             Extension::OneMounting(Difference::Turn, _) => "turn of the unit in one mounting",
             Extension::OneMounting(Difference::Unit, _) => "another unit in one mounting",

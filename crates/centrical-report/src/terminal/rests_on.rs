@@ -35,6 +35,9 @@ fn protection(effect: &RestsOn) -> String {
     if let Some(Rival::Effect(Extension::OneMounting(_, mounting))) = effect.rival() {
         return format!("protect: mount the unit again as in mounting {}", mounting + 1);
     }
+    if let Some(Rival::Effect(Extension::OneSpeed(_))) = effect.rival() {
+        return "protect: measure the speeds (measured under [centrifuge])".to_owned();
+    }
     // A step of the reading has no inverse at no force.
     if let Some(Rival::Terms(Extra::Jump)) = effect.rival() {
         return format!("protect: state {bound} under [uncertainty]");

@@ -91,6 +91,11 @@ pub enum Effect {
     },
     /// One relative error of the square of all speeds: `Omega^2 (1 + s)`.
     SpeedScale,
+    /// The same of the plateaus at one set speed.
+    OneSpeed {
+        /// Index of the first set point with that speed.
+        first: usize,
+    },
     /// Local gravity [m/s^2].
     Gravity,
     /// Latitude [rad].
@@ -213,6 +218,7 @@ impl Effect {
             | Self::MountingShift { .. }
             | Self::Coordinate { .. }
             | Self::SpeedScale
+            | Self::OneSpeed { .. }
             | Self::Latitude => true,
         }
     }
@@ -233,6 +239,7 @@ impl Effect {
             | Self::MountingShift { .. }
             | Self::Coordinate { .. }
             | Self::SpeedScale
+            | Self::OneSpeed { .. }
             | Self::Gravity
             | Self::Latitude
             | Self::Monomial { .. }

@@ -191,6 +191,12 @@ impl SetPoint {
     pub fn is_rest(&self) -> bool {
         self.omega == 0.0
     }
+
+    /// Whether the plateau spins at a speed, whatever the sense, that was set and not measured.
+    pub(crate) fn has_speed(&self, omega: f64) -> bool {
+        let (own, other) = (self.omega.abs(), omega.abs());
+        !self.is_rest() && self.speed_uncertainty.is_none() && (own - other).abs() <= SAME_SPEED * own
+    }
 }
 
 impl Site {
@@ -252,6 +258,15 @@ impl Experiment {
     /// The seats: the first mounting on the arm at each place `R0`.
     pub fn seats(&self) -> impl Iterator<Item = usize> + '_ {
         self.mountings_on_arm().filter(|&m| self.seat_of(m) == m)
+    }
+
+    /// The speeds that were set and not measured, the lowest first: of each the index of its first set point, and the number of plateaus.
+    pub fn set_speeds(&self) -> Vec<(usize, usize)> {
+        let set = |(_, s): &(usize, &SetPoint)| s.has_speed(s.omega) && self.is_on_arm(s.mounting);
+        let mut all: Vec<(usize, &SetPoint)> = self.set_points.iter().enumerate().filter(set).collect();
+        all.sort_by(|(a, one), (b, other)| one.omega.abs().total_cmp(&other.omega.abs()).then(a.cmp(b)));
+        let same = all.chunk_by(|(_, one), (_, other)| one.has_speed(other.omega));
+        same.map(|same| (same.iter().map(|(n, _)| *n).min().unwrap_or(0), same.len())).collect()
     }
 
     /// Nominal place `R0` of a plateau, arm axes [m].

@@ -49,6 +49,8 @@ pub enum Extension {
     Disturbance(Course),
     /// One mounting, by its index, that differs from the others.
     OneMounting(Difference, usize),
+    /// One set speed that is off, by its index among them, the lowest first ([`Experiment::set_speeds`]).
+    OneSpeed(usize),
 }
 
 /// How one mounting may differ from the others.
@@ -94,7 +96,7 @@ impl Extension {
         ("memory", Self::Disturbance(Course::Memory)),
     ];
 
-    /// The extension of a name: one of [`Extension::NAMED`], or that of one mounting, counted from 1: `other-unit[7]`.
+    /// The extension of a name: one of [`Extension::NAMED`], or that of one mounting or one set speed, counted from 1: `other-unit[7]`.
     pub fn named(name: &str) -> Option<Self> {
         let of_session = Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, extension)| *extension);
         let of_mounting = || {
@@ -102,7 +104,11 @@ impl Extension {
             let difference = Difference::NAMED.iter().find(|(known, _)| *known == stem)?.1;
             Some(Self::OneMounting(difference, mounting.parse::<usize>().ok()?.checked_sub(1)?))
         };
-        of_session.or_else(of_mounting)
+        let of_speed = || {
+            let speed = name.strip_prefix(ONE_SPEED)?.strip_prefix('[')?.strip_suffix(']')?;
+            Some(Self::OneSpeed(speed.parse::<usize>().ok()?.checked_sub(1)?))
+        };
+        of_session.or_else(of_mounting).or_else(of_speed)
     }
 
     /// Its name as written in sessions and plans.
@@ -110,6 +116,9 @@ impl Extension {
         if let Self::OneMounting(difference, mounting) = self {
             let stem = Difference::NAMED.iter().find(|(_, known)| *known == difference).map_or("", |(name, _)| name);
             return format!("{stem}[{}]", mounting + 1);
+        }
+        if let Self::OneSpeed(speed) = self {
+            return format!("{ONE_SPEED}[{}]", speed + 1);
         }
         Self::NAMED.iter().find(|(_, extension)| *extension == self).map_or("", |(name, _)| name).to_owned()
     }
@@ -163,6 +172,14 @@ impl Extension {
                 effect(name, "rad", Group::SpinTurn, Effect::SpinTurn { axis, position }, 1e-3)
             }),
             Self::Disturbance(course) => three(|axis| disturbance(axis, course)),
+            Self::OneSpeed(speed) => {
+                let first = experiment.set_speeds().get(speed).map(|(first, _)| *first);
+                let name = format!("one_speed[{}]", speed + 1);
+                first
+                    .map(|first| effect(name, "1", Group::SpeedScale, Effect::OneSpeed { first }, 1e-3))
+                    .into_iter()
+                    .collect()
+            }
             Self::OneMounting(_, mounting) if mounting >= experiment.mountings.len() => Vec::new(),
             Self::OneMounting(_, mounting) if !experiment.is_on_arm(mounting) => Vec::new(),
             Self::OneMounting(Difference::Shift, mounting) => {
@@ -175,6 +192,9 @@ impl Extension {
         }
     }
 }
+
+/// Name of the extension of one set speed, before its number.
+const ONE_SPEED: &str = "one-speed";
 
 impl Difference {
     const NAMED: [(&'static str, Self); 3] =

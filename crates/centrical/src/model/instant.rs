@@ -61,8 +61,13 @@ impl MeasurementModel {
     pub(crate) fn mounted_unit(&self, mounting: usize, x: &[f64], omega: f64) -> MountedUnit {
         let set_point = SetPoint::spinning(mounting, omega);
         let geometry = self.geometry(&set_point, x);
-        let square_scale =
-            1.0 + self.acting(x).filter(|(effect, _)| *effect == Effect::SpeedScale).map(|(_, size)| size).sum::<f64>();
+        let scales = |effect: Effect| match effect {
+            Effect::SpeedScale => true,
+            Effect::OneSpeed { first } => self.experiment.set_points[first].has_speed(omega),
+            _ => false,
+        };
+        let acting = self.acting(x).filter(|(effect, _)| scales(*effect));
+        let square_scale = 1.0 + acting.map(|(_, size)| size).sum::<f64>();
         let disturbance = self.disturbance(&set_point, x);
         MountedUnit { disturbance, ..MountedUnit::new(&geometry, &earth_rate(&self.experiment.site), square_scale) }
     }

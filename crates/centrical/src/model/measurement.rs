@@ -117,8 +117,8 @@ impl MeasurementModel {
         self
     }
 
-    /// The rivals that the model leaves out, neither unknown nor stated: of the session, and of each of its mountings.
-    /// A session of more than a hundred mountings is asked for the former alone.
+    /// The rivals that the model leaves out, neither unknown nor stated: of the session, of each of its mountings, and of each speed that is set
+    /// more than once and not measured. Where there are more than a hundred mountings, or speeds, single ones are not asked for.
     pub fn left_out(&self) -> Vec<Rival> {
         let common = Rival::COMMON.into_iter().zip(self.stated.effects).filter(|(_, u)| *u == 0.0);
         let of_mounting = |mounting: usize| {
@@ -127,8 +127,12 @@ impl MeasurementModel {
         };
         let count = self.experiment.mountings_on_arm().count();
         let mountings = self.experiment.mountings_on_arm().filter(|_| count <= MOST_SINGLE).flat_map(of_mounting);
+        let speeds = self.experiment.set_speeds();
+        let of_speed = |k: usize| Rival::Effect(Extension::OneSpeed(k));
+        let is_asked = |k: &usize| speeds.len() <= MOST_SINGLE && speeds[*k].1 > 1;
+        let speeds = (0..speeds.len()).filter(is_asked).map(of_speed);
         let is_small = |rival: &Rival| rival.parameters(&self.experiment, &self.error_model).len() <= MOST_UNKNOWNS;
-        let all = common.map(|(rival, _)| rival).filter(is_small).chain(mountings);
+        let all = common.map(|(rival, _)| rival).filter(is_small).chain(mountings).chain(speeds);
         all.filter(|rival| !rival.is_in(&self.error_model, &self.extensions)).collect()
     }
 

@@ -63,6 +63,9 @@ impl MeasurementModel {
             Effect::MountingShift { axis, mounting } => only(mounting == here, Share::Arm(along(axis))),
             Effect::Coordinate { coordinate, mass } => Share::Coordinate { coordinate, mass },
             Effect::SpeedScale => Share::Rate(omega_squared),
+            Effect::OneSpeed { first } => {
+                only(experiment.set_points[first].has_speed(set_point.omega), Share::Rate(omega_squared))
+            }
             Effect::Gravity => Share::Gravity,
             Effect::Latitude => {
                 let cosine = experiment.site.latitude.map_or(0.0, f64::cos);

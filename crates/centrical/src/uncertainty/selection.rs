@@ -109,7 +109,8 @@ pub fn candidates_of(model: &MeasurementModel) -> Vec<Candidate> {
             candidates.push(Candidate { name: name.to_owned(), rivals: Vec::new(), model });
         }
     }
-    let of_session = |rival: &Rival| !matches!(rival, Rival::Effect(Extension::OneMounting(..)));
+    let of_session =
+        |rival: &Rival| !matches!(rival, Rival::Effect(Extension::OneMounting(..) | Extension::OneSpeed(_)));
     candidates.extend(model.left_out().into_iter().filter(of_session).map(|rival| with_rivals(model, vec![rival])));
     candidates
 }

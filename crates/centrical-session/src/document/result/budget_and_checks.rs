@@ -183,7 +183,7 @@ impl ValiditySummary {
         };
         let checks = Self::new(experiment, &calibration.validity()?, &patterns);
         let of_strongest_noise = noise_at_most.map(|times| calibration.chi_squared_of_noise(times)).transpose()?;
-        let (rivals_tested, rivals) = (suspects.tested, RivalSummary::all(&suspects));
+        let (rivals_tested, rivals) = (suspects.tested, RivalSummary::all(&suspects, experiment));
         Ok(Self { noise_at_most, of_strongest_noise, rivals_tested, rivals, ..checks })
     }
 

@@ -1,8 +1,13 @@
 //! What the residuals say of effects that the model leaves out, and what the result rests on.
 
+use std::f64::consts::PI;
+
 use centrical::uncertainty::{RivalTest, Suspects, Unseen};
-use centrical::{Group, MeasurementModel, Rival};
+use centrical::{Experiment, Extension, Group, MeasurementModel, Rival};
 use serde::{Deserialize, Serialize};
+
+/// In the formula of a speed, where its value stands.
+const ONE_SET_SPEED: &str = "one set speed";
 
 /// A rival that the residuals show.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -67,12 +72,12 @@ pub struct RestsOn {
 }
 
 impl RivalSummary {
-    pub(crate) fn all(suspects: &Suspects) -> Vec<Self> {
+    pub(crate) fn all(suspects: &Suspects, experiment: &Experiment) -> Vec<Self> {
         let shown = suspects.shown.iter().enumerate();
-        shown.map(|(n, test)| Self::new(test, n < suspects.alike)).collect()
+        shown.map(|(n, test)| Self::new(test, n < suspects.alike, experiment)).collect()
     }
 
-    fn new(test: &RivalTest, explains_most: bool) -> Self {
+    fn new(test: &RivalTest, explains_most: bool, experiment: &Experiment) -> Self {
         let unknowns = test.sizes.iter().map(|(unknown, size)| RivalSize {
             name: unknown.name.clone(),
             unit: unknown.unit.clone(),
@@ -82,7 +87,7 @@ impl RivalSummary {
         });
         Self {
             name: test.rival.name(),
-            formula: test.rival.formula().to_owned(),
+            formula: formula(test.rival, experiment),
             chi_squared: test.statistic,
             degrees_of_freedom: test.degrees_of_freedom,
             probability: test.family_wise,
@@ -94,6 +99,18 @@ impl RivalSummary {
     /// The rival of the catalogue, unless the result is of a later program.
     pub fn rival(&self) -> Option<Rival> {
         Rival::named(&self.name)
+    }
+}
+
+/// What a rival adds to a reading; of one set speed with its value.
+fn formula(rival: Rival, experiment: &Experiment) -> String {
+    let speeds = experiment.set_speeds();
+    match rival {
+        Rival::Effect(Extension::OneSpeed(speed)) if speed < speeds.len() => {
+            let omega = experiment.set_points[speeds[speed].0].omega.abs();
+            rival.formula().replace(ONE_SET_SPEED, &format!("{:.2} rpm", omega * 30.0 / PI))
+        }
+        _ => rival.formula().to_owned(),
     }
 }
 

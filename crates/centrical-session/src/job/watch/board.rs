@@ -197,5 +197,5 @@ fn rivals(progress: &WatchProgress) -> Result<Vec<RivalSummary>, FitError> {
     let data = Data::new(progress.model, taken.map(WatchedPlateau::observation).collect())?;
     let calibration = Calibration::exact(&data)?;
     let suspects = Rivals::of(&calibration, &unwatched)?.suspects(Level::Reported.probability());
-    Ok(RivalSummary::all(&suspects))
+    Ok(RivalSummary::all(&suspects, progress.model.experiment()))
 }

@@ -144,6 +144,7 @@ fn acts_on(experiment: &Experiment, effect: Effect, here: usize) -> bool {
         | Effect::RadiusScale
         | Effect::Coordinate { .. }
         | Effect::SpeedScale
+        | Effect::OneSpeed { .. }
         | Effect::Gravity
         | Effect::Latitude
         | Effect::Monomial { mounting: None, .. }
