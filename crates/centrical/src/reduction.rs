@@ -42,6 +42,7 @@ mod simd;
 mod speed;
 mod steady;
 mod survey;
+mod trembling;
 mod triangle;
 mod turning;
 

@@ -10,7 +10,8 @@ use super::locate::{Located, locate_rests};
 use super::plateau::PlateauMean;
 use super::record::RecordSlice;
 use super::survey::Survey;
-use super::turning::{draw_out, is_smooth, noise_along};
+use super::trembling::AttitudePart;
+use super::turning::{draw_out, is_smooth, noise_along, trembles};
 use crate::progress::{OnProgress, Stopped, advance};
 
 /// The rests of some records.
@@ -59,9 +60,17 @@ pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<
             fits.retain(|fit| !fit.turns());
         }
     }
-    let with_noise = located.iter_mut().flat_map(|(located, fits)| {
+    let all = located.iter().flat_map(|(_, fits)| fits.iter().map(|fit| fit.mean));
+    let coarse = Ellipsoid::nearest(&all.collect::<Vec<Vector3<f64>>>());
+    let of_record = |(record, (located, fits)): (&RestRecord, &(Located, Vec<PlateauFit>))| {
+        let part = AttitudePart::of(record.samples, fits, &coarse, located.sample_noise());
+        (part, uncertain_sizes(fits, located.sample_noise(), &coarse, part))
+    };
+    let (parts, uncertain): (Vec<_>, Vec<_>) = records.iter().zip(&located).map(of_record).unzip();
+    advance(progress, ())?;
+    let with_noise = located.iter_mut().zip(&parts).flat_map(|((located, fits), part)| {
         let white = *located.sample_noise();
-        fits.iter_mut().map(move |fit| (fit, white))
+        fits.iter_mut().map(move |fit| (fit, white, part.mean))
     });
     let ellipsoid = draw_out(with_noise);
     advance(progress, ())?;
@@ -81,9 +90,29 @@ pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<
     advance(progress, ())?;
     let noise = NoiseModel::pool_rests(&reduced, &along);
     advance(progress, ())?;
-    let means = reduced.iter().map(|record| plateau_means(record, &noise)).collect();
+    let means = reduced.iter().zip(&uncertain).map(|(record, uncertain)| {
+        let mut means = plateau_means(record, &noise);
+        for (mean, variance) in means.iter_mut().zip(uncertain) {
+            let along = ellipsoid.normal(&mean.mean);
+            mean.covariance += along * along.transpose() * *variance;
+        }
+        means
+    });
+    let means = means.collect();
     advance(progress, ())?;
     Ok(Rests { means, noise_at_most: noise.at_most(&reduced) })
+}
+
+/// Variances of the sizes of the rests of a record [m^2/s^4], as far as it is open which `part` of what trembles is attitude. That is one error
+/// `c` of all rests; variances `c_k sum |c_j|` of their own are no smaller than it for any combination, since `c c^T <= diag(c_k sum c_j)`.
+fn uncertain_sizes(fits: &[PlateauFit], white: &Vector3<f64>, ellipsoid: &Ellipsoid, part: AttitudePart) -> Vec<f64> {
+    let error = |fit: &PlateauFit| {
+        let trembles = if fit.turns() { 0.0 } else { trembles(fit, white, ellipsoid) };
+        0.5 * trembles * part.standard_uncertainty * (fit.mean - ellipsoid.centre()).norm()
+    };
+    let errors: Vec<f64> = fits.iter().map(error).collect();
+    let sum: f64 = errors.iter().sum();
+    errors.into_iter().map(|error| error * sum).collect()
 }
 
 /// The rests of a record that are steady, and its arcs that are smooth.

@@ -9,7 +9,7 @@
 //! in which it counts for more than [`MOST_LEFT`] standard uncertainties is left out. So is one in which a kink of the way may hide that would
 //! count for as much: it accelerates the proof masses at their distance from the axes.
 //!
-//! A rest is an arc that does not turn: its tremor shortens its mean in the same way.
+//! A rest is an arc that does not turn: a tremor of its attitude shortens its mean in the same way ([`super::trembling`]).
 //!
 //! So the mean reading, drawn out from the bias by the ratio of `g` to `|f_0|`, is that of a rest in the attitude of `f_0`, whatever bias, scale and
 //! misalignment are. For that ratio an ellipsoid through all means is enough: of second order in the angle, it takes bias and scale coarsely.
@@ -68,20 +68,27 @@ fn left(fit: &PlateauFit, white: &Vector3<f64>) -> f64 {
     (fit.variance.sum() - white.norm_squared()).max(0.0)
 }
 
-/// Draws out the means of the `fits` of all records, each with the white noise of its readings [m/s^2]; the ellipsoid of all means. A rest
-/// that trembles by 10 mrad about both axes is shorter by 1e-4.
-pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, Vector3<f64>)>) -> Ellipsoid {
-    let mut fits: Vec<(&mut PlateauFit, Vector3<f64>)> = fits.into_iter().collect();
-    let mean: Vec<Vector3<f64>> = fits.iter().map(|(fit, _)| fit.mean).collect();
+/// Square of what trembles in a fit beside the white noise, in units of gravity.
+pub(super) fn trembles(fit: &PlateauFit, white: &Vector3<f64>, ellipsoid: &Ellipsoid) -> f64 {
+    left(fit, white) / (fit.mean - ellipsoid.centre()).norm_squared()
+}
+
+/// Draws out the means of the `fits` of all records, each with the white noise of its readings [m/s^2] and the part of what trembles in it that
+/// is attitude; the ellipsoid of all means. A rest whose attitude trembles by 10 mrad about both axes is shorter by 1e-4.
+pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, Vector3<f64>, f64)>) -> Ellipsoid {
+    let mut fits: Vec<(&mut PlateauFit, Vector3<f64>, f64)> = fits.into_iter().collect();
+    let mean: Vec<Vector3<f64>> = fits.iter().map(|(fit, ..)| fit.mean).collect();
     let mut ellipsoid = Ellipsoid::nearest(&mean);
     for _ in 0..ROUNDS {
-        for ((fit, white), mean) in fits.iter_mut().zip(&mean) {
+        for ((fit, white, attitude), mean) in fits.iter_mut().zip(&mean) {
             let part = |k: usize| ellipsoid.size(&fit.turning[k]).powi(2) / (2 * k + 3) as f64;
             let left = left(fit, white) / (mean - ellipsoid.centre()).norm_squared();
+            // What the polynomials of an arc leave is motion of its attitude.
+            let left = if fit.turns() { left } else { left * *attitude };
             let size = (1.0 - (0..TURNING).map(part).sum::<f64>() - left).sqrt();
             fit.mean = ellipsoid.centre() + (mean - ellipsoid.centre()) / size;
         }
-        ellipsoid = Ellipsoid::nearest(&fits.iter().map(|(fit, _)| fit.mean).collect::<Vec<_>>());
+        ellipsoid = Ellipsoid::nearest(&fits.iter().map(|(fit, ..)| fit.mean).collect::<Vec<_>>());
     }
     ellipsoid
 }
