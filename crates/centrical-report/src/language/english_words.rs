@@ -135,6 +135,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
         Rival::Terms(Extra::Asymmetry) => "scale that differs with the sign of the force",
         Rival::Terms(Extra::FourthPower) => "fourth power of the force",
         Rival::Terms(Extra::FifthPower) => "fifth power of the force",
+        Rival::Terms(Extra::OwnSquares) => "square of the force",
         Rival::Terms(Extra::Jump) => "jump of the bias at zero force",
         Rival::Effect(extension) => match extension {
             Extension::ElasticTurn(Law::Speed) => {

@@ -133,6 +133,7 @@ pub(super) fn rival(rival: Rival) -> &'static str {
         Rival::Terms(Extra::Asymmetry) => "масштаб, зависящий от знака силы",
         Rival::Terms(Extra::FourthPower) => "четвёртая степень силы",
         Rival::Terms(Extra::FifthPower) => "пятая степень силы",
+        Rival::Terms(Extra::OwnSquares) => "квадрат силы",
         Rival::Terms(Extra::Jump) => "скачок нуля при смене знака силы",
         Rival::Effect(extension) => match extension {
             Extension::ElasticTurn(Law::Speed) => {

@@ -2,7 +2,8 @@
 
 use centrical::Group;
 use centrical_session::{
-    CalibrationResult, ParameterEstimate, ResultObjection, RivalSummary, TermSummary, ValiditySummary, customary,
+    CalibrationResult, OutputSummary, ParameterEstimate, ResultObjection, RivalSummary, TermSummary, ValiditySummary,
+    customary,
 };
 
 use super::axes::axes as other_axes;
@@ -52,6 +53,19 @@ fn heading(screen: &mut Screen, result: &CalibrationResult) {
     screen.say(0, &joined([&session.title, &session.date]));
     let combined = if result.stated_sources().is_empty() { "" } else { "combined " };
     screen.say(0, &format!("value ± {combined}standard uncertainty (k = 1); 1 g = 9.80665 m/s^2"));
+    if let Some(OutputSummary { unit, scale, bias }) = &result.output {
+        // Six digits show which scale it is; all of them are in result.json.
+        let six = |number: &f64| {
+            format!("{number:.5e}").parse().map_or_else(|_| number.to_string(), |six: f64| six.to_string())
+        };
+        let three = |numbers: &[f64; 3]| numbers.each_ref().map(six).join(", ");
+        let text = format!(
+            "reading = (raw - bias) / scale with the scale {} {unit} per m/s^2 and the bias {} {unit}",
+            three(scale),
+            three(bias)
+        );
+        screen.sentence(0, 2, &text);
+    }
 }
 
 /// One row per monomial, one column per newtonometer.

@@ -5,7 +5,7 @@ use centrical::uncertainty::{
     Level, OncePerRevolution, PlateauDrift, Repeat, SessionDrift, Slope, TiltComparison, chi_squared_tail, repeats,
     slope_of_speed,
 };
-use centrical::{Calibration, FitError, Observation};
+use centrical::{Calibration, FitError, Observation, SetPoint};
 use serde::{Deserialize, Serialize};
 
 use crate::reduced::{Reduced, ReducedPlateau, Steadiness};
@@ -225,11 +225,17 @@ impl DriftSummary {
 
     /// The drift of a session; none for one that came already averaged.
     pub(crate) fn of(calibration: &Calibration, reduced: &Reduced) -> Result<Option<Self>, FitError> {
-        let slope = |steadiness: Steadiness| Slope {
-            slope: steadiness.drift,
-            standard_uncertainty: steadiness.drift_uncertainty,
+        let experiment = calibration.data().model().experiment();
+        let slope = |(plateau, set_point): (&ReducedPlateau, &SetPoint)| {
+            let steadiness = plateau.steadiness?;
+            let is_free = experiment.position_of(set_point).is_free;
+            Some(Slope {
+                slope: steadiness.drift,
+                standard_uncertainty: steadiness.drift_uncertainty,
+                along: is_free.then(|| plateau.mean.normalize()),
+            })
         };
-        let slopes = reduced.plateaus.iter().map(|plateau| plateau.steadiness.map(slope));
+        let slopes = reduced.plateaus.iter().zip(&experiment.set_points).map(slope);
         let Some(slopes) = slopes.collect::<Option<Vec<Slope>>>() else { return Ok(None) };
         let drift = PlateauDrift::of(&slopes);
         let beyond_speed = PlateauDrift::of(&beyond_speed(calibration, reduced, &slopes));

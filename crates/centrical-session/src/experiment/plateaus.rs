@@ -94,7 +94,7 @@ impl PlateauTable {
     /// name `file`.
     pub(crate) fn check_means(&self, file: &Path, experiment: &Experiment) -> Result<(), Error> {
         let nominal: Vec<_> = experiment.set_points.iter().map(|s| linear::nominal(experiment, s)).collect();
-        let most = BEYOND * nominal.iter().map(|f| f.amax()).fold(STANDARD_GRAVITY, f64::max);
+        let most = BEYOND * nominal.iter().map(Vector3::amax).fold(STANDARD_GRAVITY, f64::max);
         for (n, (row, nominal)) in self.rows.iter().zip(&nominal).enumerate() {
             let far = (0..3).find(|&axis| (row.mean[axis] - nominal[axis]).abs() > most);
             if let Some(axis) = far {

@@ -96,6 +96,7 @@ pub struct RecordReader {
 }
 
 /// How a table is written, and what it is.
+#[derive(Clone, Copy)]
 struct Form {
     lines: TableLines,
     missing: Option<MissingReadings>,
@@ -292,7 +293,9 @@ impl PartReader<'_> {
         samples.clear();
         self.table.seek(raw);
         while let Some(batch) = self.table.next_batch()? {
-            batch.iter_mut().for_each(|rows| missing.leave_out(rows));
+            for rows in &mut *batch {
+                missing.leave_out(rows);
+            }
             scales.apply_to(batch).iter().for_each(|rows| samples.extend(stretch(rows).between(part)));
         }
         Ok(index.bytes(raw))

@@ -162,7 +162,9 @@ fn rows_that_contradict_themselves_are_refused() {
         let folder = TempDir::new().unwrap();
         let store = Store::create(folder.path()).unwrap();
         let mut rows: Vec<Row> = (1..4).map(|n| Row { shared: row(n, 5).shared[..1].to_vec(), ..row(n, 5) }).collect();
-        rows.iter_mut().for_each(|row| row.unit_serial = "1".to_owned());
+        for row in &mut rows {
+            row.unit_serial = "1".to_owned();
+        }
         rows.sort_by_key(|row| row.day);
         edit(&mut rows[1]);
         store.add(rows).unwrap();

@@ -40,6 +40,8 @@ pub enum Extra {
     /// the products of two of the three components, 9 coefficients `K_1[f1*f2]`, ... Which of the other two axes is
     /// the pendulous axis `p` and which the output axis `o` is the sensor's affair and changes no product.
     CrossProducts,
+    /// The even quadratic terms `K_ii f_i^2` of IEEE Std 1293: 3 coefficients `G1_11`, ..., which the source's model has and a coarser one lacks.
+    OwnSquares,
     /// The odd quadratic terms `K_oq f_i |f_i|` of IEEE Std 1293: 3 coefficients `K_1[f1*|f1|]`, ...
     OddQuadratic,
     /// The difference of the scales for positive and negative forces, `|f_i|` (IEEE Std 1293): 3 coefficients `K_1[|f1|]`, ...
@@ -54,8 +56,9 @@ pub enum Extra {
 
 impl Extra {
     /// Every extra with its name as written in sessions.
-    pub const NAMED: [(&'static str, Self); 6] = [
+    pub const NAMED: [(&'static str, Self); 7] = [
         ("cross-products", Self::CrossProducts),
+        ("own-squares", Self::OwnSquares),
         ("odd-quadratic", Self::OddQuadratic),
         ("asymmetry", Self::Asymmetry),
         ("fourth-power", Self::FourthPower),
@@ -80,13 +83,18 @@ impl Extra {
                 let (p, o) = ((axis + 1) % 3, (axis + 2) % 3);
                 vec![Monomial::product(axis, p), Monomial::product(axis, o), Monomial::product(p, o)]
             }
+            Self::OwnSquares => vec![Monomial::power(axis, 2)],
             Self::OddQuadratic => vec![Monomial::odd_square(axis)],
             Self::Asymmetry => vec![Monomial { sign_of: Some(axis), ..Monomial::power(axis, 1) }],
             Self::FourthPower => vec![Monomial::power(axis, 4)],
             Self::FifthPower => vec![Monomial::power(axis, 5)],
             Self::Jump => vec![Monomial { sign_of: Some(axis), ..Monomial::ONE }],
         };
-        (0..3).flat_map(|axis| monomials(axis).into_iter().map(move |m| Term::new(axis, m))).collect()
+        let term = |axis: usize, monomial: Monomial| match self {
+            Self::OwnSquares => Term { name: format!("G1_{0}{0}", axis + 1), ..Term::new(axis, monomial) },
+            _ => Term::new(axis, monomial),
+        };
+        (0..3).flat_map(|axis| monomials(axis).into_iter().map(move |m| term(axis, m))).collect()
     }
 }
 

@@ -77,6 +77,7 @@ impl Rival {
     pub fn formula(self) -> &'static str {
         match self {
             Self::Terms(Extra::CrossProducts) => "f_j f_k, j < k",
+            Self::Terms(Extra::OwnSquares) => "f_i^2",
             Self::Terms(Extra::OddQuadratic) => "f_i |f_i|",
             Self::Terms(Extra::Asymmetry) => "|f_i|",
             Self::Terms(Extra::FourthPower) => "f_i^4",
@@ -121,7 +122,9 @@ impl Rival {
     /// Where it is described.
     pub fn source(self) -> &'static str {
         match self {
-            Self::Terms(Extra::CrossProducts | Extra::OddQuadratic | Extra::Asymmetry) => "IEEE Std 1293",
+            Self::Terms(Extra::CrossProducts | Extra::OwnSquares | Extra::OddQuadratic | Extra::Asymmetry) => {
+                "IEEE Std 1293"
+            }
             Self::Terms(Extra::FourthPower | Extra::FifthPower | Extra::Jump) => "power series of the characteristic",
             Self::Effect(extension) => match extension {
                 Extension::ElasticTurn(_) | Extension::PositionShift => "the source's abstract and section 3",

@@ -14,9 +14,21 @@ pub struct Slope {
     pub slope: Vector3<f64>,
     /// Its standard uncertainty [m/s^3].
     pub standard_uncertainty: Vector3<f64>,
+    /// Direction of the force, of length 1, for a rest in a free attitude: across it a slope is one of the attitude, and no drift.
+    pub along: Option<Vector3<f64>>,
 }
 
 impl Slope {
+    /// What of it may be a drift: on each newtonometer, or along the force: size, standard uncertainty and direction.
+    fn parts(&self) -> Vec<(f64, f64, Vector3<f64>)> {
+        let part = |direction: Vector3<f64>| {
+            let u = direction.component_mul(&self.standard_uncertainty).norm();
+            (direction.dot(&self.slope), u, direction)
+        };
+        let axes = || (0..3).map(|axis| Vector3::ith(axis, 1.0)).collect();
+        self.along.map_or_else(axes, |along| vec![along]).into_iter().map(part).collect()
+    }
+
     /// The slope that a speed does not explain which runs over the plateau by `relative_slope`, with a standard uncertainty [1/s];
     /// `by_log_speed` is the derivative of the reading by the logarithm of the speed [m/s^2].
     #[must_use]
@@ -26,6 +38,7 @@ impl Slope {
             standard_uncertainty: self
                 .standard_uncertainty
                 .zip_map(by_log_speed, |own, by_speed| own.hypot(by_speed * u)),
+            along: self.along,
         }
     }
 }
@@ -56,16 +69,18 @@ impl PlateauDrift {
     /// Drift of plateaus with these slopes.
     pub fn of(slopes: &[Slope]) -> Self {
         let (mut weights, mut sums, mut chi_squared) = (Vector3::zeros(), Vector3::zeros(), 0.0);
-        for Slope { slope, standard_uncertainty } in slopes {
-            let weight = standard_uncertainty.map(|u| 1.0 / (u * u));
-            weights += weight;
-            sums += weight.component_mul(slope);
-            chi_squared += slope.component_div(standard_uncertainty).norm_squared();
+        let mut degrees_of_freedom = 0;
+        for (slope, u, direction) in slopes.iter().flat_map(Slope::parts) {
+            // Directions of rests are spread: what one newtonometer adds to another's mean is left out.
+            weights += direction.component_mul(&direction) / (u * u);
+            sums += direction * (slope / (u * u));
+            chi_squared += (slope / u).powi(2);
+            degrees_of_freedom += 1;
         }
-        let degrees_of_freedom = 3 * slopes.len();
         let mean = Slope {
             slope: sums.component_div(&weights),
             standard_uncertainty: weights.map(|weight| 1.0 / weight.sqrt()),
+            along: None,
         };
         let probability = chi_squared_tail(chi_squared, degrees_of_freedom);
         Self { mean, chi_squared, degrees_of_freedom, probability }
@@ -119,7 +134,7 @@ mod tests {
     #[test]
     fn the_slope_of_the_speed_is_measured_or_stated() {
         let by_log_speed = Vector3::new(2e3, 0.0, 0.0);
-        let slope = Slope { slope: by_log_speed * 1e-6, standard_uncertainty: Vector3::repeat(1e-4) };
+        let slope = Slope { slope: by_log_speed * 1e-6, standard_uncertainty: Vector3::repeat(1e-4), along: None };
         let left = |speed| PlateauDrift::of(&[slope.beyond_speed(&by_log_speed, speed)]).chi_squared;
         let [exact, stated, measured] = [(0.0, Some([1e-6, 1e-9])), (1e-5, None), (1e-5, Some([1e-6, 1e-9]))]
             .map(|(u, m)| slope_of_speed(u, 10.0, m));

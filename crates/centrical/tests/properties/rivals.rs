@@ -96,8 +96,9 @@ fn every_effect_is_shown_and_named() {
         assert_eq!(told, SESSIONS, "{}", rival.name());
         assert!(named + 1 >= SESSIONS, "{}: {named}, instead {instead:?}", rival.name());
     }
-    // The lateral place of a seat acts as the bias of two newtonometers and turns do: no session of this plan can show it.
-    assert_eq!(followed, ["seat-lateral"]);
+    // The source's model has the squares. The lateral place of a seat acts as the bias of two newtonometers and turns do: no session of this plan
+    // can show it.
+    assert_eq!(followed, ["own-squares", "seat-lateral"]);
 }
 
 /// A session of a laboratory that states `STATED`, with every stated deviation drawn.

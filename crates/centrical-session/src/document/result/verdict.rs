@@ -1,11 +1,15 @@
 //! Whether a result can be accepted as it stands, and why not.
 
+use centrical::Group;
 use centrical::uncertainty::{Findings, Level, Objection, objections};
 
 use super::budget_and_checks::PatternSummary;
 use super::rivals::RivalSummary;
-use super::schema::CalibrationResult;
+use super::schema::{CalibrationResult, ParameterEstimate};
 use super::speeds::SpeedFinding;
+
+/// A scale or a misalignment that is less certain has no covariance that holds: the reading is not linear over so much.
+const MOST_UNCERTAIN: f64 = 0.1;
 
 /// An objection to a result: plateaus as `mounting:plateau`, counted from 1.
 pub type ResultObjection = Objection<String, PatternSummary, RivalSummary, SpeedFinding>;
@@ -19,7 +23,11 @@ impl CalibrationResult {
         let patterns = validity.flat_map(|validity| &validity.patterns);
         let speeds = self.speeds.iter().flat_map(|speeds| &speeds.findings);
         let terms = self.model.error_model.iter().map(|term| &term.name);
-        let is_lost = |name: &&String| self.parameter(name).is_none_or(|p| !p.estimable);
+        let is_vague = |p: &ParameterEstimate| {
+            matches!(p.group, Group::Scale | Group::Misalignment)
+                && p.standard_uncertainty.is_some_and(|u| u > MOST_UNCERTAIN)
+        };
+        let is_lost = |name: &&String| self.parameter(name).is_none_or(|p| !p.estimable || is_vague(p));
         objections(Findings {
             termination: self.fit.termination,
             iterations: self.fit.iterations,

@@ -69,7 +69,8 @@ pub(super) fn turns(request: &TumbleRequest, means: &[Vector3<f64>]) -> Result<(
             high[axis],
             means.len()
         );
-        let expected = "rests in which it points up and others in which it points down, or a newtonometer that answers";
+        let expected = "readings that differ by a fifth of gravity at least, best of rests in which it points up and others in which it points down, or a \
+                        newtonometer that answers";
         return Err(Error::content(&first(request), Place::Whole, found, expected));
     }
     Ok(())
