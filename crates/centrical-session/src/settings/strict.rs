@@ -10,7 +10,7 @@ use serde::de::{
     Visitor,
 };
 
-/// A deserialiser, or something of it, of which nothing goes unread.
+/// A deserialiser, or a part of one, that leaves nothing unread.
 pub(super) struct Strict<T>(pub T);
 
 /// A visitor of a value, which may be of a table alone.

@@ -20,13 +20,16 @@ use crate::model::Position;
 /// Fewest rests that show the scatter between them.
 const FEWEST: usize = 3;
 
+/// Samples of a rest that are looked at, evenly spread: an hour at 2 kHz needs no more memory than some minutes.
+const MOST: usize = 100_000;
+
 /// Samples farther from the mean than this many standard deviations take no part.
 const FARTHEST: f64 = 6.0;
 
 /// A constant and two components of the motion.
 const LINEAR: usize = 3;
 
-/// A part is known no better: the motion is white noise, attitude and place together.
+/// A part is known no better than this: one part for all motion of a record is no finer.
 const SHARPEST: f64 = 5e-3;
 
 /// Points of the posterior distribution of a part between 0 and 1.
@@ -88,8 +91,9 @@ impl Sums {
         let most = fit.variance.map(|variance| FARTHEST * variance.sqrt());
         let across = |of: &Vector3<f64>, along: f64| ellipsoid.size(of).powi(2) - along.powi(2);
         let upright = Position::free("", &along).p_zy;
-        let mut seen = Vec::with_capacity(samples.t.len());
-        for n in 0..samples.t.len() {
+        let step = samples.t.len().div_ceil(MOST).max(1);
+        let mut seen = Vec::with_capacity(samples.t.len() / step + 1);
+        for n in (0..samples.t.len()).step_by(step) {
             let reading = Vector3::from_fn(|axis, _| samples.f_z[axis][n]);
             let motion = reading - fit.mean;
             // Comparison with a NaN is false.
