@@ -14,8 +14,8 @@ type Contradiction = (&'static str, String, String);
 /// Numbers above this have no place in a calibration.
 const LARGEST: f64 = 1e100;
 
-/// Rounding of numbers that were written, read and squared.
-const ROUNDING: f64 = 1e-9;
+/// Relative difference of a variance from the square of a standard uncertainty that may be computed in another way: rounding makes some 1e-9 of it.
+const ROUNDING: f64 = 1e-6;
 
 /// The first contradiction in a row that was read so deep: lists have a number for each parameter, units are those of the groups, terms act as
 /// their names say, and variances are the squares of the standard uncertainties.

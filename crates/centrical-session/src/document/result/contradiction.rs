@@ -9,8 +9,8 @@ use super::schema::{CalibrationResult, ConvergenceSummary, ObservabilitySummary,
 /// Units of raw output.
 const RAW_UNITS: [&str; 2] = ["counts", "V"];
 
-/// Rounding of numbers that were written, read and squared.
-const ROUNDING: f64 = 1e-9;
+/// Relative difference of a variance from the square of a standard uncertainty that may be computed in another way: rounding makes some 1e-9 of it.
+const ROUNDING: f64 = 1e-6;
 
 /// What was found, and what was expected.
 type Contradiction = (String, String);
