@@ -94,19 +94,12 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Checked<V> {
 
     fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> Result<V::Value, A::Error> {
         if self.is_table {
-            return Err(A::Error::invalid_type(Unexpected::Other("an array"), &self));
+            return Err(not_a_table());
         }
         let mut values = Elements { values, count: 0 };
         let value = self.visitor.visit_seq(&mut values)?;
-        let expected = values.count;
-        while values.next_element::<IgnoredAny>()?.is_some() {}
-        match values.count {
-            count if count > expected => {
-                let expected = format!("an array of length {expected}");
-                Err(A::Error::invalid_length(count, &expected.as_str()))
-            }
-            _ => Ok(value),
-        }
+        values.are_taken()?;
+        Ok(value)
     }
 
     fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<V::Value, A::Error> {
@@ -118,10 +111,32 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Checked<V> {
     }
 }
 
+// Out of the code of each form: there are more than a hundred.
+#[cold]
+#[inline(never)]
+fn not_a_table<E: Error>() -> E {
+    E::invalid_type(Unexpected::Other("an array"), &"a table")
+}
+
 /// The elements of an array, counted as they are taken.
 struct Elements<A> {
     values: A,
     count: usize,
+}
+
+impl<'de, A: SeqAccess<'de>> Elements<A> {
+    /// # Errors
+    /// If elements are left.
+    #[inline(never)]
+    fn are_taken(mut self) -> Result<(), A::Error> {
+        let expected = self.count;
+        while self.next_element::<IgnoredAny>()?.is_some() {}
+        if self.count == expected {
+            return Ok(());
+        }
+        let expected = format!("an array of length {expected}");
+        Err(A::Error::invalid_length(self.count, &expected.as_str()))
+    }
 }
 
 impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for Elements<A> {
