@@ -62,9 +62,7 @@ pub(crate) fn toml_text(text: &str) -> String {
 pub(crate) fn from_json<T: DeserializeOwned>(file: &Path, line: usize, text: &str, expected: &str) -> Result<T, Error> {
     serde_json::from_str(text).map_err(|error| {
         let place = Place::Character { line: line + error.line().max(1) - 1, column: error.column() };
-        let sentence = error.to_string();
-        let sentence = sentence.split(" at line ").next().unwrap_or_default();
-        form_error(file, place, sentence, expected)
+        json_error(file, place, &error, expected)
     })
 }
 
@@ -75,11 +73,14 @@ pub(crate) fn from_json_under<T: DeserializeOwned>(
     text: &str,
     expected: &str,
 ) -> Result<T, Error> {
-    serde_json::from_str(text).map_err(|error| {
-        let sentence = error.to_string();
-        let sentence = sentence.split(" at line ").next().unwrap_or_default();
-        form_error(file, Place::Key { table: String::new(), key: key.to_owned() }, sentence, expected)
-    })
+    let place = || Place::Key { table: String::new(), key: key.to_owned() };
+    serde_json::from_str(text).map_err(|error| json_error(file, place(), &error, expected))
+}
+
+/// What the parser of JSON says, without its place in the text.
+fn json_error(file: &Path, place: Place, error: &serde_json::Error, expected: &str) -> Error {
+    let sentence = error.to_string();
+    form_error(file, place, sentence.split(" at line ").next().unwrap_or_default(), expected)
 }
 
 /// What a parser says, as what was found and what was expected.

@@ -46,8 +46,9 @@ impl RecordFindings {
     /// [`Error`] when they are not of this form.
     pub fn stated(session: &Session) -> Result<Option<Self>, Error> {
         let Some(text) = &session.record_findings else { return Ok(None) };
-        let findings: Self = from_json_under(&session.file, KEY, text, "what `centrical reduce` writes there")?;
-        let numbers = from_json_under(&session.file, KEY, text, "what `centrical reduce` writes there")?;
+        let expected = "what `centrical reduce` writes there";
+        let findings: Self = from_json_under(&session.file, KEY, text, expected)?;
+        let numbers = from_json_under(&session.file, KEY, text, expected)?;
         match impossible(KEY, &numbers).or_else(|| findings.contradiction()) {
             Some((found, expected)) => Err(Error::content(&session.file, Place::Whole, found, expected)),
             None => Ok(Some(findings)),

@@ -99,16 +99,14 @@ impl Extension {
     /// The extension of a name: one of [`Extension::NAMED`], or that of one mounting or one set speed, counted from 1: `other-unit[7]`.
     pub fn named(name: &str) -> Option<Self> {
         let of_session = Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, extension)| *extension);
-        let of_mounting = || {
-            let (stem, mounting) = name.strip_suffix(']')?.split_once('[')?;
-            let difference = Difference::NAMED.iter().find(|(known, _)| *known == stem)?.1;
-            Some(Self::OneMounting(difference, mounting.parse::<usize>().ok()?.checked_sub(1)?))
+        let of_one = || {
+            let (stem, number) = name.strip_suffix(']')?.split_once('[')?;
+            let index = number.parse::<usize>().ok()?.checked_sub(1)?;
+            let difference = Difference::NAMED.iter().find(|(known, _)| *known == stem);
+            let of_mounting = difference.map(|(_, difference)| Self::OneMounting(*difference, index));
+            of_mounting.or_else(|| (stem == ONE_SPEED).then_some(Self::OneSpeed(index)))
         };
-        let of_speed = || {
-            let speed = name.strip_prefix(ONE_SPEED)?.strip_prefix('[')?.strip_suffix(']')?;
-            Some(Self::OneSpeed(speed.parse::<usize>().ok()?.checked_sub(1)?))
-        };
-        of_session.or_else(of_mounting).or_else(of_speed)
+        of_session.or_else(of_one)
     }
 
     /// Its name as written in sessions and plans.

@@ -40,6 +40,9 @@ const FAR: f64 = 1.0;
 /// Limit of quadratic models for each exponent.
 const MODELS: usize = 25;
 
+/// Order of the last norm that stands for a maximum over goals or scenarios.
+const LAST_NORM: f64 = 128.0;
+
 /// Limit of the parts of many candidates that are searched one after the other.
 const PARTS: usize = 8;
 
@@ -116,7 +119,7 @@ fn relax_by_parts(
     start: Option<&[f64]>,
     precision: Precision,
 ) -> Relaxed {
-    let of_all = Objective { scenarios, polytope, exponent: if scenarios.has_norm() { 128.0 } else { 1.0 } };
+    let of_all = Objective { scenarios, polytope, exponent: if scenarios.has_norm() { LAST_NORM } else { 1.0 } };
     let atoms = polytope.atoms;
     let visits = start.map_or_else(|| polytope.spread(), <[f64]>::to_vec);
     let mut best = Relaxed { visits, value: f64::INFINITY, bound: f64::NEG_INFINITY, models: 0 };
@@ -151,7 +154,7 @@ fn relax_all(
         w = polytope.within(&polytope.spread());
         w = search.gather(w);
     }
-    let exponents: &[f64] = if has_norm { &[8.0, 32.0, 128.0] } else { &[1.0] };
+    let exponents: &[f64] = if has_norm { &[8.0, 32.0, LAST_NORM] } else { &[1.0] };
     for &exponent in exponents {
         search.objective.exponent = exponent;
         w = search.refine(w);

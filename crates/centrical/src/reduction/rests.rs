@@ -54,14 +54,12 @@ pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<
         Ok((located, fits))
     });
     let mut located: Vec<(Located, Vec<PlateauFit>)> = located.collect::<Result<_, ReductionError>>()?;
-    let all = located.iter().flat_map(|(_, fits)| fits.iter().map(|fit| fit.mean));
-    if Ellipsoid::through(&all.collect::<Vec<Vector3<f64>>>()).is_none() {
+    if Ellipsoid::through(&means_of(&located)).is_none() {
         for (_, fits) in &mut located {
             fits.retain(|fit| !fit.turns());
         }
     }
-    let all = located.iter().flat_map(|(_, fits)| fits.iter().map(|fit| fit.mean));
-    let coarse = Ellipsoid::nearest(&all.collect::<Vec<Vector3<f64>>>());
+    let coarse = Ellipsoid::nearest(&means_of(&located));
     let of_record = |(record, (located, fits)): (&RestRecord, &(Located, Vec<PlateauFit>))| {
         let part = AttitudePart::of(record.samples, fits, &coarse, located.sample_noise());
         (part, uncertain_sizes(fits, located.sample_noise(), &coarse, part))
@@ -72,7 +70,7 @@ pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<
         let white = *located.sample_noise();
         fits.iter_mut().map(move |fit| (fit, white, part.mean))
     });
-    let ellipsoid = draw_out(with_noise);
+    let ellipsoid = draw_out(with_noise, coarse);
     advance(progress, ())?;
     let mut along = Vec::new();
     for (record, (located, fits)) in records.iter().zip(&located) {
@@ -103,11 +101,16 @@ pub fn reduce_rests(records: &[RestRecord], progress: OnProgress<()>) -> Result<
     Ok(Rests { means, noise_at_most: noise.at_most(&reduced) })
 }
 
+/// The means of all records.
+fn means_of(located: &[(Located, Vec<PlateauFit>)]) -> Vec<Vector3<f64>> {
+    located.iter().flat_map(|(_, fits)| fits.iter().map(|fit| fit.mean)).collect()
+}
+
 /// Variances of the sizes of the rests of a record [m^2/s^4], as far as it is open which `part` of what trembles is attitude. That is one error
 /// `c` of all rests; variances `c_k sum |c_j|` of their own are no smaller than it for any combination, since `c c^T <= diag(c_k sum c_j)`.
 fn uncertain_sizes(fits: &[PlateauFit], white: &Vector3<f64>, ellipsoid: &Ellipsoid, part: AttitudePart) -> Vec<f64> {
     let error = |fit: &PlateauFit| {
-        let trembles = if fit.turns() { 0.0 } else { trembles(fit, white, ellipsoid) };
+        let trembles = if fit.turns() { 0.0 } else { trembles(fit, &fit.mean, white, ellipsoid) };
         0.5 * trembles * part.standard_uncertainty * (fit.mean - ellipsoid.centre()).norm()
     };
     let errors: Vec<f64> = fits.iter().map(error).collect();

@@ -3,7 +3,7 @@
 //! Let a rest show the motion `s(t)` across the force, in units of gravity, `v` in mean square beside the white noise. If the attitude trembles,
 //! the force keeps its size, and its mean is shorter by `v / 2`. If the place does, as on a table that is shaken sideways, an acceleration is added
 //! to gravity: the mean is as it was, and the size exceeds gravity by `|s|^2 / 2`. So the excess of the size at a sample is `kappa |s|^2 / 2`
-//! beside its noise, with `kappa` 0 for the attitude and 1 for the place, and the mean is shorter by `(1 - kappa) v / 2`.
+//! beside its noise. `kappa` is 0 for the attitude and 1 for the place. The mean is shorter by `(1 - kappa) v / 2`.
 //!
 //! `kappa` is the slope of a regression over the samples of all rests of a record, beside a constant and the two components of `s` in each rest:
 //! few rests show the ellipsoid poorly, and the excess by a wrong one follows `s` itself. The white noise in `|s + w|^2` has the variance

@@ -68,21 +68,24 @@ fn left(fit: &PlateauFit, white: &Vector3<f64>) -> f64 {
     (fit.variance.sum() - white.norm_squared()).max(0.0)
 }
 
-/// Square of what trembles in a fit beside the white noise, in units of gravity.
-pub(super) fn trembles(fit: &PlateauFit, white: &Vector3<f64>, ellipsoid: &Ellipsoid) -> f64 {
-    left(fit, white) / (fit.mean - ellipsoid.centre()).norm_squared()
+/// Mean square of what trembles about a `mean` reading beside the white noise, in units of gravity.
+pub(super) fn trembles(fit: &PlateauFit, mean: &Vector3<f64>, white: &Vector3<f64>, ellipsoid: &Ellipsoid) -> f64 {
+    left(fit, white) / (mean - ellipsoid.centre()).norm_squared()
 }
 
 /// Draws out the means of the `fits` of all records, each with the white noise of its readings [m/s^2] and the part of what trembles in it that
-/// is attitude; the ellipsoid of all means. A rest whose attitude trembles by 10 mrad about both axes is shorter by 1e-4.
-pub(super) fn draw_out<'a>(fits: impl IntoIterator<Item = (&'a mut PlateauFit, Vector3<f64>, f64)>) -> Ellipsoid {
+/// is attitude; the ellipsoid of all means, which is `ellipsoid` before. A rest whose attitude trembles by 10 mrad about both axes is shorter
+/// by 1e-4.
+pub(super) fn draw_out<'a>(
+    fits: impl IntoIterator<Item = (&'a mut PlateauFit, Vector3<f64>, f64)>,
+    mut ellipsoid: Ellipsoid,
+) -> Ellipsoid {
     let mut fits: Vec<(&mut PlateauFit, Vector3<f64>, f64)> = fits.into_iter().collect();
     let mean: Vec<Vector3<f64>> = fits.iter().map(|(fit, ..)| fit.mean).collect();
-    let mut ellipsoid = Ellipsoid::nearest(&mean);
     for _ in 0..ROUNDS {
         for ((fit, white, attitude), mean) in fits.iter_mut().zip(&mean) {
             let part = |k: usize| ellipsoid.size(&fit.turning[k]).powi(2) / (2 * k + 3) as f64;
-            let left = left(fit, white) / (mean - ellipsoid.centre()).norm_squared();
+            let left = trembles(fit, mean, white, &ellipsoid);
             // What the polynomials of an arc leave is motion of its attitude.
             let left = if fit.turns() { left } else { left * *attitude };
             let size = (1.0 - (0..TURNING).map(part).sum::<f64>() - left).sqrt();
