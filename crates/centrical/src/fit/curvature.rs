@@ -1,4 +1,5 @@
-//! What the curvature of the model leaves in the estimates along directions that priors alone determine.
+//! What the curvature of the model leaves in the estimates along directions that are determined poorly: by priors alone, or by
+//! gravity alone in attitudes that hardly differ from six faces.
 //!
 //! Along such a direction an estimate may be off by far more than elsewhere, and the readings answer with a square. With the
 //! covariance as a sum of independent directions, `C = sum_k d_k d_k^T`, the error of the estimate is `sum_k z_k d_k` of
@@ -29,7 +30,7 @@ const WIDE: f64 = 1e-2;
 const MOST: usize = 12;
 
 /// The columns whose squares add to the covariance at the unknowns `x` of a fit of `data`, whose directions are held by
-/// `hold`; none where priors determine nothing by themselves.
+/// `hold`; none where the arm shows all directions without priors.
 pub(super) fn left_by(
     data: &Data,
     structure: &Structure,
@@ -38,13 +39,21 @@ pub(super) fn left_by(
     linearisations: &[Linearisation],
 ) -> Result<DMatrix<f64>, FitError> {
     let of_priors = structure.lost_by_data();
-    if of_priors == 0 {
+    if of_priors == 0 && !data.model().experiment().has_free_attitudes() {
         return Ok(DMatrix::zeros(x.len(), 0));
     }
     // The rows of the plateaus themselves, not those that a filter turned them into.
     let design = Assembly::Batch.design(data, x.as_slice(), linearisations)?;
     let (equations, _) = structure.held.equations(&design, x, hold);
-    let directions = widest(&equations, &data.typical(), of_priors);
+    let directions = if of_priors > 0 {
+        widest(&equations, &data.typical(), of_priors)
+    } else {
+        let wide = equations.wider_than(WIDE).into_iter().take(MOST);
+        wide.map(|direction| direction.component_mul(&data.typical())).collect()
+    };
+    if directions.is_empty() {
+        return Ok(DMatrix::zeros(x.len(), 0));
+    }
     let missed = whitened(data, linearisations, &missed(data, x, &directions))?;
     Ok(equations.unknowns(&equations.rotated(missed)))
 }

@@ -245,6 +245,11 @@ impl Experiment {
         turned
     }
 
+    /// Whether there are rests in free attitudes.
+    pub fn has_free_attitudes(&self) -> bool {
+        self.positions.iter().any(|position| position.is_free)
+    }
+
     /// Whether a mounting is on the arm, and not a rest in a free attitude.
     pub fn is_on_arm(&self, mounting: usize) -> bool {
         !self.positions[self.mountings[mounting].position].is_free

@@ -66,13 +66,15 @@ impl Calibration<'_> {
         let of_type_b =
             if stated.doubt > 0.0 { Degrees::Finite(0.5 / (stated.doubt * stated.doubt)) } else { Degrees::Infinite };
         let mut contributions = Vec::new();
+        // Curvature counts to what determines the estimates poorly.
+        let of_curvature = if model.priors().is_empty() { Source::Noise } else { Source::Priors };
         for source in Source::ALL {
             let own = match source {
                 Source::Noise => gain.apply(&noise(gain, observations)?),
                 Source::PlateauSpeed => gain.apply(&settings(gain, model, observations, false)),
                 Source::RestAngle => gain.apply(&settings(gain, model, observations, true)),
                 Source::Resolution => gain.apply(&rounding(gain)),
-                Source::Priors => side_by_side(&gain.apply_priors(), &self.fit().curved()),
+                Source::Priors => gain.apply_priors(),
                 Source::Gravity
                 | Source::Latitude
                 | Source::Radius
@@ -84,6 +86,7 @@ impl Calibration<'_> {
                 | Source::Turning
                 | Source::Effects => DMatrix::zeros(model.parameters().len(), 0),
             };
+            let own = if source == of_curvature { side_by_side(&own, &self.fit().curved()) } else { own };
             let of_source = model.influences().iter().enumerate().filter(|(_, influence)| influence.source == source);
             let shared: Vec<usize> = of_source.map(|(n, _)| n).collect();
             let changes = side_by_side(&own, &of_influences.select_columns(&shared));
