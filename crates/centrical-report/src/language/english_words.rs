@@ -159,6 +159,11 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::MountingTilt => "tilt of the axis that differs by mounting",
             Extension::MountingBias => "bias that differs by mounting",
             Extension::MountingScale => "scale that differs by mounting",
+            Extension::RestsBias => "bias of the rests of [[tumble]] that differs by more than bias_change: another switch-on",
+            Extension::RestsScale => {
+                "scale of the rests of [[tumble]] that differs from the arm's: another temperature or gravity"
+            }
+            Extension::RestsUnit => "another unit, or axes in another order, in the rests of [[tumble]]",
             Extension::SpinTurn => "turn of the unit between rest and spinning",
             Extension::Disturbance(Course::Spinning) => {
                 "step between rest and spinning: an aliased line or rectified vibration"

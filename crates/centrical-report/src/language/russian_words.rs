@@ -157,6 +157,13 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::MountingTilt => "наклон оси, различный по установкам",
             Extension::MountingBias => "смещение нуля, различное по установкам",
             Extension::MountingScale => "масштаб, различный по установкам",
+            Extension::RestsBias => {
+                "смещение нуля в положениях покоя [[tumble]], отличное более чем на bias_change: другое включение"
+            }
+            Extension::RestsScale => {
+                "масштаб в положениях покоя [[tumble]], отличный от масштаба на центрифуге: другая температура или сила тяжести"
+            }
+            Extension::RestsUnit => "другой прибор или другой порядок осей в положениях покоя [[tumble]]",
             Extension::SpinTurn => "поворот прибора между покоем и вращением",
             Extension::Disturbance(Course::Spinning) => {
                 "ступень между покоем и вращением: наложение частот или выпрямленная вибрация"

@@ -100,14 +100,14 @@ pub enum Effect {
     Gravity,
     /// Latitude [rad].
     Latitude,
-    /// A term of the error model at the nominal specific force, in one mounting or in all.
+    /// A term of the error model at the nominal specific force.
     Monomial {
         /// Newtonometer it acts on.
         axis: usize,
         /// What multiplies its coefficient.
         monomial: Monomial,
-        /// Index of the mounting; `None` for all.
-        mounting: Option<usize>,
+        /// Where it acts.
+        scope: Scope,
     },
     /// A disturbance of one newtonometer's readings.
     Disturbance {
@@ -137,6 +137,17 @@ pub enum Effect {
         /// Index of the first of the rests.
         first: usize,
     },
+}
+
+/// Plateaus that an effect acts on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scope {
+    /// All.
+    Session,
+    /// Those of a mounting, by its index.
+    Mounting(usize),
+    /// The rests of a switch-on, by its number.
+    SwitchOn(usize),
 }
 
 /// What a disturbance follows.
@@ -171,12 +182,12 @@ impl Course {
 impl Effect {
     /// The scale of a newtonometer in one mounting, relative.
     pub(super) fn scale_of_mounting(axis: usize, mounting: usize) -> Self {
-        Self::Monomial { axis, monomial: Monomial::power(axis, 1), mounting: Some(mounting) }
+        Self::Monomial { axis, monomial: Monomial::power(axis, 1), scope: Scope::Mounting(mounting) }
     }
 
     /// The bias of a newtonometer in one mounting [m/s^2].
     pub(super) fn bias_of_mounting(axis: usize, mounting: usize) -> Self {
-        Self::Monomial { axis, monomial: Monomial::ONE, mounting: Some(mounting) }
+        Self::Monomial { axis, monomial: Monomial::ONE, scope: Scope::Mounting(mounting) }
     }
 
     /// Whether it depends on what came before a plateau.

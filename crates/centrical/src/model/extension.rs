@@ -3,7 +3,9 @@
 //! Where an effect belongs to a mounting, its unknowns are differences from the first mounting that shares the position (or
 //! the shift): the shared unknown itself remains, and no direction is lost by counting it twice.
 
-use super::effect::{Course, Effect, Law};
+use centrical_compensate::Monomial;
+
+use super::effect::{Course, Effect, Law, Scope};
 use super::error_model::{ErrorModel, Term};
 use super::experiment::{Experiment, PairRelation, STANDARD_GRAVITY};
 use super::group::Group;
@@ -43,6 +45,12 @@ pub enum Extension {
     MountingBias,
     /// Scale of every mounting, three each: likewise.
     MountingScale,
+    /// Bias of the rests of every other switch-on, three each, beside the change of it that is stated.
+    RestsBias,
+    /// Scale of the rests of every other switch-on, three each: at another temperature or gravity.
+    RestsScale,
+    /// Terms of first degree of the rests of every other switch-on: of another unit, or in another order of axes.
+    RestsUnit,
     /// Turn of the unit while spinning against that at rest, three per position.
     SpinTurn,
     /// A disturbance of the readings, one per newtonometer.
@@ -66,7 +74,7 @@ pub enum Difference {
 
 impl Extension {
     /// Every extension with its name as written in sessions and plans.
-    pub const NAMED: [(&'static str, Self); 27] = [
+    pub const NAMED: [(&'static str, Self); 30] = [
         ("elastic-turn-speed", Self::ElasticTurn(Law::Speed)),
         ("elastic-turn-load", Self::ElasticTurn(Law::Load)),
         ("arm-stretch-speed", Self::ArmStretch(Law::Speed)),
@@ -86,6 +94,9 @@ impl Extension {
         ("mounting-tilt", Self::MountingTilt),
         ("mounting-bias", Self::MountingBias),
         ("mounting-scale", Self::MountingScale),
+        ("rests-bias", Self::RestsBias),
+        ("rests-scale", Self::RestsScale),
+        ("rests-unit", Self::RestsUnit),
         ("spin-turn", Self::SpinTurn),
         ("spin-step", Self::Disturbance(Course::Spinning)),
         ("spin-square", Self::Disturbance(Course::SquaredSpeed)),
@@ -165,6 +176,11 @@ impl Extension {
             ),
             Self::MountingBias => by_mounting(experiment, 3, |_, _| true, mounting_bias),
             Self::MountingScale => by_mounting(experiment, 3, |_, _| true, mounting_scale),
+            Self::RestsBias => of_rests(experiment, error_model, "rests_bias", |monomial, _| monomial.degree() == 0),
+            Self::RestsScale => of_rests(experiment, error_model, "rests_scale", |monomial, axis| {
+                *monomial == Monomial::power(axis, 1)
+            }),
+            Self::RestsUnit => of_rests(experiment, error_model, "rests_unit", |monomial, _| monomial.degree() == 1),
             Self::SpinTurn => by_position(experiment, |axis, position, id| {
                 let name = format!("spin_turn_{}[{id}]", axis + 1);
                 effect(name, "rad", Group::SpinTurn, Effect::SpinTurn { axis, position }, 1e-3)
@@ -224,8 +240,25 @@ fn mounting_scale(axis: usize, mounting: usize) -> Parameter {
 fn other_unit(term: &Term, mounting: usize) -> Parameter {
     let Term { axis, monomial, .. } = *term;
     let name = format!("{}[{}]", term.name, mounting + 1);
-    let effect = Effect::Monomial { axis, monomial, mounting: Some(mounting) };
+    let effect = Effect::Monomial { axis, monomial, scope: Scope::Mounting(mounting) };
     Parameter { name, kind: Kind::Effect(effect), ..coefficient(term) }
+}
+
+/// The terms of the error model that are `asked` for, with their axes, in the rests of each switch-on but the reference.
+fn of_rests(
+    experiment: &Experiment,
+    error_model: &ErrorModel,
+    stem: &str,
+    asked: impl Fn(&Monomial, usize) -> bool,
+) -> Vec<Parameter> {
+    let terms: Vec<&Term> = error_model.terms.iter().filter(|term| asked(&term.monomial, term.axis)).collect();
+    let unknown = |number: usize, term: &Term| {
+        let Term { axis, monomial, .. } = *term;
+        let kind = Kind::Effect(Effect::Monomial { axis, monomial, scope: Scope::SwitchOn(number) });
+        Parameter { name: format!("{stem}_{}[{number}]", term.name), kind, ..coefficient(term) }
+    };
+    let numbers = experiment.other_switch_ons().into_iter().map(|switch_on| switch_on.number);
+    numbers.flat_map(|number| terms.iter().map(move |term| unknown(number, term))).collect()
 }
 
 /// Typical magnitude of a bias [m/s^2].

@@ -2,7 +2,7 @@
 
 use centrical_compensate::Monomial;
 
-use super::effect::Effect;
+use super::effect::{Effect, Scope};
 use super::error_model::Term;
 use super::experiment::STANDARD_GRAVITY;
 use super::group::Group;
@@ -52,7 +52,7 @@ pub(super) fn parameter(name: String, unit: &str, group: Group, kind: Kind, typi
 /// The coefficient of a term, as an effect of its own.
 pub(super) fn coefficient(term: &Term) -> Parameter {
     let Term { axis, monomial, .. } = *term;
-    let kind = Kind::Effect(Effect::Monomial { axis, monomial, mounting: None });
+    let kind = Kind::Effect(Effect::Monomial { axis, monomial, scope: Scope::Session });
     let unknown = parameter(term.name.clone(), &term.unit(), term.group, kind, typical_coefficient(&monomial));
     Parameter { power_of_acceleration: 1 - i32::from(monomial.degree()), ..unknown }
 }

@@ -103,6 +103,9 @@ impl Rival {
                 Extension::MountingTilt => "alpha, by mounting",
                 Extension::MountingBias => "df0, by mounting",
                 Extension::MountingScale => "f_i, by mounting",
+                Extension::RestsBias => "df0, by switch-on of rests",
+                Extension::RestsScale => "f_i, by switch-on of rests",
+                Extension::RestsUnit => "f_j, by switch-on of rests",
                 Extension::SpinTurn => "delta while spinning, by position",
                 Extension::Disturbance(Course::Spinning) => "1 where Omega > 0",
                 Extension::Disturbance(Course::SquaredSpeed) => "Omega^2",
@@ -143,7 +146,12 @@ impl Rival {
                 | Extension::SpinTurn
                 | Extension::OneMounting(..) => "mechanics of the arm and the seat",
                 Extension::Disturbance(Course::Yield) => "IEEE Std 1293, open loop",
-                Extension::MountingBias | Extension::MountingScale | Extension::Disturbance(_) => {
+                Extension::MountingBias
+                | Extension::MountingScale
+                | Extension::RestsBias
+                | Extension::RestsScale
+                | Extension::RestsUnit
+                | Extension::Disturbance(_) => {
                     "electronics and material of the unit"
                 }
             },

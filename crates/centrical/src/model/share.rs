@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::effect::{Course, Effect};
+use super::effect::{Course, Effect, Scope};
 use super::experiment::{EARTH_RATE, SetPoint};
 use super::measurement::MeasurementModel;
 use super::nominal::{Nominal, nominal};
@@ -71,9 +71,13 @@ impl MeasurementModel {
                 let cosine = experiment.site.latitude.map_or(0.0, f64::cos);
                 Share::Rate(set_point.omega * 2.0 * EARTH_RATE * cosine)
             }
-            Effect::Monomial { axis, monomial, mounting } => {
+            Effect::Monomial { axis, monomial, scope } => {
                 let value = || monomial.value(nominal(experiment, set_point).into());
-                let is_here = mounting.is_none_or(|mounting| mounting == here);
+                let is_here = match scope {
+                    Scope::Session => true,
+                    Scope::Mounting(mounting) => mounting == here,
+                    Scope::SwitchOn(number) => experiment.positions[position].switch_on.number == number,
+                };
                 if is_here { Share::Reading(Vector3::ith(axis, value())) } else { Share::None }
             }
             Effect::Disturbance { axis, follows } => {

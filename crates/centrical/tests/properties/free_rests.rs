@@ -3,9 +3,10 @@
 use centrical::fit::Follower;
 use centrical::observability::Addition;
 use centrical::position::ThirdPosition::AxisOneUp;
+use centrical::uncertainty::{Level, RivalTest, Rivals};
 use centrical::{
     Calibration, Combination, Data, ErrorModel, Experiment, Fit, Kind, MeasurementModel, Mounting, Observation,
-    PairRelation, Position, SetPoint, Source, Study, TypeB, Weight,
+    PairRelation, Position, Rival, SetPoint, Source, Study, TypeB, Weight, unwatched,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -173,6 +174,28 @@ fn errors_are_as_large_as_stated() {
     let ratio = sum / count as f64;
     // Four standard deviations of a mean of squares.
     assert!((ratio - 1.0).abs() < 4.0 * (2.0 / count as f64).sqrt(), "{ratio}");
+}
+
+/// Rests beside an arm that are of another switch-on, temperature or unit are named, and not a mounting of the arm.
+#[test]
+fn rests_that_contradict_the_arm_are_named() {
+    let model = kozlov(with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &cube()));
+    for (seed, name) in [(1, "rests-bias"), (2, "rests-scale"), (3, "rests-unit"), (4, "rests-scale"), (5, "rests-unit")] {
+        let mut random = Random::new(500 + seed);
+        let usual = truth(&model, 0.3, &mut random);
+        let richer = model.with_rivals(&[Rival::named(name).unwrap()]);
+        let further = richer.parameters().iter().skip(usual.len());
+        let other = further.map(|p| p.typical * random.normal());
+        let with: Vec<f64> = usual.iter().copied().chain(other).collect();
+        let data = Data::new(&model, observed(&richer, &with, &mut random)).unwrap();
+        let calibration = Calibration::exact(&data).unwrap();
+        let rivals = Rivals::of(&calibration, &unwatched).unwrap();
+        let suspects = rivals.suspects(Level::Objection.probability());
+        assert_eq!(suspects.shown[0].rival.name(), name);
+        // A scale is one of the terms of another unit.
+        let are_of_rests = |test: &RivalTest| test.rival.name().starts_with("rests-");
+        assert!(suspects.shown[..suspects.alike].iter().all(are_of_rests), "{name}");
+    }
 }
 
 /// Rests within a milliradian of six faces show a misalignment to some hundredths of a radian only, and its square shifts the scale

@@ -268,6 +268,32 @@ fn rests_are_found_as_they_were_made() {
     }
 }
 
+/// Rests of three seconds are found in records of ten samples a second, or whose samples of a second share a stamp, but for one in ten whose
+/// blocks are too few.
+#[test]
+fn rests_of_few_samples_or_stamps_are_found() {
+    let mut random = Random::new(41);
+    let making = Making { lasting: [3.0, 6.0], ..ON_A_TABLE };
+    let slowly = |record: &Record| {
+        let thinned = |values: &[f64]| values.iter().step_by(10).copied().collect::<Vec<f64>>();
+        Record { t: thinned(&record.t), f_z: record.f_z.each_ref().map(|f| thinned(f)) }
+    };
+    let in_whole_seconds =
+        |record: &Record| Record { t: record.t.iter().map(|t| t.floor()).collect(), ..record.clone() };
+    for coarse in [slowly, in_whole_seconds] as [fn(&Record) -> Record; 2] {
+        let mut sum = 0.0;
+        for _ in 0..10 {
+            let made = made(&making, &mut random);
+            let found = reduce_rests(&[coarse(&made.record).as_slice().into()], &unwatched).unwrap().means.concat();
+            assert!((making.rests * 9 / 10..=making.rests).contains(&found.len()), "{}", found.len());
+            let (model, observations) = problem_of_rests(&found);
+            sum += squared_error(&model, &exact(&model, &observations).unwrap(), made.truth);
+        }
+        // Four standard deviations of a mean of 90 squares.
+        assert!((sum / 90.0 - 1.0).abs() < 0.6, "{sum}");
+    }
+}
+
 /// A record without motion is one rest; one in motion throughout has none.
 #[test]
 fn neither_rests_nor_motion_are_invented() {

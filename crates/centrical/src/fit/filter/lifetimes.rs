@@ -5,7 +5,7 @@
 //! With the experiments ordered by position these are 30 of the source's 49 at a time: 19 fewer, 15 `delta` and
 //! 4 `dR` (source, section 6).
 
-use crate::model::{Effect, Experiment, Kind, MeasurementModel, SetPoint};
+use crate::model::{Effect, Experiment, Kind, MeasurementModel, Scope, SetPoint};
 
 /// The lifetimes of the unknowns in an order of plateaus.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -133,7 +133,7 @@ fn acts_on(experiment: &Experiment, effect: Effect, here: usize) -> bool {
         Effect::MountingTurn { mounting, .. }
         | Effect::MountingTilt { mounting, .. }
         | Effect::MountingShift { mounting, .. }
-        | Effect::Monomial { mounting: Some(mounting), .. } => mounting == here,
+        | Effect::Monomial { scope: Scope::Mounting(mounting), .. } => mounting == here,
         Effect::Rounding { first, .. } => experiment.set_points[first].mounting == here,
         Effect::ArmStretch { seat: Some(seat), .. } | Effect::SeatPlace { seat: Some(seat), .. } => {
             experiment.seat_of(here) == seat
@@ -147,7 +147,7 @@ fn acts_on(experiment: &Experiment, effect: Effect, here: usize) -> bool {
         | Effect::OneSpeed { .. }
         | Effect::Gravity
         | Effect::Latitude
-        | Effect::Monomial { mounting: None, .. }
+        | Effect::Monomial { scope: Scope::Session | Scope::SwitchOn(_), .. }
         | Effect::BiasChange { .. }
         | Effect::Turning { .. }
         | Effect::Disturbance { .. } => true,

@@ -32,7 +32,7 @@ const SAME_LEVEL: f64 = 0.1;
 
 /// The rests of a record, in blocks, in the order of time.
 pub(super) fn rests(blocks: &Blocks) -> Vec<Range<usize>> {
-    if blocks.len() <= blocks.least(0.0) {
+    if blocks.len() <= blocks.least_of_rest() {
         return Vec::new();
     }
     let Some(mut noise) = Noise::of_steps(blocks) else { return Vec::new() };
@@ -147,7 +147,7 @@ impl Division {
     fn of(blocks: &Blocks, noise: &Noise) -> Self {
         let levels: Vec<Vector3<f64>> = blocks.f_z.iter().map(|level| noise.whitening * level).collect();
         let penalty = 5.0 * (blocks.len() as f64).ln() / noise.independence;
-        let (least, motion) = (blocks.least(0.0), motion(blocks));
+        let (least, motion) = (blocks.least_of_rest(), motion(blocks));
         let mut open: Vec<Open> = Vec::new();
         let mut begins = Vec::with_capacity(levels.len());
         let mut best = 0.0;

@@ -39,6 +39,11 @@ impl Blocks {
         8.max(whole(revolution.ceil()))
     }
 
+    /// Fewest blocks of a rest: 0.8 s, and one block beside those at its ends, which may hold the onset of motion.
+    pub fn least_of_rest(&self) -> usize {
+        3.max(whole((0.8 / self.width).ceil()))
+    }
+
     /// The blocks of a record, gathered. Readings have steps of `resolution` at least [m/s^2].
     pub(super) fn new(grid: &Grid, gathered: &[Block], resolution: f64) -> Result<Self, ReductionError> {
         let total = |of: fn(&Block) -> [u64; 3]| {

@@ -21,12 +21,14 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// The division for a record that begins with these times.
+    /// The division for a record that begins with these times. Samples that share a stamp lie between it and the next.
     pub fn new(times: &[f64]) -> Self {
         let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0).collect();
-        let interval = median(&mut steps);
+        let samples_of_step = (times.len() as f64 - 1.0) / steps.len() as f64;
+        let step = median(&mut steps);
+        let interval = if samples_of_step > 2.0 { step / samples_of_step } else { step };
         let start = times.first().copied().unwrap_or(0.0);
-        Self { start, interval, width: SHORTEST.max(SAMPLES as f64 * interval) }
+        Self { start, interval, width: SHORTEST.max(SAMPLES as f64 * interval).max(step) }
     }
 
     /// The number of the block that an instant falls in.
