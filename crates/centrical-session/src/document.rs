@@ -41,10 +41,10 @@ pub use self::compensation::{COMPENSATION_SCHEMA, CompensationReport, FirstReadi
 pub use self::documents::{DOCUMENTS_SCHEMA, DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
 pub use self::draft::{DRAFT_SCHEMA, DraftReport, LineToFillIn};
 pub use self::history::{
-    BatchSummary, BatchWithoutUnit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate, LeftOutSession,
-    OutlyingUnit, PastSession, ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport,
-    StationParameter, UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport,
-    UnitParameter, UnitsHistoryReport, UnitsParameter,
+    BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate,
+    LeftOutSession, OutlyingUnit, PastSession, ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary,
+    StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind,
+    UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
 pub use self::history_list::{Doubt, DoubtKind, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList};
 pub use self::models::{CandidateSummary, MODELS_SCHEMA, ModelsReport, NestedTestSummary, TermSupport};
@@ -72,7 +72,7 @@ pub use self::result::{
     ResultObjection, RivalSize, RivalSummary, SCHEMA, SessionSummary, SpeedDifference, SpeedFinding, SpeedsSummary,
     StabilityCurve, TermSummary, ValiditySummary, unit_name,
 };
-pub use self::series::{SERIES_SCHEMA, SeriesSummary};
+pub use self::series::{FailedSession, SERIES_SCHEMA, SeriesSummary};
 pub use self::simulation::{SIMULATION_SCHEMA, SimulationReport};
 pub use self::steadiness::{
     DriftSummary, LeftOutSummary, PlateauDriftVerdict, RepeatedPlateau, SessionDriftVerdict, SessionTrend, TiltSummary,

@@ -4,11 +4,12 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
-use centrical_session::{Error, Method, SeriesRequest, SeriesSummary, calibrate_series};
+use centrical_report::Screen;
+use centrical_session::{Error, FailedSession, Method, SeriesRequest, SeriesSummary, calibrate_series};
 
 use crate::interruption::asked_to_end;
 use crate::outcome::Outcome;
-use crate::output::print;
+use crate::output::{print, remark};
 use crate::printing::Printing;
 use crate::progress;
 
@@ -72,6 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         if asked.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     bar.finish_and_clear();
+    remark(&failures(&summary));
     match (arguments.printing.json, arguments.printing.quiet) {
         (true, _) => print(&summary.to_json()?)?,
         (false, false) => print(&text(&summary, arguments))?,
@@ -79,6 +81,21 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     }
     Ok(Outcome::of_series(summary.failed, summary.not_acceptable))
 }
+
+/// The sessions that failed, which are errors: also for those who asked for quiet.
+fn failures(summary: &SeriesSummary) -> Screen {
+    let mut screen = Screen::default();
+    for FailedSession { session, message } in summary.failures.iter().take(MOST_SHOWN) {
+        screen.say(0, &format!("{session} failed: {message}"));
+    }
+    if summary.failed > MOST_SHOWN {
+        screen.say(0, &format!("{} more sessions failed: series.csv has their messages", summary.failed - MOST_SHOWN));
+    }
+    screen
+}
+
+/// Failures that are shown one by one.
+const MOST_SHOWN: usize = 10;
 
 fn text(summary: &SeriesSummary, arguments: &Arguments) -> String {
     let table = arguments.out.join("series.parquet");

@@ -210,3 +210,110 @@ fn a_certificate_has_no_interval_of_zeros() {
     assert!(text.contains("0 (scatter less than stated)"), "no such cell");
     assert!(!text.contains("(0.0 \u{2026} 0.0)"));
 }
+
+/// Units of a station with fewer than ten are not called alike, and have no deviation when there is one.
+#[test]
+fn units_that_are_not_tested_are_not_called_alike() {
+    let results = Results::new();
+    for n in 0..11 {
+        let serial = format!("n{n}");
+        results.add(&serial, &serial, "2024-01-01", |result| {
+            result["session"]["station"] = json!("N");
+            let move_by = |p: &mut Value| {
+                let own = f64::from(n * 7 % 11 - 5) * p["standard_uncertainty"].as_f64().unwrap();
+                p["value"] = json!(p["value"].as_f64().unwrap() + 0.3 * own);
+            };
+            result["parameters"].as_array_mut().unwrap().iter_mut().for_each(move_by);
+        });
+    }
+    let (_, text, _) = results.run(&["units", "."]);
+    assert!(!text.contains("NOT TESTED") && !text.contains("FEW"), "{text}");
+    results.add("s", "far", "2024-01-01", |result| {
+        result["session"]["station"] = json!("S");
+        set(result, "df_1", 1.0);
+    });
+    let (_, text, _) = results.run(&["units", "."]);
+    assert!(!text.starts_with("ALIKE") && text.contains("1 unit at the station S"), "{text}");
+    let document = results.document(&["units", "."]);
+    assert_eq!(
+        (&document["is_tested"], &document["untested"]),
+        (&json!(false), &json!([{ "station": "S", "units": ["far"] }]))
+    );
+    let (code, text, _) = results.run(&["units", "s"]);
+    assert!(text.starts_with("NOT TESTED") && code == 0, "{text}");
+    assert_eq!(results.document(&["units", "s"])["parameters"][0]["deviation"], Value::Null);
+}
+
+/// Units beyond a limit are named and end with 1; what was done with batches is said.
+#[test]
+fn limits_and_batches_reach_the_reader() {
+    let results = Results::new();
+    for (serial, bias) in [("a", 1e-3), ("b", 2e-3), ("c", 3e-3), ("d", 9e-3)] {
+        results.add(serial, serial, "2024-01-01", |result| set(result, "df_1", bias));
+    }
+    fs::write(
+        results.path().join("limits.toml"),
+        "[decision]\nspecification = \"S\"\nrule = \"simple\"\n[[decision.limit]]\nparameter = \"df_1\"\nhigh = 5e-3\n",
+    )
+    .unwrap();
+    fs::write(results.path().join("batches.csv"), "serial,batch\na,x\nb,x\nc,y\nd,y\n").unwrap();
+    fs::write(results.path().join("one.csv"), "serial,batch\na,x\nb,y\n").unwrap();
+    let (code, text, message) = results.run(&["units", ".", "--laboratory", "limits.toml"]);
+    assert!(text.starts_with("NOT WITHIN LIMITS") && code == 1, "{text}{message}");
+    assert!(text.contains("BEYOND LIMITS  df_1: 1 unit, serial d"), "{text}");
+    assert!(results.run(&["units", ".", "--batches", "batches.csv"]).1.contains("BATCHES ALIKE  x (2), y (2)"));
+    assert!(results.run(&["units", ".", "--batches", "one.csv"]).1.contains("BATCHES NOT COMPARED  x (1), y (1)"));
+}
+
+/// A machine whose seat turns while units come one after another is not called steady; a single session that stands out is named.
+#[test]
+fn a_machine_that_changes_with_its_units_is_not_called_steady() {
+    let results = Results::new();
+    let scatter = |n: i32| 1e-6 * f64::from(n * 7 % 5 - 2);
+    for n in 0..10 {
+        let date = format!("20{}-03-01", 10 + n);
+        let tilt = if n < 5 { 0.0 } else { 1e-3 };
+        let unit = if n < 5 { "one" } else { "other" };
+        results.add(&format!("blocks/{n}"), unit, &date, |result| set(result, "alpha_1", tilt + scatter(n)));
+        let tilt = if n == 3 { 1e-3 } else { 0.0 };
+        results.add(&format!("single/{n}"), "one", &date, |result| set(result, "alpha_1", tilt + scatter(n)));
+    }
+    let (code, text, _) = results.run(&["station", "blocks"]);
+    assert!(text.starts_with("NOT TESTED") && !text.contains("STEADY") && code == 0, "{text}");
+    assert_eq!(results.document(&["station", "blocks"])["is_steady"], Value::Null);
+    let (code, text, _) = results.run(&["station", "single"]);
+    assert!(text.starts_with("NOT STEADY") && text.contains("2013-03-01 STANDS OUT") && code == 1, "{text}");
+}
+
+/// Stations and models are not mixed in one chart.
+#[test]
+fn a_chart_is_of_one_station_and_model() {
+    let results = Results::new();
+    for n in 0..4 {
+        results.add(&n.to_string(), "0001", &format!("202{n}-03-01"), |result| {
+            set(result, "df_1", 1e-6 * f64::from(n));
+            result["session"]["station"] = json!(if n < 2 { "N" } else { "S" });
+        });
+    }
+    let (code, _, message) = results.run(&["chart", "df_1", ".", "--accepted", "2"]);
+    assert!(message.contains("found \"N\", \"S\", expected one, by --station") && code == 2, "{message}");
+    let (code, text, _) = results.run(&["chart", "df_1", ".", "--accepted", "2", "--station", "N"]);
+    assert!(code == 0 && text.starts_with("IN CONTROL"), "{text}");
+}
+
+/// What rests on a calibration with an objection says so.
+#[test]
+fn a_last_calibration_with_an_objection_is_named() {
+    let results = Results::new();
+    for n in 0..4 {
+        results.add(&n.to_string(), "0001", &format!("202{n}-03-01"), |result| {
+            if n == 3 {
+                result["fit"]["termination"] = json!("stalled");
+            }
+        });
+    }
+    let (code, text, message) = results.run(&["unit", ".", "--limit", "1 m/s^2"]);
+    assert!(text.contains("NOT ACCEPTABLE  the last calibration has an objection") && code == 1, "{text}{message}");
+    fs::remove_dir_all(results.path().join("3")).unwrap();
+    assert_eq!(results.run(&["unit", ".", "--limit", "1 m/s^2"]).0, 0);
+}

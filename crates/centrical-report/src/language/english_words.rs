@@ -159,7 +159,9 @@ pub(super) fn rival(rival: Rival) -> &'static str {
             Extension::MountingTilt => "tilt of the axis that differs by mounting",
             Extension::MountingBias => "bias that differs by mounting",
             Extension::MountingScale => "scale that differs by mounting",
-            Extension::RestsBias => "bias of the rests of [[tumble]] that differs by more than bias_change: another switch-on",
+            Extension::RestsBias => {
+                "bias of the rests of [[tumble]] that differs by more than bias_change: another switch-on"
+            }
             Extension::RestsScale => {
                 "scale of the rests of [[tumble]] that differs from the arm's: another temperature or gravity"
             }

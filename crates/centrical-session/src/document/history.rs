@@ -12,6 +12,6 @@ pub use self::unit::{
     UnitParameter,
 };
 pub use self::units::{
-    BatchSummary, BatchWithoutUnit, CapabilitySummary, OutlyingUnit, UNITS_HISTORY_SCHEMA, UnitFinding,
-    UnitFindingKind, UnitsHistoryReport, UnitsParameter,
+    BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, OutlyingUnit, UNITS_HISTORY_SCHEMA, UnitFinding,
+    UnitFindingKind, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };

@@ -31,7 +31,7 @@ pub struct HistoryList {
 pub struct Doubt {
     /// What it is.
     pub kind: DoubtKind,
-    /// Keys of the calibrations; of [`DoubtKind::Spelling`] the units, model and serial number.
+    /// Keys of the calibrations; of [`DoubtKind::Spelling`] the units, model and serial number, or the stations.
     pub of: Vec<String>,
 }
 
@@ -39,7 +39,7 @@ pub struct Doubt {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DoubtKind {
-    /// Units whose names differ in no more than spaces, hyphens, case, or Cyrillic for Latin letters.
+    /// Units or stations whose names differ in no more than spaces, hyphens, case, or Cyrillic for Latin letters.
     Spelling,
     /// Results of the same files.
     SameInputs,
@@ -53,6 +53,8 @@ pub enum DoubtKind {
     Missing,
     /// A copy that is not what was added.
     Changed,
+    /// A row that is not what its copy says.
+    RowChanged,
 }
 
 /// One calibration.

@@ -26,13 +26,34 @@ pub struct SeriesSummary {
     pub not_acceptable: usize,
     /// Those without a result.
     pub failed: usize,
+    /// These, a hundred at most; `series.csv` has all.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub failures: Vec<FailedSession>,
+}
+
+/// A session without a result.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct FailedSession {
+    /// As it was named.
+    pub session: String,
+    /// Why.
+    pub message: String,
 }
 
 impl SeriesSummary {
     /// A summary before the first session is done.
     pub(crate) fn of(sessions: usize) -> Self {
         let program = Program::this();
-        Self { schema: SERIES_SCHEMA, program, sessions, known: 0, acceptable: 0, not_acceptable: 0, failed: 0 }
+        Self {
+            schema: SERIES_SCHEMA,
+            program,
+            sessions,
+            known: 0,
+            acceptable: 0,
+            not_acceptable: 0,
+            failed: 0,
+            failures: Vec::new(),
+        }
     }
 
     /// The text of the document.

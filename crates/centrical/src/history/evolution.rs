@@ -69,6 +69,8 @@ pub struct Evolution<'a> {
     line: Line,
     /// Scatter about the curve over the one that its weights expect, in squares: 1 where there is a component between sessions.
     scale: f64,
+    /// Cochran's `Q(0)`.
+    misfit: f64,
     degrees_of_freedom: usize,
     /// chi^2 over its degrees of freedom: weight, value.
     scales: Vec<(f64, f64)>,
@@ -94,6 +96,7 @@ impl Series {
             series: self,
             line: line(between.variance)?,
             scale: between.scale,
+            misfit: between.misfit,
             degrees_of_freedom: nu,
             scales,
             likely: likely.collect::<Option<_>>()?,
@@ -108,10 +111,34 @@ impl Evolution<'_> {
         self.estimated(self.line.at(time), self.line.variance_at(time), shared)
     }
 
-    /// The slope per year; `None` of a constant.
+    /// The slope per year; `None` of a constant. Its law is a mixture over the components that are likely, as that of a forecast is: with the
+    /// weights of one component alone the best two sessions of many would determine it. Sessions that state equal uncertainties leave
+    /// Student's t.
     pub fn slope(&self) -> Option<Estimated> {
-        let shared = || self.line.shared_variance_of_slope(self.series);
-        self.line.spread.is_finite().then(|| self.estimated(self.line.slope, 1.0 / self.line.spread, shared()))
+        let of_line = |line: &Line| line.shared_variance_of_slope(self.series);
+        let of_one = self.estimated(self.line.slope, 1.0 / self.line.spread, of_line(&self.line));
+        // Sessions that agree to the last digit have no component of any size.
+        let law = || Spread::Law(Law::new(self.slopes(of_line)));
+        let spread = if of_one.standard_uncertainty > 0.0 { law() } else { of_one.spread.clone() };
+        self.line.spread.is_finite().then_some(Estimated { spread, ..of_one })
+    }
+
+    /// A slope for each value `c` of chi^2, with the variance `(Q(tau^2) / c) / spread`: `Q = c` but where the sessions scatter by less than they
+    /// state, and `tau^2` is zero.
+    fn slopes(&self, shared: impl Fn(&Line) -> f64) -> impl Iterator<Item = Part> {
+        let (mut rest, mut likely) = (0.0, self.likely.iter());
+        let mut present = likely.next();
+        self.scales.iter().filter_map(move |(weight, scale)| {
+            if rest + 0.5 * weight > present?.0 {
+                (rest, present) = (0.0, likely.next());
+            }
+            rest += weight;
+            let (_, tau, line) = present?;
+            let chi_squared = scale * self.degrees_of_freedom as f64;
+            let part_of_stated = if *tau == 0.0 { (self.misfit / chi_squared).min(1.0) } else { 1.0 };
+            let variance = part_of_stated / line.spread + shared(line);
+            Some(Part { weight: *weight, mean: line.slope, deviation: variance.sqrt() })
+        })
     }
 
     fn estimated(&self, value: f64, weighted_variance: f64, shared: f64) -> Estimated {

@@ -1,8 +1,12 @@
 //! Whether a machine stayed as it was: one quantity over all sessions of a station, units coming and going.
 //!
 //! A unit may bring a value of its own, as the seat of its case does. Of units with several sessions its mean is therefore taken out, and
-//! only changes between sessions of one unit count. Two tests: a slope in time (Student's t), and a change at any time, by the largest
-//! cumulative sum of the deviations (A. N. Kolmogorov's law, with which R. L. Brown, J. Durbin and J. M. Evans test regressions, J. R. Statist. Soc. B 37, 1975).
+//! only changes between sessions of one unit count. Three tests: a slope in time (Student's t); a change at any time, by the largest
+//! cumulative sum of the deviations (A. N. Kolmogorov's law, with which R. L. Brown, J. Durbin and J. M. Evans test regressions, J. R. Statist. Soc. B 37, 1975);
+//! and a single session that stands out (F. E. Grubbs, Technometrics 11, 1969). Scatter is their measure: they do not judge it.
+//!
+//! Units that come one after another take the course of the machine along with their means: what remains of the spread of times says
+//! how much of a slope could show.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -34,14 +38,31 @@ pub struct StationTest {
     pub change: f64,
     /// Probability of so large a cumulative sum by chance.
     pub change_probability: f64,
+    /// Time of the session farthest from the mean.
+    pub farthest: f64,
+    /// How far.
+    pub distance: f64,
+    /// Probability of a session as far off by chance.
+    pub farthest_probability: f64,
+    /// Part of the squared spread of times that the means of units leave, 0 to 1.
+    pub remaining_spread: f64,
 }
 
 impl StationTest {
-    /// Probability that either test finds as much by chance (Bonferroni).
+    /// Probability that any test finds as much by chance (Bonferroni).
     pub fn probability(&self) -> f64 {
-        (2.0 * self.slope_probability.min(self.change_probability)).min(1.0)
+        let least = self.slope_probability.min(self.change_probability).min(self.farthest_probability);
+        (3.0 * least).min(1.0)
+    }
+
+    /// Whether a machine that changes would show it: not where the units came one after another.
+    pub fn has_power(&self) -> bool {
+        self.remaining_spread >= LEAST_SPREAD
     }
 }
+
+/// Part of the squared spread of times without which a slope has more than twice its uncertainty.
+const LEAST_SPREAD: f64 = 0.25;
 
 /// Fewer readings that count give no tests.
 pub const FEWEST_READINGS: usize = 8;
@@ -58,6 +79,9 @@ pub fn station_test(readings: &[Reading]) -> Option<StationTest> {
     let change = largest_change(&values, means)?;
     let (before, after) = values.split_at(change.after);
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let middle = mean(&instants);
+    let all: f64 = instants.iter().map(|t| (t - middle).powi(2)).sum();
+    let farthest = farthest(&values, means)?;
     Some(StationTest {
         slope,
         standard_uncertainty,
@@ -66,6 +90,10 @@ pub fn station_test(readings: &[Reading]) -> Option<StationTest> {
         changed_after: instants[change.after - 1],
         change: mean(after) - mean(before),
         change_probability: change.probability,
+        farthest: instants[farthest.place],
+        distance: values[farthest.place],
+        farthest_probability: farthest.probability,
+        remaining_spread: spread / all,
     })
 }
 
@@ -105,6 +133,26 @@ impl Deviations {
             means: sums.iter().filter(|sum| sum.0 > 0.0).count(),
         }
     }
+}
+
+/// The value farthest from the mean of its unit.
+struct Farthest {
+    place: usize,
+    probability: f64,
+}
+
+/// Grubbs' test: without the value the others scatter by `s`; `d / (s sqrt(1 + 1/n))` follows Student's t, and is the largest of `n`.
+fn farthest(values: &[f64], means: usize) -> Option<Farthest> {
+    let n = values.len();
+    let freedom = n.checked_sub(means + 1).filter(|freedom| *freedom > 0)? as f64;
+    let squares: f64 = values.iter().map(|v| v * v).sum();
+    let place = (0..n).max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs()))?;
+    // Part of a deviation that its own mean leaves it.
+    let left = 1.0 - means as f64 / n as f64;
+    let own = values[place].powi(2) / left;
+    let law = StudentsT::new(0.0, 1.0, freedom).ok()?;
+    let t = (own * freedom / (squares - own).max(f64::MIN_POSITIVE)).sqrt();
+    Some(Farthest { place, probability: (2.0 * n as f64 * law.cdf(-t)).min(1.0) })
 }
 
 struct Change {

@@ -177,9 +177,9 @@ impl Extension {
             Self::MountingBias => by_mounting(experiment, 3, |_, _| true, mounting_bias),
             Self::MountingScale => by_mounting(experiment, 3, |_, _| true, mounting_scale),
             Self::RestsBias => of_rests(experiment, error_model, "rests_bias", |monomial, _| monomial.degree() == 0),
-            Self::RestsScale => of_rests(experiment, error_model, "rests_scale", |monomial, axis| {
-                *monomial == Monomial::power(axis, 1)
-            }),
+            Self::RestsScale => {
+                of_rests(experiment, error_model, "rests_scale", |monomial, axis| *monomial == Monomial::power(axis, 1))
+            }
             Self::RestsUnit => of_rests(experiment, error_model, "rests_unit", |monomial, _| monomial.degree() == 1),
             Self::SpinTurn => by_position(experiment, |axis, position, id| {
                 let name = format!("spin_turn_{}[{id}]", axis + 1);

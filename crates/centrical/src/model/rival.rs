@@ -151,9 +151,7 @@ impl Rival {
                 | Extension::RestsBias
                 | Extension::RestsScale
                 | Extension::RestsUnit
-                | Extension::Disturbance(_) => {
-                    "electronics and material of the unit"
-                }
+                | Extension::Disturbance(_) => "electronics and material of the unit",
             },
         }
     }

@@ -180,7 +180,9 @@ fn errors_are_as_large_as_stated() {
 #[test]
 fn rests_that_contradict_the_arm_are_named() {
     let model = kozlov(with_rests(experiment(AxisOneUp, PairRelation::Common, &[1.0, 0.5]), &cube()));
-    for (seed, name) in [(1, "rests-bias"), (2, "rests-scale"), (3, "rests-unit"), (4, "rests-scale"), (5, "rests-unit")] {
+    for (seed, name) in
+        [(1, "rests-bias"), (2, "rests-scale"), (3, "rests-unit"), (4, "rests-scale"), (5, "rests-unit")]
+    {
         let mut random = Random::new(500 + seed);
         let usual = truth(&model, 0.3, &mut random);
         let richer = model.with_rivals(&[Rival::named(name).unwrap()]);

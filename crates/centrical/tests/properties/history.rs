@@ -99,6 +99,32 @@ fn intervals_of_one_unit_cover() {
     }
 }
 
+/// Two sessions of eight that state a third of the uncertainty of the others do not pass for a line: at a level of 1/500 a slope is found in 3.1 %
+/// of all units that do not drift with the weights of the likeliest component alone.
+#[test]
+fn unequal_uncertainties_raise_no_drift() {
+    const UNITS: u32 = 4000;
+    let (mut random, quantiles) = (Random::new(33), Quantiles::default());
+    let (mut found, mut covered) = (0, 0);
+    for _ in 0..UNITS {
+        let points: Vec<Point> = (0..8)
+            .map(|n| {
+                let u = if n == 0 || n == 7 { 0.3 } else { 1.0 };
+                let value = random.normal() + u * random.normal();
+                Point { time: f64::from(n), value, variance: u * u }
+            })
+            .collect();
+        let series = Series::independent(&points).unwrap();
+        let between = alone(&series, Curve::Line);
+        let likely = Likely::of(std::slice::from_ref(&series), Curve::Line, &quantiles).unwrap();
+        let slope = series.evolution(Curve::Line, &between, &likely, &quantiles).unwrap().slope().unwrap();
+        found += u32::from(slope.probability() < 0.002);
+        covered += u32::from(is_in(0.0, slope.interval(COVERAGE)));
+    }
+    let [found, covered] = [found, covered].map(|count| f64::from(count) / f64::from(UNITS));
+    assert!(found < 0.008 && (0.92..0.97).contains(&covered), "{found} {covered}");
+}
+
 /// A unit that moves to another station after half of its sessions: the errors of the stations, three times those of a session, are no component
 /// between sessions, whose interval covers as before; and the sessions agree. Of 1000, three standard deviations are 2.1 %.
 #[test]

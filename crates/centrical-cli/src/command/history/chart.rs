@@ -63,7 +63,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         Rules::WesternElectric => RuleSet::WesternElectric,
     };
     let request = ChartRequest { limits, rules, last: None };
-    let report = chart(&choice.read(Depth::Values)?, &arguments.parameter, request)
+    let calibrations = choice.read(Depth::Values)?;
+    choice.only(&calibrations, |c| c.unit_model.as_str(), "--model")?;
+    choice.only(&calibrations, |c| c.station.as_str(), "--station")?;
+    let report = chart(&calibrations, &arguments.parameter, request)
         .map_err(|source| choice.refuse(source.found(), &source.expected()))?;
     if let Some(folder) = &arguments.out {
         write_plots(folder, &chart_plots(&report), &choice.results)?;

@@ -83,7 +83,11 @@ fn models_table(body: &mut String, models: &[IndexedModel]) {
             Escaped(&report.unit_model),
             report.units,
             report.sessions,
-            verdict(report.is_sound, "alike", "not alike"),
+            if report.is_sound && !report.is_tested {
+                not_tested()
+            } else {
+                verdict(report.is_sound, "alike", "not alike")
+            },
             least.map_or_else(String::new, |(_, cpk)| format!("{cpk:.2}")),
             Escaped(least.map_or("", |(name, _)| name)),
             Escaped(&differ.join(", ")),

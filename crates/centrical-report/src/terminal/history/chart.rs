@@ -12,7 +12,8 @@ pub fn chart_text(report: &ChartReport) -> Screen {
     if report.signals.is_empty() {
         screen.marked(Emphasis::Acceptable, "IN CONTROL", "no rule gives a signal");
     } else {
-        let words = format!("{} stand below", counted(report.signals.len(), "signal"));
+        let stands = if report.signals.len() == 1 { "stands" } else { "stand" };
+        let words = format!("{} {stands} below", counted(report.signals.len(), "signal"));
         screen.marked(Emphasis::NotAcceptable, "NOT IN CONTROL", &words);
     }
     screen.gap();

@@ -64,7 +64,7 @@ const fn words(kind: DoubtKind) -> (&'static str, &'static str) {
     match kind {
         DoubtKind::Spelling => (
             "SPELLING",
-            "found names that differ in spaces, hyphens, case or Cyrillic letters alone, expected one name for one unit",
+            "found names that differ in spaces, hyphens, case or Cyrillic letters alone, expected one name for one unit or station",
         ),
         DoubtKind::SameInputs => {
             ("SAME FILES", "found results of the same files, expected one: histories count each as a session")
@@ -78,6 +78,10 @@ const fn words(kind: DoubtKind) -> (&'static str, &'static str) {
         }
         DoubtKind::Ahead => ("AHEAD", "found a date later than today, expected the day of the session"),
         DoubtKind::Missing => ("MISSING", "found no copy of the result in the folder results, expected one"),
+        DoubtKind::RowChanged => (
+            "ROW CHANGED",
+            "found a row with other names, day or numbers, expected those of its copy in the folder results",
+        ),
         DoubtKind::Changed => ("CHANGED", "found a copy with other bytes, expected those of the result that was added"),
     }
 }

@@ -1,6 +1,6 @@
 //! One station over its sessions.
 
-use centrical_session::{StationHistoryReport, customary};
+use centrical_session::{StationHistoryReport, StationParameter, customary};
 
 use super::chance::chance;
 use crate::number::{counted, two_digits, with_uncertainty};
@@ -8,23 +8,44 @@ use crate::terminal::screen::{Emphasis, Screen};
 use crate::terminal::symbols::legend;
 use crate::terminal::table::{Align, Cell, Table};
 
+/// What is found of a parameter.
+fn finding(p: &StationParameter) -> String {
+    let day = p.farthest.filter(|_| p.stands_out());
+    match day {
+        Some(day) if p.changes => format!("{day} STANDS OUT"),
+        _ if p.changes => "CHANGES".to_owned(),
+        _ => String::new(),
+    }
+}
+
 /// A station over its sessions.
 pub fn station_history_text(report: &StationHistoryReport) -> Screen {
     let mut screen = Screen::default();
     let untested = report.parameters.iter().filter(|p| p.probability.is_none()).count();
     match report.is_steady {
         Some(true) if untested == 0 => {
-            screen.marked(Emphasis::Acceptable, "STEADY", "no parameter of the machine drifts or has changed");
+            let words = "no parameter of the machine has a slope, a change that lasts, or a session that stands out beyond its scatter";
+            screen.marked(Emphasis::Acceptable, "STEADY", words);
         }
         Some(true) => {
-            screen.marked(Emphasis::Acceptable, "STEADY", "no parameter that is tested drifts or has changed");
+            let words = "no parameter that is tested has a slope, a change that lasts, or a session that stands out beyond its scatter";
+            screen.marked(Emphasis::Acceptable, "STEADY", words);
         }
         Some(false) => {
             screen.marked(Emphasis::NotAcceptable, "NOT STEADY", "the parameters are marked below; family-wise 5 %");
         }
         None => {}
     }
-    if untested > 0 || report.is_steady.is_none() {
+    let confounded = report.parameters.iter().filter(|p| p.is_confounded).count();
+    if confounded > 0 {
+        let words = format!(
+            "{} not tested: the units came one after another, and a machine that changes with them does not show it; a unit that comes again and again does",
+            counted(confounded, "parameter")
+        );
+        screen.marked(Emphasis::Warning, "NOT TESTED", &words);
+    }
+    let untested = untested - confounded;
+    if untested > 0 || report.is_steady.is_none() && confounded == 0 {
         let words = match report.is_steady {
             None => "the sessions do not show whether the machine is steady".to_owned(),
             Some(_) => format!("{} not tested", counted(untested, "parameter")),
@@ -40,6 +61,7 @@ pub fn station_history_text(report: &StationHistoryReport) -> Screen {
         ("", Align::Left),
         ("unit", Align::Left),
         ("mean", Align::Right),
+        ("over stated", Align::Right),
         ("per year", Align::Right),
         ("change", Align::Right),
         ("after", Align::Left),
@@ -55,11 +77,12 @@ pub fn station_history_text(report: &StationHistoryReport) -> Screen {
             p.name.as_str().into(),
             unit.into(),
             estimate(p.mean, p.scatter),
+            format!("{:.1}", p.scatter_ratio).into(),
             slope.map_or_else(Cell::default, |(slope, u)| estimate(slope, u)),
             p.change.map_or_else(String::new, |change| two_digits(factor * change)).into(),
             p.changed_after.map_or_else(String::new, |day| day.to_string()).into(),
             p.probability.map_or_else(|| "not tested".to_owned(), chance).into(),
-            if p.changes { "CHANGES" } else { "" }.into(),
+            finding(p).into(),
         ]);
     }
     screen.table(table);

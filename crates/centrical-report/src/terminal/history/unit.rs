@@ -49,7 +49,7 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         format!("within {} µg up to {range} with a probability of {percent}", two_digits(limit / MICRO_G))
     };
     match (&report.due, report.limit, report.due_after) {
-        (Some(due), Some(limit), _) if report.is_acceptable() => {
+        (Some(due), Some(limit), _) if report.is_within != Some(false) => {
             let within = within(limit);
             let words = format!(
                 "{}: until then a compensated reading is {within} after each switch-on; first to leave: {}",
@@ -76,6 +76,10 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
             screen.marked(Emphasis::Warning, "NOT KNOWN", &words);
         }
         (_, None, _) => {}
+    }
+    if !report.has_acceptable_last() {
+        let words = "the last calibration has an objection, and all that stands here takes it as it is";
+        screen.marked(Emphasis::NotAcceptable, "NOT ACCEPTABLE", words);
     }
     for session in &report.left_out {
         screen.marked(Emphasis::Warning, "INCOMPLETE", &left_out(session));

@@ -1,6 +1,8 @@
 //! Units of one type beside each other.
 
-use centrical_session::{BatchWithoutUnit, UnitFindingKind, UnitsHistoryReport, customary};
+use centrical_session::{
+    BatchWithoutUnit, BeyondLimit, UnitFindingKind, UnitsHistoryReport, UntestedStation, customary,
+};
 
 use super::chance::chance;
 use super::unit::{first_of, left_out};
@@ -15,14 +17,27 @@ const SHOWN: usize = 5;
 /// Units of one type beside each other.
 pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
     let mut screen = Screen::default();
-    let (emphasis, mark, words) = if report.is_sound {
-        (Emphasis::Acceptable, "ALIKE", "no unit stands out, drifts or scatters more than the others")
-    } else {
-        (Emphasis::NotAcceptable, "NOT ALIKE", "the units stand below; family-wise 5 %")
+    let are_alike =
+        report.outlying.is_empty() && report.findings.is_empty() && !report.parameters.iter().any(|p| p.batches_differ);
+    let (emphasis, mark, words) = match (report.is_sound, report.is_tested) {
+        (true, true) => (Emphasis::Acceptable, "ALIKE", "no unit stands out, drifts or scatters more than the others"),
+        (true, false) => (Emphasis::Warning, "NOT TESTED", "nothing was found, but not all units could be compared"),
+        (false, _) if !are_alike => (Emphasis::NotAcceptable, "NOT ALIKE", "the units stand below; family-wise 5 %"),
+        (false, _) => (Emphasis::NotAcceptable, "NOT WITHIN LIMITS", "the units stand below"),
     };
     screen.marked(emphasis, mark, words);
-    if !report.is_tested {
-        screen.marked(Emphasis::Warning, "FEW", "fewer than ten units do not show which of them is outlying");
+    for UntestedStation { station, units } in &report.untested {
+        let at = if station.is_empty() { String::new() } else { format!(" at the station {station}") };
+        let words = format!(
+            "{}{at}, and fewer than ten do not show which of them is outlying: {}",
+            counted(units.len(), "unit"),
+            first_of(units, SHOWN)
+        );
+        screen.marked(Emphasis::Warning, "FEW", &words);
+    }
+    for BeyondLimit { parameter, units } in &report.beyond_limits {
+        let words = format!("{parameter}: {}, serial {}", counted(units.len(), "unit"), first_of(units, SHOWN));
+        screen.marked(Emphasis::NotAcceptable, "BEYOND LIMITS", &words);
     }
     for session in report.left_out.iter().take(SHOWN) {
         let words = format!("serial {}, {}", session.session.unit_serial, left_out(session));
@@ -37,6 +52,7 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
             format!("{} with an objection count as the others do", counted(report.not_acceptable, "calibration"));
         screen.marked(Emphasis::Warning, "NOT ACCEPTABLE", &words);
     }
+    batches(&mut screen, report);
     without_unit(&mut screen, report);
     for unit in &report.outlying {
         let most = unit.most.iter().map(|(name, score)| format!("{name} {score:+.1}")).collect::<Vec<_>>().join(", ");
@@ -78,13 +94,15 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
     let mut table = Table::new(2, columns);
     for p in &report.parameters {
         let (factor, unit) = customary(&p.unit, p.group);
-        let shown = |value: f64| Cell::from(with_uncertainty(factor * value, factor.abs() * p.deviation).0);
+        let of_units = |value: f64| with_uncertainty(factor * value, factor.abs() * p.deviation.unwrap_or(0.0));
+        let shown = |value: f64| Cell::from(of_units(value).0);
+        let mean = if p.deviation.is_some() { Cell::estimate(of_units(p.mean)) } else { shown(p.mean) };
         let capability = p.capability.as_ref();
         let interval = capability.map(|c| format!("{:.2} to {:.2}", c.cpk_interval[0], c.cpk_interval[1]));
         table.row([
             p.name.as_str().into(),
             unit.into(),
-            Cell::estimate(with_uncertainty(factor * p.mean, factor.abs() * p.deviation)),
+            mean,
             shown(p.least),
             shown(p.largest),
             capability.and_then(|c| c.cp).map_or_else(String::new, |cp| format!("{cp:.2}")).into(),
@@ -96,6 +114,21 @@ pub fn units_history_text(report: &UnitsHistoryReport) -> Screen {
     screen.table(table);
     legend(&mut screen, report.parameters.iter().map(|p| (p.name.as_str(), p.group)));
     screen
+}
+
+/// What the comparison of batches says where they do not differ.
+fn batches(screen: &mut Screen, report: &UnitsHistoryReport) {
+    let Some(of) = report.parameters.iter().find(|p| !p.batches.is_empty()) else { return };
+    let list: Vec<String> = of.batches.iter().map(|b| format!("{} ({})", b.batch, b.units)).collect();
+    let list = first_of(&list, SHOWN);
+    let compared = report.parameters.iter().filter(|p| p.batch_probability.is_some()).count();
+    if compared == 0 {
+        let words = format!("{list}: two batches of two units at least can be compared");
+        screen.marked(Emphasis::Warning, "BATCHES NOT COMPARED", &words);
+    } else if !report.parameters.iter().any(|p| p.batches_differ) {
+        let words = format!("{list}: their means differ in none of {}", counted(compared, "parameter"));
+        screen.marked(Emphasis::Acceptable, "BATCHES ALIKE", &words);
+    }
 }
 
 /// Serial numbers of the batches that no unit has: those near one by itself, the others together.

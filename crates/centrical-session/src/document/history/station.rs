@@ -62,10 +62,28 @@ pub struct StationParameter {
     pub change: Option<f64>,
     /// Probability of so large a cumulative sum of a steady machine.
     pub change_probability: Option<f64>,
-    /// Probability of either.
+    /// Day of the session farthest from the mean.
+    pub farthest: Option<Date>,
+    /// How far.
+    pub distance: Option<f64>,
+    /// Probability of a session as far off on a steady machine.
+    pub farthest_probability: Option<f64>,
+    /// Scatter over the mean stated uncertainty: well above 1 for what mounting brings along.
+    pub scatter_ratio: f64,
+    /// Whether units came one after another, so that a machine that changes with them does not show it: not tested.
+    pub is_confounded: bool,
+    /// Probability of any of the three.
     pub probability: Option<f64>,
     /// Whether that is beyond 5 %, all parameters together (Holm).
     pub changes: bool,
+}
+
+impl StationParameter {
+    /// Whether a single session is less likely than a slope or a change that lasts.
+    pub fn stands_out(&self) -> bool {
+        let others = self.slope_probability.unwrap_or(1.0).min(self.change_probability.unwrap_or(1.0));
+        self.farthest_probability.is_some_and(|single| single < others)
+    }
 }
 
 impl StationHistoryReport {

@@ -204,8 +204,13 @@ impl UnitHistoryReport {
         shown
     }
 
-    /// Whether a reading is within its limit, where one was given.
+    /// Whether a reading is within its limit, where one was given, and the calibration that compensates it has no objection.
     pub fn is_acceptable(&self) -> bool {
-        self.is_within != Some(false)
+        self.is_within != Some(false) && self.has_acceptable_last()
+    }
+
+    /// Whether the last calibration, which compensates, has no objection.
+    pub fn has_acceptable_last(&self) -> bool {
+        self.sessions.last().is_none_or(|session| session.acceptable)
     }
 }

@@ -29,10 +29,16 @@ pub struct UnitsHistoryReport {
     /// Calibrations that do not determine the same parameters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOutSession>,
-    /// Whether there are enough units to say which is outlying: ten.
+    /// Whether every station has enough units to say which is outlying: ten.
     pub is_tested: bool,
-    /// Whether no unit is outlying, drifts or scatters, and batches do not differ.
+    /// The stations that have fewer, with their units.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub untested: Vec<UntestedStation>,
+    /// Whether no unit is outlying, drifts, scatters or is beyond a limit, and batches do not differ: of what was tested.
     pub is_sound: bool,
+    /// Units beyond a limit of a parameter.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub beyond_limits: Vec<BeyondLimit>,
     /// Outlying units, the farthest first.
     pub outlying: Vec<OutlyingUnit>,
     /// Units that drift, or scatter more than the others.
@@ -42,6 +48,24 @@ pub struct UnitsHistoryReport {
     pub without_unit: Vec<BatchWithoutUnit>,
     /// The parameters that all calibrations compared determine.
     pub parameters: Vec<UnitsParameter>,
+}
+
+/// A station with too few units to say which of them is outlying.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct UntestedStation {
+    /// The station.
+    pub station: String,
+    /// Serial numbers of its units.
+    pub units: Vec<String>,
+}
+
+/// Units whose mean is beyond a limit of a parameter.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct BeyondLimit {
+    /// The parameter.
+    pub parameter: String,
+    /// Serial numbers of the units.
+    pub units: Vec<String>,
 }
 
 /// A serial number that has a batch, and no unit.
@@ -107,8 +131,8 @@ pub struct UnitsParameter {
     pub group: Group,
     /// Mean over the units.
     pub mean: f64,
-    /// Standard deviation over the units.
-    pub deviation: f64,
+    /// Standard deviation over the units; null of one unit.
+    pub deviation: Option<f64>,
     /// Least value.
     pub least: f64,
     /// Median.

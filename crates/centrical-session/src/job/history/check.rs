@@ -7,14 +7,13 @@ use std::time::SystemTime;
 
 use centrical::OnProgress;
 use centrical_table::Source;
-use serde::Deserialize;
 
 use super::superseded::without_superseded;
-use crate::document::{Doubt, DoubtKind, HistoryList};
+use crate::document::{CalibrationResult, Doubt, DoubtKind, HistoryList};
 use crate::error::{Error, ErrorKind};
 use crate::record::Input;
-use crate::settings::{from_json, read_result};
-use crate::store::{Row, Selection, Status, Store, sha256};
+use crate::settings::read_result;
+use crate::store::{Depth, Row, Selection, Status, Store, sha256};
 
 /// Days from 1970-01-01; a day more, since a station may be east of here.
 pub fn today() -> i64 {
@@ -34,6 +33,7 @@ pub fn check_store(
     progress: OnProgress,
 ) -> Result<HistoryList, Error> {
     let store = Store::open(folder)?;
+    let selection = Selection { depth: Depth::Whole, ..selection };
     let rows = store.rows(selection, progress)?.collect::<Result<Vec<_>, _>>()?;
     let done: Vec<&Row> = rows.iter().filter(|row| row.status == Status::Done).collect();
     let mut doubts = two_spellings(&done);
@@ -46,16 +46,17 @@ pub fn check_store(
     Ok(list)
 }
 
-/// Units whose names differ in no more than spaces, hyphens, case, and Cyrillic for Latin letters.
+/// Units, and stations, whose names differ in no more than spaces, hyphens, case, and Cyrillic for Latin letters.
 fn two_spellings(rows: &[&Row]) -> Vec<Doubt> {
-    let mut by_spelling: BTreeMap<(String, String), BTreeSet<(&str, &str)>> = BTreeMap::new();
-    for row in rows {
-        let spelling = (spelling(&row.unit_model), spelling(&row.unit_serial));
-        by_spelling.entry(spelling).or_default().insert((&row.unit_model, &row.unit_serial));
+    let mut units: BTreeMap<(String, String), BTreeSet<String>> = BTreeMap::new();
+    let mut stations: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for Row { unit_model, unit_serial, station, .. } in rows {
+        let unit = (spelling(unit_model), spelling(unit_serial));
+        units.entry(unit).or_default().insert(format!("{unit_model:?} {unit_serial:?}"));
+        stations.entry(spelling(station)).or_default().insert(format!("station {station:?}"));
     }
-    let several = by_spelling.into_values().filter(|names| names.len() > 1);
-    let named = |(model, serial): &(&str, &str)| format!("{model:?} {serial:?}");
-    several.map(|names| Doubt { kind: DoubtKind::Spelling, of: names.iter().map(named).collect() }).collect()
+    let several = units.into_values().chain(stations.into_values()).filter(|names| names.len() > 1);
+    several.map(|names| Doubt { kind: DoubtKind::Spelling, of: names.into_iter().collect() }).collect()
 }
 
 /// A name without what is mistaken: small Latin letters and digits alone.
@@ -130,10 +131,17 @@ struct Copies<'a> {
     measured: BTreeMap<&'a str, String>,
 }
 
-/// The files of a result.
-#[derive(Deserialize)]
-struct Files {
-    inputs: Vec<Input>,
+/// Whether a row has the names, the day and the numbers of its copy, to the last digit.
+fn is_of(row: &Row, copy: &Row) -> bool {
+    let names = |row: &Row| [&row.unit_model, &row.unit_serial, &row.station, &row.date].map(String::clone);
+    let is_same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
+    let are_same = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(is_same);
+    names(row) == names(copy)
+        && row.day == copy.day
+        && row.parameters == copy.parameters
+        && are_same(&row.values, &copy.values)
+        && are_same(&row.standard_uncertainties, &copy.standard_uncertainties)
+        && are_same(&row.covariance, &copy.covariance)
 }
 
 impl<'a> Copies<'a> {
@@ -147,9 +155,14 @@ impl<'a> Copies<'a> {
             let copy = Source::open(&file, COPY).map_err(Error::from);
             let kind = match copy.and_then(|copy| Input::of(Path::new(""), &copy, progress)) {
                 Ok(copy) if copy.sha256 == row.key => {
-                    let files: Files = from_json(&file, 1, &read_result(&file, COPY)?, COPY)?;
-                    found.measured.extend(measured(files.inputs).map(|measured| (row.key.as_str(), measured)));
-                    continue;
+                    let text = read_result(&file, COPY)?;
+                    let result = CalibrationResult::parse(&file, &text)?;
+                    let is_of_row = is_of(row, &result.row(text.as_bytes()));
+                    found.measured.extend(measured(result.inputs).map(|measured| (row.key.as_str(), measured)));
+                    if is_of_row {
+                        continue;
+                    }
+                    DoubtKind::RowChanged
                 }
                 Ok(_) => DoubtKind::Changed,
                 Err(error) if error.kind() == ErrorKind::Missing => DoubtKind::Missing,

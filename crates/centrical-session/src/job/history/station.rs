@@ -65,8 +65,11 @@ fn parameter((name, unit): (&str, &str), sessions: &[(&Calibrated, Reading)]) ->
     let place = calibrated.place(name)?;
     let values = readings.iter().map(|reading| reading.value);
     let mean = values.clone().sum::<f64>() / readings.len() as f64;
+    let squares = sessions.iter().filter_map(|(c, _)| Some(c.standard_uncertainties[c.place(name)?].powi(2)));
+    let stated = (squares.sum::<f64>() / readings.len() as f64).sqrt();
     let scatter = (values.map(|v| (v - mean).powi(2)).sum::<f64>() / (readings.len().max(2) - 1) as f64).sqrt();
-    let test = station_test(&readings);
+    let found = station_test(&readings);
+    let test = found.filter(|test| test.has_power());
     let zero = sessions.iter().map(|(calibrated, _)| calibrated.date).min()?;
     let day = |time: f64| sessions.iter().map(|(c, _)| c.date).find(|date| years(zero, *date) == time);
     Some(StationParameter {
@@ -82,6 +85,11 @@ fn parameter((name, unit): (&str, &str), sessions: &[(&Calibrated, Reading)]) ->
         changed_after: test.and_then(|test| day(test.changed_after)),
         change: test.map(|test| test.change),
         change_probability: test.map(|test| test.change_probability),
+        farthest: test.and_then(|test| day(test.farthest)),
+        distance: test.map(|test| test.distance),
+        farthest_probability: test.map(|test| test.farthest_probability),
+        scatter_ratio: scatter / stated,
+        is_confounded: found.is_some() && test.is_none(),
         probability: test.map(|test| test.probability()),
         changes: false,
     })

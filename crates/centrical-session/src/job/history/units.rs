@@ -14,8 +14,8 @@ use super::comparable::ComparedUnits;
 use super::limits::ParameterLimits;
 use super::unit::common_names;
 use crate::document::{
-    BatchSummary, BatchWithoutUnit, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA, UnitFinding,
-    UnitFindingKind, UnitsHistoryReport, UnitsParameter,
+    BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, OutlyingUnit, Program, UNITS_HISTORY_SCHEMA,
+    UnitFinding, UnitFindingKind, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
 
 /// What is asked of units.
@@ -55,6 +55,9 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
     let tested: Vec<&AtStation> = stations.iter().filter(|units| units.len() >= FEWEST_UNITS).collect();
     let outlying = outlying(&tested, &lasts, &by_parameter);
     let findings = over_time(by_parameter);
+    let untested = untested(&stations, &lasts);
+    let beyond_limits = beyond_limits(units, &lasts, &names, &request.limits);
+    let batches_differ = parameters.iter().any(|p| p.batches_differ);
     Some(UnitsHistoryReport {
         schema: UNITS_HISTORY_SCHEMA,
         program: Program::this(),
@@ -63,8 +66,10 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
         sessions: all.len(),
         not_acceptable: all.iter().filter(|calibrated| !calibrated.acceptable).count(),
         left_out: left_out.clone(),
-        is_tested: !tested.is_empty(),
-        is_sound: outlying.is_empty() && findings.is_empty() && !parameters.iter().any(|p| p.batches_differ),
+        is_tested: untested.is_empty(),
+        untested,
+        is_sound: outlying.is_empty() && findings.is_empty() && beyond_limits.is_empty() && !batches_differ,
+        beyond_limits,
         outlying,
         findings,
         without_unit: without_unit(&request.batches, &lasts),
@@ -92,7 +97,6 @@ fn parameter(
     let place = of.place(name)?;
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
-    let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt();
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let (low, high) = request.limits.get(name).copied().unwrap_or_default();
@@ -110,7 +114,7 @@ fn parameter(
         unit: of.parameters[place].unit.clone(),
         group: of.parameters[place].group,
         mean,
-        deviation,
+        deviation: deviation(values),
         least: sorted[0],
         median: 0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]),
         largest: sorted[sorted.len() - 1],
@@ -133,6 +137,34 @@ fn by_station(units: &[Vec<Calibrated>]) -> Vec<AtStation<'_>> {
         }
     }
     stations.into_values().map(|units| units.into_iter().collect()).collect()
+}
+
+/// The stations with too few units for a law of their distances.
+fn untested(stations: &[AtStation], lasts: &[&Calibrated]) -> Vec<UntestedStation> {
+    let few = stations.iter().filter(|units| units.len() < FEWEST_UNITS);
+    let named = |units: &AtStation| UntestedStation {
+        station: units[0].1[0].station.clone(),
+        units: units.iter().map(|(number, _)| lasts[*number].unit_serial.clone()).collect(),
+    };
+    few.map(named).collect()
+}
+
+/// The units whose mean over their calibrations is beyond a limit, parameter by parameter.
+fn beyond_limits(
+    units: &[Vec<Calibrated>],
+    lasts: &[&Calibrated],
+    names: &[String],
+    limits: &ParameterLimits,
+) -> Vec<BeyondLimit> {
+    let of_parameter = |name: &String| {
+        let (low, high) = limits.get(name).copied()?;
+        let is_beyond = |value: &f64| low.is_some_and(|low| *value < low) || high.is_some_and(|high| *value > high);
+        let means = unit_means(units, name).into_iter().zip(lasts);
+        let beyond: Vec<String> =
+            means.filter(|(mean, _)| is_beyond(mean)).map(|(_, last)| last.unit_serial.clone()).collect();
+        (!beyond.is_empty()).then(|| BeyondLimit { parameter: name.clone(), units: beyond })
+    };
+    names.iter().filter_map(of_parameter).collect()
 }
 
 /// One parameter of all units over time.
@@ -240,9 +272,15 @@ fn over_time(by_parameter: Vec<OfParameter>) -> Vec<UnitFinding> {
 fn summary(batch: &str, values: &[f64]) -> BatchSummary {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
+    BatchSummary { batch: batch.to_owned(), units: values.len(), mean, deviation: deviation(values) }
+}
+
+/// Standard deviation of values; none of a single one.
+fn deviation(values: &[f64]) -> Option<f64> {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    let deviation = (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt());
-    BatchSummary { batch: batch.to_owned(), units: values.len(), mean, deviation }
+    (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt())
 }
 
 /// Serial numbers with a batch that no unit has, those first that look like one.

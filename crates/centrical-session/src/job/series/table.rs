@@ -9,7 +9,7 @@ use centrical_table::write_whole;
 
 use super::ledger::Ledger;
 use super::request::SeriesRequest;
-use crate::document::SeriesSummary;
+use crate::document::{FailedSession, SeriesSummary};
 use crate::error::Error;
 use crate::store::{Depth, Row, Selection, Status, Store};
 
@@ -36,7 +36,7 @@ pub(super) fn write_tables(
         let ordered: Vec<(&str, &Row)> =
             chunk.iter().filter_map(|(session, key)| Some((session.as_str(), rows.get(*key)?))).collect();
         for (session, row) in &ordered {
-            count(&mut summary, row);
+            count(&mut summary, session, row);
             line(&mut text, session, row);
         }
         table.add(&ordered)?;
@@ -46,9 +46,18 @@ pub(super) fn write_tables(
     Ok(summary)
 }
 
-fn count(summary: &mut SeriesSummary, row: &Row) {
+/// Failures that the summary names.
+const MOST_NAMED: usize = 100;
+
+fn count(summary: &mut SeriesSummary, session: &str, row: &Row) {
     match (row.status, row.acceptable) {
-        (Status::Failed, _) => summary.failed += 1,
+        (Status::Failed, _) => {
+            summary.failed += 1;
+            if summary.failures.len() < MOST_NAMED {
+                let message = row.failure.message.clone();
+                summary.failures.push(FailedSession { session: session.to_owned(), message });
+            }
+        }
         (Status::Done, true) => summary.acceptable += 1,
         (Status::Done, false) => summary.not_acceptable += 1,
     }
