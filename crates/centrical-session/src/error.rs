@@ -301,6 +301,14 @@ pub enum NoErrorModel {
         /// Positions that determine all three turns.
         positions: usize,
     },
+    /// The turns of positions and those of rests in known attitudes are of two cases.
+    #[error(
+        "found the case by positions on the arm and by rests in known attitudes {apart} apart, expected one case, laid in one holder"
+    )]
+    TwoCases {
+        /// Angle between them, and that in standard uncertainties.
+        apart: String,
+    },
     /// The error model cannot be stated in the axes asked for.
     #[error("found {found}, expected a scale matrix whose newtonometers point along three directions")]
     Axes {

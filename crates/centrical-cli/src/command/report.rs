@@ -10,6 +10,7 @@ use clap::ValueEnum;
 
 use crate::command::compensate::acceleration;
 use crate::outcome::Outcome;
+use crate::output::remark;
 use crate::printing::Printing;
 
 /// Write the documents of a calibration from its result.json.
@@ -69,11 +70,18 @@ pub struct Documents {
 }
 
 impl Documents {
-    /// `result`, which is called `name` in messages, in the axes asked for.
+    /// `result`, which is called `name` in messages, in the axes asked for. One that is not acceptable has documents in its own axes, and
+    /// a remark, where the others cannot be found.
     pub fn in_axes(&self, result: CalibrationResult, name: &Path) -> Result<CalibrationResult, Error> {
-        match &self.axes {
-            Some(axes) => Axes::from(axes.as_str()).of(result, name),
-            None => Ok(result),
+        let Some(axes) = &self.axes else { return Ok(result) };
+        match Axes::from(axes.as_str()).of(result.clone(), name) {
+            Err(error @ Error::ErrorModel { .. }) if !result.objections().is_empty() => {
+                let mut screen = Screen::default();
+                screen.say(0, &format!("axes {axes} are left out: {error}"));
+                remark(&screen);
+                Ok(result)
+            }
+            in_axes => in_axes,
         }
     }
 }

@@ -178,8 +178,29 @@ fn rests_do_not_show_the_case() {
     let output = copy.run(&["tumble", &record, "--out", "tumbled", "--axes", "upper", "--gravity", "9.81523"]);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     let axes = json(&copy.out().join("tumbled/result.json"))["axes"].clone();
-    assert!(["scale_21", "scale_31", "scale_32"].iter().all(|name| value(&axes, name).abs() < 1e-14));
+    let uncertainty = |name: &str| {
+        let parameters = axes["parameters"].as_array().unwrap();
+        parameters.iter().find(|p| p["name"] == name).unwrap()["standard_uncertainty"].as_f64().unwrap()
+    };
+    assert!(
+        ["scale_21", "scale_31", "scale_32"].iter().all(|name| (value(&axes, name), uncertainty(name)) == (0.0, 0.0))
+    );
     let output = copy.run(&["compensate", "tumbled/result.json", &record, "--out", "f.csv", "--axes", "missing.toml"]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
     assert!(said(&output).contains("one of lower, upper, symmetric, case"), "{}", said(&output));
+}
+
+/// What is not determined is said as without `--axes`, and the other axes are left out.
+#[test]
+fn a_result_that_is_not_determined_has_no_other_axes() {
+    let copy = Copy::new();
+    let record = format!("{}/../../examples/tumble/record.csv", env!("CARGO_MANIFEST_DIR"));
+    let terms = "df_1,df_2,df_3,G0_11,G0_21,G0_22,G0_31,G0_32,G0_33,G1_11,G1_12,G1_13";
+    let output =
+        copy.run(&["tumble", &record, "--out", "tumbled", "--gravity", "9.81523", "--terms", terms, "--axes", "upper"]);
+    let text = said(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("axes upper are left out") && text.contains("df_1: found no value"), "{text}");
+    let result = json(&copy.out().join("tumbled/result.json"));
+    assert!(result["axes"].is_null() && copy.out().join("tumbled/report.html").exists());
 }

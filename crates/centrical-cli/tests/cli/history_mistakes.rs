@@ -251,11 +251,10 @@ fn limits_and_batches_reach_the_reader() {
     for (serial, bias) in [("a", 1e-3), ("b", 2e-3), ("c", 3e-3), ("d", 9e-3)] {
         results.add(serial, serial, "2024-01-01", |result| set(result, "df_1", bias));
     }
-    fs::write(
-        results.path().join("limits.toml"),
-        "[decision]\nspecification = \"S\"\nrule = \"simple\"\n[[decision.limit]]\nparameter = \"df_1\"\nhigh = 5e-3\n",
-    )
-    .unwrap();
+    let laboratory = fs::read_to_string(example().join("laboratory.toml")).unwrap();
+    let without_limits = &laboratory[..laboratory.find("[[decision.limit]]").unwrap()];
+    let limits = format!("{without_limits}[[decision.limit]]\nparameter = \"df_1\"\nhigh = 5e-3\n");
+    fs::write(results.path().join("limits.toml"), limits).unwrap();
     fs::write(results.path().join("batches.csv"), "serial,batch\na,x\nb,x\nc,y\nd,y\n").unwrap();
     fs::write(results.path().join("one.csv"), "serial,batch\na,x\nb,y\n").unwrap();
     let (code, text, message) = results.run(&["units", ".", "--laboratory", "limits.toml"]);

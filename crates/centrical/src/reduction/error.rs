@@ -28,6 +28,18 @@ pub enum ReductionError {
         /// Fewest that make sense.
         expected: usize,
     },
+    /// Samples that hardly last.
+    #[error(
+        "found {samples} samples from {from} s to {to} s, expected times that go on: a clock that stands still, or another column"
+    )]
+    TimeStands {
+        /// Samples that can be read.
+        samples: usize,
+        /// First time [s].
+        from: f64,
+        /// Last time [s].
+        to: f64,
+    },
     /// A time that is not a number or earlier than the one before it.
     #[error("sample {sample}: found time {found} s after {before} s, expected times that do not decrease")]
     Time {

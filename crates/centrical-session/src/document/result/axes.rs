@@ -68,7 +68,13 @@ impl AxesSummary {
         for i in 1..=3 {
             quantities.push((format!("turn_{i}"), turned[i - 1], "rad".to_owned()));
         }
-        let covariance = model.covariance();
+        let mut covariance = model.covariance();
+        // By definition of the form: rounding leaves neither a value nor a variance.
+        for (j, (_, value, _)) in quantities.iter_mut().enumerate().filter(|(j, _)| is_zero_by_form(&name, *j)) {
+            *value = 0.0;
+            covariance.row_mut(j).fill(0.0);
+            covariance.column_mut(j).fill(0.0);
+        }
         let without_scatter = in_axes(result, c_zb, &turn, &stated)?.covariance();
         let degrees = |j: usize| {
             let from_scatter = covariance[(j, j)] - without_scatter[(j, j)];
@@ -103,6 +109,20 @@ impl AxesSummary {
         let c_zb = Matrix3::from_fn(|i, j| self.matrix[i][j]);
         let model = ModelInAxes::with_covariance(result.error_terms()?, c_zb, &covariance.ok_or_else(found)?);
         model.ok_or_else(found)
+    }
+}
+
+/// Standard uncertainties by which two attitudes of one case differ on any axis by chance in one of 5,000 results.
+const CONTRADICTORY: f64 = 4.0;
+
+/// Whether quantity `j` is an element of the scale matrix that is zero in every unit by the form that names the axes.
+fn is_zero_by_form(name: &AxesName, j: usize) -> bool {
+    let Some(element) = j.checked_sub(3).filter(|element| *element < 9) else { return false };
+    let (row, column) = (element / 3, element % 3);
+    match name {
+        AxesName::LowerTriangular => row < column,
+        AxesName::UpperTriangular => row > column,
+        AxesName::Symmetric | AxesName::Case | AxesName::Other(_) => false,
     }
 }
 
@@ -142,12 +162,31 @@ impl CalibrationResult {
     /// the seats' and the faces'; it counts as uncertainty.
     ///
     /// # Errors
-    /// [`NoErrorModel::Case`] when less than two positions determine all three turns, and no rests do.
+    /// [`NoErrorModel::Case`] when less than two positions determine all three turns, and no rests do; [`NoErrorModel::TwoCases`] when both do, and
+    /// contradict each other. Where they agree, the better one is taken.
     pub(crate) fn of_case(&self) -> Result<Attitude, NoErrorModel> {
         match (self.of_case_by_positions(), self.of_case_by_rests()) {
             (Err(NoErrorModel::Case { .. }), Some(by_rests)) => Ok(by_rests),
+            (Ok(by_positions), Some(by_rests)) => self.one_case(by_positions, by_rests),
             (by_positions, _) => by_positions,
         }
+    }
+
+    /// The better known of two attitudes that should be of one case.
+    fn one_case(&self, by_positions: Attitude, by_rests: Attitude) -> Result<Attitude, NoErrorModel> {
+        let all = self.parameters.len();
+        let covariance = DMatrix::from_fn(all, all, |i, j| self.covariance[i][j].unwrap_or(0.0));
+        let apart = Rotation3::from_matrix_unchecked(by_positions.c_zb.transpose() * by_rests.c_zb).scaled_axis();
+        let of = |turn: &Matrix3xX<f64>| (turn * &covariance * turn.transpose()).diagonal();
+        let between = of(&(&by_positions.turn - &by_rests.turn)) + by_positions.scatter.diagonal();
+        let uncertainties =
+            (0..3).map(|i| apart[i].abs() / between[i].max(f64::MIN_POSITIVE).sqrt()).fold(0.0, f64::max);
+        if uncertainties > CONTRADICTORY {
+            let apart = format!("{:.2} mrad, {uncertainties:.0} standard uncertainties", apart.norm() * 1e3);
+            return Err(NoErrorModel::TwoCases { apart });
+        }
+        let better = of(&by_rests.turn).sum() < (of(&by_positions.turn) + by_positions.scatter.diagonal()).sum();
+        Ok(if better { by_rests } else { by_positions })
     }
 
     /// The attitude of the case by `case_turn`; `None` where a component is not determined.

@@ -247,7 +247,7 @@ impl<'s> Watch<'s> {
                     | ReductionError::PlateauTooShort { index, .. }
                     | ReductionError::Unsteady { index, .. },
                 ) => count = index.min(count - 1),
-                Err(ReductionError::TooShort { .. }) => return Ok(None),
+                Err(ReductionError::TooShort { .. } | ReductionError::TimeStands { .. }) => return Ok(None),
                 Err(source) => return Err(self.refused(mounting, source)),
             }
         }

@@ -82,7 +82,11 @@ impl Blocks {
             noise: filled().map(|(_, (_, noise))| noise).collect(),
         };
         if blocks.t.len() < 3 {
-            let found = gathered.iter().map(|block| block.readable).sum();
+            let found: usize = gathered.iter().map(|block| block.readable).sum();
+            let half = 0.5 * blocks.width;
+            if let (Some(from), Some(to), true) = (blocks.t.first(), blocks.t.last(), found >= 3 * SAMPLES) {
+                return Err(ReductionError::TimeStands { samples: found, from: from - half, to: to + half });
+            }
             return Err(ReductionError::TooShort { found, expected: 3 * SAMPLES });
         }
         for axis in 0..3 {
