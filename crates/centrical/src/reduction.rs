@@ -48,7 +48,7 @@ mod turning;
 
 pub use average::{Averaging, PlateauFit, ReducedMounting, average};
 pub use colour::{EXCLUDED, NoiseModel, plateau_means};
-pub use copies::chance_of_likeness;
+pub use copies::{RepeatedRests, chance_of_likeness, repeated_rests};
 pub use ellipsoid::{CoarseScale, coarse_scale};
 pub use error::{ReductionError, Stretch};
 pub use locate::{ClockAgreement, ClockOffset, Located, PulseTrain, SpeedReading, SpeedTrace, locate, locate_rests};

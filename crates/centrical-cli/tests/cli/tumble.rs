@@ -99,6 +99,31 @@ fn a_record_counts_once() {
     assert!(text.contains("rests.csv: found the readings of [[tumble]] 1, "), "{text}");
 }
 
+/// So does one that is pasted twice, or stands beside its own rests.
+#[test]
+fn a_record_that_is_pasted_twice_counts_once() {
+    let copy = Copy::new();
+    let record = fs::read_to_string(example("record.csv")).unwrap();
+    let (head, rows) = record.split_once('\n').unwrap();
+    let later = rows.lines().map(|row| {
+        let (time, readings) = row.split_once(',').unwrap();
+        format!("{:.3},{readings}\n", time.parse::<f64>().unwrap() + 200.017)
+    });
+    let twice: String = std::iter::once(format!("{head}\n{rows}")).chain(later).collect();
+    fs::write(copy.out().join("twice.csv"), twice).unwrap();
+    let text = said(&copy.run(&["tumble", "twice.csv", "--gravity", "9.81523"]));
+    assert!(text.contains("twice.csv: found the readings of earlier rests in 24 others, in rest 25 at 2"), "{text}");
+    let of_record = ["tumble", &example("record.csv"), "--gravity", "9.81523", "--out", "tumbled"];
+    assert_eq!(copy.run(&of_record).status.code(), Some(0));
+    fs::copy(example("record.csv"), copy.out().join("record.csv")).unwrap();
+    let alone = fs::read_to_string(copy.out().join("tumbled/experiment.toml")).unwrap();
+    let alone = alone.split("[[tumble]]").next().unwrap();
+    let beside = "\n[[tumble]]\nrests = \"tumbled/rests.csv\"\n\n[[tumble]]\nrecord = \"record.csv\"\n";
+    fs::write(copy.out().join("beside.toml"), format!("{alone}{beside}")).unwrap();
+    let text = said(&copy.run(&["calibrate", "beside.toml", "--json"]));
+    assert!(text.contains("record.csv: found the readings of earlier rests in 24 others"), "{text}");
+}
+
 /// Names go into the session of the rests as TOML writes them.
 #[test]
 fn names_of_any_characters_are_written() {

@@ -17,8 +17,8 @@ use rayon::prelude::*;
 
 pub use self::in_memory::{Recorded, reduce_recorded};
 pub(crate) use self::instead::fits_instead;
-pub(crate) use self::own_readings::refuse_copies;
 use self::own_readings::refuse_shared_readings;
+pub(crate) use self::own_readings::{refuse_copies, refuse_repeated_rests};
 use self::pooling::pooled;
 pub(crate) use self::rests::{find_rests, is_of_gravity, mean_size, with_all_rests};
 pub(crate) use self::schedule::schedule;
@@ -41,6 +41,8 @@ pub fn reduce<'s>(session: &'s Session, progress: OnProgress) -> Result<(Cow<'s,
     let inputs = session.files().into_par_iter().map(input);
     reduced.inputs = inputs.collect::<Result<_, _>>()?;
     refuse_shared_readings(&session, &reduced)?;
+    let mut files_of_rests = session.rest_tables.iter().filter_map(|table| table.files().next());
+    refuse_repeated_rests(&session, &reduced, files_of_rests.next_back().unwrap_or(&session.file))?;
     Ok((session, reduced))
 }
 

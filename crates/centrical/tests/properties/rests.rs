@@ -1,6 +1,6 @@
 //! Records of a unit that is turned by hand or on a table: the rests that are found, and the calibration by them.
 
-use centrical::reduction::{PlateauMean, Record, RestRecord, coarse_scale, reduce_rests};
+use centrical::reduction::{PlateauMean, Record, RestRecord, coarse_scale, reduce_rests, repeated_rests};
 use centrical::uncertainty::{Level, Rivals, chance_of_residuals};
 use centrical::{
     Calibration, Centrifuge, Data, ErrorModel, Experiment, Fit, MeasurementModel, Mounting, Observation, PairRelation,
@@ -291,6 +291,36 @@ fn rests_of_few_samples_or_stamps_are_found() {
         }
         // Four standard deviations of a mean of 90 squares.
         assert!((sum / 90.0 - 1.0).abs() < 0.6, "{sum}");
+    }
+}
+
+/// Rests of a record that is pasted twice are those before, whatever of their ends is lost; rests in the same attitudes again are not.
+#[test]
+fn rests_that_count_twice_are_found() {
+    let mut random = Random::new(43);
+    for pasted in [true, false] {
+        for _ in 0..10 {
+            let rests = |first: Record, second: &Record| {
+                let (end, start) = (first.t[first.t.len() - 1] + 0.017, first.t[0]);
+                let mut record = first;
+                record.t.extend(second.t.iter().map(|t| t - start + end));
+                (0..3).for_each(|axis| record.f_z[axis].extend(&second.f_z[axis]));
+                let means = reduce_rests(&[record.as_slice().into()], &unwatched).unwrap().means.concat();
+                let noise = |rest: &PlateauMean| rest.white_variance.inf(&rest.covariance.diagonal()).map(f64::sqrt);
+                means.iter().map(|rest| (rest.mean, noise(rest))).collect::<Vec<_>>()
+            };
+            let first = made(&ON_A_TABLE, &mut random).record;
+            let mut second = first.clone();
+            if !pasted {
+                // The same attitudes to the last digit, with noise of its own as large again.
+                let noise = |f: &f64| f + 1e-3 * random.normal();
+                let mut noise = noise;
+                second.f_z = second.f_z.map(|f| f.iter().map(&mut noise).collect());
+            }
+            let found = repeated_rests(&rests(first, &second));
+            assert_eq!(found.is_some(), pasted, "{found:?}");
+            assert!(found.is_none_or(|found| found.count >= 20 && found.first.0 == 0), "{found:?}");
+        }
     }
 }
 

@@ -4,13 +4,13 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use centrical::Mounting;
-use centrical::reduction::{PlateauMean, chance_of_likeness};
+use centrical::reduction::{PlateauMean, RepeatedRests, chance_of_likeness, repeated_rests};
 use centrical::uncertainty::Level;
+use centrical::{Mounting, SetPoint};
 
 use crate::error::{Error, Place};
 use crate::experiment::Session;
-use crate::reduced::Reduced;
+use crate::reduced::{Reduced, ReducedPlateau};
 
 /// The readings from which a mean was taken.
 struct Readings<'a> {
@@ -37,6 +37,31 @@ pub(super) fn refuse_shared_readings(session: &Session, reduced: &Reduced) -> Re
         }
     }
     Ok(())
+}
+
+/// Refuses rests that count twice; `file` is the last record or table of rests.
+pub(crate) fn refuse_repeated_rests(session: &Session, reduced: &Reduced, file: &Path) -> Result<(), Error> {
+    let set_points = session.experiment.set_points.iter().zip(&reduced.plateaus);
+    let is_rest = |set_point: &SetPoint| !session.experiment.is_on_arm(set_point.mounting);
+    let rests: Vec<&ReducedPlateau> =
+        set_points.filter(|(set_point, _)| is_rest(set_point)).map(|(_, plateau)| plateau).collect();
+    // White noise is too much where the noise is blue, or a table hums.
+    let least_noise = |plateau: &ReducedPlateau| {
+        let white = plateau.variance.unwrap_or_default() / plateau.samples.max(1) as f64;
+        white.inf(&plateau.covariance.diagonal()).map(f64::sqrt)
+    };
+    let means: Vec<_> = rests.iter().map(|plateau| (plateau.mean, least_noise(plateau))).collect();
+    let Some(RepeatedRests { first: (earlier, later), count }) = repeated_rests(&means) else { return Ok(()) };
+    let named = |rest: usize| {
+        let at = rests[rest].window.map_or_else(String::new, |[from, _]| format!(" at {from:.1} s"));
+        format!("rest {}{at}", rest + 1)
+    };
+    let found = format!(
+        "the readings of earlier rests in {count} others, in {} first those of {}",
+        named(later),
+        named(earlier)
+    );
+    Err(Error::content(file, Place::Whole, found, "readings of its own for each rest: a record counts once"))
 }
 
 /// Refuses records of one mounting whose means are more alike than the noise allows: copies that were trimmed, shifted or rounded. The `means` of

@@ -15,7 +15,7 @@ use crate::error::{Error, Place};
 use crate::experiment::{EXPERIMENT_FILE, Folder, Session, write_attitudes, write_plateaus};
 use crate::job::calibrate::calibrate_reduced;
 use crate::job::noise::Series;
-use crate::job::reduce::find_rests;
+use crate::job::reduce::{find_rests, refuse_repeated_rests};
 use crate::quantity::Dimension;
 use crate::record::{EqualColumns, Input, RECORD, Scale, named_columns};
 use crate::reduced::{Reduced, ReducedPlateau, rest_rows};
@@ -82,6 +82,7 @@ pub fn tumble(request: &TumbleRequest, folder: &Path, progress: OnProgress) -> R
         }
         Ok(())
     })?;
+    refuse_repeated_rests(&session, &reduced, request.files.last().unwrap_or(&session.file))?;
     let result = calibrate_reduced(&session, &reduced, Method::Exact, progress)?;
     Ok(Tumble { session, text, reduced, result })
 }
