@@ -122,7 +122,12 @@ fn a_tumble_of_the_unit_fills_lines_in() {
     let output = draft(&folder);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    for line in ["gravity = \"9.81523 m/s^2\"  # GUESS", "serial = \"0001\"  # FOUND", "[[tumble]]\nrests = \""] {
+    for line in [
+        "gravity = \"9.81523 m/s^2\"  # GUESS",
+        "serial = \"0001\"  # FOUND",
+        "[[tumble]]\nrests = \"",
+        "# bias_change = \"0 mg\"  #",
+    ] {
         assert!(text.contains(line), "{line} in {text}");
     }
     let rests = text.lines().find(|line| line.starts_with("rests = ")).unwrap().split('"').nth(1).unwrap().to_owned();

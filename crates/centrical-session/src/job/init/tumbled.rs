@@ -87,7 +87,11 @@ impl Tumbled {
             if let Some(turning) = table.turning {
                 draft.found(&format!("turning = {}", turning.inline_table()), &self.how());
             }
+            draft.line(BIAS_CHANGE);
             draft.line("");
         }
     }
 }
+
+/// What nobody states by default, and what it brings.
+const BIAS_CHANGE: &str = "# bias_change = \"0 mg\"  # in one switch-on with the arm; or how far each bias may have moved: the rests then sharpen biases";
