@@ -116,13 +116,6 @@ pub enum Effect {
         /// What it follows.
         follows: Course,
     },
-    /// Change of the bias of a newtonometer from the switch-on of the arm, or of the first rest, to another one [m/s^2].
-    BiasChange {
-        /// Newtonometer.
-        axis: usize,
-        /// Number of the other switch-on.
-        switch_on: usize,
-    },
     /// Coordinate of the proof masses from the axes of a slow rotation [m].
     Turning {
         /// Instrument axis of the coordinate.
@@ -190,6 +183,11 @@ impl Effect {
         Self::Monomial { axis, monomial: Monomial::ONE, scope: Scope::Mounting(mounting) }
     }
 
+    /// Change of the bias of a newtonometer from the switch-on of the arm, or of the first rest, to another one [m/s^2].
+    pub fn change_of_bias(axis: usize, switch_on: usize) -> Self {
+        Self::Monomial { axis, monomial: Monomial::ONE, scope: Scope::SwitchOn(switch_on) }
+    }
+
     /// Whether it depends on what came before a plateau.
     pub(super) fn is_of_history(self) -> bool {
         matches!(self, Self::Disturbance { follows, .. } if follows.is_of_history())
@@ -213,7 +211,6 @@ impl Effect {
             Self::Gravity
             | Self::Monomial { .. }
             | Self::Disturbance { .. }
-            | Self::BiasChange { .. }
             | Self::Turning { .. }
             | Self::Rounding { .. } => false,
             Self::ElasticTurn { .. }
@@ -255,7 +252,6 @@ impl Effect {
             | Self::Latitude
             | Self::Monomial { .. }
             | Self::Disturbance { .. }
-            | Self::BiasChange { .. }
             | Self::Turning { .. }
             | Self::Rounding { .. } => false,
         }

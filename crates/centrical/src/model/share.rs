@@ -83,9 +83,6 @@ impl MeasurementModel {
             Effect::Disturbance { axis, follows } => {
                 Share::Reading(Vector3::ith(axis, self.course(set_point, axis, follows)))
             }
-            Effect::BiasChange { axis, switch_on } => {
-                only(experiment.positions[position].switch_on.number == switch_on, Share::Reading(along(axis)))
-            }
             Effect::Turning { axis, switch_on } => {
                 let position = &experiment.positions[position];
                 // Only the acceleration along the vertical counts: that across it turns the specific force.

@@ -210,7 +210,7 @@ impl TypeB {
         for SwitchOn { number: switch_on, bias_change, .. } in experiment.other_switch_ons() {
             for axis in 0..3 {
                 let u = bias_change.unwrap_or(self.bias_change);
-                add(Source::BiasChange, Effect::BiasChange { axis, switch_on }, u);
+                add(Source::BiasChange, Effect::change_of_bias(axis, switch_on), u);
             }
         }
         for SwitchOn { number: switch_on, from_axes, .. } in experiment.turned_switch_ons() {

@@ -50,7 +50,7 @@ fn changes_of_bias_are_those_of_other_switch_ons() {
         let model = kozlov(with_cube(has_arm, None, switch_ons)).with_stated(stated);
         model.influences().iter().map(|influence| (influence.effect, influence.standard_uncertainty)).collect()
     };
-    let of = |switch_on: usize, u: f64| (0..3).map(move |axis| (Effect::BiasChange { axis, switch_on }, u));
+    let of = |switch_on: usize, u: f64| (0..3).map(move |axis| (Effect::change_of_bias(axis, switch_on), u));
     assert_eq!(changes(false, 1), []);
     assert_eq!(changes(true, 1), of(1, 2e-3).collect::<Vec<_>>());
     assert_eq!(changes(false, 3), of(2, 5e-4).chain(of(3, 2e-3)).collect::<Vec<_>>());

@@ -148,7 +148,6 @@ fn acts_on(experiment: &Experiment, effect: Effect, here: usize) -> bool {
         | Effect::Gravity
         | Effect::Latitude
         | Effect::Monomial { scope: Scope::Session | Scope::SwitchOn(_), .. }
-        | Effect::BiasChange { .. }
         | Effect::Turning { .. }
         | Effect::Disturbance { .. } => true,
     }
