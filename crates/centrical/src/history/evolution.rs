@@ -118,27 +118,25 @@ impl Evolution<'_> {
         let of_line = |line: &Line| line.shared_variance_of_slope(self.series);
         let of_one = self.estimated(self.line.slope, 1.0 / self.line.spread, of_line(&self.line));
         // Sessions that agree to the last digit have no component of any size.
-        let law = || Spread::Law(Law::new(self.slopes(of_line)));
+        let law = || Spread::Law(self.slopes(of_line));
         let spread = if of_one.standard_uncertainty > 0.0 { law() } else { of_one.spread.clone() };
         self.line.spread.is_finite().then_some(Estimated { spread, ..of_one })
     }
 
-    /// A slope for each value `c` of chi^2, with the variance `(Q(tau^2) / c) / spread`: `Q = c` but where the sessions scatter by less than they
-    /// state, and `tau^2` is zero.
-    fn slopes(&self, shared: impl Fn(&Line) -> f64) -> impl Iterator<Item = Part> {
-        let (mut rest, mut likely) = (0.0, self.likely.iter());
-        let mut present = likely.next();
-        self.scales.iter().filter_map(move |(weight, scale)| {
-            if rest + 0.5 * weight > present?.0 {
-                (rest, present) = (0.0, likely.next());
-            }
-            rest += weight;
-            let (_, tau, line) = present?;
-            let chi_squared = scale * self.degrees_of_freedom as f64;
-            let part_of_stated = if *tau == 0.0 { (self.misfit / chi_squared).min(1.0) } else { 1.0 };
+    /// The law of the slope: a part for each value `c` of chi^2, with the variance `(Q(tau^2) / c) / spread`: `Q = c` but where the sessions scatter by less than they
+    /// state, `Q(0) <= c`, and `tau^2` is zero.
+    fn slopes(&self, shared: impl Fn(&Line) -> f64) -> Law {
+        let part = |weight: f64, line: &Line, part_of_stated: f64| {
             let variance = part_of_stated / line.spread + shared(line);
-            Some(Part { weight: *weight, mean: line.slope, deviation: variance.sqrt() })
-        })
+            Part { weight, mean: line.slope, deviation: variance.sqrt() }
+        };
+        let at_zero = self.likely.first().filter(|(_, tau, _)| *tau == 0.0);
+        let less = self.scales.iter().filter_map(|(weight, scale)| {
+            let part_of_stated = self.misfit / (scale * self.degrees_of_freedom as f64);
+            (part_of_stated <= 1.0).then_some(part(*weight, &at_zero?.2, part_of_stated))
+        });
+        let beyond = self.likely.iter().filter(|(_, tau, _)| *tau > 0.0);
+        Law::new(less.chain(beyond.map(|(weight, _, line)| part(*weight, line, 1.0))))
     }
 
     fn estimated(&self, value: f64, weighted_variance: f64, shared: f64) -> Estimated {

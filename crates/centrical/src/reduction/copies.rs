@@ -62,7 +62,7 @@ pub fn repeated_rests(rests: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Repeated
     repeated.max_by_key(|repeated| repeated.count)
 }
 
-/// chi^2 of three components that 8 % of rests in one attitude stay below, and 98 % of copies of which a twentieth of the samples differs.
+/// Limit of chi^2 with three components. Of rests in one attitude 8 % stay below it; of copies that share nineteen samples of twenty, 98 %.
 const ALIKE: f64 = 0.5;
 
 /// Probability of a refusal by chance.

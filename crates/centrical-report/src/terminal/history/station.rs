@@ -23,13 +23,12 @@ pub fn station_history_text(report: &StationHistoryReport) -> Screen {
     let mut screen = Screen::default();
     let untested = report.parameters.iter().filter(|p| p.probability.is_none()).count();
     match report.is_steady {
-        Some(true) if untested == 0 => {
-            let words = "no parameter of the machine has a slope, a change that lasts, or a session that stands out beyond its scatter";
-            screen.marked(Emphasis::Acceptable, "STEADY", words);
-        }
         Some(true) => {
-            let words = "no parameter that is tested has a slope, a change that lasts, or a session that stands out beyond its scatter";
-            screen.marked(Emphasis::Acceptable, "STEADY", words);
+            let parameters = if untested == 0 { "of the machine" } else { "that is tested" };
+            let words = format!(
+                "no parameter {parameters} has a slope, a change that lasts, or a session that stands out beyond its scatter"
+            );
+            screen.marked(Emphasis::Acceptable, "STEADY", &words);
         }
         Some(false) => {
             screen.marked(Emphasis::NotAcceptable, "NOT STEADY", "the parameters are marked below; family-wise 5 %");

@@ -147,7 +147,7 @@ fn in_axes(
     }
     by.rows_mut(count, 3).copy_from(turn);
     // What is not determined takes no part: its column is zero, or the attitude had been refused.
-    let covariance = DMatrix::from_fn(all, all, |i, j| result.covariance[i][j].unwrap_or(0.0));
+    let covariance = result.covariance_matrix();
     let mut joint = &by * covariance * by.transpose();
     let mut of_turn = joint.view_mut((count, count), (3, 3));
     of_turn += own;
@@ -172,10 +172,15 @@ impl CalibrationResult {
         }
     }
 
+    /// The covariance of all parameters; zero where one is not determined.
+    fn covariance_matrix(&self) -> DMatrix<f64> {
+        let all = self.parameters.len();
+        DMatrix::from_fn(all, all, |i, j| self.covariance[i][j].unwrap_or(0.0))
+    }
+
     /// The better known of two attitudes that should be of one case.
     fn one_case(&self, by_positions: Attitude, by_rests: Attitude) -> Result<Attitude, NoErrorModel> {
-        let all = self.parameters.len();
-        let covariance = DMatrix::from_fn(all, all, |i, j| self.covariance[i][j].unwrap_or(0.0));
+        let covariance = self.covariance_matrix();
         let apart = Rotation3::from_matrix_unchecked(by_positions.c_zb.transpose() * by_rests.c_zb).scaled_axis();
         let of = |turn: &Matrix3xX<f64>| (turn * &covariance * turn.transpose()).diagonal();
         let between = of(&(&by_positions.turn - &by_rests.turn)) + by_positions.scatter.diagonal();
@@ -216,7 +221,7 @@ impl CalibrationResult {
         }
         let count = turns.len() as f64;
         let value = |j: usize| -> f64 { self.parameters[j].value.unwrap_or(0.0) };
-        let covariance = DMatrix::from_fn(all, all, |i, j| self.covariance[i][j].unwrap_or(0.0));
+        let covariance = self.covariance_matrix();
         let mut turn = Matrix3xX::zeros(all);
         let mut scatter = Matrix3::zeros();
         let mut mean = Vector3::zeros();

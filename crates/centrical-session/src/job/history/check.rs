@@ -33,7 +33,9 @@ pub fn check_store(
     progress: OnProgress,
 ) -> Result<HistoryList, Error> {
     let store = Store::open(folder)?;
-    let selection = Selection { depth: Depth::Whole, ..selection };
+    // Numbers are held against copies alone.
+    let depth = if store.keeps_results() { Depth::Whole } else { selection.depth };
+    let selection = Selection { depth, ..selection };
     let rows = store.rows(selection, progress)?.collect::<Result<Vec<_>, _>>()?;
     let done: Vec<&Row> = rows.iter().filter(|row| row.status == Status::Done).collect();
     let mut doubts = two_spellings(&done);
@@ -133,10 +135,12 @@ struct Copies<'a> {
 
 /// Whether a row has the names, the day and the numbers of its copy, to the last digit.
 fn is_of(row: &Row, copy: &Row) -> bool {
-    let names = |row: &Row| [&row.unit_model, &row.unit_serial, &row.station, &row.date].map(String::clone);
     let is_same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
     let are_same = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(is_same);
-    names(row) == names(copy)
+    row.unit_model == copy.unit_model
+        && row.unit_serial == copy.unit_serial
+        && row.station == copy.station
+        && row.date == copy.date
         && row.day == copy.day
         && row.parameters == copy.parameters
         && are_same(&row.values, &copy.values)

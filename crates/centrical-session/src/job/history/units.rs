@@ -44,19 +44,22 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
     if names.is_empty() {
         return None;
     }
-    let parameters = names.iter().filter_map(|name| parameter(&lasts, name, &unit_means(units, name), request));
-    let mut parameters: Vec<UnitsParameter> = parameters.collect();
+    let (mut parameters, mut beyond_limits) = (Vec::new(), Vec::new());
+    for name in &names {
+        let means = unit_means(units, name);
+        parameters.extend(parameter(&lasts, name, &means, request));
+        beyond_limits.extend(beyond_limit(&lasts, name, &means, &request.limits));
+    }
     let batches: Vec<f64> = parameters.iter().map(|p| p.batch_probability.unwrap_or(1.0)).collect();
     for (parameter, chance) in parameters.iter_mut().zip(family_wise(&batches)) {
         parameter.batches_differ = chance < FAMILY;
     }
     let stations = by_station(units);
     let by_parameter = by_parameter(&stations, &lasts, &names, &all);
-    let tested: Vec<&AtStation> = stations.iter().filter(|units| units.len() >= FEWEST_UNITS).collect();
+    let (tested, few): (Vec<&AtStation>, Vec<&AtStation>) =
+        stations.iter().partition(|units| units.len() >= FEWEST_UNITS);
     let outlying = outlying(&tested, &lasts, &by_parameter);
     let findings = over_time(by_parameter);
-    let untested = untested(&stations, &lasts);
-    let beyond_limits = beyond_limits(units, &lasts, &names, &request.limits);
     let batches_differ = parameters.iter().any(|p| p.batches_differ);
     Some(UnitsHistoryReport {
         schema: UNITS_HISTORY_SCHEMA,
@@ -66,8 +69,8 @@ pub fn units_history(compared: &ComparedUnits, request: &UnitsHistoryRequest) ->
         sessions: all.len(),
         not_acceptable: all.iter().filter(|calibrated| !calibrated.acceptable).count(),
         left_out: left_out.clone(),
-        is_tested: untested.is_empty(),
-        untested,
+        is_tested: few.is_empty(),
+        untested: few.into_iter().map(|units| untested(units, &lasts)).collect(),
         is_sound: outlying.is_empty() && findings.is_empty() && beyond_limits.is_empty() && !batches_differ,
         beyond_limits,
         outlying,
@@ -139,32 +142,21 @@ fn by_station(units: &[Vec<Calibrated>]) -> Vec<AtStation<'_>> {
     stations.into_values().map(|units| units.into_iter().collect()).collect()
 }
 
-/// The stations with too few units for a law of their distances.
-fn untested(stations: &[AtStation], lasts: &[&Calibrated]) -> Vec<UntestedStation> {
-    let few = stations.iter().filter(|units| units.len() < FEWEST_UNITS);
-    let named = |units: &AtStation| UntestedStation {
+/// A station with too few units for a law of their distances.
+fn untested(units: &AtStation, lasts: &[&Calibrated]) -> UntestedStation {
+    UntestedStation {
         station: units[0].1[0].station.clone(),
         units: units.iter().map(|(number, _)| lasts[*number].unit_serial.clone()).collect(),
-    };
-    few.map(named).collect()
+    }
 }
 
-/// The units whose mean over their calibrations is beyond a limit, parameter by parameter.
-fn beyond_limits(
-    units: &[Vec<Calibrated>],
-    lasts: &[&Calibrated],
-    names: &[String],
-    limits: &ParameterLimits,
-) -> Vec<BeyondLimit> {
-    let of_parameter = |name: &String| {
-        let (low, high) = limits.get(name).copied()?;
-        let is_beyond = |value: &f64| low.is_some_and(|low| *value < low) || high.is_some_and(|high| *value > high);
-        let means = unit_means(units, name).into_iter().zip(lasts);
-        let beyond: Vec<String> =
-            means.filter(|(mean, _)| is_beyond(mean)).map(|(_, last)| last.unit_serial.clone()).collect();
-        (!beyond.is_empty()).then(|| BeyondLimit { parameter: name.clone(), units: beyond })
-    };
-    names.iter().filter_map(of_parameter).collect()
+/// The units whose `means` of one parameter are beyond a limit, if there are any.
+fn beyond_limit(lasts: &[&Calibrated], name: &str, means: &[f64], limits: &ParameterLimits) -> Option<BeyondLimit> {
+    let (low, high) = limits.get(name).copied()?;
+    let is_beyond = |mean: f64| low.is_some_and(|low| mean < low) || high.is_some_and(|high| mean > high);
+    let beyond = means.iter().zip(lasts).filter(|(mean, _)| is_beyond(**mean));
+    let units: Vec<String> = beyond.map(|(_, last)| last.unit_serial.clone()).collect();
+    (!units.is_empty()).then(|| BeyondLimit { parameter: name.to_owned(), units })
 }
 
 /// One parameter of all units over time.

@@ -11,6 +11,9 @@ use super::grid::{Grid, SAMPLES};
 use crate::reduction::error::ReductionError;
 use crate::statistics::{median, whole};
 
+/// Shortest rest [s]: a hand that turns back stands still for less.
+const SHORTEST_REST: f64 = 0.8;
+
 /// A record in equal blocks of time; blocks that fall in a gap are left out.
 #[derive(Debug, Clone)]
 pub(in crate::reduction) struct Blocks {
@@ -39,9 +42,9 @@ impl Blocks {
         8.max(whole(revolution.ceil()))
     }
 
-    /// Fewest blocks of a rest: 0.8 s, and one block beside those at its ends, which may hold the onset of motion.
+    /// Fewest blocks of a rest: of [`SHORTEST_REST`], and one beside those at its ends, which may hold the onset of motion.
     pub fn least_of_rest(&self) -> usize {
-        3.max(whole((0.8 / self.width).ceil()))
+        3.max(whole((SHORTEST_REST / self.width).ceil()))
     }
 
     /// The blocks of a record, gathered. Readings have steps of `resolution` at least [m/s^2].
