@@ -248,7 +248,7 @@ impl MeasurementModel {
             }
         }
         for ((column, term), monomial) in (parameters.first_term()..).zip(&self.error_model.terms).zip(monomials) {
-            columns.push((column, Vector3::ith(term.axis, *monomial)));
+            columns.push((column, Vector3::from_fn(|axis, _| if axis == term.axis { *monomial } else { 0.0 })));
         }
         for (column, effect) in parameters.effects() {
             if let Some(change) = partials.by_share(&self.share(set_point, effect)) {
