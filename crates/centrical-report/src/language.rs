@@ -68,10 +68,11 @@ impl Language {
 
     /// A probability to three places, a small one to two digits and a power of ten.
     pub(crate) fn probability(self, value: f64) -> String {
-        if value >= 1e-3 || value == 0.0 {
-            return self.fixed(value, 3);
+        match value {
+            1e-3.. => self.fixed(value, 3),
+            1e-300.. => self.with_power(scientific(value, 2)),
+            _ => format!("< {}", self.with_power(scientific(1e-300, 1))),
         }
-        self.with_power(scientific(value, 2))
     }
 
     /// A number to `digits` significant digits, never in powers of ten.
@@ -145,7 +146,7 @@ mod tests {
         assert_eq!(Russian.plus_minus(-3.952_149, 0.001_234), "−3,9521 ± 0,0012");
         assert_eq!(Russian.plus_minus_scientific(-1.6488e-6, 1.2e-9), "(−1,6488 ± 0,0012)·10⁻⁶");
         assert_eq!(Russian.scientific(1.5e-5), "1,5·10⁻⁵");
-        assert_eq!([0.155, 1e-3, 0.0].map(|p| Russian.probability(p)), ["0,155", "0,001", "0,000"]);
+        assert_eq!([0.155, 1e-3, 0.0].map(|p| Russian.probability(p)), ["0,155", "0,001", "< 1·10⁻³⁰⁰"]);
         assert_eq!([9.99e-4, 1.3e-45].map(|p| English.probability(p)), ["1.0·10⁻³", "1.3·10⁻⁴⁵"]);
         assert_eq!([1234.5, 10_873.0].map(|x| English.significant(x, 2)), ["1200", "11000"]);
         assert_eq!(Russian.significant(0.012_345, 3), "0,0123");

@@ -40,11 +40,12 @@ pub(crate) use self::compensation::CompensatedFiles;
 pub use self::compensation::{COMPENSATION_SCHEMA, CompensationReport, FirstReading, ReadingsBeyond};
 pub use self::documents::{DOCUMENTS_SCHEMA, DocumentKind, DocumentsReport, ObjectionName, WrittenDocument};
 pub use self::draft::{DRAFT_SCHEMA, DraftReport, LineToFillIn};
+pub(crate) use self::history::FAMILY;
 pub use self::history::{
-    BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate,
-    LeftOutSession, OutlyingUnit, PastSession, ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary,
-    StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind,
-    UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
+    BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal,
+    DeviatingSession, DueDate, LeftOutSession, OutlyingUnit, PastSession, ReadingHistory, STATION_HISTORY_SCHEMA,
+    SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding,
+    UnitFindingKind, UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
 };
 pub use self::history_list::{Doubt, DoubtKind, HISTORY_LIST_SCHEMA, HistoryLine, HistoryList};
 pub use self::models::{CandidateSummary, MODELS_SCHEMA, ModelsReport, NestedTestSummary, TermSupport};

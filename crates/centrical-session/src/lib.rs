@@ -62,10 +62,11 @@ pub use document::{
     TermSummary, TiltSummary, TiltVerdict, ValiditySummary, WatchState, WatchedPlateau, read_history, unit_name,
 };
 pub use document::{
-    BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal, DueDate,
-    FailedSession, LeftOutSession, OutlyingUnit, PastSession, ReadingHistory, STATION_HISTORY_SCHEMA, SamenessSummary,
-    StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA, UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind,
-    UnitHistoryReport, UnitParameter, UnitsHistoryReport, UnitsParameter, UntestedStation,
+    BatchSummary, BatchWithoutUnit, BeyondLimit, CHART_SCHEMA, CapabilitySummary, ChartReport, ChartSignal,
+    DeviatingSession, DueDate, FailedSession, LeftOutSession, OutlyingUnit, PastSession, ReadingHistory,
+    STATION_HISTORY_SCHEMA, SamenessSummary, StationHistoryReport, StationParameter, UNIT_HISTORY_SCHEMA,
+    UNITS_HISTORY_SCHEMA, UnitFinding, UnitFindingKind, UnitHistoryReport, UnitParameter, UnitsHistoryReport,
+    UnitsParameter, UntestedStation,
 };
 pub use document::{
     GroupProgress, LIVE_SCHEMA, LiveBenefit, LiveCause, LiveLost, LivePlateau, LiveRecord, LiveReport, LiveSpeed,

@@ -20,6 +20,7 @@ mod outlying;
 mod quantiles;
 mod series;
 mod station;
+mod succession;
 mod together;
 mod units;
 
@@ -34,5 +35,5 @@ pub use outlying::{FEWEST_UNITS, UnitDistance, UnitSessions, distances};
 pub use quantiles::Quantiles;
 pub use series::{Point, Series};
 pub use station::{FEWEST_READINGS, Reading, StationTest, station_test};
-pub use together::{Sameness, SessionEstimates, sameness};
+pub use together::{FarthestSession, Sameness, SessionEstimates, sameness};
 pub use units::{UnitTrend, unit_trends};

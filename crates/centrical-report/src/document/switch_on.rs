@@ -64,9 +64,9 @@ fn calibrations(history: &UnitHistoryReport, language: Language) -> String {
 }
 
 fn sameness(history: &UnitHistoryReport, language: Language) -> String {
-    history.sameness.map_or_else(String::new, |test| {
+    history.sameness.as_ref().map_or_else(String::new, |test| {
         let (chi_squared, chance) = (language.fixed(test.chi_squared, 1), language.probability(test.probability));
-        format!("χ² = {chi_squared}; ν = {}; p = {chance}", test.degrees_of_freedom)
+        format!("χ² = {chi_squared}; ν = {}; p: {chance}", test.degrees_of_freedom)
     })
 }
 

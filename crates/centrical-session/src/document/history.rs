@@ -6,10 +6,11 @@ mod unit;
 mod units;
 
 pub use self::chart::{CHART_SCHEMA, ChartReport, ChartSignal};
+pub(crate) use self::station::FAMILY;
 pub use self::station::{STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
 pub use self::unit::{
-    DueDate, LeftOutSession, PastSession, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
-    UnitParameter,
+    DeviatingSession, DueDate, LeftOutSession, PastSession, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA,
+    UnitHistoryReport, UnitParameter,
 };
 pub use self::units::{
     BatchSummary, BatchWithoutUnit, BeyondLimit, CapabilitySummary, OutlyingUnit, UNITS_HISTORY_SCHEMA, UnitFinding,

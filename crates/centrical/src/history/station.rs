@@ -1,14 +1,17 @@
 //! Whether a machine stayed as it was: one quantity over all sessions of a station, units coming and going.
 //!
 //! A unit may bring a value of its own, as the seat of its case does. Of units with several sessions its mean is therefore taken out, and
-//! only changes between sessions of one unit count. Three tests: a slope in time (Student's t); a change at any time, by the largest
+//! only changes between sessions of one unit count. Four tests: a slope in time (Student's t); a change at any time, by the largest
 //! cumulative sum of the deviations (A. N. Kolmogorov's law, with which R. L. Brown, J. Durbin and J. M. Evans test regressions, J. R. Statist. Soc. B 37, 1975);
-//! and a single session that stands out (F. E. Grubbs, Technometrics 11, 1969). Scatter is their measure: they do not judge it.
+//! a single session that stands out (F. E. Grubbs, Technometrics 11, 1969); and sessions that resemble those before them
+//! ([`super::succession`]). Scatter is their measure: they do not judge it.
 //!
 //! Units that come one after another take the course of the machine along with their means: what remains of the spread of times says
 //! how much of a slope could show.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::succession::succession_probability;
 
 /// A value in one session.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +47,8 @@ pub struct StationTest {
     pub distance: f64,
     /// Probability of a session as far off by chance.
     pub farthest_probability: f64,
+    /// Probability of sessions that resemble those before them as much by chance.
+    pub succession_probability: f64,
     /// Part of the squared spread of times that the means of units leave, 0 to 1.
     pub remaining_spread: f64,
 }
@@ -51,8 +56,9 @@ pub struct StationTest {
 impl StationTest {
     /// Probability that any test finds as much by chance (Bonferroni).
     pub fn probability(&self) -> f64 {
-        let least = self.slope_probability.min(self.change_probability).min(self.farthest_probability);
-        (3.0 * least).min(1.0)
+        let tests =
+            [self.slope_probability, self.change_probability, self.farthest_probability, self.succession_probability];
+        (tests.len() as f64 * tests.into_iter().fold(1.0, f64::min)).min(1.0)
     }
 
     /// Whether a machine that changes would show it: not where the units came one after another.
@@ -69,7 +75,7 @@ pub const FEWEST_READINGS: usize = 8;
 
 /// The tests of `readings`; `None` below [`FEWEST_READINGS`] of them, or where neither times nor values vary.
 pub fn station_test(readings: &[Reading]) -> Option<StationTest> {
-    let Deviations { instants, times, values, means } = Deviations::of(readings);
+    let Deviations { instants, times, values, groups, means } = Deviations::of(readings);
     let nu = times.len().checked_sub(means + 1).filter(|_| times.len() >= FEWEST_READINGS)?;
     let spread: f64 = times.iter().map(|t| t * t).sum();
     let slope = times.iter().zip(&values).map(|(t, v)| t * v).sum::<f64>() / spread;
@@ -93,6 +99,7 @@ pub fn station_test(readings: &[Reading]) -> Option<StationTest> {
         farthest: instants[farthest.place],
         distance: values[farthest.place],
         farthest_probability: farthest.probability,
+        succession_probability: succession_probability(&values, &groups)?,
         remaining_spread: spread / all,
     })
 }
@@ -105,6 +112,8 @@ struct Deviations {
     times: Vec<f64>,
     /// Values, less their means.
     values: Vec<f64>,
+    /// Whose mean was taken out of each.
+    groups: Vec<usize>,
     /// Means that were taken out.
     means: usize,
 }
@@ -130,6 +139,7 @@ impl Deviations {
             instants: kept.iter().map(|r| r.time).collect(),
             times: kept.iter().map(|r| r.time - sums[group(r)].1 / sums[group(r)].0).collect(),
             values: kept.iter().map(|r| r.value - sums[group(r)].2 / sums[group(r)].0).collect(),
+            groups: kept.iter().map(|r| group(r)).collect(),
             means: sums.iter().filter(|sum| sum.0 > 0.0).count(),
         }
     }

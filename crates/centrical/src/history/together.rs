@@ -23,6 +23,19 @@ pub struct Sameness {
     pub degrees_of_freedom: usize,
     /// Probability of so large a chi^2 if the sessions differ by the stated errors alone.
     pub probability: f64,
+    /// The session that deviates most from the others, of three or more.
+    pub farthest: Option<FarthestSession>,
+}
+
+/// A session held against the others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FarthestSession {
+    /// Its index.
+    pub session: usize,
+    /// Probability that by the stated errors any session deviates as much (Bonferroni).
+    pub probability: f64,
+    /// Probability of so large a chi^2 of the others without it.
+    pub probability_of_others: f64,
 }
 
 /// The joint test of sessions with the same quantities; `None` below two sessions, or where a covariance is not positive definite.
@@ -52,7 +65,22 @@ pub fn sameness(sessions: &[SessionEstimates], shared: &[DMatrix<f64>]) -> Optio
     }
     let degrees_of_freedom = p * sessions.len().checked_sub(1).filter(|rest| *rest > 0)?;
     let sizes = sizes.resize_vertically(p + m, 1.0);
-    let chi_squared = LeastSquares::new(design, sizes).redundant(&values).norm_squared();
+    let equations = LeastSquares::new(design, sizes);
+    let chi_squared = equations.redundant(&values).norm_squared();
     let probability = chi_squared_tail(chi_squared, degrees_of_freedom);
-    Some(Sameness { chi_squared, degrees_of_freedom, probability })
+    let (basis, values) = (equations.basis(rows), values.rows(0, rows));
+    let residuals = values - &basis * basis.tr_mul(&values);
+    // How far chi^2 falls without a session, r^T (E - Q Q^T)^-1 r with its rows of the orthonormal basis Q.
+    let fall = |n: usize| {
+        let (own, r) = (basis.rows(n * p, p), residuals.rows(n * p, p));
+        Some(r.dot(&(DMatrix::identity(p, p) - own * own.transpose()).cholesky()?.solve(&r)))
+    };
+    let largest = (0..sessions.len()).filter_map(|n| Some((n, fall(n)?))).max_by(|(_, a), (_, b)| a.total_cmp(b));
+    // Of two sessions each is as far from the other.
+    let farthest = largest.filter(|_| sessions.len() > 2).map(|(session, fall)| FarthestSession {
+        session,
+        probability: (sessions.len() as f64 * chi_squared_tail(fall, p)).min(1.0),
+        probability_of_others: chi_squared_tail((chi_squared - fall).max(0.0), degrees_of_freedom - p),
+    });
+    Some(Sameness { chi_squared, degrees_of_freedom, probability, farthest })
 }

@@ -230,19 +230,31 @@ fn what_sessions_share_cancels_in_differences() {
     let mut random = Random::new(3);
     let factor = DMatrix::from_fn(5, 5, |_, _| random.normal());
     let covariance = &factor * factor.transpose();
-    let (mut sum, mut small) = (0.0, 0);
-    for _ in 0..500 {
-        let session = |random: &mut Random| SessionEstimates {
+    let (mut sum, mut small, mut far) = (0.0, 0, 0);
+    for run in 0..500 {
+        let mut session = || SessionEstimates {
             values: DVector::repeat(5, 7.0) + &factor * DVector::from_fn(5, |_, _| random.normal()),
             covariance: covariance.clone(),
         };
-        let test = sameness(&[session(&mut random), session(&mut random), session(&mut random)], &[]).unwrap();
+        let mut sessions = [session(), session(), session()];
+        let test = sameness(&sessions, &[]).unwrap();
         assert_eq!(test.degrees_of_freedom, 10);
         sum += test.chi_squared;
         small += i32::from(test.probability < 0.05);
+        far += i32::from(test.farthest.unwrap().probability < 0.05);
+        // One that is 12 standard deviations off is named, and chi^2 without it is that of the two others.
+        let odd = run % 3;
+        sessions[odd].values += 12.0 * factor.column(2);
+        let farthest = sameness(&sessions, &[]).unwrap().farthest.unwrap();
+        let others = [(odd + 1) % 3, (odd + 2) % 3].map(|n| sessions[n].clone());
+        let alone = sameness(&others, &[]).unwrap();
+        assert_eq!(farthest.session, odd);
+        assert!((farthest.probability_of_others / alone.probability - 1.0).abs() < 1e-6);
+        assert_eq!(alone.farthest, None);
     }
     // Four standard deviations.
     assert!((sum / 500.0 - 10.0).abs() < 0.8 && (5..46).contains(&small), "{sum} {small}");
+    assert!((5..46).contains(&far), "{far}");
 }
 
 /// Correlated parameters of `units` units.
@@ -305,6 +317,38 @@ fn a_seat_that_drifts_is_found() {
     assert!(drift.probability() < 1e-3 && (drift.slope - 0.4).abs() < 4.0 * drift.standard_uncertainty);
     let step = station_test(&readings(3, &|time| if time > 1.8 { 1.0 } else { 0.0 })).unwrap();
     assert!(step.change_probability < 1e-3 && (step.changed_after - 1.8).abs() < 0.4, "{step:?}");
+}
+
+/// Sessions that resemble those before them by chance are found as often as stated, units coming once or again, few or many; a season and a
+/// seat that was put back are found, and are neither slope nor single session.
+#[test]
+fn a_machine_that_wanders_is_found() {
+    const RUNS: u32 = 4000;
+    let mut random = Random::new(5);
+    let mut test = |n: usize, units: usize, change: &dyn Fn(f64) -> f64| {
+        let at = |i: usize| {
+            let time = i as f64 / 12.0;
+            Reading { time, unit: i % units, value: random.normal() + change(time) }
+        };
+        station_test(&(0..n).map(at).collect::<Vec<_>>()).unwrap()
+    };
+    for (n, units) in [(8, 1), (8, 3), (24, 24), (24, 5), (90, 30)] {
+        let chances: Vec<f64> = (0..RUNS).map(|_| test(n, units, &|_| 0.0).succession_probability).collect();
+        for level in [0.05, 0.01] {
+            let found = chances.iter().filter(|chance| **chance < level).count() as f64 / f64::from(RUNS);
+            let spread = (level * (1.0 - level) / f64::from(RUNS)).sqrt();
+            let (least, most) = (level - 4.0 * spread - 0.1 * level, level + 4.0 * spread + 0.1 * level);
+            // The beta law is too careful of eight readings.
+            assert!((n < 24 || least < found) && found < most, "{n} of {units} at {level}: {found}");
+        }
+    }
+    let season = |time: f64| 4.0 * (std::f64::consts::TAU * time).sin();
+    let put_back = |time: f64| if (0.6..1.3).contains(&time) { 5.0 } else { 0.0 };
+    for change in [&season as &dyn Fn(f64) -> f64, &put_back] {
+        let found = test(24, 24, change);
+        assert!(found.succession_probability < 1e-4, "{found:?}");
+        assert!(found.slope_probability > 0.01 && found.farthest_probability > 0.01, "{found:?}");
+    }
 }
 
 /// Among units of one type the one that drifts and the one that scatters are found, each as what it is; sound plants have a finding in

@@ -13,6 +13,7 @@ fn finding(p: &StationParameter) -> String {
     let day = p.farthest.filter(|_| p.stands_out());
     match day {
         Some(day) if p.changes => format!("{day} STANDS OUT"),
+        _ if p.changes && p.wanders() => "WANDERS".to_owned(),
         _ if p.changes => "CHANGES".to_owned(),
         _ => String::new(),
     }
@@ -26,7 +27,7 @@ pub fn station_history_text(report: &StationHistoryReport) -> Screen {
         Some(true) => {
             let parameters = if untested == 0 { "of the machine" } else { "that is tested" };
             let words = format!(
-                "no parameter {parameters} has a slope, a change that lasts, or a session that stands out beyond its scatter"
+                "no parameter {parameters} has a slope, a change that lasts, a session that stands out, or wanders beyond its scatter"
             );
             screen.marked(Emphasis::Acceptable, "STEADY", &words);
         }

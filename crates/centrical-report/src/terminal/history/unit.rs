@@ -93,7 +93,7 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
             format!("the last calibration does not determine {}, as earlier ones do", short_list(&report.not_in_last));
         screen.marked(Emphasis::Warning, "NOT IN LAST", &words);
     }
-    if let Some(test) = report.sameness {
+    if let Some(test) = &report.sameness {
         let words = format!(
             "chi^2 = {:.1} with {} degrees of freedom; as large by the stated uncertainties alone with a probability of {}",
             test.chi_squared,
@@ -103,6 +103,16 @@ fn verdict(screen: &mut Screen, report: &UnitHistoryReport) {
         let (emphasis, mark) =
             if report.differs() { (Emphasis::Warning, "DIFFERS") } else { (Emphasis::Acceptable, "THE SAME") };
         screen.marked(emphasis, mark, &words);
+    }
+    if let Some(session) = report.deviating() {
+        let words = format!(
+            "{}, {}: no session deviates as much by the stated uncertainties with a probability above {}; the others alone: {}",
+            session.date,
+            session.source,
+            chance(session.probability),
+            chance(session.probability_of_others)
+        );
+        screen.marked(Emphasis::Warning, "DEVIATES", &words);
     }
     if report.sessions.len() < 3 {
         screen.marked(Emphasis::Warning, "FEW", "two calibrations show no trend beside the scatter between sessions");

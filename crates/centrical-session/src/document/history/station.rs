@@ -11,6 +11,9 @@ use crate::quantity::Date;
 /// Name of the schema's present version.
 pub const STATION_HISTORY_SCHEMA: &str = "centrical-station-history/1";
 
+/// Family-wise level of what is called a change.
+pub(crate) const FAMILY: f64 = 0.05;
+
 /// The history of a station.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StationHistoryReport {
@@ -68,21 +71,35 @@ pub struct StationParameter {
     pub distance: Option<f64>,
     /// Probability of a session as far off on a steady machine.
     pub farthest_probability: Option<f64>,
+    /// Probability of sessions that resemble those before them as much on a steady machine.
+    pub succession_probability: Option<f64>,
     /// Scatter over the mean stated uncertainty: well above 1 for what mounting brings along.
     pub scatter_ratio: f64,
     /// Whether units came one after another, so that a machine that changes with them does not show it: not tested.
     pub is_confounded: bool,
-    /// Probability of any of the three.
+    /// Probability of any of the four.
     pub probability: Option<f64>,
     /// Whether that is beyond 5 %, all parameters together (Holm).
     pub changes: bool,
 }
 
 impl StationParameter {
-    /// Whether a single session is less likely than a slope or a change that lasts.
+    /// Whether a single session is less likely than all else that was tested.
     pub fn stands_out(&self) -> bool {
-        let others = self.slope_probability.unwrap_or(1.0).min(self.change_probability.unwrap_or(1.0));
+        let others = self.lasting().min(self.succession_probability.unwrap_or(1.0));
         self.farthest_probability.is_some_and(|single| single < others)
+    }
+
+    /// Whether sessions resemble those before them, and neither a slope nor a change at once explains it.
+    pub fn wanders(&self) -> bool {
+        let is_explained = 4.0 * self.lasting() < FAMILY;
+        self.succession_probability.is_some_and(|succession| succession < self.farthest_probability.unwrap_or(1.0))
+            && !is_explained
+    }
+
+    /// Probability of the less likely of slope and change.
+    fn lasting(&self) -> f64 {
+        self.slope_probability.unwrap_or(1.0).min(self.change_probability.unwrap_or(1.0))
     }
 }
 

@@ -89,7 +89,7 @@ pub struct UnitHistoryReport {
 }
 
 /// Whether the unit was the same in all sessions: all parameters together, with their full covariances.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SamenessSummary {
     /// chi^2 of the differences from one common unit.
     pub chi_squared: f64,
@@ -97,6 +97,21 @@ pub struct SamenessSummary {
     pub degrees_of_freedom: usize,
     /// Probability of so large a chi^2 if only the stated errors differ.
     pub probability: f64,
+    /// The session that deviates most from the others; null of two sessions.
+    pub farthest: Option<DeviatingSession>,
+}
+
+/// The session that deviates most from the others of its unit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DeviatingSession {
+    /// The file, or the key in a store.
+    pub source: String,
+    /// Day.
+    pub date: Date,
+    /// Probability that by the stated errors any session deviates as much.
+    pub probability: f64,
+    /// Probability of so large a chi^2 of the others without it.
+    pub probability_of_others: f64,
 }
 
 /// One parameter over the sessions, SI.
@@ -184,7 +199,15 @@ impl UnitHistoryReport {
 
     /// Whether the calibrations differ by more than their stated uncertainties.
     pub fn differs(&self) -> bool {
-        self.sameness.is_some_and(|test| Level::Disagreement.is_passed_by(test.probability))
+        self.sameness.as_ref().is_some_and(|test| Level::Disagreement.is_passed_by(test.probability))
+    }
+
+    /// The session that differs from the others, where the others are the same without it.
+    pub fn deviating(&self) -> Option<&DeviatingSession> {
+        let farthest = self.sameness.as_ref()?.farthest.as_ref()?;
+        let is_alone = Level::Disagreement.is_passed_by(farthest.probability)
+            && !Level::Disagreement.is_passed_by(farthest.probability_of_others);
+        is_alone.then_some(farthest)
     }
 
     /// Whether they differ, and are too few to say of any parameter that it scatters or drifts.

@@ -8,10 +8,7 @@ use centrical::history::{Reading, StationTest, station_test};
 use centrical::uncertainty::family_wise;
 
 use super::calibrated::{Calibrated, CalibratedParameter, years};
-use crate::document::{Program, STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
-
-/// Family-wise level of what is called a change.
-const FAMILY: f64 = 0.05;
+use crate::document::{FAMILY, Program, STATION_HISTORY_SCHEMA, StationHistoryReport, StationParameter};
 
 /// The history of the machine of `calibrations`, which are of one station.
 pub fn station_history(calibrations: &[impl Borrow<Calibrated>]) -> Option<StationHistoryReport> {
@@ -88,6 +85,7 @@ fn parameter((name, unit): (&str, &str), sessions: &[(&Calibrated, Reading)]) ->
         farthest: test.and_then(|test| day(test.farthest)),
         distance: test.map(|test| test.distance),
         farthest_probability: test.map(|test| test.farthest_probability),
+        succession_probability: test.map(|test| test.succession_probability),
         scatter_ratio: scatter / stated,
         is_confounded: found.is_some() && test.is_none(),
         probability: test.map(|test| test.probability()),

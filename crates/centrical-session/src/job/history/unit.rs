@@ -8,7 +8,8 @@ use nalgebra::{DMatrix, Vector3};
 use super::calibrated::{Basis, Calibrated, DAYS, Finder, series, shared_changes, single, years};
 use super::comparable::Compared;
 use crate::document::{
-    DueDate, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport, UnitParameter,
+    DeviatingSession, DueDate, Program, ReadingHistory, SamenessSummary, UNIT_HISTORY_SCHEMA, UnitHistoryReport,
+    UnitParameter,
 };
 use crate::quantity::Date;
 
@@ -150,6 +151,12 @@ impl Job<'_> {
             chi_squared: test.chi_squared,
             degrees_of_freedom: test.degrees_of_freedom,
             probability: test.probability,
+            farthest: test.farthest.map(|farthest| DeviatingSession {
+                source: self.own[farthest.session].source.clone(),
+                date: self.own[farthest.session].date,
+                probability: farthest.probability,
+                probability_of_others: farthest.probability_of_others,
+            }),
         })
     }
 
